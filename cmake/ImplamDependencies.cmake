@@ -1,0 +1,15 @@
+# The libraries that Implam stands on, and the range of versions it was tested with.
+find_package(MPI REQUIRED COMPONENTS Fortran)
+set(HDF5_PREFER_PARALLEL TRUE)
+find_package(HDF5 REQUIRED COMPONENTS Fortran)
+if(NOT HDF5_IS_PARALLEL)
+  message(FATAL_ERROR "Implam needs a parallel HDF5 (Debian: libhdf5-openmpi-dev); found a serial one.")
+endif()
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(PETSC REQUIRED IMPORTED_TARGET PETSc>=3.18)
+if(PETSC_VERSION VERSION_GREATER_EQUAL 3.23)
+  message(FATAL_ERROR "PETSc ${PETSC_VERSION} found; Implam is tested with 3.18 up to, not including, 3.23, "
+                      "where the Fortran interface changed.")
+endif()
+find_library(METIS_LIBRARY metis REQUIRED)
+find_package(LAPACK REQUIRED)

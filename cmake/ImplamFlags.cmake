@@ -1,0 +1,43 @@
+# Compiler flags, one line of reason each. Presets choose the build type.
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Release, Debug or Coverage" FORCE)
+endif()
+option(IMPLAM_NATIVE "Tune for the processor that builds (switch off for a binary that travels)" ON)
+
+if(CMAKE_Fortran_COMPILER_ID STREQUAL "GNU")
+  set(IMPLAM_FLAGS
+    -std=f2008            # the language of the project, no extensions
+    -fimplicit-none
+    -Wall -Wextra
+    -Wno-maybe-uninitialized   # gfortran 12 reports descriptors of allocatables that are fine
+    -Wno-unused-dummy-argument # an override need not use every argument of its interface
+    -Wno-compare-reals)        # exact comparisons are written where they are meant
+  set(IMPLAM_RELEASE -O3 -funroll-loops
+    -fno-math-errno       # square roots without a call; NaN and Inf keep their meaning
+    -fstack-arrays)       # automatic arrays of element kernels on the stack
+  if(IMPLAM_NATIVE)
+    list(APPEND IMPLAM_RELEASE -march=native)
+  endif()
+  set(IMPLAM_DEBUG -Og -g -fbacktrace
+    -fcheck=all                            # bounds, shapes, allocation, pointers
+    -ffpe-trap=invalid,zero,overflow       # stop where the first NaN is born
+    -finit-real=snan -finit-integer=-99999 # a variable read before it is set is caught
+    -finit-derived)
+  set(IMPLAM_COVERAGE -O0 -g --coverage)
+else()
+  set(IMPLAM_FLAGS)
+  set(IMPLAM_RELEASE -O3)
+  set(IMPLAM_DEBUG -g)
+  set(IMPLAM_COVERAGE -g)
+endif()
+
+# The flags go with the targets of Implam, not with the tests' framework or CMake's probes.
+add_library(implam_flags INTERFACE)
+target_compile_options(implam_flags INTERFACE
+  $<$<COMPILE_LANGUAGE:Fortran>:${IMPLAM_FLAGS}>
+  $<$<AND:$<COMPILE_LANGUAGE:Fortran>,$<CONFIG:Release>>:${IMPLAM_RELEASE}>
+  $<$<AND:$<COMPILE_LANGUAGE:Fortran>,$<CONFIG:Debug>>:${IMPLAM_DEBUG}>
+  $<$<AND:$<COMPILE_LANGUAGE:Fortran>,$<CONFIG:Coverage>>:${IMPLAM_COVERAGE}>)
+target_link_options(implam_flags INTERFACE $<$<CONFIG:Coverage>:--coverage>)
+set(CMAKE_Fortran_FLAGS_RELEASE "")
+set(CMAKE_Fortran_FLAGS_DEBUG "")

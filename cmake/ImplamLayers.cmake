@@ -1,0 +1,46 @@
+# One OBJECT library a folder, each with its own module directory.
+
+# implam_add_layers(<layer>...): layers in order; a layer sees the modules of those before it.
+function(implam_add_layers)
+  set(lower "")
+  foreach(layer IN LISTS ARGN)
+    file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/src/${layer}/*.f90
+                                        ${CMAKE_CURRENT_SOURCE_DIR}/src/${layer}/*.F90)
+    if(sources)
+      add_library(implam_${layer} OBJECT ${sources})
+      set_target_properties(implam_${layer} PROPERTIES
+        Fortran_MODULE_DIRECTORY ${CMAKE_BINARY_DIR}/modules/${layer})
+      foreach(name IN LISTS lower)
+        target_include_directories(implam_${layer} PRIVATE ${CMAKE_BINARY_DIR}/modules/${name})
+        add_dependencies(implam_${layer} implam_${name})
+      endforeach()
+      target_link_libraries(implam_${layer} PRIVATE implam_flags)
+      list(APPEND lower ${layer})
+    endif()
+  endforeach()
+  implam_give_library(parallel MPI::MPI_Fortran)
+  implam_give_library(linalg PkgConfig::PETSC MPI::MPI_Fortran)
+  implam_give_library(io hdf5::hdf5_fortran)
+  if(TARGET implam_io)
+    target_include_directories(implam_io PRIVATE ${HDF5_Fortran_INCLUDE_DIRS})
+  endif()
+endfunction()
+
+# implam_give_library(<layer> <library>...): the only layer that may use a library sees it.
+function(implam_give_library layer)
+  if(TARGET implam_${layer})
+    target_link_libraries(implam_${layer} PRIVATE ${ARGN})
+  endif()
+endfunction()
+
+# implam_link_layers(<target> <layer>...): links the objects of these layers and their libraries.
+function(implam_link_layers target)
+  foreach(layer IN LISTS ARGN)
+    if(TARGET implam_${layer})
+      target_sources(${target} PRIVATE $<TARGET_OBJECTS:implam_${layer}>)
+      target_include_directories(${target} PRIVATE ${CMAKE_BINARY_DIR}/modules/${layer})
+    endif()
+  endforeach()
+  target_link_libraries(${target} PRIVATE implam_flags PkgConfig::PETSC MPI::MPI_Fortran
+    ${HDF5_Fortran_LIBRARIES} ${METIS_LIBRARY} LAPACK::LAPACK)
+endfunction()
