@@ -1,0 +1,47 @@
+!> Impactor and indentation law, as the deck gives them.
+module impact_parameters
+  use kinds, only: wp
+  implicit none
+  private
+  public :: impactor_parameters_t, indentation_law_t
+
+  !> Time integrators of the impactor.
+  integer, parameter, public :: integrator_gear4 = 1, integrator_trapezoidal = 2, &
+                                integrator_central = 3, integrator_conserving = 4
+  !> Indentation laws: Tan and Sun's (Eq. 3), or elastic Hertz both ways.
+  integer, parameter, public :: law_tan_sun = 1, law_hertz = 2
+  !> Permanent dent: Tan and Sun's linear one, or Yang and Sun's.
+  integer, parameter, public :: dent_tan_sun = 1, dent_yang_sun = 2
+
+  !> The rigid impactor.
+  type :: impactor_parameters_t
+    !> Mass
+    real(wp) :: mass = 0
+    !> Velocity at first touch, positive towards the plate
+    real(wp) :: velocity = 0
+    !> Radius of the nose; only Sun's formula for k uses it
+    real(wp) :: radius = 0
+    !> Acceleration of gravity along the impact direction; 0: none
+    real(wp) :: gravity = 0
+    !> One of the integrators above
+    integer :: integrator = integrator_gear4
+  end type impactor_parameters_t
+
+  !> Force against indentation (Eq. 3 of the paper with the reloading branch it lacks).
+  type :: indentation_law_t
+    !> law_tan_sun or law_hertz
+    integer :: law = law_tan_sun
+    !> Contact stiffness, F = k alpha**1.5
+    real(wp) :: k = 0
+    !> Exponent of unloading
+    real(wp) :: q = 2.5_wp
+    !> Exponent of reloading after separation
+    real(wp) :: reload = 1.5_wp
+    !> Slope of Tan and Sun's dent
+    real(wp) :: beta = 0.094_wp
+    !> Indentation above which a dent remains
+    real(wp) :: alpha_critical = 0
+    !> dent_tan_sun or dent_yang_sun
+    integer :: dent = dent_tan_sun
+  end type indentation_law_t
+end module impact_parameters
