@@ -13,13 +13,12 @@ if(CMAKE_Fortran_COMPILER_ID STREQUAL "GNU")
     -Wno-unused-dummy-argument # an override need not use every argument of its interface
     -Wno-compare-reals)        # exact comparisons are written where they are meant
   set(IMPLAM_RELEASE -O3 -funroll-loops
-    -fno-math-errno       # square roots without a call; NaN and Inf keep their meaning
-    -fstack-arrays)       # automatic arrays of element kernels on the stack
+    -fno-math-errno)      # square roots without a call; NaN and Inf keep their meaning
   if(IMPLAM_NATIVE)
     list(APPEND IMPLAM_RELEASE -march=native)
   endif()
   set(IMPLAM_DEBUG -Og -g -fbacktrace
-    -fcheck=all                            # bounds, shapes, allocation, pointers
+    -fcheck=all,no-array-temps             # bounds, shapes, allocation, pointers
     -ffpe-trap=invalid,zero,overflow       # stop where the first NaN is born
     -finit-real=snan -finit-integer=-99999 # a variable read before it is set is caught
     -finit-derived)

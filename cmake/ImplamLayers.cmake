@@ -5,6 +5,7 @@ function(implam_add_layers)
   set(lower "")
   foreach(layer IN LISTS ARGN)
     file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/src/${layer}/*.f90
+                                        ${CMAKE_CURRENT_SOURCE_DIR}/src/${layer}/*.c
                                         ${CMAKE_CURRENT_SOURCE_DIR}/src/${layer}/*.F90)
     if(sources)
       add_library(implam_${layer} OBJECT ${sources})

@@ -1,6 +1,6 @@
 !> What evolves is visited, once, by a routine that both saves and loads: a checkpoint, a rollback
 !> and a restart can then never disagree about what the state consists of.
-module archive
+module archives
   use kinds, only: wp
   implicit none
   private
@@ -100,4 +100,4 @@ module archive
       real(wp), intent(inout) :: value(:, :)
     end subroutine visit_field
   end interface
-end module archive
+end module archives

@@ -1,0 +1,204 @@
+"""The deck: what its groups say about plate, laminate, impactor and indentation."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from implam_post.errors import DeckError, FileError
+from implam_post.indentation import IndentationLaw
+from implam_post.laminate import Material, Ply, Section, section_of
+from implam_post.namelist import Group, Value, read_namelist
+
+
+@dataclass(frozen=True)
+class Impactor:
+    """The rigid impactor; its velocity at first touch is positive towards the plate."""
+
+    mass: float
+    velocity: float
+    gravity: float
+
+
+class Deck:
+    """The groups of a deck, with its defaults filled in."""
+
+    def __init__(self, text: str, path: Path) -> None:
+        """Read the groups from `text`; `path` names the deck in messages."""
+        self.path = path
+        self.groups = read_namelist(text, path.name)
+
+    @property
+    def name(self) -> str:
+        """Name of the case, from which those of the results are made."""
+        return str(self.value("case", "name", self.path.stem))
+
+    @property
+    def directory(self) -> Path:
+        """Folder of the results."""
+        return Path(str(self.value("output", "directory", ".")))
+
+    def has(self, group: str) -> bool:
+        """Tell whether the deck has a group of this name."""
+        return group in self.groups
+
+    def values(self, group: str, key: str) -> list[Value]:
+        """Return all values of a key; empty if the deck doesn't give it."""
+        found = self.groups.get(group, [])
+        if len(found) > 1:
+            raise self.error(group, "stands in the deck more than once.")
+        return found[0].get(key.lower(), []) if found else []
+
+    def value(self, group: str, key: str, default: Value | None = None) -> Value:
+        """Return the value of a key, or `default` if the deck doesn't give it; no default means it must be there."""
+        return self._single(self.values(group, key), group, key, default)
+
+    def number(self, group: str, key: str, default: float | None = None) -> float:
+        """Return a number, as `value` does."""
+        return _number(self.value(group, key, default), f"{self.path.name}: &{group} {key}")
+
+    def choice(self, group: str, key: str, allowed: Iterable[str]) -> str:
+        """Return a word out of `allowed`, the first of which is the default."""
+        allowed = list(allowed)
+        word = str(self.value(group, key, allowed[0])).lower()
+        if word not in allowed:
+            raise self.error(group, f"{key} = '{word}' is none of {', '.join(allowed)}.")
+        return word
+
+    def lengths(self) -> tuple[float, float]:
+        """Return the sides of the whole plate along x and y."""
+        sides = [_number(side, f"{self.path.name}: &plate length") for side in self.values("plate", "length")]
+        if len(sides) != 2 or min(sides) <= 0:
+            raise self.error("plate", "length needs the two sides of the plate, greater than zero.")
+        return sides[0], sides[1]
+
+    def edges(self) -> list[str]:
+        """Return the supports at x-min, x-max, y-min and y-max."""
+        return [str(edge).lower() for edge in self._spread(self.values("plate", "edges"), 4, "plate")]
+
+    def plies(self) -> list[Ply]:
+        """Return the stacking sequence from the struck face on."""
+        materials = self._materials()
+        angles = self.values("laminate", "angles")
+        names, thicknesses = (self._spread(self.values("laminate", key), len(angles), "laminate")
+                              for key in ("materials", "thicknesses"))
+        where = f"{self.path.name}: &laminate"
+        plies = []
+        for name, angle, thickness in zip(names, angles, thicknesses, strict=True):
+            if str(name).lower() not in materials:
+                raise self.error("laminate", f"no &material is named '{name}'.")
+            plies.append(Ply(materials[str(name).lower()], _number(angle, f"{where} angles"),
+                             _number(thickness, f"{where} thicknesses")))
+        if not plies:
+            raise self.error("laminate", "angles are needed, one a ply.")
+        if min(ply.thickness for ply in plies) <= 0:
+            raise self.error("laminate", "every thickness must be greater than zero.")
+        return plies
+
+    def section(self) -> Section:
+        """Return stiffness and mass of the laminate."""
+        return section_of(self.plies(), self.choice("laminate", "shear_correction", ("5/6", "energy")))
+
+    def impactor(self) -> Impactor:
+        """Return the impactor."""
+        if not self.has("impactor"):
+            raise DeckError(f"{self.path.name} has no &impactor: there is no impact to check.")
+        impactor = Impactor(self.number("impactor", "mass"), self.number("impactor", "velocity"),
+                            self.number("impactor", "gravity", 0.0))
+        if impactor.mass <= 0:
+            raise self.error("impactor", "the mass must be greater than zero.")
+        return impactor
+
+    def indentation_law(self) -> IndentationLaw:
+        """Return the indentation law, elastic if the deck has no &indentation; k by Sun's formula if none is given."""
+        stiffness = self.number("indentation", "k") if self.values("indentation", "k") else self._sun_stiffness()
+        if stiffness <= 0:
+            raise self.error("indentation", "k must be greater than zero.")
+        if not self.has("indentation") or self.choice("indentation", "law", ("tan_sun", "hertz")) == "hertz":
+            return IndentationLaw(stiffness, hertz=True)
+        law = IndentationLaw(
+            stiffness, unloading=self.number("indentation", "q", 2.5),
+            reloading=self.number("indentation", "reload", 1.5), slope=self.number("indentation", "beta", 0.094),
+            critical=self.number("indentation", "alpha_cr"),
+            dent=self.choice("indentation", "dent", ("tan_sun", "yang_sun")))
+        if not (1.5 <= law.reloading <= law.unloading and 0 <= law.slope < 1 and law.critical > 0):
+            raise self.error("indentation", "1.5 <= reload <= q, 0 <= beta < 1 and 0 < alpha_cr are needed.")
+        return law
+
+    def error(self, group: str, sentence: str) -> DeckError:
+        """Return an error that names deck and group."""
+        return DeckError(f"{self.path.name}: &{group}: {sentence}")
+
+    def _sun_stiffness(self) -> float:
+        """Return k = 4/3 sqrt(R) / [(1 - nu**2)/E + 1/E2]: E and nu of the impactor (no E: rigid), E2 of ply 1."""
+        radius = self.number("impactor", "radius", 0.0)
+        if radius <= 0:
+            raise self.error("indentation", "without k, the &impactor needs a radius.")
+        flexibility = 1 / self.plies()[0].material.e2
+        if self.values("indentation", "impactor_E"):
+            ratio = self.number("indentation", "impactor_nu", 0.3)
+            flexibility += (1 - ratio**2) / self.number("indentation", "impactor_E")
+        return 4.0 / 3.0 * np.sqrt(radius) / flexibility
+
+    def _materials(self) -> dict[str, Material]:
+        """Return the materials by their name in lower case."""
+        materials = {}
+        for group in self.groups.get("material", []):
+            name = str(self._single(group.get("name", []), "material", "name", "")).lower()
+            if name in materials:
+                raise self.error("material", f"two materials are named '{name}'.")
+            materials[name] = self._material(group)
+        return materials
+
+    def _material(self, group: Group) -> Material:
+        """Return one ply material, isotropic if the group gives E and nu."""
+        def number(key: str, default: float | None = None) -> float:
+            where = f"{self.path.name}: &material {key}"
+            return _number(self._single(group.get(key.lower(), []), "material", key, default), where)
+
+        if "e" in group:
+            modulus, ratio = number("E"), number("nu")
+            shear = modulus / (2 * (1 + ratio))
+            material = Material(number("density"), modulus, modulus, shear, shear, shear, ratio)
+        else:
+            shear = number("G12")
+            material = Material(number("density"), number("E1"), number("E2"), shear, number("G13", shear),
+                                number("G23"), number("nu12"))
+        if min(material.density, material.e1, material.e2, material.g12, material.g13, material.g23) <= 0:
+            raise self.error("material", "density and moduli must be greater than zero.")
+        if material.nu12**2 * material.e2 >= material.e1:
+            raise self.error("material", "nu12**2 must be smaller than E1/E2.")
+        return material
+
+    def _single(self, values: list[Value], group: str, key: str, default: Value | None) -> Value:
+        """Return the only value of a key, or its default."""
+        if len(values) > 1:
+            raise self.error(group, f"{key} takes one value.")
+        if values:
+            return values[0]
+        if default is None:
+            raise self.error(group, f"{key} is needed.")
+        return default
+
+    def _spread(self, values: list[Value], count: int, group: str) -> list[Value]:
+        """Return `count` values; a single one serves all."""
+        if len(values) not in (1, count):
+            raise self.error(group, f"a list has {len(values)} values where 1 or {count} are needed.")
+        return values if len(values) == count else count * values
+
+
+def _number(value: Value, where: str) -> float:
+    """Return `value` if it is a finite number."""
+    if isinstance(value, (bool, str)) or not np.isfinite(value):
+        raise DeckError(f"{where}: {value!r} isn't a number.")
+    return value
+
+
+def read_deck(path: Path | str) -> Deck:
+    """Read the deck from its file."""
+    path = Path(path)
+    try:
+        return Deck(path.read_text(encoding="utf-8"), path)
+    except (OSError, UnicodeDecodeError) as error:
+        raise FileError(f"the deck {path} cannot be read ({error}).") from None

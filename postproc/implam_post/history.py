@@ -1,0 +1,65 @@
+"""A history: columns of numbers against time."""
+
+import csv
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from implam_post.errors import FileError
+
+ENERGIES = ("energy_impactor", "energy_kinetic", "energy_strain", "energy_indentation", "energy_delamination",
+            "energy_ply_damage", "energy_contact", "energy_algorithmic")
+
+
+@dataclass(frozen=True)
+class History:
+    """Columns by name, all of one length, `time` among them."""
+
+    columns: dict[str, np.ndarray]
+    name: str = ""
+
+    def __getitem__(self, column: str) -> np.ndarray:
+        """Return a column by its name."""
+        if column not in self.columns:
+            raise FileError(f"{self.name or 'the history'} has no column '{column}'.")
+        return self.columns[column]
+
+    @property
+    def time(self) -> np.ndarray:
+        """Times of the rows."""
+        return self["time"]
+
+    def until(self, time: float) -> "History":
+        """Return the rows up to a time."""
+        kept = self.time <= time * (1 + 1e-9)
+        return History({name: values[kept] for name, values in self.columns.items()}, self.name)
+
+    def at(self, column: str, time: float) -> float:
+        """Return a column's value at a time, between rows by linear interpolation; NaN outside the history."""
+        if not self.time[0] <= time <= self.time[-1] * (1 + 1e-9):
+            return float("nan")
+        return float(np.interp(time, self.time, self[column]))
+
+
+def read_history(path: Path | str) -> History:
+    """Read a history from the solver's CSV; lines that begin with # are comments."""
+    path = Path(path)
+    try:
+        lines = [line for line in path.read_text(encoding="utf-8").splitlines() if line.strip() and line[0] != "#"]
+    except (OSError, UnicodeDecodeError) as error:
+        raise FileError(f"the history {path} cannot be read ({error}).") from None
+    rows = list(csv.reader(lines, skipinitialspace=True))
+    if len(rows) < 2:
+        raise FileError(f"the history {path} has no rows.")
+    names = [name.strip() for name in rows[0]]
+    try:
+        table = np.array([[float(cell) for cell in row] for row in rows[1:]])
+    except ValueError as error:
+        raise FileError(f"the history {path} has unequal rows or a cell that is no number ({error}).") from None
+    if table.shape[1] != len(names):
+        raise FileError(f"the history {path} has {table.shape[1]} columns under {len(names)} names.")
+    history = History(dict(zip(names, table.T, strict=True)), str(path))
+    if not np.all(np.diff(history.time) > 0):
+        raise FileError(f"the times of the history {path} do not increase.")
+    return history

@@ -1,0 +1,124 @@
+"""Stiffness and mass of a laminate by first-order shear theory."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from implam_post.errors import DeckError
+
+
+@dataclass(frozen=True)
+class Material:
+    """An orthotropic ply, 1 along the fibres."""
+
+    density: float
+    e1: float
+    e2: float
+    g12: float
+    g13: float
+    g23: float
+    nu12: float
+
+    def reduced_stiffness(self, angle: float) -> np.ndarray:
+        """Return the plane-stress stiffness (xx, yy, xy) of a ply with its fibres at `angle` degrees from x."""
+        compliance = np.array([[1 / self.e1, -self.nu12 / self.e1, 0],
+                               [-self.nu12 / self.e1, 1 / self.e2, 0],
+                               [0, 0, 1 / self.g12]])
+        c, s = _direction(angle)
+        strain = np.array([[c * c, s * s, c * s], [s * s, c * c, -c * s], [-2 * c * s, 2 * c * s, c * c - s * s]])
+        return strain.T @ np.linalg.inv(compliance) @ strain
+
+    def transverse_shear_stiffness(self, angle: float) -> np.ndarray:
+        """Return the stiffness against transverse shear (xz, yz) of a ply at `angle`."""
+        c, s = _direction(angle)
+        rotation = np.array([[c, s], [-s, c]])
+        return rotation.T @ np.diag([self.g13, self.g23]) @ rotation
+
+
+@dataclass(frozen=True)
+class Ply:
+    """One ply: material, angle of the fibres from x in degrees, thickness."""
+
+    material: Material
+    angle: float
+    thickness: float
+
+
+@dataclass(frozen=True)
+class Section:
+    """Stiffness and mass of a laminate, of its mid-plane.
+
+    N = a e + b k, M = b e + d k, Q = s g; the mass is the integral of density times (1, z, z**2).
+    """
+
+    a: np.ndarray
+    b: np.ndarray
+    d: np.ndarray
+    s: np.ndarray
+    mass: np.ndarray
+    thickness: float
+
+    def is_specially_orthotropic(self) -> bool:
+        """Tell whether bending is free of every coupling that Navier's series cannot satisfy."""
+        thickness = self.thickness
+        couplings = [*(self.a[:2, 2] / self.a[0, 0]), *(self.d[:2, 2] / self.d[0, 0]), self.s[0, 1] / self.s[0, 0],
+                     *(self.b.ravel() / (thickness * self.a[0, 0])), self.mass[1] / (thickness * self.mass[0])]
+        return bool(np.max(np.abs(couplings)) < 1e-9)
+
+
+def section_of(plies: Sequence[Ply], shear_correction: str = "5/6") -> Section:
+    """Integrate the plies; `shear_correction` is '5/6' or 'energy'."""
+    faces = _faces(plies)
+    a, b, d = np.zeros((3, 3)), np.zeros((3, 3)), np.zeros((3, 3))
+    s = np.zeros((2, 2))
+    mass = np.zeros(3)
+    for ply, low, high in zip(plies, faces[:-1], faces[1:], strict=True):
+        moments = np.array([high**power - low**power for power in (1, 2, 3)]) / (1, 2, 3)
+        stiffness = ply.material.reduced_stiffness(ply.angle)
+        a += moments[0] * stiffness
+        b += moments[1] * stiffness
+        d += moments[2] * stiffness
+        s += moments[0] * ply.material.transverse_shear_stiffness(ply.angle)
+        mass += moments * ply.material.density
+    s = _energy_shear_stiffness(plies, d) if shear_correction == "energy" else 5.0 / 6.0 * s
+    return Section(a, b, d, s, mass, faces[-1] - faces[0])
+
+
+def _energy_shear_stiffness(plies: Sequence[Ply], d: np.ndarray) -> np.ndarray:
+    """Return the shear stiffness whose energy is that of the shear stresses in equilibrium with Mx,x and My,y.
+
+    A unit shear force bends by D**-1 a unit length, so that along each axis 1/S = integral(g**2/G dz) with
+    g = -integral((Q D**-1) z dz) from the struck face (Rolfes and Rohwer 1997, without coupling).
+    """
+    mirrored = [(ply.material, ply.angle % 180, ply.thickness) for ply in plies]
+    if any(ply.angle % 90 for ply in plies) or mirrored != mirrored[::-1]:
+        raise DeckError("the energy shear correction is worked out here for symmetric cross-ply laminates only.")
+    points, weights = np.polynomial.legendre.leggauss(3)
+    faces = _faces(plies)
+    flexibility = np.linalg.inv(d)
+    stiffness = np.zeros((2, 2))
+    for axis in range(2):
+        energy, start = 0.0, 0.0
+        for ply, low, high in zip(plies, faces[:-1], faces[1:], strict=True):
+            q = ply.material.reduced_stiffness(ply.angle)[axis] @ flexibility[:, axis]
+            z = (low + high + (high - low) * points) / 2
+            flow = start - q * (z**2 - low**2) / 2
+            energy += ((high - low) / 2 * weights @ flow**2
+                       / ply.material.transverse_shear_stiffness(ply.angle)[axis, axis])
+            start -= q * (high**2 - low**2) / 2
+        stiffness[axis, axis] = 1 / energy
+    return stiffness
+
+
+def _faces(plies: Sequence[Ply]) -> np.ndarray:
+    """Return z of the faces between the plies, from the struck face on."""
+    heights = np.concatenate([[0.0], np.cumsum([ply.thickness for ply in plies])])
+    return heights - heights[-1] / 2
+
+
+def _direction(angle: float) -> tuple[float, float]:
+    """Return cosine and sine of an angle in degrees, exact at multiples of 90."""
+    quarter, rest = divmod(angle, 90)
+    c, s = np.cos(np.radians(rest)), np.sin(np.radians(rest))
+    return [(c, s), (-s, c), (-c, -s), (s, -c)][int(quarter) % 4]

@@ -1,0 +1,145 @@
+"""Tests of the commands: what they print and write, and how they end."""
+
+import contextlib
+import io
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+from implam_post import check_impact, compare, plot
+from implam_post.history import ENERGIES
+from implam_post.semi_analytic import semi_analytic
+from tests.decks import SUN_CHEN, deck
+
+
+class CommandTest(unittest.TestCase):
+    """Each test has a folder with a deck and a history that follows the semi-analytic answer."""
+
+    def setUp(self) -> None:
+        """Make the folder."""
+        self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
+        self.deck = self.folder / "case.nml"
+        self.deck.write_text(SUN_CHEN)
+        self.history = self.folder / "sun_chen_history.csv"
+        self.write_history(1.0)
+
+    def write_history(self, factor: float, last: float | None = None) -> None:
+        """Write every tenth row of the answer, forces multiplied by `factor`, the last force replaced."""
+        answer = semi_analytic(deck(SUN_CHEN))
+        columns = {name: values[::10].copy() for name, values in answer.columns.items()}
+        columns["force"] *= factor
+        if last is not None:
+            columns["force"][-1] = last
+        columns |= {name: np.zeros(len(columns["time"])) for name in (*ENERGIES, "energy_error")}
+        columns["energy_impactor"] = 8.537e-3 / 2 * columns["impactor_velocity"]**2
+        columns["energy_kinetic"] = columns["energy_impactor"][0] - columns["energy_impactor"]
+        columns["energy_error"][-1] = 1e-6
+        np.savetxt(self.history, np.stack(list(columns.values()), axis=1), delimiter=",", header=",".join(columns),
+                   comments="# written by a test\n")
+
+    def run_quietly(self, command: object, *arguments: object) -> tuple[int, str]:
+        """Return exit code and text of a command."""
+        text = io.StringIO()
+        with contextlib.redirect_stdout(text), contextlib.redirect_stderr(text):
+            try:
+                code = command([str(argument) for argument in arguments])
+            except SystemExit as end:
+                code = end.code
+        return code, text.getvalue()
+
+    def test_check_finds_history_and_plots(self) -> None:
+        """A history like the answer passes a narrow tolerance; the plot lies beside it."""
+        code, text = self.run_quietly(check_impact.main, self.deck, "--tolerance", "0.005")
+        self.assertEqual(code, 0, text)
+        self.assertIn("second peak force", text)
+        self.assertGreater((self.folder / "sun_chen_check.png").stat().st_size, 10000)
+
+    def test_check_fails_beyond_the_tolerance_only(self) -> None:
+        """Two percent too much force is told, and fails if a tolerance is given."""
+        self.write_history(1.02)
+        self.assertEqual(self.run_quietly(check_impact.main, self.deck, "--no-plot")[0], 0)
+        self.assertEqual(self.run_quietly(check_impact.main, self.deck, "--no-plot", "--tolerance", "0.03")[0], 0)
+        code, text = self.run_quietly(check_impact.main, self.deck, "--no-plot", "--tolerance", "0.01")
+        self.assertEqual(code, 1, text)
+        self.assertFalse((self.folder / "sun_chen_check.png").exists())
+
+    def test_check_fails_on_nan(self) -> None:
+        """A NaN in the history is never within a tolerance."""
+        self.write_history(1.0, last=np.nan)
+        self.assertEqual(self.run_quietly(check_impact.main, self.deck, "--no-plot", "--tolerance", "9")[0], 1)
+
+    def test_check_without_a_history(self) -> None:
+        """The answer alone is printed."""
+        self.history.unlink()
+        code, text = self.run_quietly(check_impact.main, self.deck, "--no-plot")
+        self.assertEqual(code, 0)
+        self.assertRegex(text, r"peak force +298\.87")
+
+    def test_exit_codes(self) -> None:
+        """2 for the deck, 4 for files, 1 for wrong usage, each with one sentence."""
+        self.deck.write_text(SUN_CHEN.replace("4*'simple'", "'clamped'"))
+        code, text = self.run_quietly(check_impact.main, self.deck)
+        self.assertEqual((code, text.count("\n")), (2, 1), text)
+        self.deck.write_text(SUN_CHEN)
+        self.assertEqual(self.run_quietly(check_impact.main, self.folder / "none.nml")[0], 4)
+        self.assertEqual(self.run_quietly(check_impact.main, self.deck, "--history", self.folder / "no.csv")[0], 4)
+        self.assertEqual(self.run_quietly(check_impact.main, self.deck, "--modes", "0")[0], 1)
+
+    def expect(self, text: str) -> tuple[int, str]:
+        """Run the comparison with these expectations."""
+        table = self.folder / "expect.toml"
+        table.write_text(text)
+        return self.run_quietly(compare.main, self.history, table)
+
+    def test_compare_passes(self) -> None:
+        """All kinds of quantities."""
+        code, text = self.expect("""
+            expect = [{quantity = "peak_force", value = 298.87, relative = 1e-3},
+                      {quantity = "second_peak_force_time", value = 380e-6, absolute = 1e-6},
+                      {quantity = "max_deflection", value = 4.265e-4, relative = 1e-3},
+                      {quantity = "at", column = "impactor_velocity", time = 9.5e-4, value = -0.5178, absolute = 1e-3},
+                      {quantity = "final", column = "impactor_velocity", value = -0.5178, absolute = 1e-3},
+                      {quantity = "energy_error", value = 0, absolute = 1e-4},
+                      {quantity = "rms_force", against = "case.nml", value = 0, absolute = 1e-3},
+                      {quantity = "rms_force", against = "sun_chen_history.csv", value = 0, absolute = 0}]""")
+        self.assertEqual((code, text.count(" pass")), (0, 8), text)
+
+    def test_compare_fails(self) -> None:
+        """One miss among hits, and a NaN, end with 1; a time outside the history is a NaN."""
+        hit = '[[expect]]\nquantity="peak_force"\nvalue=298.87\nrelative=1e-3\n'
+        self.assertEqual(self.expect(hit)[0], 0)
+        miss = '[[expect]]\nquantity="peak_force"\nvalue=305\nrelative=1e-2\n'
+        late = '[[expect]]\nquantity="at"\ncolumn="force"\ntime=1\nvalue=0\nabsolute=1e9\n'
+        for wrong in (miss, late):
+            code, text = self.expect(hit + wrong)
+            self.assertEqual((code, text.count(" pass"), text.count(" FAIL")), (1, 1, 1), text)
+        self.write_history(1.0, last=np.nan)
+        self.assertEqual(self.expect(hit)[0], 1)
+
+    def test_compare_refuses_entries_without_meaning(self) -> None:
+        """Entries that could not fail or not be measured are errors of the file."""
+        for entry in ('quantity="peak"\nvalue=1\nabsolute=1', 'quantity="peak_force"\nvalue=1',
+                      'quantity="peak_force"\nvalue=0\nrelative=1', 'quantity="peak_force"\nvalue=nan\nabsolute=1',
+                      'quantity="peak_force"\nvalue=1\nabsolute=inf', 'quantity="max"\nvalue=1\nabsolute=1',
+                      'quantity="at"\ncolumn="force"\nvalue=1\nabsolute=1', 'quantity="rms_force"\nvalue=0\nabsolute=1',
+                      'quantity="peak_force"\nvalue=1\nabsolut=1', 'quantity="max"\ncolumn="x"\nvalue=1\nabsolute=1'):
+            with self.subTest(entry):
+                self.assertEqual(self.expect("[[expect]]\n" + entry)[0], 4)
+        self.assertEqual(self.expect("")[0], 4)
+
+    def test_broken_histories(self) -> None:
+        """A cut row, a word and times that run backwards are errors of the file."""
+        expectation = '[[expect]]\nquantity="peak_force"\nvalue=1\nabsolute=1'
+        for text in ("time,force\n0,0\n1", "time,force\n0,x\n", "time,force\n1,0\n0,0\n", "time,force\n", "force\n1\n"):
+            self.history.write_text(text)
+            with self.subTest(text):
+                self.assertEqual(self.expect(expectation)[0], 4)
+
+    def test_plots(self) -> None:
+        """One picture of the responses together, one of the energies of each history."""
+        code, text = self.run_quietly(plot.main, self.history, self.history, "--output", self.folder / "plots")
+        self.assertEqual(code, 0, text)
+        self.assertEqual({path.name for path in (self.folder / "plots").iterdir()},
+                         {"sun_chen_history_response.png", "sun_chen_history_energies.png"})

@@ -1,0 +1,180 @@
+!> The command line of the program.
+module command_lines
+  use errors, only: error_t, fail, exit_usage
+  implicit none
+  private
+  public :: command_t, read_command_line, usage
+
+  !> What the program is asked to do.
+  integer, parameter, public :: verb_run = 1, verb_check = 2, verb_explain = 3, verb_restart = 4, &
+                                verb_version = 5, verb_help = 6
+
+  !> A command line, taken apart.
+  type :: command_t
+    !> One of the verbs
+    integer :: verb = verb_run
+    !> Deck, checkpoint or topic
+    character(len=:), allocatable :: target
+    !> Folder that overrides the deck's; unallocated: the deck's
+    character(len=:), allocatable :: output
+    !> Arguments for PETSc, in one string
+    character(len=:), allocatable :: petsc_options
+    !> True: explain as a Markdown table, for the manual
+    logical :: markdown = .false.
+  end type command_t
+
+contains
+
+  !> Takes the arguments of the program apart.
+  subroutine read_command_line(command, error)
+    !> What is asked
+    type(command_t), intent(out) :: command
+    !> Set (usage) if an argument is not understood
+    type(error_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: word
+    integer :: i
+    logical :: verb_given
+
+    command%target = ''
+    command%petsc_options = ''
+    verb_given = .false.
+    i = 1
+    do while (i <= command_argument_count())
+      word = argument(i)
+      if (index(word, '--') == 1) then
+        call read_option(command, word, i, error)
+      else if (index(word, '-') == 1) then
+        command%petsc_options = command%petsc_options//' '//word
+        if (takes_value(i + 1)) then
+          i = i + 1
+          command%petsc_options = command%petsc_options//' '//argument(i)
+        end if
+      else if (.not. verb_given .and. verb_of(word) > 0) then
+        verb_given = .true.
+        command%verb = verb_of(word)
+      else if (command%target == '') then
+        command%target = word
+      else
+        call fail(error, exit_usage, 'Unexpected argument "'//word//'": one deck, checkpoint or topic at a time.')
+      end if
+      if (allocated(error)) return
+      i = i + 1
+    end do
+    call require_target(command, error)
+  end subroutine read_command_line
+
+  !> Reads an option that begins with two dashes.
+  subroutine read_option(command, word, i, error)
+    !> Receives the option
+    type(command_t), intent(inout) :: command
+    !> The option
+    character(len=*), intent(in) :: word
+    !> Its position; moved on when the option takes a value
+    integer, intent(inout) :: i
+    !> Set (usage) if the option is unknown or lacks its value
+    type(error_t), allocatable, intent(inout) :: error
+
+    select case (word)
+    case ('--version')
+      command%verb = verb_version
+    case ('--help')
+      command%verb = verb_help
+    case ('--markdown')
+      command%markdown = .true.
+    case ('--output')
+      i = i + 1
+      if (i > command_argument_count()) then
+        call fail(error, exit_usage, '--output needs a folder.')
+      else
+        command%output = argument(i)
+      end if
+    case default
+      call fail(error, exit_usage, 'Unknown option "'//word//'"; see implam --help.')
+    end select
+  end subroutine read_option
+
+  !> Checks that the verbs that need a file have one.
+  subroutine require_target(command, error)
+    !> What is asked
+    type(command_t), intent(in) :: command
+    !> Set (usage) if nothing is named
+    type(error_t), allocatable, intent(inout) :: error
+
+    if (command%target /= '') return
+    select case (command%verb)
+    case (verb_run, verb_check)
+      call fail(error, exit_usage, 'No deck given; see implam --help.')
+    case (verb_restart)
+      call fail(error, exit_usage, 'No checkpoint given: implam restart NAME_restart.h5')
+    end select
+  end subroutine require_target
+
+  !> Verb of a word; 0: the word is not a verb.
+  pure integer function verb_of(word) result(verb)
+    !> The word
+    character(len=*), intent(in) :: word
+
+    select case (word)
+    case ('run')
+      verb = verb_run
+    case ('check')
+      verb = verb_check
+    case ('explain')
+      verb = verb_explain
+    case ('restart')
+      verb = verb_restart
+    case default
+      verb = 0
+    end select
+  end function verb_of
+
+  !> True if an argument is the value of a PETSc option before it: a number or a plain word that is not a file.
+  logical function takes_value(i)
+    !> Position of the argument
+    integer, intent(in) :: i
+    character(len=:), allocatable :: word
+
+    takes_value = .false.
+    if (i > command_argument_count()) return
+    word = argument(i)
+    takes_value = index(word, '-') /= 1 .and. index(word, '.nml') == 0 .and. index(word, '.h5') == 0 &
+                  .and. verb_of(word) == 0
+    if (len(word) > 1) takes_value = takes_value .or. scan(word(1:1), '-') == 1 .and. scan(word(2:2), '0123456789.') == 1
+  end function takes_value
+
+  !> One argument of the command line, whole.
+  function argument(i) result(word)
+    !> Position
+    integer, intent(in) :: i
+    !> The argument
+    character(len=:), allocatable :: word
+    integer :: length
+
+    call get_command_argument(i, length=length)
+    allocate (character(len=length) :: word)
+    call get_command_argument(i, word)
+  end function argument
+
+  !> What the program tells of its use.
+  pure function usage() result(text)
+    !> Lines of the text
+    character(len=96) :: text(15)
+
+    text = [character(len=96) :: &
+            'Usage: implam [run] DECK.nml       run a deck', &
+            '       implam check DECK.nml       read and check a deck, list every fault, run nothing', &
+            '       implam explain [GROUP[%KEY]] what a deck can say: keys, units, defaults, meaning', &
+            '       implam restart FILE         go on from a checkpoint (NAME_restart.h5)', &
+            '       implam --version | --help', &
+            'Options:', &
+            '  --output DIR   folder of the results, instead of the deck''s', &
+            '  --markdown     explain as a table for the manual', &
+            '  -mat_..., -ksp_..., -log_view and other words with one dash go to PETSc', &
+            'Under mpirun the same. Exit codes:', &
+            '  0 done  1 usage  2 deck  3 no convergence at the smallest step  4 files  5 internal', &
+            '  75 stopped by a signal of the queue with a checkpoint written: run again with restart', &
+            'Signals: TERM, INT, USR1, USR2 and XCPU end the run after the step at hand, with a', &
+            '  checkpoint.', &
+            '']
+  end function usage
+end module command_lines

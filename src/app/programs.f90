@@ -1,0 +1,203 @@
+!> What the program does for each verb of the command line.
+module programs
+  use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
+  use errors, only: error_t, exit_done
+  use text, only: line_t
+  use communicators, only: communicator_t, start_mpi, finish_mpi
+  use petsc_session, only: start_petsc, finish_petsc
+  use deck_contents, only: deck_t
+  use deck_problems, only: problems_t
+  use deck_reader, only: read_deck, read_deck_text
+  use deck_explain, only: explain, explain_table
+  use checkpoints, only: checkpoint_archive_t
+  use build_information, only: version, commit, compiler, petsc_version
+  use command_lines, only: command_t, read_command_line, usage, verb_run, verb_check, verb_explain, verb_restart, &
+                           verb_version, verb_help
+  use queue_signals, only: catch_stop_signals
+  use simulations, only: simulation_t
+  implicit none
+  private
+  public :: run_program
+
+contains
+
+  !> Does what the command line asks.
+  subroutine run_program(code)
+    !> Exit code
+    integer, intent(out) :: code
+    type(command_t) :: command
+    type(communicator_t) :: communicator
+    type(error_t), allocatable :: error
+
+    code = exit_done
+    call start_mpi(communicator)
+    call read_command_line(command, error)
+    if (.not. allocated(error)) then
+      select case (command%verb)
+      case (verb_version)
+        call print_lines(communicator, [line_t('Implam '//version//' ('//commit//'), '//compiler//', PETSc '//petsc_version)])
+      case (verb_help)
+        call print_usage(communicator)
+      case (verb_explain)
+        call explain_topic(command, communicator, error)
+      case (verb_check)
+        call check(command, communicator, code)
+      case (verb_run, verb_restart)
+        call compute(command, communicator, code, error)
+      end select
+    end if
+    call communicator%agree(error)
+    if (allocated(error)) then
+      code = error%code
+      if (communicator%is_root()) write (error_unit, '(2a)') 'implam: ', error%message
+    end if
+    call finish_mpi()
+  end subroutine run_program
+
+  !> Prints lines on the root rank.
+  subroutine print_lines(communicator, lines)
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> The lines
+    type(line_t), intent(in) :: lines(:)
+    integer :: i
+
+    if (.not. communicator%is_root()) return
+    do i = 1, size(lines)
+      write (output_unit, '(a)') lines(i)%text
+    end do
+  end subroutine print_lines
+
+  !> Prints how the program is used.
+  subroutine print_usage(communicator)
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+
+    if (communicator%is_root()) write (output_unit, '(a)') usage()
+  end subroutine print_usage
+
+  !> Explains a group or key of the deck.
+  subroutine explain_topic(command, communicator, error)
+    !> What is asked
+    type(command_t), intent(in) :: command
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> Set (usage) if there is no such group or key
+    type(error_t), allocatable, intent(out) :: error
+    type(line_t), allocatable :: lines(:)
+
+    if (command%markdown) then
+      call explain_table(command%target, lines, error)
+    else
+      call explain(command%target, lines, error)
+    end if
+    if (.not. allocated(error)) call print_lines(communicator, lines)
+  end subroutine explain_topic
+
+  !> Reads and checks a deck, lists what is wrong with it.
+  subroutine check(command, communicator, code)
+    !> What is asked
+    type(command_t), intent(in) :: command
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> Exit code
+    integer, intent(out) :: code
+    type(deck_t) :: deck
+    type(problems_t) :: problems
+
+    call read_deck_everywhere(command%target, communicator, deck, problems)
+    code = problems%exit_code()
+    call print_lines(communicator, problems%lines())
+    if (code == exit_done) call print_lines(communicator, [line_t(command%target//': no errors.')])
+  end subroutine check
+
+  !> Reads a deck on the root rank and gives its text to all.
+  subroutine read_deck_everywhere(path, communicator, deck, problems)
+    !> Path of the deck
+    character(len=*), intent(in) :: path
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> The deck
+    type(deck_t), intent(out) :: deck
+    !> What is wrong with it
+    type(problems_t), intent(out) :: problems
+    character(len=:), allocatable :: text
+    logical :: whole
+
+    whole = .true.
+    if (communicator%is_root()) then
+      call read_deck(path, deck, problems)
+      whole = allocated(deck%text)
+      if (whole) text = deck%text
+    end if
+    call communicator%broadcast(whole)
+    if (.not. whole) then
+      if (.not. communicator%is_root()) call read_deck(path, deck, problems)
+      return
+    end if
+    call communicator%broadcast_text(text)
+    if (.not. communicator%is_root()) call read_deck_text(text, path, deck, problems)
+  end subroutine read_deck_everywhere
+
+  !> Runs a deck, or goes on from a checkpoint.
+  subroutine compute(command, communicator, code, error)
+    !> What is asked
+    type(command_t), intent(in) :: command
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> Exit code
+    integer, intent(inout) :: code
+    !> Set if the run fails
+    type(error_t), allocatable, intent(out) :: error
+    type(deck_t) :: deck
+    type(problems_t) :: problems
+    type(simulation_t), allocatable :: simulation
+
+    if (command%verb == verb_restart) then
+      call read_checkpoint_deck(command%target, communicator, deck, problems, error)
+      if (allocated(error)) return
+    else
+      call read_deck_everywhere(command%target, communicator, deck, problems)
+    end if
+    code = problems%exit_code()
+    call print_lines(communicator, problems%lines())
+    if (code /= exit_done) return
+    if (allocated(command%output)) deck%output%directory = command%output
+    call start_petsc(communicator, deck%solver%petsc_options//command%petsc_options, error)
+    if (allocated(error)) return
+    call catch_stop_signals()
+    allocate (simulation)
+    if (command%verb == verb_restart) then
+      call simulation%resume(deck, communicator, command%target, error)
+    else
+      call simulation%initialize(deck, communicator, error)
+    end if
+    if (.not. allocated(error)) call simulation%run(error)
+    if (.not. allocated(error)) call simulation%finalize(error)
+    if (allocated(error)) call simulation%log%error(error%message)
+    call simulation%log%close()
+    call finish_petsc()
+  end subroutine compute
+
+  !> Reads the deck that a checkpoint holds. Results go on in the folder of the checkpoint.
+  subroutine read_checkpoint_deck(path, communicator, deck, problems, error)
+    !> The checkpoint
+    character(len=*), intent(in) :: path
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> The deck
+    type(deck_t), intent(out) :: deck
+    !> What is wrong with it
+    type(problems_t), intent(out) :: problems
+    !> Set if the file is no checkpoint or damaged
+    type(error_t), allocatable, intent(out) :: error
+    type(checkpoint_archive_t) :: archive
+
+    call archive%open_for_loading(communicator, path, error)
+    if (allocated(error)) return
+    call read_deck_text(archive%provenance%deck, path, deck, problems)
+    call archive%close(error)
+    deck%output%directory = '.'
+    if (index(path, '/', back=.true.) > 0) deck%output%directory = path(:index(path, '/', back=.true.))
+  end subroutine read_checkpoint_deck
+end module programs

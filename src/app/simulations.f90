@@ -1,0 +1,291 @@
+!> A run: initialise, step until the end, finalise.
+module simulations
+  use kinds, only: wp
+  use errors, only: error_t, fail, exit_stopped
+  use text, only: to_text, line_t
+  use files, only: make_directory
+  use logger, only: log_t
+  use communicators, only: communicator_t
+  use models, only: model_t, create_model
+  use marches, only: march_t
+  use deck_contents, only: deck_t
+  use deck_echo, only: echo
+  use run_provenance, only: provenance_t, this_run
+  use run_progress, only: progress_t
+  use history_file, only: history_file_t
+  use fields_file, only: fields_file_t
+  use checkpoints, only: checkpoint_archive_t
+  use queue_signals, only: stop_signal
+  use output_clocks, only: clock_t
+  use result_rows, only: row_of, column_names, column_whole
+  use field_results, only: write_mesh, write_fields
+  implicit none
+  private
+  public :: simulation_t
+
+  !> A run with all that it has open.
+  type :: simulation_t
+    !> The deck
+    type(deck_t) :: deck
+    !> The ranks
+    type(communicator_t) :: communicator
+    !> What does not change
+    type(model_t) :: model
+    !> What evolves
+    type(march_t) :: march
+    !> Log, progress and result files
+    type(log_t) :: log
+    !> Bar or lines of progress
+    type(progress_t) :: progress
+    !> Version, deck and machine, for every result
+    type(provenance_t) :: provenance
+    !> Force history
+    type(history_file_t) :: history
+    !> Fields
+    type(fields_file_t) :: fields
+    !> Clocks of history, fields and checkpoints
+    type(clock_t) :: history_clock, fields_clock, checkpoint_clock
+    !> Folder and name that all results share
+    character(len=:), allocatable :: base
+  contains
+    !> Sets a run up from the start.
+    procedure :: initialize
+    !> Sets a run up from a checkpoint.
+    procedure :: resume
+    !> Steps until the end.
+    procedure :: run
+    !> Writes what is left and closes the files.
+    procedure :: finalize
+  end type simulation_t
+
+contains
+
+  !> Sets a run up from the start.
+  subroutine initialize(self, deck, communicator, error)
+    !> The run
+    class(simulation_t), intent(out) :: self
+    !> The deck, checked
+    type(deck_t), intent(in) :: deck
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> Set if files cannot be written or the model cannot be set up
+    type(error_t), allocatable, intent(out) :: error
+
+    call prepare(self, deck, communicator, append=.false., error=error)
+    if (allocated(error)) return
+    call self%history%create(communicator, self%base//'_history.csv', column_names, column_whole, error)
+    if (allocated(error)) return
+    call self%fields%create(communicator, self%base, self%provenance, part_of(self), error)
+    if (allocated(error)) return
+    call write_mesh(self%model, self%fields, error)
+  end subroutine initialize
+
+  !> What initialise and resume have in common: log, model, state at rest.
+  subroutine prepare(self, deck, communicator, append, error)
+    !> The run
+    class(simulation_t), intent(inout) :: self
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> True: go on with the log that is there
+    logical, intent(in) :: append
+    !> Set if something cannot be set up
+    type(error_t), allocatable, intent(out) :: error
+
+    self%deck = deck
+    self%communicator = communicator
+    self%base = deck%output%directory//'/'//deck%name
+    self%history_clock%interval = deck%output%history_every
+    self%fields_clock%interval = deck%output%fields_every
+    self%checkpoint_clock%interval = deck%output%checkpoint_every
+    if (communicator%is_root()) call make_directory(deck%output%directory, error)
+    if (.not. allocated(error)) call self%log%open(self%base//'.log', communicator%is_root(), append, error)
+    call communicator%agree(error)
+    if (allocated(error)) return
+    self%provenance = this_run(deck%text, communicator%size)
+    call self%provenance%report(self%log)
+    call log_echo(self)
+    call create_model(deck%scene_t, communicator, self%model, error)
+    if (allocated(error)) return
+    call self%march%start(self%model, error)
+    if (allocated(error)) return
+    call self%log%note('Model: '//to_text(self%model%mesh%elements())//' elements, '// &
+                       to_text(self%march%operator%numbering%total)//' unknowns, '// &
+                       to_text(communicator%size)//' rank(s).')
+    call self%progress%start(0.0_wp)
+  end subroutine prepare
+
+  !> Lists every key in effect in the log.
+  subroutine log_echo(self)
+    !> The run
+    class(simulation_t), intent(inout) :: self
+    type(line_t), allocatable :: lines(:)
+    integer :: i
+
+    call echo(self%deck, lines)
+    do i = 1, size(lines)
+      call self%log%detail(lines(i)%text)
+    end do
+  end subroutine log_echo
+
+  !> Part of the plate that the files hold.
+  pure function part_of(self) result(part)
+    !> The run
+    class(simulation_t), intent(in) :: self
+    !> 'whole' or 'quarter'
+    character(len=:), allocatable :: part
+
+    part = 'whole'
+    if (self%model%mesh%multiplicity == 4) part = 'quarter'
+  end function part_of
+
+  !> Sets a run up from a checkpoint that has been opened for loading.
+  subroutine resume(self, deck, communicator, path, error)
+    !> The run
+    class(simulation_t), intent(out) :: self
+    !> The deck that the checkpoint holds
+    type(deck_t), intent(in) :: deck
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> The checkpoint
+    character(len=*), intent(in) :: path
+    !> Set if the checkpoint cannot be used
+    type(error_t), allocatable, intent(out) :: error
+    type(checkpoint_archive_t) :: archive
+    integer :: rows
+
+    call prepare(self, deck, communicator, append=.true., error=error)
+    if (allocated(error)) return
+    call archive%open_for_loading(communicator, path, error)
+    if (allocated(error)) return
+    call visit(self, archive, rows, error)
+    if (allocated(error)) return
+    call archive%close(error)
+    if (allocated(error)) return
+    call self%history%resume(communicator, self%base//'_history.csv', column_names, column_whole, rows, error)
+    if (allocated(error)) return
+    if (self%history%rows /= rows) call self%log%warning('The history before the checkpoint is not there; it goes on from here.')
+    call self%fields%resume(communicator, self%base, self%provenance, part_of(self), self%march%now%time, error)
+    if (allocated(error)) return
+    call write_mesh(self%model, self%fields, error)
+    call self%progress%start(self%march%now%time/end_of(self))
+  end subroutine resume
+
+  !> Saves or loads all that evolves.
+  subroutine visit(self, archive, rows, error)
+    !> The run
+    class(simulation_t), intent(inout) :: self
+    !> Where to or where from
+    type(checkpoint_archive_t), intent(inout) :: archive
+    !> Rows of the history
+    integer, intent(inout) :: rows
+    !> Set if the factored operator cannot be made again
+    type(error_t), allocatable, intent(out) :: error
+
+    call self%march%visit(archive, self%model, error)
+    call self%history_clock%visit(archive, 'history')
+    call self%fields_clock%visit(archive, 'fields')
+    call self%checkpoint_clock%visit(archive, 'checkpoint')
+    call archive%item('history/rows', rows)
+  end subroutine visit
+
+  !> Time, or load factor, at which the run ends.
+  pure real(wp) function end_of(self)
+    !> The run
+    class(simulation_t), intent(in) :: self
+
+    end_of = 1
+    if (.not. self%deck%has_static) end_of = self%deck%time%end
+  end function end_of
+
+  !> Steps until the end, or until a queue's signal.
+  subroutine run(self, error)
+    !> The run
+    class(simulation_t), intent(inout) :: self
+    !> Set if no step converges, a file cannot be written, or a signal came
+    type(error_t), allocatable, intent(out) :: error
+    real(wp) :: event
+
+    do while (self%march%now%time < end_of(self))
+      event = min(end_of(self), self%history_clock%next(), self%fields_clock%next(), self%checkpoint_clock%next())
+      call self%march%advance(self%model, event, error)
+      if (allocated(error)) return
+      call write_results(self, error)
+      if (allocated(error)) return
+      call self%progress%update(self%log, self%march%now%time/end_of(self), 'step '//to_text(self%march%now%step)// &
+                                ', time '//to_text(self%march%now%time))
+      if (.not. self%communicator%any(stop_signal() /= 0)) cycle
+      call save_checkpoint(self, error)
+      call fail(error, exit_stopped, 'Stopped by a signal at time '//to_text(self%march%now%time)// &
+                '; go on with: implam restart '//self%base//'_restart.h5')
+      return
+    end do
+  end subroutine run
+
+  !> Writes what is due after an accepted step. The clocks move before the checkpoint is saved, so that
+  !> a run that goes on from it does not write twice.
+  subroutine write_results(self, error)
+    !> The run
+    class(simulation_t), intent(inout) :: self
+    !> Set if a file cannot be written
+    type(error_t), allocatable, intent(out) :: error
+    logical :: row_due
+
+    row_due = self%history_clock%interval <= 0 .or. self%march%now%time >= end_of(self)
+    if (self%history_clock%strikes_at(self%march%now%time)) row_due = .true.
+    if (row_due) call self%history%write_row(row_of(self%march), error)
+    if (allocated(error)) return
+    if (self%fields_clock%strikes_at(self%march%now%time)) call write_fields(self%model, self%march, self%fields, error)
+    if (allocated(error)) return
+    if (self%checkpoint_clock%strikes_at(self%march%now%time)) call save_checkpoint(self, error)
+  end subroutine write_results
+
+  !> Saves a checkpoint.
+  subroutine save_checkpoint(self, error)
+    !> The run
+    class(simulation_t), intent(inout) :: self
+    !> Set if it cannot be written
+    type(error_t), allocatable, intent(out) :: error
+    type(checkpoint_archive_t) :: archive
+    integer :: rows
+
+    call self%history%flush(error)
+    if (allocated(error)) return
+    rows = self%history%rows
+    call archive%open_for_saving(self%communicator, self%base//'_restart.h5', self%provenance, error)
+    if (allocated(error)) return
+    call visit(self, archive, rows, error)
+    if (allocated(error)) return
+    call archive%close(error)
+  end subroutine save_checkpoint
+
+  !> Writes the last fields, closes the files and says what the run took.
+  subroutine finalize(self, error)
+    !> The run
+    class(simulation_t), intent(inout) :: self
+    !> Set if a file cannot be written
+    type(error_t), allocatable, intent(out) :: error
+
+    if (self%deck%output%fields_every <= 0) call write_fields(self%model, self%march, self%fields, error)
+    if (allocated(error)) return
+    call self%history%close(error)
+    call self%progress%finish(self%log, summary(self))
+    call self%log%note('Results: '//self%base//'_history.csv, '//self%base//'.xdmf, '//self%base//'.log')
+    call self%march%operator%solver%release()
+  end subroutine finalize
+
+  !> What a run took, in one line.
+  function summary(self) result(line)
+    !> The run
+    class(simulation_t), intent(in) :: self
+    !> The line
+    character(len=:), allocatable :: line
+
+    associate (now => self%march%now, operator => self%march%operator)
+      line = to_text(now%step)//' steps ('//to_text(self%march%rejected)//' rejected), '// &
+             to_text(now%all_iterations)//' iterations of equilibrium, '//to_text(now%all_force_iterations)// &
+             ' of the force, '//to_text(operator%factorizations)//' factorisations, '//to_text(operator%solves)//' solves.'
+    end associate
+  end function summary
+end module simulations

@@ -1,0 +1,172 @@
+!> What the program needs of the file system and Fortran does not offer.
+module files
+  use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char, c_ptr, c_size_t, c_associated, c_loc
+  use errors, only: error_t, fail, exit_files
+  use text, only: to_text
+  implicit none
+  private
+  public :: file_exists, is_directory, is_readable, rename_file, make_directory, read_whole_file
+
+  !> Permissions of new folders before the user's mask: rwx for all (octal 777).
+  integer(c_int), parameter :: all_permissions = 511_c_int
+  !> `access` asks: may the file be read?
+  integer(c_int), parameter :: may_read = 4_c_int
+
+  interface
+    !> C library: renames a file in one step.
+    integer(c_int) function c_rename(from, to) bind(c, name='rename')
+      import :: c_char, c_int
+      !> Zero-terminated paths
+      character(kind=c_char), intent(in) :: from(*), to(*)
+    end function c_rename
+
+    !> C library: makes a folder.
+    integer(c_int) function c_mkdir(path, mode) bind(c, name='mkdir')
+      import :: c_char, c_int
+      !> Zero-terminated path
+      character(kind=c_char), intent(in) :: path(*)
+      !> Permissions
+      integer(c_int), value :: mode
+    end function c_mkdir
+
+    !> C library: tells whether a file may be used in a certain way.
+    integer(c_int) function c_access(path, mode) bind(c, name='access')
+      import :: c_char, c_int
+      !> Zero-terminated path
+      character(kind=c_char), intent(in) :: path(*)
+      !> The way
+      integer(c_int), value :: mode
+    end function c_access
+
+    !> C library: opens a file.
+    type(c_ptr) function c_fopen(path, mode) bind(c, name='fopen')
+      import :: c_char, c_ptr
+      !> Zero-terminated path and mode
+      character(kind=c_char), intent(in) :: path(*), mode(*)
+    end function c_fopen
+
+    !> C library: reads bytes and returns how many there were.
+    integer(c_size_t) function c_fread(buffer, item_size, items, stream) bind(c, name='fread')
+      import :: c_ptr, c_size_t
+      !> Where the bytes go
+      type(c_ptr), value :: buffer
+      !> Size and number of items wanted
+      integer(c_size_t), value :: item_size, items
+      !> Open file
+      type(c_ptr), value :: stream
+    end function c_fread
+
+    !> C library: closes a file.
+    integer(c_int) function c_fclose(stream) bind(c, name='fclose')
+      import :: c_int, c_ptr
+      !> Open file
+      type(c_ptr), value :: stream
+    end function c_fclose
+  end interface
+
+contains
+
+  !> True: there is a file or folder of that name.
+  logical function file_exists(path) result(exists)
+    !> Its path
+    character(len=*), intent(in) :: path
+
+    exists = c_access(path//c_null_char, 0_c_int) == 0
+  end function file_exists
+
+  !> True: the path is a folder.
+  logical function is_directory(path)
+    !> Its path
+    character(len=*), intent(in) :: path
+
+    is_directory = c_access(path//'/.'//c_null_char, 0_c_int) == 0
+  end function is_directory
+
+  !> True: the path is a file, not a folder, that this process may read.
+  logical function is_readable(path)
+    !> Its path
+    character(len=*), intent(in) :: path
+
+    is_readable = .false.
+    if (.not. is_directory(path)) is_readable = c_access(path//c_null_char, may_read) == 0
+  end function is_readable
+
+  !> Renames a file in one step: whoever looks sees the old file of that name or the new one, never a part.
+  subroutine rename_file(from, to, error)
+    !> Paths; a file `to` is replaced
+    character(len=*), intent(in) :: from, to
+    !> Raised if it can't be done
+    type(error_t), allocatable, intent(inout) :: error
+
+    if (c_rename(from//c_null_char, to//c_null_char) == 0) return
+    call fail(error, exit_files, "Can't rename "//from//' to '//to//'.')
+  end subroutine rename_file
+
+  !> Makes a folder and the folders above it, as far as they are not there yet.
+  subroutine make_directory(path, error)
+    !> Its path
+    character(len=*), intent(in) :: path
+    !> Raised if the folder isn't there in the end
+    type(error_t), allocatable, intent(inout) :: error
+    integer :: i, status
+
+    do i = 2, len(path)
+      if (path(i:i) == '/') status = c_mkdir(path(:i - 1)//c_null_char, all_permissions)
+    end do
+    status = c_mkdir(path//c_null_char, all_permissions)
+    ! A folder made meanwhile by another process is as good as ours, so only the result counts.
+    if (.not. is_directory(path)) call fail(error, exit_files, "Can't make the folder "//path//'.')
+  end subroutine make_directory
+
+  !> Reads a file whole, byte by byte as it is.
+  subroutine read_whole_file(path, most_bytes, content, error)
+    !> Its path
+    character(len=*), intent(in) :: path
+    !> Largest size accepted
+    integer, intent(in) :: most_bytes
+    !> The bytes; empty if there was an error
+    character(len=:), allocatable, intent(out) :: content
+    !> Raised if the file is missing, a folder, unreadable or too large
+    type(error_t), allocatable, intent(inout) :: error
+    character(kind=c_char), allocatable, target :: buffer(:)
+    type(c_ptr) :: stream
+    integer :: bytes, i
+
+    content = ''
+    call check_readable(path, error)
+    if (allocated(error)) return
+    stream = c_fopen(path//c_null_char, 'rb'//c_null_char)
+    if (.not. c_associated(stream)) then
+      call fail(error, exit_files, path//": can't be opened.")
+      return
+    end if
+    allocate (buffer(most_bytes + 1))
+    bytes = int(c_fread(c_loc(buffer), 1_c_size_t, int(most_bytes + 1, c_size_t), stream))
+    i = c_fclose(stream)
+    if (bytes > most_bytes) then
+      call fail(error, exit_files, path//': has more than '//to_text(most_bytes)//' bytes.')
+      return
+    end if
+    deallocate (content)
+    allocate (character(len=bytes) :: content)
+    do i = 1, bytes
+      content(i:i) = buffer(i)
+    end do
+  end subroutine read_whole_file
+
+  !> Says in one sentence why a path can't be read.
+  subroutine check_readable(path, error)
+    !> The path
+    character(len=*), intent(in) :: path
+    !> Raised if it can't be read
+    type(error_t), allocatable, intent(inout) :: error
+
+    if (is_directory(path)) then
+      call fail(error, exit_files, path//': is a folder, not a file.')
+    else if (.not. file_exists(path)) then
+      call fail(error, exit_files, path//': there is no such file.')
+    else if (.not. is_readable(path)) then
+      call fail(error, exit_files, path//': this user may not read it.')
+    end if
+  end subroutine check_readable
+end module files

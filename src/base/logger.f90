@@ -1,0 +1,210 @@
+!> The log: what happened, for the user at the terminal and for whoever opens NAME.log later.
+!> Any rank may call at any time, with what it has to say; only the rank that was opened with
+!> `writes` does anything. No routine is collective, so none can hang.
+module logger
+  use, intrinsic :: iso_c_binding, only: c_int
+  use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
+  use errors, only: error_t, exit_files, fail
+  use kinds, only: long, wp
+  implicit none
+  private
+  public :: log_t
+
+  !> Longest time in seconds that a line may wait before it is in the file.
+  real(wp), parameter :: longest_wait = 2
+  !> C's number of the standard output.
+  integer(c_int), parameter :: standard_output = 1
+
+  !> A log file together with the terminal.
+  type :: log_t
+    !> Details go to the terminal as well
+    logical :: verbose = .false.
+    !> The output is a terminal, on which a line can be overwritten
+    logical :: interactive = .false.
+    !> Warnings so far
+    integer :: warnings = 0
+    !> This rank writes
+    logical, private :: writes = .false.
+    !> The file is open
+    logical, private :: has_file = .false.
+    !> Unit of the file
+    integer, private :: unit = 0
+    !> Length of the transient line on the terminal now
+    integer, private :: transient = 0
+    !> Clock at the last flush
+    integer(long), private :: flushed = 0
+  contains
+    procedure :: open
+    procedure :: error
+    procedure :: warning
+    procedure :: note
+    procedure :: detail
+    procedure :: status
+    procedure :: close
+    procedure, private :: to_terminal
+    procedure, private :: to_file
+    procedure, private :: clear_status
+  end type log_t
+
+  interface
+    !> C library: tells whether a file descriptor is a terminal.
+    integer(c_int) function c_isatty(descriptor) bind(c, name='isatty')
+      import :: c_int
+      !> The descriptor
+      integer(c_int), value :: descriptor
+    end function c_isatty
+  end interface
+
+contains
+
+  !> Starts the log.
+  subroutine open (self, path, writes, append, error)
+    !> The log
+    class(log_t), intent(inout) :: self
+    !> Path of the file; empty: terminal only
+    character(len=*), intent(in) :: path
+    !> This rank is the one that writes
+    logical, intent(in) :: writes
+    !> Go on with the file that is there (restart)
+    logical, intent(in) :: append
+    !> Raised, on the rank that writes, if the file can't be opened
+    type(error_t), allocatable, intent(inout) :: error
+    integer :: status
+
+    self%writes = writes
+    if (.not. writes) return
+    self%interactive = c_isatty(standard_output) == 1
+    if (len_trim(path) == 0) return
+    if (append) then
+      open (newunit=self%unit, file=path, action='write', position='append', iostat=status)
+    else
+      open (newunit=self%unit, file=path, action='write', status='replace', iostat=status)
+    end if
+    self%has_file = status == 0
+    if (status /= 0) call fail(error, exit_files, "Can't open the log "//trim(path)//' for writing.')
+    call system_clock(self%flushed)
+  end subroutine open
+
+  !> Says what ends the run.
+  subroutine error(self, text)
+    !> The log
+    class(log_t), intent(inout) :: self
+    !> One sentence
+    character(len=*), intent(in) :: text
+
+    call self%to_terminal(error_unit, 'implam: error: '//text)
+    call self%to_file('error: '//text, at_once=.true.)
+  end subroutine error
+
+  !> Says what the user should look at although the run goes on.
+  subroutine warning(self, text)
+    !> The log
+    class(log_t), intent(inout) :: self
+    !> One sentence
+    character(len=*), intent(in) :: text
+
+    self%warnings = self%warnings + 1
+    call self%to_terminal(error_unit, 'implam: warning: '//text)
+    call self%to_file('warning: '//text, at_once=.true.)
+  end subroutine warning
+
+  !> Tells how the run goes.
+  subroutine note(self, text)
+    !> The log
+    class(log_t), intent(inout) :: self
+    !> One line
+    character(len=*), intent(in) :: text
+
+    call self%to_terminal(output_unit, text)
+    call self%to_file(text, at_once=.false.)
+  end subroutine note
+
+  !> Tells what only the file need know.
+  subroutine detail(self, text)
+    !> The log
+    class(log_t), intent(inout) :: self
+    !> One line
+    character(len=*), intent(in) :: text
+
+    if (self%verbose) call self%to_terminal(output_unit, text)
+    call self%to_file(text, at_once=.false.)
+  end subroutine detail
+
+  !> Shows a line that the next one overwrites; nothing if the output is no terminal.
+  subroutine status(self, text)
+    !> The log
+    class(log_t), intent(inout) :: self
+    !> One line
+    character(len=*), intent(in) :: text
+    integer :: ignored
+
+    if (.not. (self%writes .and. self%interactive)) return
+    write (output_unit, '(3a)', advance='no', iostat=ignored) achar(13), text, &
+      repeat(' ', max(0, self%transient - len(text)))
+    flush (output_unit, iostat=ignored)
+    self%transient = len(text)
+  end subroutine status
+
+  !> Ends the log.
+  subroutine close (self)
+    !> The log
+    class(log_t), intent(inout) :: self
+    integer :: ignored
+
+    call self%clear_status()
+    if (self%has_file) close (self%unit, iostat=ignored)
+    self%has_file = .false.
+  end subroutine close
+
+  !> Writes a line to the terminal; one that can't be written there is no reason to stop.
+  subroutine to_terminal(self, unit, line)
+    !> The log
+    class(log_t), intent(inout) :: self
+    !> Unit of the terminal
+    integer, intent(in) :: unit
+    !> The line
+    character(len=*), intent(in) :: line
+    integer :: ignored
+
+    if (.not. self%writes) return
+    call self%clear_status()
+    write (unit, '(a)', iostat=ignored) line
+    flush (unit, iostat=ignored)
+  end subroutine to_terminal
+
+  !> Writes a line to the file. If it can't be written the file is given up, and the terminal told.
+  subroutine to_file(self, line, at_once)
+    !> The log
+    class(log_t), intent(inout) :: self
+    !> The line
+    character(len=*), intent(in) :: line
+    !> It must not wait
+    logical, intent(in) :: at_once
+    integer(long) :: now, rate
+    integer :: status
+
+    if (.not. self%has_file) return
+    write (self%unit, '(a)', iostat=status) line
+    call system_clock(now, rate)
+    if (status == 0 .and. (at_once .or. now - self%flushed > longest_wait*rate)) then
+      flush (self%unit, iostat=status)
+      self%flushed = now
+    end if
+    if (status == 0) return
+    self%has_file = .false.
+    close (self%unit, iostat=status)
+    call self%to_terminal(error_unit, 'implam: warning: the log file cannot be written any more')
+  end subroutine to_file
+
+  !> Blanks the transient line.
+  subroutine clear_status(self)
+    !> The log
+    class(log_t), intent(inout) :: self
+    integer :: ignored
+
+    if (self%transient == 0) return
+    write (output_unit, '(3a)', advance='no', iostat=ignored) achar(13), repeat(' ', self%transient), achar(13)
+    flush (output_unit, iostat=ignored)
+    self%transient = 0
+  end subroutine clear_status
+end module logger

@@ -1,0 +1,201 @@
+!> Small helpers for text: lines, numbers as text, and the nearest of several names.
+module text
+  use kinds, only: wp
+  implicit none
+  private
+  public :: line_t, lower_case, to_text, joined, words_of, append, edit_distance, nearest_name
+
+  !> One line of a list of lines.
+  type :: line_t
+    !> The line, without an end-of-line character
+    character(len=:), allocatable :: text
+  end type line_t
+
+  !> Shortest usual text of a number.
+  interface to_text
+    module procedure integer_to_text, real_to_text
+  end interface to_text
+
+contains
+
+  !> The same text with A-Z as a-z.
+  pure function lower_case(mixed) result(lower)
+    !> Any text
+    character(len=*), intent(in) :: mixed
+    !> In lower case
+    character(len=len(mixed)) :: lower
+    integer :: i
+
+    lower = mixed
+    do i = 1, len(mixed)
+      if (mixed(i:i) >= 'A' .and. mixed(i:i) <= 'Z') lower(i:i) = achar(iachar(mixed(i:i)) + 32)
+    end do
+  end function lower_case
+
+  !> Digits of an integer.
+  pure function integer_to_text(value) result(digits)
+    !> The number
+    integer, intent(in) :: value
+    !> Without blanks
+    character(len=:), allocatable :: digits
+    character(len=12) :: buffer
+
+    write (buffer, '(i0)') value
+    digits = trim(buffer)
+  end function integer_to_text
+
+  !> Shortest of the usual forms that reads back as the same number.
+  pure function real_to_text(value) result(digits)
+    !> The number
+    real(wp), intent(in) :: value
+    !> Such as 0.25, 1500 or 2.5e-06
+    character(len=:), allocatable :: digits
+    character(len=40) :: buffer
+    character(len=12) :: form
+    real(wp) :: again
+    integer :: places, status
+
+    do places = 0, 16
+      write (form, '(a,i0,a)') '(es40.', places, ')'
+      write (buffer, form) value
+      read (buffer, *, iostat=status) again
+      if (status /= 0 .or. again == value) exit
+    end do
+    digits = plain_decimal(trim(adjustl(buffer)))
+  end function real_to_text
+
+  !> A number in scientific form without its exponent where that is easier to read.
+  pure function plain_decimal(scientific) result(plain)
+    !> Such as -2.50E-01
+    character(len=*), intent(in) :: scientific
+    !> Such as -0.25; exponents outside -4 to 6 stay
+    character(len=:), allocatable :: plain
+    character(len=:), allocatable :: digits, sign
+    integer :: mark, exponent
+
+    plain = lower_case(scientific)
+    mark = index(plain, 'e')
+    if (mark == 0) return
+    read (plain(mark + 1:), *) exponent
+    sign = ''
+    if (plain(1:1) == '-') sign = '-'
+    digits = plain(len(sign) + 1:len(sign) + 1)
+    if (mark > len(sign) + 3) digits = digits//plain(len(sign) + 3:mark - 1)
+    if (exponent < -4 .or. exponent > 6) then
+      plain = sign//digits(1:1)
+      if (len(digits) > 1) plain = plain//'.'//digits(2:)
+      plain = plain//'e'//integer_to_text(exponent)
+    else if (exponent < 0) then
+      plain = sign//'0.'//repeat('0', -exponent - 1)//digits
+    else if (len(digits) <= exponent + 1) then
+      plain = sign//digits//repeat('0', exponent + 1 - len(digits))
+    else
+      plain = sign//digits(:exponent + 1)//'.'//digits(exponent + 2:)
+    end if
+  end function plain_decimal
+
+  !> All lines in one text.
+  pure function joined(lines, separator) result(all_lines)
+    !> The lines
+    type(line_t), intent(in) :: lines(:)
+    !> Text between two lines
+    character(len=*), intent(in) :: separator
+    !> The lines in order
+    character(len=:), allocatable :: all_lines
+    integer :: i
+
+    all_lines = ''
+    do i = 1, size(lines)
+      if (i > 1) all_lines = all_lines//separator
+      all_lines = all_lines//lines(i)%text
+    end do
+  end function joined
+
+  !> Parts of a text between separators, without surrounding blanks.
+  pure function words_of(sentence, separator) result(words)
+    !> The text
+    character(len=*), intent(in) :: sentence
+    !> One character; several blanks count as one
+    character(len=1), intent(in) :: separator
+    !> The parts in order
+    type(line_t), allocatable :: words(:)
+    integer :: start, finish
+
+    allocate (words(0))
+    start = 1
+    do while (start <= len(sentence) + 1)
+      finish = index(sentence(start:), separator)
+      finish = merge(start + finish - 1, len(sentence) + 1, finish > 0)
+      if (separator /= ' ' .or. finish > start) call append(words, trim(adjustl(sentence(start:finish - 1))))
+      start = finish + 1
+    end do
+  end function words_of
+
+  !> Adds a line to a list.
+  pure subroutine append(lines, line)
+    !> The list
+    type(line_t), allocatable, intent(inout) :: lines(:)
+    !> The line
+    character(len=*), intent(in) :: line
+    type(line_t), allocatable :: longer(:)
+    integer :: i
+
+    if (.not. allocated(lines)) allocate (lines(0))
+    allocate (longer(size(lines) + 1))
+    do i = 1, size(lines)
+      call move_alloc(lines(i)%text, longer(i)%text)
+    end do
+    longer(size(longer))%text = line
+    call move_alloc(longer, lines)
+  end subroutine append
+
+  !> Number of characters to insert, delete, replace or swap with their neighbour to turn one word into another.
+  pure integer function edit_distance(a, b) result(distance)
+    !> The words
+    character(len=*), intent(in) :: a, b
+    integer :: table(0:len(a), 0:len(b)), i, j
+
+    table(:, 0) = [(i, i=0, len(a))]
+    table(0, :) = [(j, j=0, len(b))]
+    do j = 1, len(b)
+      do i = 1, len(a)
+        table(i, j) = min(table(i - 1, j) + 1, table(i, j - 1) + 1, table(i - 1, j - 1) + merge(0, 1, a(i:i) == b(j:j)))
+        if (swapped(a, i, b, j)) table(i, j) = min(table(i, j), table(max(i - 2, 0), max(j - 2, 0)) + 1)
+      end do
+    end do
+    distance = table(len(a), len(b))
+  end function edit_distance
+
+  !> True: the characters up to i of one word are the two up to j of the other in reverse.
+  pure logical function swapped(a, i, b, j)
+    !> The words
+    character(len=*), intent(in) :: a, b
+    !> Places in the words
+    integer, intent(in) :: i, j
+
+    swapped = .false.
+    if (i > 1 .and. j > 1) swapped = a(i - 1:i) == b(j:j)//b(j - 1:j - 1)
+  end function swapped
+
+  !> The known name that a mis-spelt one most likely means, or an empty text if none is near.
+  pure function nearest_name(name, known) result(nearest)
+    !> As it was written
+    character(len=*), intent(in) :: name
+    !> Known names
+    type(line_t), intent(in) :: known(:)
+    !> One of the known names, or ''
+    character(len=:), allocatable :: nearest
+    integer :: i, distance, best
+
+    nearest = ''
+    best = huge(best)
+    if (len(name) > 40) return
+    do i = 1, size(known)
+      distance = edit_distance(lower_case(name), lower_case(known(i)%text))
+      if (distance >= best .or. distance > max(1, max(len(name), len(known(i)%text))/3)) cycle
+      if (distance >= min(len(name), len(known(i)%text))) cycle
+      best = distance
+      nearest = known(i)%text
+    end do
+  end function nearest_name
+end module text

@@ -1,0 +1,281 @@
+!> One step of plate and impactor together: the nested iterations of the paper's Fig. 7. The impact
+!> force is found anew within each iteration of equilibrium, from the compliance of impactor and plate.
+module equilibria
+  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_positive_inf
+  use kinds, only: wp
+  use errors, only: error_t, exit_convergence
+  use contact_forces, only: solve_contact_force
+  use impactors, only: predict, advance, takes_mean_force
+  use indentations, only: commit_indentation
+  use plate_integrators, only: plate_integrator_t
+  use models, only: model_t
+  use pressure_histories, only: pressure_amplitude
+  use states, only: state_t
+  use tangent_operators, only: tangent_operator_t
+  use residual_norms, only: force_norms
+  use step_ledgers, only: book_step
+  implicit none
+  private
+  public :: attempt_step
+
+  !> The impactor's side of a step: its motion and the indentation are affine in one unknown force.
+  type :: strike_t
+    !> Displacement of the impactor at the end of the step without force, and its fall per unit of force
+    real(wp) :: free_displacement = 0, compliance = 0
+    !> True: the unknown is the mean force over the step; false: the force at its end
+    logical :: mean = .false.
+    !> The unknown force, and the force at the end of the step
+    real(wp) :: unknown = 0, force_end = 0
+    !> Share of the unknown in the plate's load, and the load from the old force
+    real(wp) :: share = 0, inherited = 0
+    !> Iterations of the force
+    integer :: iterations = 0
+  contains
+    !> Force on the plate in its equation of motion.
+    procedure :: load
+  end type strike_t
+
+contains
+
+  !> Tries a step. On return either `converged` and `new` is the state at its end, or nothing of it counts.
+  subroutine attempt_step(model, integrator, operator, old, step, new, converged, error)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Integrator of the plate
+    type(plate_integrator_t), intent(in) :: integrator
+    !> The factored operator; renewed on the way if convergence asks for it
+    type(tangent_operator_t), intent(inout) :: operator
+    !> State at the start
+    type(state_t), intent(in) :: old
+    !> Time step
+    real(wp), intent(in) :: step
+    !> State at the end
+    type(state_t), intent(inout) :: new
+    !> True if equilibrium was reached
+    logical, intent(out) :: converged
+    !> Set if the solver fails for good
+    type(error_t), allocatable, intent(out) :: error
+    type(strike_t) :: strike
+    real(wp), allocatable :: residual(:, :), correction(:, :)
+    real(wp) :: norm, previous, energy
+
+    new = old
+    new%time = old%time + step
+    allocate (residual, correction, mold=old%motion%displacement)
+    correction = 0
+    if (model%scene%has_impactor) strike = begin_strike(model, integrator, old, step)
+    call predict_motion(integrator, old, step, new)
+    converged = .false.
+    previous = huge(1.0_wp)
+    do
+      call find_residual(model, integrator, old, new, strike%load(), residual, energy)
+      norm = relative_norm(model, operator, new, residual, strike%load())
+      converged = norm <= model%scene%solver%tolerance
+      if (converged .or. .not. norm <= huge(norm) .or. new%iterations >= model%scene%solver%max_iterations) exit
+      if (too_slow(model, new%iterations, norm, previous)) then
+        call operator%renew(model, new%motion%displacement, integrator%stiffness_factor(), &
+                            integrator%mass_factor(step), error)
+        if (unsolvable(error)) return
+        previous = huge(1.0_wp)
+      else
+        previous = norm
+      end if
+      call operator%correct(model, residual, correction, error)
+      if (unsolvable(error)) return
+      if (model%scene%has_impactor) call solve_strike(model, operator, old, new, strike, correction, error)
+      if (allocated(error)) return
+      new%motion%displacement = new%motion%displacement + correction
+      call integrator%complete(step, old%motion, new%motion%displacement, new%motion%velocity, new%motion%acceleration)
+      new%iterations = new%iterations + 1
+    end do
+    if (converged) call finish(model, integrator, old, step, strike, energy, new)
+  end subroutine attempt_step
+
+  !> True if the solver failed; lack of convergence is dropped, since a shorter step may cure it.
+  logical function unsolvable(error)
+    !> Error of the solver
+    type(error_t), allocatable, intent(inout) :: error
+
+    unsolvable = allocated(error)
+    if (.not. unsolvable) return
+    if (error%code == exit_convergence) deallocate (error)
+  end function unsolvable
+
+  !> True if the lagged operator brings the residual down too slowly to be kept.
+  pure logical function too_slow(model, iterations, norm, previous)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Iterations of this step so far
+    integer, intent(in) :: iterations
+    !> Residual now and one iteration before
+    real(wp), intent(in) :: norm, previous
+
+    too_slow = iterations >= model%scene%adapt%iterations .or. norm > 0.5_wp*previous
+  end function too_slow
+
+  !> The impactor's part in a step.
+  pure function begin_strike(model, integrator, old, step) result(strike)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Integrator of the plate
+    type(plate_integrator_t), intent(in) :: integrator
+    !> State at the start
+    type(state_t), intent(in) :: old
+    !> Time step
+    real(wp), intent(in) :: step
+    !> The strike
+    type(strike_t) :: strike
+
+    call predict(model%scene%impactor, old%impactor, step, strike%free_displacement, strike%compliance)
+    strike%mean = takes_mean_force(model%scene%impactor)
+    strike%unknown = old%force
+    strike%force_end = old%force
+    strike%share = 1
+    if (strike%mean) return
+    strike%share = 1 - integrator%alpha_f
+    strike%inherited = integrator%alpha_f*old%force
+  end function begin_strike
+
+  !> Force on the plate in its equation of motion.
+  pure real(wp) function load(self)
+    !> The strike
+    class(strike_t), intent(in) :: self
+
+    load = self%share*self%unknown + self%inherited
+  end function load
+
+  !> First guess: the acceleration stays what it is.
+  pure subroutine predict_motion(integrator, old, step, new)
+    !> Integrator of the plate
+    type(plate_integrator_t), intent(in) :: integrator
+    !> State at the start
+    type(state_t), intent(in) :: old
+    !> Time step
+    real(wp), intent(in) :: step
+    !> State at the end
+    type(state_t), intent(inout) :: new
+
+    new%motion%displacement = old%motion%displacement + step*old%motion%velocity + (step**2/2)*old%motion%acceleration
+    call integrator%complete(step, old%motion, new%motion%displacement, new%motion%velocity, new%motion%acceleration)
+    new%iterations = 0
+    new%force_iterations = 0
+  end subroutine predict_motion
+
+  !> Residual of the equation of motion (Eq. 1 with the exact internal force).
+  subroutine find_residual(model, integrator, old, new, force, residual, energy)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Integrator of the plate
+    type(plate_integrator_t), intent(in) :: integrator
+    !> State at the start
+    type(state_t), intent(in) :: old
+    !> State at the end; receives internal and inertia forces
+    type(state_t), intent(inout) :: new
+    !> Force of the impactor
+    real(wp), intent(in) :: force
+    !> Residual at the owned points, (5, points)
+    real(wp), intent(inout) :: residual(:, :)
+    !> Strain energy of this rank's elements
+    real(wp), intent(out) :: energy
+    real(wp) :: amplitude
+
+    call model%internal(new%motion%displacement, new%motion%internal, energy)
+    call model%inertia(new%motion%acceleration, new%motion%inertia)
+    associate (m => integrator%alpha_m, f => integrator%alpha_f)
+      residual = -(1 - m)*new%motion%inertia - m*old%motion%inertia - (1 - f)*new%motion%internal - f*old%motion%internal
+      residual(3, :) = residual(3, :) + force/model%mesh%multiplicity*model%patch
+      if (.not. allocated(model%pressure)) return
+      amplitude = (1 - f)*pressure_amplitude(model%scene, new%time) + f*pressure_amplitude(model%scene, old%time)
+      residual(3, :) = residual(3, :) + amplitude*model%pressure(3, :)
+    end associate
+  end subroutine find_residual
+
+  !> Residual over the largest forces in play, the larger of translations and rotations.
+  real(wp) function relative_norm(model, operator, state, residual, force) result(norm)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Knows which unknowns are held
+    type(tangent_operator_t), intent(in) :: operator
+    !> State with its forces; the largest forces so far are kept in it
+    type(state_t), intent(inout) :: state
+    !> Residual
+    real(wp), intent(in) :: residual(:, :)
+    !> Force of the impactor
+    real(wp), intent(in) :: force
+    real(wp) :: norms(2, 4), scale(2)
+
+    norms(:, 1) = force_norms(operator%numbering%equation, residual, model%distribution%owned)
+    norms(:, 2) = force_norms(operator%numbering%equation, state%motion%internal, model%distribution%owned)
+    norms(:, 3) = force_norms(operator%numbering%equation, state%motion%inertia, model%distribution%owned)
+    norms(:, 4) = [force**2*sum(model%patch**2)/model%mesh%multiplicity**2, 0.0_wp]
+    call model%communicator%sum(norms)
+    norms = sqrt(norms)
+    scale = max(maxval(norms(:, 2:), dim=2), 1.0e-6_wp*state%largest_forces)
+    state%largest_forces = max(state%largest_forces, scale)
+    norm = 0
+    if (scale(1) > 0) norm = norms(1, 1)/scale(1)
+    if (scale(2) > 0) norm = max(norm, norms(2, 1)/scale(2))
+    if (.not. all(norms <= huge(norm))) norm = ieee_value(norm, ieee_positive_inf)
+  end function relative_norm
+
+  !> Solves for the impact force, given the correction of the plate for the force assumed, and adds the
+  !> plate's response to the change of the force.
+  subroutine solve_strike(model, operator, old, new, strike, correction, error)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Holds the response to a unit force
+    type(tangent_operator_t), intent(in) :: operator
+    !> State at the start
+    type(state_t), intent(in) :: old
+    !> State at the end, before the correction
+    type(state_t), intent(inout) :: new
+    !> The strike
+    type(strike_t), intent(inout) :: strike
+    !> Correction of the displacement, (5, points)
+    real(wp), intent(inout) :: correction(:, :)
+    !> Set if numbers are not finite
+    type(error_t), allocatable, intent(inout) :: error
+    real(wp) :: alpha_free, alpha_end, compliance, before
+    integer :: iterations
+
+    before = strike%unknown
+    compliance = strike%share*operator%compliance
+    new%patch_mean = model%patch_mean(new%motion%displacement) + model%patch_mean(correction)
+    alpha_free = strike%free_displacement - new%patch_mean + before*compliance
+    call solve_contact_force(model%scene%indentation, old%indentation, old%indentation%alpha, alpha_free, &
+                             strike%compliance + compliance, strike%mean, strike%unknown, alpha_end, &
+                             strike%force_end, iterations, error)
+    correction = correction + (strike%share*(strike%unknown - before))*operator%response
+    new%force_iterations = new%force_iterations + iterations
+  end subroutine solve_strike
+
+  !> Completes an accepted step: impactor, indentation and ledger.
+  subroutine finish(model, integrator, old, step, strike, energy, new)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Integrator of the plate
+    type(plate_integrator_t), intent(in) :: integrator
+    !> State at the start
+    type(state_t), intent(in) :: old
+    !> Time step
+    real(wp), intent(in) :: step
+    !> The strike
+    type(strike_t), intent(in) :: strike
+    !> Strain energy of this rank's elements
+    real(wp), intent(in) :: energy
+    !> State at the end
+    type(state_t), intent(inout) :: new
+
+    new%step = old%step + 1
+    new%all_iterations = old%all_iterations + new%iterations
+    new%all_force_iterations = old%all_force_iterations + new%force_iterations
+    new%deflection = model%deflection(new%motion%displacement)
+    new%patch_mean = model%patch_mean(new%motion%displacement)
+    if (model%scene%has_impactor) then
+      new%impactor = advance(model%scene%impactor, old%impactor, step, strike%unknown, strike%force_end)
+      new%force = strike%force_end
+      call commit_indentation(model%scene%indentation, new%indentation, new%impactor%displacement - new%patch_mean)
+    end if
+    call book_step(model, integrator, old, step, strike%load(), energy, new)
+  end subroutine finish
+end module equilibria

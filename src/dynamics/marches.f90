@@ -1,0 +1,231 @@
+!> The march through time or load: steps are tried, accepted or tried again shorter.
+module marches
+  use kinds, only: wp
+  use errors, only: error_t, fail, exit_convergence
+  use archives, only: archive_t
+  use text, only: to_text
+  use impactors, only: largest_safe_step
+  use plate_integrators, only: plate_integrator_t, plate_integrator
+  use models, only: model_t
+  use pressure_histories, only: pressure_amplitude
+  use states, only: state_t, new_state
+  use tangent_operators, only: tangent_operator_t
+  use step_controllers, only: step_controller_t
+  use equilibria, only: attempt_step
+  use static_steps, only: attempt_load
+  use struck_stresses, only: struck_stress
+  implicit none
+  private
+  public :: march_t
+
+  !> All that evolves during a run.
+  type :: march_t
+    !> The state reached
+    type(state_t) :: now
+    !> The factored operator
+    type(tangent_operator_t) :: operator
+    !> The step controller
+    type(step_controller_t) :: controller
+    !> Integrator of the plate
+    type(plate_integrator_t) :: integrator
+    !> Steps that were tried in vain
+    integer :: rejected = 0
+    !> Room for the state that is being tried
+    type(state_t), private :: trial
+  contains
+    !> The plate at rest.
+    procedure :: start
+    !> One accepted step.
+    procedure :: advance
+    !> Saves or loads all that evolves.
+    procedure :: visit
+  end type march_t
+
+contains
+
+  !> Puts the plate at rest and the impactor at first touch.
+  subroutine start(self, model, error)
+    !> The march
+    class(march_t), intent(out) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Set if the solver cannot be set up
+    type(error_t), allocatable, intent(out) :: error
+
+    self%now = new_state(model)
+    self%trial = self%now
+    call self%operator%create(model, error)
+    if (allocated(error) .or. model%scene%has_static) return
+    self%integrator = plate_integrator(model%scene%time)
+    self%controller%wanted = model%scene%time%step
+    if (allocated(model%pressure)) call start_acceleration(self, model, error)
+  end subroutine start
+
+  !> Acceleration of the plate under a pressure that is there from the start.
+  subroutine start_acceleration(self, model, error)
+    !> The march
+    class(march_t), intent(inout) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Set if the mass matrix is singular
+    type(error_t), allocatable, intent(out) :: error
+
+    associate (motion => self%now%motion)
+      call self%operator%renew(model, motion%displacement, 0.0_wp, 1.0_wp, error)
+      if (allocated(error)) return
+      call self%operator%correct(model, pressure_amplitude(model%scene, 0.0_wp)*model%pressure, &
+                                 motion%acceleration, error)
+      call model%inertia(motion%acceleration, motion%inertia)
+    end associate
+    self%operator%ready = .false.
+  end subroutine start_acceleration
+
+  !> Takes one step, at most to the next event; the step is tried again with half its length until
+  !> equilibrium is reached or the smallest step of the deck has failed.
+  subroutine advance(self, model, event, error)
+    !> The march
+    class(march_t), intent(inout) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Time, or load factor, not to be passed
+    real(wp), intent(in) :: event
+    !> Set if the smallest step failed
+    type(error_t), allocatable, intent(out) :: error
+    real(wp) :: step
+    logical :: converged
+
+    do
+      if (model%scene%has_static) then
+        call try_load(self, model, event, step, converged, error)
+      else
+        call try_step(self, model, event, step, converged, error)
+      end if
+      if (allocated(error)) return
+      if (converged) exit
+      self%rejected = self%rejected + 1
+      call self%controller%reject(step)
+      if (step <= smallest_step(model)*(1 + 1.0e-9_wp)) then
+        call fail(error, exit_convergence, 'No equilibrium from time '//to_text(self%now%time)// &
+                  ' on with the smallest step, '//to_text(step)//'.')
+        return
+      end if
+    end do
+    if (abs(self%trial%time - event) <= 1.0e-9_wp*step) self%trial%time = event
+    call accept(self, model, step)
+  end subroutine advance
+
+  !> Smallest step worth trying.
+  pure real(wp) function smallest_step(model) result(step)
+    !> The model
+    type(model_t), intent(in) :: model
+
+    step = model%scene%time%step_min
+    if (model%scene%has_static) step = 1.0_wp/(1024*model%scene%static_steps)
+  end function smallest_step
+
+  !> Tries one time step.
+  subroutine try_step(self, model, event, step, converged, error)
+    !> The march
+    class(march_t), intent(inout) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Time not to be passed
+    real(wp), intent(in) :: event
+    !> Step tried
+    real(wp), intent(out) :: step
+    !> True if equilibrium was reached
+    logical, intent(out) :: converged
+    !> Set if the solver fails for good
+    type(error_t), allocatable, intent(out) :: error
+    real(wp) :: mass_factor
+    logical :: due
+
+    step = self%controller%propose(event - self%now%time, impactor_limit(self, model))
+    mass_factor = self%integrator%mass_factor(step)
+    due = .not. self%operator%ready
+    if (.not. due) due = self%controller%renewal_due(model%scene, mass_factor/self%operator%mass_factor, &
+                                                     self%now%deflection - self%operator%deflection, model%thickness)
+    if (due) then
+      call self%operator%renew(model, self%now%motion%displacement, self%integrator%stiffness_factor(), &
+                               mass_factor, error)
+      if (allocated(error)) return
+      call self%controller%renewed()
+    end if
+    call attempt_step(model, self%integrator, self%operator, self%now, step, self%trial, converged, error)
+  end subroutine try_step
+
+  !> Longest step that the impactor's integrator bears now, as a binary fraction of the step wanted so that
+  !> the factored operator need not follow every small change.
+  pure real(wp) function impactor_limit(self, model) result(limit)
+    !> The march
+    type(march_t), intent(in) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+
+    limit = huge(limit)
+    if (.not. model%scene%has_impactor) return
+    limit = largest_safe_step(model%scene%impactor, model%scene%indentation, self%now%indentation, &
+                              self%now%indentation%alpha, self%now%impactor%velocity)
+    if (limit < self%controller%wanted) limit = self%controller%wanted*2.0_wp**floor(log(limit/self%controller%wanted) &
+                                                                                     /log(2.0_wp))
+  end function impactor_limit
+
+  !> Tries one load step.
+  subroutine try_load(self, model, event, step, converged, error)
+    !> The march
+    class(march_t), intent(inout) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Load factor not to be passed
+    real(wp), intent(in) :: event
+    !> Step tried
+    real(wp), intent(out) :: step
+    !> True if equilibrium was reached
+    logical, intent(out) :: converged
+    !> Set if the solver fails for good
+    type(error_t), allocatable, intent(out) :: error
+
+    if (self%controller%wanted <= 0) self%controller%wanted = event - self%now%time
+    step = self%controller%propose(event - self%now%time, huge(step))
+    call attempt_load(model, self%operator, self%now, self%now%time + step, self%trial, converged, error)
+  end subroutine try_load
+
+  !> Makes the state tried the state reached.
+  subroutine accept(self, model, step)
+    !> The march
+    class(march_t), intent(inout) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Step taken
+    real(wp), intent(in) :: step
+    real(wp) :: change
+
+    self%trial%stress = struck_stress(model, self%trial%motion%displacement)
+    self%trial%largest_stress = max(self%now%largest_stress, self%trial%stress)
+    change = 0
+    if (self%trial%largest_stress > 0) change = abs(self%trial%stress - self%now%stress)/self%trial%largest_stress
+    self%now = self%trial
+    if (model%scene%has_static) then
+      self%controller%wanted = 1.0_wp/model%scene%static_steps
+    else
+      call self%controller%accept(model%scene, step, self%now%iterations, change)
+    end if
+  end subroutine accept
+
+  !> Saves or loads all that evolves.
+  subroutine visit(self, archive, model, error)
+    !> The march
+    class(march_t), intent(inout) :: self
+    !> Where to or where from
+    class(archive_t), intent(inout) :: archive
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Set if the operator cannot be made again
+    type(error_t), allocatable, intent(out) :: error
+
+    call self%now%visit(archive, model)
+    call self%controller%visit(archive)
+    call archive%item('march/rejected', self%rejected)
+    call self%operator%visit(archive, model, error)
+  end subroutine visit
+end module marches

@@ -1,0 +1,298 @@
+!> What does not change during a run: mesh, supports, loads, and who computes what.
+module models
+  use kinds, only: wp
+  use errors, only: error_t
+  use communicators, only: communicator_t
+  use halos, only: halo_t
+  use plate_options, only: kinematics_linear, mass_lumped
+  use element_batches, only: element_batches_t
+  use internal_forces, only: add_internal_force
+  use inertia_forces, only: add_inertia_force, add_lumped_mass
+  use load_vectors, only: add_uniform_pressure, add_pressure, gauss_coordinates, add_patch_weights
+  use stacking, only: section_t, stacked_plies, section_of
+  use plies, only: ply_t
+  use mesh_parameters, only: edge_free, symmetry_none
+  use layered_meshes, only: layered_mesh_t, zone_t, create_mesh
+  use distributions, only: distribution_t, distribute
+  use supports, only: held_unknowns
+  use dynamics_parameters, only: distribution_sine
+  use scenes, only: scene_t
+  implicit none
+  private
+  public :: model_t, create_model
+
+  !> A scene made ready for computing on this rank's share of the mesh.
+  type :: model_t
+    !> What the deck asked for
+    type(scene_t) :: scene
+    !> The ranks
+    type(communicator_t) :: communicator
+    !> Mesh of the modelled part, whole on every rank
+    type(layered_mesh_t) :: mesh
+    !> This rank's share
+    type(distribution_t) :: distribution
+    !> Exchange of ghost points
+    type(halo_t) :: halo
+    !> This rank's elements
+    type(element_batches_t) :: elements
+    !> Plies of the laminate, struck face first
+    type(ply_t), allocatable :: plies(:)
+    !> Section of the whole laminate
+    type(section_t) :: section
+    !> Thickness of the laminate
+    real(wp) :: thickness = 0
+    !> Held unknowns of every point of the mesh, (5, points of the mesh)
+    logical, allocatable :: held(:, :)
+    !> Weights whose product with w is the mean deflection of the patch, (local points); ghosts zero
+    real(wp), allocatable :: patch(:)
+    !> Nodal forces of the deck's pressure, (5, local points); ghosts zero. Allocated only with a pressure
+    real(wp), allocatable :: pressure(:, :)
+    !> Nodal I0, I1, I2 of a lumped mass, (3, local points); allocated only if asked for
+    real(wp), allocatable :: lumped(:, :)
+    !> Position of the struck node's first point on the rank that owns it; 0 elsewhere
+    integer :: struck = 0
+    !> This rank's elements around the struck node
+    integer, allocatable :: struck_elements(:)
+    !> Elements around the struck node on all ranks
+    integer :: struck_count = 0
+    !> True: nothing moves u and v (linear, no coupling), so they have no equations
+    logical :: membrane_idle = .false.
+  contains
+    !> Internal forces and strain energy of a displacement field.
+    procedure :: internal
+    !> Mass times a field.
+    procedure :: inertia
+    !> Mean deflection of the patch.
+    procedure :: patch_mean
+    !> Deflection at the struck point.
+    procedure :: deflection
+    !> Product of two fields over all points of the plate's modelled part.
+    procedure :: product => field_product
+  end type model_t
+
+contains
+
+  !> Makes a scene ready.
+  subroutine create_model(scene, communicator, self, error)
+    !> The scene; it has passed the deck's checks
+    type(scene_t), intent(in) :: scene
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> The model
+    type(model_t), intent(out) :: self
+    !> Set if the mesh can't be dealt out or an element is ill-shaped; the same on every rank
+    type(error_t), allocatable, intent(out) :: error
+    type(zone_t) :: no_zones(0)
+
+    self%scene = scene
+    self%communicator = communicator
+    self%plies = stacked_plies(scene%laminate, scene%materials)
+    self%thickness = sum(scene%laminate%thickness)
+    self%section = section_of(self%plies, scene%laminate%shear_correction)
+    self%mesh = create_mesh(scene%plate, scene%mesh, size(self%plies), no_zones)
+    self%membrane_idle = scene%kinematics == kinematics_linear .and. uncoupled(self%section)
+    self%held = held_unknowns(self%mesh, scene%plate, self%membrane_idle, adrift(scene))
+    call distribute(self%mesh, communicator, self%distribution, error)
+    if (.not. allocated(error)) call build_elements(self, error)
+    call communicator%agree(error)
+    if (allocated(error)) return
+    call self%halo%define(communicator, self%distribution%owned, 1 + self%distribution%number( &
+                          self%distribution%points(self%distribution%owned + 1:)), error)
+    if (allocated(error)) return
+    call build_loads(self)
+    call find_struck_point(self)
+  end subroutine create_model
+
+  !> True if membrane and bending do not act on each other.
+  pure logical function uncoupled(section)
+    !> The laminate's section
+    type(section_t), intent(in) :: section
+    real(wp) :: scale
+
+    scale = sqrt(maxval(abs(section%stiffness(1:6)))*maxval(abs(section%stiffness(13:18))))
+    uncoupled = all(abs(section%stiffness(7:12)) <= 1.0e-12_wp*scale) .and. &
+                abs(section%mass(2)) <= 1.0e-12_wp*sqrt(section%mass(1)*section%mass(3))
+  end function uncoupled
+
+  !> True if nothing holds a static plate in its own plane.
+  pure logical function adrift(scene)
+    !> The scene
+    type(scene_t), intent(in) :: scene
+
+    adrift = scene%has_static .and. scene%plate%symmetry == symmetry_none .and. &
+             (.not. scene%plate%in_plane_fixed .or. all(scene%plate%edges == edge_free))
+  end function adrift
+
+  !> Batches of this rank's elements, with their sections.
+  subroutine build_elements(self, error)
+    !> The model, with its mesh dealt out
+    type(model_t), intent(inout) :: self
+    !> Set if an element is ill-shaped
+    type(error_t), allocatable, intent(inout) :: error
+    integer :: element, first, last
+    type(section_t) :: section
+
+    associate (mesh => self%mesh, share => self%distribution)
+      call self%elements%create(mesh%node_coordinates(:, mesh%point_node(share%points)), share%connectivity, &
+                                self%scene%mesh%shear, error)
+      if (allocated(error)) return
+      do element = 1, size(share%elements)
+        first = mesh%element_plies(1, share%elements(element))
+        last = mesh%element_plies(2, share%elements(element))
+        section = self%section
+        if (last - first + 1 < size(self%plies)) &
+          section = section_of(self%plies(first:last), self%scene%laminate%shear_correction)
+        call self%elements%set_section(element, section%stiffness, section%mass)
+      end do
+    end associate
+    if (self%scene%mesh%mass == mass_lumped) allocate (self%lumped(3, size(self%distribution%points)), source=0.0_wp)
+  end subroutine build_elements
+
+  !> Nodal loads of pressure and patch, and the lumped mass.
+  subroutine build_loads(self)
+    !> The model, with its elements and halo
+    type(model_t), intent(inout) :: self
+    real(wp), allocatable :: weights(:, :)
+    real(wp) :: area
+
+    allocate (weights(1, size(self%distribution%points)), source=0.0_wp)
+    call add_patch_weights(self%elements, patch_elements(self), weights(1, :))
+    call self%halo%accumulate(weights)
+    area = sum(weights)
+    call self%communicator%sum(area)
+    if (area > 0) weights = weights/area
+    self%patch = weights(1, :)
+    if (self%scene%has_pressure) call build_pressure(self)
+    if (allocated(self%lumped)) then
+      call add_lumped_mass(self%elements, self%lumped)
+      call self%halo%accumulate(self%lumped)
+    end if
+  end subroutine build_loads
+
+  !> This rank's elements under the patch, of the struck layer only.
+  pure function patch_elements(self) result(elements)
+    !> The model
+    type(model_t), intent(in) :: self
+    !> Positions among this rank's elements
+    integer, allocatable :: elements(:)
+    integer :: i
+
+    associate (mesh => self%mesh, mine => self%distribution%elements)
+      elements = pack([(i, i=1, size(mine))], [(mesh%in_patch(mesh%element_cell(mine(i)), self%scene%mesh%patch) &
+                                                .and. mesh%element_plies(1, mine(i)) == 1, i=1, size(mine))])
+    end associate
+  end function patch_elements
+
+  !> Nodal forces of the pressure on the struck face.
+  subroutine build_pressure(self)
+    !> The model
+    type(model_t), intent(inout) :: self
+    real(wp), allocatable :: x(:, :, :), pressure(:, :)
+    real(wp), parameter :: pi = acos(-1.0_wp)
+    integer :: element
+
+    allocate (self%pressure(5, size(self%distribution%points)), source=0.0_wp)
+    allocate (x(2, 9, self%elements%elements), pressure(9, self%elements%elements))
+    associate (mesh => self%mesh, share => self%distribution, value => self%scene%pressure%value)
+      call gauss_coordinates(self%elements, mesh%node_coordinates(:, mesh%point_node(share%points)), x)
+      pressure = value
+      if (self%scene%pressure%distribution == distribution_sine) &
+        pressure = value*cos(pi*x(1, :, :)/self%scene%plate%length(1))*cos(pi*x(2, :, :)/self%scene%plate%length(2))
+      do element = 1, size(share%elements)
+        if (mesh%element_plies(1, share%elements(element)) /= 1) pressure(:, element) = 0
+      end do
+    end associate
+    call add_pressure(self%elements, pressure, self%pressure)
+    call self%halo%accumulate(self%pressure)
+  end subroutine build_pressure
+
+  !> Finds the struck node's first point if this rank owns it, and the elements around it.
+  subroutine find_struck_point(self)
+    !> The model
+    type(model_t), intent(inout) :: self
+    integer :: i, first
+
+    first = self%mesh%first_point(self%mesh%struck_node)
+    associate (mesh => self%mesh, mine => self%distribution%elements)
+      self%struck_elements = pack([(i, i=1, size(mine))], [(any(mesh%connectivity(:, mine(i)) == first), i=1, size(mine))])
+    end associate
+    self%struck_count = size(self%struck_elements)
+    call self%communicator%sum(self%struck_count)
+    self%struck = self%distribution%local(self%mesh%first_point(self%mesh%struck_node))
+    if (self%struck > self%distribution%owned) self%struck = 0
+  end subroutine find_struck_point
+
+  !> Internal forces at the owned points and this rank's share of the strain energy.
+  subroutine internal(self, displacement, force, energy)
+    !> The model
+    class(model_t), intent(in) :: self
+    !> Displacement, ghosts up to date, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> Internal forces, (5, points); ghosts zero
+    real(wp), intent(inout) :: force(:, :)
+    !> Strain energy of this rank's elements
+    real(wp), intent(out) :: energy
+
+    force = 0
+    call add_internal_force(self%elements, self%scene%kinematics, displacement, force, energy)
+    call self%halo%accumulate(force)
+  end subroutine internal
+
+  !> Mass times a field, at the owned points.
+  subroutine inertia(self, field, force)
+    !> The model
+    class(model_t), intent(in) :: self
+    !> Acceleration or velocity, ghosts up to date, (5, points)
+    real(wp), intent(in) :: field(:, :)
+    !> Product, (5, points); ghosts zero
+    real(wp), intent(inout) :: force(:, :)
+    integer :: point
+
+    force = 0
+    if (allocated(self%lumped)) then
+      do point = 1, self%distribution%owned
+        associate (mass => self%lumped(:, point))
+          force(1:2, point) = mass(1)*field(1:2, point) + mass(2)*field(4:5, point)
+          force(3, point) = mass(1)*field(3, point)
+          force(4:5, point) = mass(2)*field(1:2, point) + mass(3)*field(4:5, point)
+        end associate
+      end do
+    else
+      call add_inertia_force(self%elements, field, force)
+      call self%halo%accumulate(force)
+    end if
+  end subroutine inertia
+
+  !> Mean deflection of the patch, the same on every rank.
+  real(wp) function patch_mean(self, displacement) result(mean)
+    !> The model
+    class(model_t), intent(in) :: self
+    !> Displacement, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+
+    mean = dot_product(self%patch, displacement(3, :))
+    call self%communicator%sum(mean)
+  end function patch_mean
+
+  !> Deflection at the struck point, the same on every rank.
+  real(wp) function deflection(self, displacement) result(w)
+    !> The model
+    class(model_t), intent(in) :: self
+    !> Displacement, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+
+    w = 0
+    if (self%struck > 0) w = displacement(3, self%struck)
+    call self%communicator%sum(w)
+  end function deflection
+
+  !> Product of two fields summed over the owned points of this rank only.
+  pure real(wp) function field_product(self, left, right) result(total)
+    !> The model
+    class(model_t), intent(in) :: self
+    !> The fields, (5, points)
+    real(wp), intent(in) :: left(:, :), right(:, :)
+
+    total = sum(left(:, :self%distribution%owned)*right(:, :self%distribution%owned))
+  end function field_product
+end module models

@@ -1,0 +1,43 @@
+!> All that a deck asks to be modelled, as plain parameters. What a scene does not have costs nothing.
+module scenes
+  use plate_options, only: kinematics_von_karman
+  use mesh_parameters, only: plate_t, mesh_t
+  use material_parameters, only: material_t
+  use laminate_parameters, only: laminate_t
+  use impact_parameters, only: impactor_parameters_t, indentation_law_t
+  use dynamics_parameters, only: pressure_t, time_t, adapt_t, solver_t
+  implicit none
+  private
+  public :: scene_t
+
+  !> One scene.
+  type :: scene_t
+    !> kinematics_von_karman or kinematics_linear
+    integer :: kinematics = kinematics_von_karman
+    !> Plate, mesh, materials and stacking
+    type(plate_t) :: plate
+    !> Mesh and element
+    type(mesh_t) :: mesh
+    !> Materials
+    type(material_t), allocatable :: materials(:)
+    !> Stacking
+    type(laminate_t) :: laminate
+    !> Which groups the deck has
+    logical :: has_impactor = .false., has_indentation = .false., has_pressure = .false., has_static = .false., &
+               has_time = .false., has_adapt = .false.
+    !> Impactor
+    type(impactor_parameters_t) :: impactor
+    !> Indentation law
+    type(indentation_law_t) :: indentation
+    !> Pressure
+    type(pressure_t) :: pressure
+    !> Load steps of a static analysis
+    integer :: static_steps = 1
+    !> Time integration
+    type(time_t) :: time
+    !> Adaptivity
+    type(adapt_t) :: adapt
+    !> Solver
+    type(solver_t) :: solver
+  end type scene_t
+end module scenes

@@ -1,0 +1,115 @@
+!> All that evolves with an accepted step. A step is computed into a second state of this type, which
+!> then replaces the first or is dropped: a step that is tried again leaves no trace.
+module states
+  use kinds, only: wp
+  use archives, only: archive_t
+  use impactors, only: impactor_t, new_impactor, impactor_energy
+  use indentations, only: indentation_t
+  use ledgers, only: ledger_t
+  use plate_integrators, only: motion_t
+  use models, only: model_t
+  implicit none
+  private
+  public :: state_t, new_state
+
+  !> The state of plate, impactor and contact at one time.
+  type :: state_t
+    !> Time, or load factor of a static analysis
+    real(wp) :: time = 0
+    !> Accepted steps
+    integer :: step = 0
+    !> Motion of the plate
+    type(motion_t) :: motion
+    !> The impactor
+    type(impactor_t) :: impactor
+    !> Memory of the indentation
+    type(indentation_t) :: indentation
+    !> Impact force at this time
+    real(wp) :: force = 0
+    !> Mean deflection of the patch, and deflection of the struck point
+    real(wp) :: patch_mean = 0, deflection = 0
+    !> Bending stress at the struck point, and its largest value so far
+    real(wp) :: stress = 0, largest_stress = 0
+    !> The energy ledger
+    type(ledger_t) :: ledger
+    !> Iterations of equilibrium and of the force in the last step, and their sums
+    integer :: iterations = 0, force_iterations = 0, all_iterations = 0, all_force_iterations = 0
+    !> Largest forces so far, by which a residual is judged when forces fade: translations, rotations
+    real(wp) :: largest_forces(2) = 0
+  contains
+    !> Saves or loads the state.
+    procedure :: visit
+  end type state_t
+
+contains
+
+  !> The plate at rest, the impactor at first touch.
+  pure function new_state(model) result(self)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> The state
+    type(state_t) :: self
+    integer :: points
+
+    points = size(model%distribution%points)
+    allocate (self%motion%displacement(5, points), self%motion%velocity(5, points), &
+              self%motion%acceleration(5, points), self%motion%internal(5, points), &
+              self%motion%inertia(5, points), source=0.0_wp)
+    if (.not. model%scene%has_impactor) return
+    self%impactor = new_impactor(model%scene%impactor)
+    self%ledger%impactor = impactor_energy(model%scene%impactor, self%impactor)
+    self%ledger%initial = self%ledger%impactor
+  end function new_state
+
+  !> Saves or loads the state.
+  subroutine visit(self, archive, model)
+    !> The state
+    class(state_t), intent(inout) :: self
+    !> Where to or where from
+    class(archive_t), intent(inout) :: archive
+    !> The model
+    type(model_t), intent(in) :: model
+
+    call archive%item('time', self%time)
+    call archive%item('step', self%step)
+    call visit_motion(self%motion, archive, model)
+    call self%impactor%visit(archive)
+    call self%indentation%visit(archive)
+    call archive%item('force', self%force)
+    call archive%item('patch_mean', self%patch_mean)
+    call archive%item('deflection', self%deflection)
+    call archive%item('stress', self%stress)
+    call archive%item('largest_stress', self%largest_stress)
+    call self%ledger%visit(archive)
+    call archive%item('iterations', self%iterations)
+    call archive%item('force_iterations', self%force_iterations)
+    call archive%item('all_iterations', self%all_iterations)
+    call archive%item('all_force_iterations', self%all_force_iterations)
+    call archive%item('largest_forces/translation', self%largest_forces(1))
+    call archive%item('largest_forces/rotation', self%largest_forces(2))
+  end subroutine visit
+
+  !> Saves or loads the motion of the plate.
+  subroutine visit_motion(motion, archive, model)
+    !> The motion
+    type(motion_t), intent(inout) :: motion
+    !> Where to or where from
+    class(archive_t), intent(inout) :: archive
+    !> The model
+    type(model_t), intent(in) :: model
+    integer :: points
+
+    points = model%mesh%points()
+    associate (owned => model%distribution%points(:model%distribution%owned))
+      call archive%field('motion/displacement', owned, points, motion%displacement)
+      call archive%field('motion/velocity', owned, points, motion%velocity)
+      call archive%field('motion/acceleration', owned, points, motion%acceleration)
+      call archive%field('motion/internal', owned, points, motion%internal)
+      call archive%field('motion/inertia', owned, points, motion%inertia)
+    end associate
+    if (.not. archive%loading) return
+    call model%halo%update(motion%displacement)
+    call model%halo%update(motion%velocity)
+    call model%halo%update(motion%acceleration)
+  end subroutine visit_motion
+end module states

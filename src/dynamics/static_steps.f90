@@ -1,0 +1,111 @@
+!> Load steps of a static analysis: Newton's iteration with a fresh tangent.
+module static_steps
+  use kinds, only: wp
+  use errors, only: error_t, exit_convergence
+  use plate_options, only: kinematics_linear
+  use models, only: model_t
+  use states, only: state_t
+  use residual_norms, only: force_norms
+  use tangent_operators, only: tangent_operator_t
+  implicit none
+  private
+  public :: attempt_load
+
+contains
+
+  !> Tries to reach a load factor. On return either `converged` and `new` is the state there, or nothing of it counts.
+  subroutine attempt_load(model, operator, old, load_factor, new, converged, error)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> The factored operator
+    type(tangent_operator_t), intent(inout) :: operator
+    !> State at the load before
+    type(state_t), intent(in) :: old
+    !> Load over the full load
+    real(wp), intent(in) :: load_factor
+    !> State at this load
+    type(state_t), intent(inout) :: new
+    !> True if equilibrium was reached
+    logical, intent(out) :: converged
+    !> Set if the solver fails for good
+    type(error_t), allocatable, intent(out) :: error
+    real(wp), allocatable :: residual(:, :), correction(:, :)
+    real(wp) :: energy, norm
+
+    new = old
+    new%time = load_factor
+    new%iterations = 0
+    allocate (residual, correction, mold=old%motion%displacement)
+    correction = 0
+    do
+      call model%internal(new%motion%displacement, new%motion%internal, energy)
+      residual = load_factor*model%pressure - new%motion%internal
+      norm = relative_norm(model, operator, load_factor, new%motion%internal, residual)
+      converged = norm <= model%scene%solver%tolerance
+      if (converged .or. .not. norm <= huge(norm) .or. new%iterations >= model%scene%solver%max_iterations) exit
+      if (.not. operator%ready .or. model%scene%kinematics /= kinematics_linear) &
+        call operator%renew(model, new%motion%displacement, 1.0_wp, 0.0_wp, error)
+      if (.not. allocated(error)) call operator%correct(model, residual, correction, error)
+      if (allocated(error)) then
+        if (error%code == exit_convergence .and. model%scene%kinematics /= kinematics_linear) deallocate (error)
+        return
+      end if
+      new%motion%displacement = new%motion%displacement + correction
+      new%iterations = new%iterations + 1
+    end do
+    if (converged) call finish(model, old, energy, new)
+  end subroutine attempt_load
+
+  !> Residual over the larger of load and internal forces, translations and rotations each by its own.
+  real(wp) function relative_norm(model, operator, load_factor, internal, residual) result(norm)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Knows which unknowns are held
+    type(tangent_operator_t), intent(in) :: operator
+    !> Load over the full load
+    real(wp), intent(in) :: load_factor
+    !> Internal forces and residual, (5, points)
+    real(wp), intent(in) :: internal(:, :), residual(:, :)
+    real(wp) :: norms(2, 3), scale(2)
+
+    associate (equation => operator%numbering%equation, owned => model%distribution%owned)
+      norms(:, 1) = force_norms(equation, residual, owned)
+      norms(:, 2) = force_norms(equation, internal, owned)
+      norms(:, 3) = load_factor**2*force_norms(equation, model%pressure, owned)
+    end associate
+    call model%communicator%sum(norms)
+    norms = sqrt(norms)
+    scale = max(norms(:, 2), norms(:, 3))
+    norm = 0
+    if (scale(1) > 0) norm = norms(1, 1)/scale(1)
+    if (scale(2) > 0 .and. norm <= huge(norm)) norm = max(norm, norms(2, 1)/scale(2))
+  end function relative_norm
+
+  !> Completes an accepted load step.
+  subroutine finish(model, old, energy, new)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> State at the load before
+    type(state_t), intent(in) :: old
+    !> Strain energy of this rank's elements
+    real(wp), intent(in) :: energy
+    !> State at this load
+    type(state_t), intent(inout) :: new
+    real(wp) :: sums(3)
+    real(wp), allocatable :: change(:, :)
+
+    change = new%motion%displacement - old%motion%displacement
+    sums(1) = energy
+    sums(2) = model%product(change, new%motion%internal + old%motion%internal)/2
+    sums(3) = (new%time + old%time)/2*model%product(change, model%pressure)
+    call model%communicator%sum(sums)
+    sums = sums*model%mesh%multiplicity
+    new%step = old%step + 1
+    new%all_iterations = old%all_iterations + new%iterations
+    new%deflection = model%deflection(new%motion%displacement)
+    new%patch_mean = model%patch_mean(new%motion%displacement)
+    new%ledger%strain = sums(1)
+    new%ledger%external_work = old%ledger%external_work + sums(3)
+    new%ledger%algorithmic = old%ledger%algorithmic - (sums(1) - old%ledger%strain - sums(2))
+  end subroutine finish
+end module static_steps

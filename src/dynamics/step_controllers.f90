@@ -1,0 +1,145 @@
+!> Chooses the time step and when the factored operator is renewed.
+module step_controllers
+  use kinds, only: wp
+  use archives, only: archive_t
+  use plate_options, only: kinematics_von_karman
+  use dynamics_parameters, only: refactor_deflection
+  use scenes, only: scene_t
+  implicit none
+  private
+  public :: step_controller_t
+
+  !> Largest growth of the step from one to the next: more would unsettle the multistep integrator.
+  real(wp), parameter :: growth = 1.19_wp
+  !> Ratios of the mass factor between which a lagged operator still serves well.
+  real(wp), parameter :: lag_low = 0.6_wp, lag_high = 1.7_wp
+
+  !> What is remembered from step to step.
+  type :: step_controller_t
+    !> Step wanted next, and the last one taken
+    real(wp) :: wanted = 0, last = 0
+    !> Fewest iterations of a step since the operator was renewed, and the sum of those beyond it
+    integer :: fewest = huge(1), excess = 0
+  contains
+    !> Step to try next, landing on the next output time.
+    procedure :: propose
+    !> Learns from an accepted step.
+    procedure :: accept
+    !> Learns from a rejected step.
+    procedure :: reject
+    !> True if the operator should be renewed before a step.
+    procedure :: renewal_due
+    !> Forgets the iterations counted, after a renewal.
+    procedure :: renewed
+    !> Saves or loads the controller.
+    procedure :: visit
+  end type step_controller_t
+
+contains
+
+  !> Length of the next step, of which a whole number reaches the next event.
+  pure real(wp) function propose(self, remaining, limit) result(step)
+    !> The controller
+    class(step_controller_t), intent(in) :: self
+    !> Time to the next event
+    real(wp), intent(in) :: remaining
+    !> Longest step that the impactor's integrator bears
+    real(wp), intent(in) :: limit
+
+    step = min(self%wanted, limit)
+    if (self%last > 0) step = min(step, growth*self%last)
+    step = remaining/max(1.0_wp, ceiling_of(remaining/step*(1 - 1.0e-9_wp)))
+  end function propose
+
+  !> Smallest whole number not below x, as a real: step counts may pass the largest integer.
+  pure real(wp) function ceiling_of(x) result(whole)
+    !> A number
+    real(wp), intent(in) :: x
+
+    whole = aint(x)
+    if (whole < x) whole = whole + 1
+  end function ceiling_of
+
+  !> Learns from an accepted step.
+  pure subroutine accept(self, scene, step, iterations, stress_change)
+    !> The controller
+    class(step_controller_t), intent(inout) :: self
+    !> The scene
+    type(scene_t), intent(in) :: scene
+    !> Step taken
+    real(wp), intent(in) :: step
+    !> Its iterations
+    integer, intent(in) :: iterations
+    !> Change of the stress at the struck point over its largest value so far
+    real(wp), intent(in) :: stress_change
+    real(wp) :: room
+
+    self%last = step
+    self%fewest = min(self%fewest, iterations)
+    self%excess = self%excess + iterations - self%fewest
+    room = 2
+    if (scene%adapt%on) room = scene%adapt%stress_change/max(stress_change, tiny(room)**0.5_wp)
+    if (2*iterations > scene%solver%max_iterations) room = min(room, 0.7_wp)
+    if (room < 0.8_wp) then
+      self%wanted = self%wanted*max(room, 0.5_wp)
+    else if (room > 1.5_wp) then
+      self%wanted = self%wanted*growth
+    end if
+    self%wanted = min(max(self%wanted, scene%time%step_min), scene%time%step_max)
+  end subroutine accept
+
+  !> Learns from a rejected step: half of it is tried next.
+  pure subroutine reject(self, step)
+    !> The controller
+    class(step_controller_t), intent(inout) :: self
+    !> Step that failed
+    real(wp), intent(in) :: step
+
+    self%wanted = step/2
+  end subroutine reject
+
+  !> True if the operator should be renewed before a step: by the paper's rule, or once the iterations
+  !> that its age has cost add up to about the price of a factorisation.
+  pure logical function renewal_due(self, scene, mass_ratio, deflection_change, thickness) result(due)
+    !> The controller
+    class(step_controller_t), intent(in) :: self
+    !> The scene
+    type(scene_t), intent(in) :: scene
+    !> Mass factor of the step over that of the operator
+    real(wp), intent(in) :: mass_ratio
+    !> Change of the struck point's deflection since the operator was made
+    real(wp), intent(in) :: deflection_change
+    !> Thickness of the laminate
+    real(wp), intent(in) :: thickness
+
+    if (scene%adapt%refactor == refactor_deflection) then
+      due = abs(mass_ratio - 1) > 0.01_wp
+      if (scene%kinematics == kinematics_von_karman) &
+        due = due .or. abs(deflection_change) > scene%adapt%stiffness_update*thickness
+    else
+      due = mass_ratio < lag_low .or. mass_ratio > lag_high .or. self%excess >= scene%adapt%iterations
+    end if
+  end function renewal_due
+
+  !> Forgets the iterations counted, after a renewal.
+  pure subroutine renewed(self)
+    !> The controller
+    class(step_controller_t), intent(inout) :: self
+
+    self%fewest = huge(1)
+    self%excess = 0
+  end subroutine renewed
+
+  !> Saves or loads the controller.
+  subroutine visit(self, archive)
+    !> The controller
+    class(step_controller_t), intent(inout) :: self
+    !> Where to or where from
+    class(archive_t), intent(inout) :: archive
+
+    call archive%item('controller/wanted', self%wanted)
+    call archive%item('controller/last', self%last)
+    call archive%item('controller/fewest', self%fewest)
+    call archive%item('controller/excess', self%excess)
+  end subroutine visit
+end module step_controllers

@@ -1,0 +1,36 @@
+!> The bending stress at the struck point, by whose rate the time step is chosen (section 3.4).
+module struck_stresses
+  use kinds, only: wp
+  use element_batches, only: lanes
+  use strain_recovery, only: mean_strains
+  use models, only: model_t
+  implicit none
+  private
+  public :: struck_stress
+
+contains
+
+  !> Size of the surface stress 6 M / h**2 around the struck point, the same on every rank.
+  real(wp) function struck_stress(model, displacement) result(stress)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Displacement, ghosts up to date, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    real(wp) :: curvature(3), moment(3), strains(lanes, 8)
+    integer :: i, batch
+
+    curvature = 0
+    do i = 1, size(model%struck_elements)
+      batch = 1 + (model%struck_elements(i) - 1)/lanes
+      call mean_strains(model%elements, batch, model%scene%kinematics, displacement, strains)
+      curvature = curvature + strains(1 + modulo(model%struck_elements(i) - 1, lanes), 4:6)/model%struck_count
+    end do
+    call model%communicator%sum(curvature)
+    associate (d => model%section%stiffness(13:18))
+      moment = [d(1)*curvature(1) + d(2)*curvature(2) + d(3)*curvature(3), &
+                d(2)*curvature(1) + d(4)*curvature(2) + d(5)*curvature(3), &
+                d(3)*curvature(1) + d(5)*curvature(2) + d(6)*curvature(3)]
+    end associate
+    stress = 6*norm2(moment)/model%thickness**2
+  end function struck_stress
+end module struck_stresses

@@ -1,0 +1,210 @@
+!> The seal at the head of a checkpoint: what the file is, how long, and a checksum of all that follows.
+!> It is written last, so a file with a valid seal is complete; any byte lost or changed later shows.
+module checkpoint_seal
+  use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_int, c_null_char, c_ptr
+  use, intrinsic :: iso_fortran_env, only: int32, int8
+  use errors, only: error_t, exit_files, fail
+  use kinds, only: long
+  implicit none
+  private
+  public :: seal, verify_seal, synchronise, crc32
+
+  !> Bytes of the head of the file, which HDF5 leaves to its user.
+  integer, parameter, public :: head_length = 512
+  !> First line of the head.
+  character(len=*), parameter :: title = 'IMPLAM CHECKPOINT'
+  !> Second line of the head; the number changes whenever older files can't be read any more.
+  character(len=*), parameter :: format_line = 'format 1'
+  !> Bytes read at a time.
+  integer, parameter :: block_length = 1048576
+  !> CRC of nothing.
+  integer(int32), parameter :: empty_crc = 0
+  !> Polynomial of CRC-32 (IEEE 802.3), bits reversed: hexadecimal EDB88320.
+  integer(int32), parameter :: polynomial = -306674912_int32
+
+  interface
+    !> C library: opens a file.
+    type(c_ptr) function c_fopen(path, mode) bind(c, name='fopen')
+      import :: c_char, c_ptr
+      !> Zero-terminated path and mode
+      character(kind=c_char), intent(in) :: path(*), mode(*)
+    end function c_fopen
+
+    !> C library: descriptor of an open file.
+    integer(c_int) function c_fileno(stream) bind(c, name='fileno')
+      import :: c_int, c_ptr
+      !> The open file
+      type(c_ptr), value :: stream
+    end function c_fileno
+
+    !> C library: waits until a file is on the disk.
+    integer(c_int) function c_fsync(descriptor) bind(c, name='fsync')
+      import :: c_int
+      !> Descriptor of the file
+      integer(c_int), value :: descriptor
+    end function c_fsync
+
+    !> C library: closes a file.
+    integer(c_int) function c_fclose(stream) bind(c, name='fclose')
+      import :: c_int, c_ptr
+      !> The open file
+      type(c_ptr), value :: stream
+    end function c_fclose
+  end interface
+
+contains
+
+  !> Writes the seal into the free head of a file.
+  subroutine seal(path, error)
+    !> Path of the file
+    character(len=*), intent(in) :: path
+    !> Raised if the file can't be read or written
+    type(error_t), allocatable, intent(inout) :: error
+    integer(long) :: bytes
+    integer(int32) :: crc
+    integer :: unit, status, closed
+
+    call read_body(path, bytes, crc, status)
+    if (status == 0) open (newunit=unit, file=path, access='stream', form='unformatted', status='old', &
+                           action='readwrite', iostat=status)
+    if (status == 0) then
+      write (unit, pos=1, iostat=status) head(bytes, crc)
+      close (unit, iostat=closed)
+      if (status == 0) status = closed
+    end if
+    if (status /= 0) call fail(error, exit_files, "Can't complete the checkpoint "//path//'.')
+  end subroutine seal
+
+  !> Makes sure that a file is a checkpoint and whole.
+  subroutine verify_seal(path, error)
+    !> Path of the file
+    character(len=*), intent(in) :: path
+    !> Raised with the reason if it is not
+    type(error_t), allocatable, intent(inout) :: error
+    character(len=head_length) :: found
+    integer(long) :: bytes
+    integer(int32) :: crc
+    integer :: status
+
+    call read_head(path, found, status)
+    if (status == 0) call read_body(path, bytes, crc, status)
+    if (status /= 0) then
+      call fail(error, exit_files, "Can't read the checkpoint "//path//'.')
+    else if (found(:len(title)) /= title) then
+      call fail(error, exit_files, path//' is not a checkpoint of Implam.')
+    else if (index(found, new_line('a')//'format ') > 0 .and. index(found, new_line('a')//format_line//new_line('a')) == 0) &
+      then
+      call fail(error, exit_files, 'The checkpoint '//path//' was written by another version of Implam, which this one ' &
+                //'cannot read ('//format_line//').')
+    else if (found /= head(bytes, crc)) then
+      call fail(error, exit_files, 'The checkpoint '//path//' is damaged: it was cut short or altered.')
+    end if
+  end subroutine verify_seal
+
+  !> Waits until a file, or the entries of a folder, are on the disk.
+  subroutine synchronise(path, error)
+    !> Path of the file or folder
+    character(len=*), intent(in) :: path
+    !> Raised if that fails
+    type(error_t), allocatable, intent(inout) :: error
+    type(c_ptr) :: stream
+    integer(c_int) :: status, closed
+
+    status = -1
+    stream = c_fopen(path//c_null_char, 'r'//c_null_char)
+    if (c_associated(stream)) then
+      status = c_fsync(c_fileno(stream))
+      closed = c_fclose(stream)
+    end if
+    if (status /= 0) call fail(error, exit_files, "Can't write "//path//' out to the disk.')
+  end subroutine synchronise
+
+  !> The head of a file with a given body.
+  pure function head(bytes, crc)
+    !> Length of the body
+    integer(long), intent(in) :: bytes
+    !> Checksum of the body
+    integer(int32), intent(in) :: crc
+    !> The head: lines of text, blanks and a last line end
+    character(len=head_length) :: head
+    character(len=*), parameter :: end_of_line = new_line('a')
+
+    write (head, '(4a,a,i0,2a,z8.8,a)') title, end_of_line, format_line, end_of_line, &
+      'bytes ', bytes, end_of_line, 'crc32 ', crc, end_of_line
+    head(head_length:) = end_of_line
+  end function head
+
+  !> Reads the head of a file; what a shorter file lacks is blank.
+  subroutine read_head(path, found, status)
+    !> Path of the file
+    character(len=*), intent(in) :: path
+    !> The head
+    character(len=head_length), intent(out) :: found
+    !> 0 unless the file can't be read
+    integer, intent(out) :: status
+    integer(long) :: bytes
+    integer :: unit, closed
+
+    found = ''
+    open (newunit=unit, file=path, access='stream', form='unformatted', status='old', action='read', iostat=status)
+    if (status /= 0) return
+    inquire (unit, size=bytes)
+    if (bytes > 0) read (unit, pos=1, iostat=status) found(:min(bytes, int(head_length, long)))
+    close (unit, iostat=closed)
+  end subroutine read_head
+
+  !> Length and checksum of what follows the head of a file.
+  subroutine read_body(path, bytes, crc, status)
+    !> Path of the file
+    character(len=*), intent(in) :: path
+    !> Length
+    integer(long), intent(out) :: bytes
+    !> Checksum
+    integer(int32), intent(out) :: crc
+    !> 0 unless the file can't be read
+    integer, intent(out) :: status
+    integer(int8), allocatable :: block(:)
+    integer(long) :: done
+    integer :: unit, length, closed
+
+    crc = empty_crc
+    bytes = 0
+    open (newunit=unit, file=path, access='stream', form='unformatted', status='old', action='read', iostat=status)
+    if (status /= 0) return
+    inquire (unit, size=bytes)
+    bytes = max(bytes - head_length, 0_long)
+    allocate (block(block_length))
+    done = 0
+    do while (done < bytes .and. status == 0)
+      length = int(min(bytes - done, int(block_length, long)))
+      read (unit, pos=head_length + done + 1, iostat=status) block(:length)
+      crc = crc32(block(:length), crc)
+      done = done + length
+    end do
+    close (unit, iostat=closed)
+  end subroutine read_body
+
+  !> Checksum CRC-32 (IEEE 802.3, as in zip and gzip): finds every change of up to four neighbouring bytes.
+  pure function crc32(bytes, before) result(crc)
+    !> The bytes
+    integer(int8), intent(in) :: bytes(:)
+    !> Checksum of the bytes before these; 0 if there are none
+    integer(int32), intent(in) :: before
+    !> Checksum of all
+    integer(int32) :: crc
+    integer(int32) :: table(0:255)
+    integer :: i, bit
+
+    do i = 0, 255
+      table(i) = i
+      do bit = 1, 8
+        table(i) = ieor(ishft(table(i), -1), merge(polynomial, 0_int32, btest(table(i), 0)))
+      end do
+    end do
+    crc = not(before)
+    do i = 1, size(bytes)
+      crc = ieor(ishft(crc, -8), table(iand(ieor(crc, int(bytes(i), int32)), 255_int32)))
+    end do
+    crc = not(crc)
+  end function crc32
+end module checkpoint_seal

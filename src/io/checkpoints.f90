@@ -1,0 +1,289 @@
+!> NAME_restart.h5: all that evolves, exact to the last bit, for any number of ranks. It is written aside, sealed and
+!> renamed: whenever the run is killed, the file of that name is whole, the one before or the new one.
+module checkpoints
+  use archives, only: archive_t
+  use checkpoint_seal, only: head_length, seal, synchronise, verify_seal
+  use communicators, only: communicator_t
+  use errors, only: error_t, exit_files, fail
+  use files, only: rename_file
+  use hdf5_data, only: read_integers, read_real_columns, read_reals, write_integers, write_real_columns, write_reals
+  use hdf5_file, only: hdf5_file_t
+  use hdf5_transfers, only: stored_shape
+  use kinds, only: wp
+  use run_provenance, only: provenance_t
+  use stored_provenance, only: read_provenance, write_provenance
+  implicit none
+  private
+  public :: checkpoint_archive_t
+
+  !> Group of the items in the file.
+  character(len=*), parameter :: items = 'state/'
+
+  !> A checkpoint being saved or loaded.
+  type, extends(archive_t) :: checkpoint_archive_t
+    !> The run that wrote the file, after opening for loading
+    type(provenance_t) :: provenance
+    !> The file
+    type(hdf5_file_t), private :: file
+    !> Path of the file in the end
+    character(len=:), allocatable, private :: path
+  contains
+    procedure :: open_for_saving
+    procedure :: open_for_loading
+    procedure :: close
+    procedure :: real_item
+    procedure :: integer_item
+    procedure :: logical_item
+    procedure :: reals_item
+    procedure :: integers_item
+    procedure :: table_item
+    procedure :: field
+  end type checkpoint_archive_t
+
+contains
+
+  !> Starts a checkpoint; the one before stays until this one is closed.
+  subroutine open_for_saving(self, communicator, path, provenance, error)
+    !> The checkpoint
+    class(checkpoint_archive_t), intent(inout) :: self
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> Path of the file
+    character(len=*), intent(in) :: path
+    !> The run, deck included
+    type(provenance_t), intent(in) :: provenance
+    !> Raised if the file can't be created
+    type(error_t), allocatable, intent(inout) :: error
+
+    self%loading = .false.
+    self%path = path
+    call self%file%create(communicator, aside(path), head_length)
+    call write_provenance(self%file, 'provenance', provenance)
+    if (.not. allocated(self%file%trouble)) return
+    call fail(error, exit_files, "Can't write the checkpoint "//aside(path)//': '//self%file%trouble//'.')
+    call self%file%close()
+  end subroutine open_for_saving
+
+  !> Opens a checkpoint, after making sure that it is one and whole.
+  subroutine open_for_loading(self, communicator, path, error)
+    !> The checkpoint
+    class(checkpoint_archive_t), intent(inout) :: self
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> Path of the file
+    character(len=*), intent(in) :: path
+    !> Raised if it can't be read
+    type(error_t), allocatable, intent(inout) :: error
+
+    self%loading = .true.
+    self%path = path
+    if (communicator%is_root()) call verify_seal(path, error)
+    call communicator%agree(error)
+    if (allocated(error)) return
+    call self%file%open(communicator, path, writable=.false.)
+    call read_provenance(self%file, 'provenance', self%provenance)
+    if (.not. allocated(self%file%trouble)) return
+    call fail(error, exit_files, "Can't read the checkpoint "//path//': '//self%file%trouble//'.')
+    call self%file%close()
+  end subroutine open_for_loading
+
+  !> Ends saving or loading, and tells of all that went wrong meanwhile.
+  subroutine close (self, error)
+    !> The checkpoint
+    class(checkpoint_archive_t), intent(inout) :: self
+    !> Raised if an item couldn't be saved or loaded; the checkpoint before is then still there
+    type(error_t), allocatable, intent(inout) :: error
+
+    call self%file%close()
+    if (allocated(self%file%trouble)) then
+      call fail(error, exit_files, "Can't "//trim(merge('read ', 'write', self%loading))//' the checkpoint ' &
+                //self%path//': '//self%file%trouble//'.')
+    else if (.not. self%loading) then
+      if (self%file%communicator%is_root()) call put_in_place(self%path, error)
+      call self%file%communicator%agree(error)
+    end if
+  end subroutine close
+
+  !> Seals the new file, waits until it is on the disk and gives it its name.
+  subroutine put_in_place(path, error)
+    !> Path of the file in the end
+    character(len=*), intent(in) :: path
+    !> Raised if one of these steps failed
+    type(error_t), allocatable, intent(inout) :: error
+
+    call seal(aside(path), error)
+    if (.not. allocated(error)) call synchronise(aside(path), error)
+    if (.not. allocated(error)) call rename_file(aside(path), path, error)
+    if (.not. allocated(error)) call synchronise(folder(path), error)
+  end subroutine put_in_place
+
+  !> Path under which the file is written until it is whole.
+  pure function aside(path)
+    !> Path of the file in the end
+    character(len=*), intent(in) :: path
+    !> Path meanwhile
+    character(len=:), allocatable :: aside
+
+    aside = path//'.tmp'
+  end function aside
+
+  !> Folder of a file.
+  pure function folder(path)
+    !> Path of the file
+    character(len=*), intent(in) :: path
+    !> Its folder, with a slash at the end
+    character(len=:), allocatable :: folder
+
+    folder = './'
+    if (index(path, '/') > 0) folder = path(:index(path, '/', back=.true.))
+  end function folder
+
+  !> Visits one real.
+  subroutine real_item(self, name, value)
+    !> The checkpoint
+    class(checkpoint_archive_t), intent(inout) :: self
+    !> Name
+    character(len=*), intent(in) :: name
+    !> The item
+    real(wp), intent(inout) :: value
+    real(wp), allocatable :: found(:)
+
+    if (self%loading) then
+      call read_reals(self%file, items//name, found, [integer ::])
+      if (self%file%well()) value = found(1)
+    else
+      call write_reals(self%file, items//name, [value], [integer ::])
+    end if
+  end subroutine real_item
+
+  !> Visits one integer.
+  subroutine integer_item(self, name, value)
+    !> The checkpoint
+    class(checkpoint_archive_t), intent(inout) :: self
+    !> Name
+    character(len=*), intent(in) :: name
+    !> The item
+    integer, intent(inout) :: value
+    integer, allocatable :: found(:)
+
+    if (self%loading) then
+      call read_integers(self%file, items//name, found, [integer ::])
+      if (self%file%well()) value = found(1)
+    else
+      call write_integers(self%file, items//name, [value], [integer ::])
+    end if
+  end subroutine integer_item
+
+  !> Visits one logical, stored as 0 or 1.
+  subroutine logical_item(self, name, value)
+    !> The checkpoint
+    class(checkpoint_archive_t), intent(inout) :: self
+    !> Name
+    character(len=*), intent(in) :: name
+    !> The item
+    logical, intent(inout) :: value
+    integer :: number
+
+    number = merge(1, 0, value)
+    call self%integer_item(name, number)
+    value = number /= 0
+  end subroutine logical_item
+
+  !> Visits a list of reals.
+  subroutine reals_item(self, name, value)
+    !> The checkpoint
+    class(checkpoint_archive_t), intent(inout) :: self
+    !> Name
+    character(len=*), intent(in) :: name
+    !> The item; not allocated counts as length 0 when saving
+    real(wp), allocatable, intent(inout) :: value(:)
+    real(wp), allocatable :: found(:)
+
+    if (self%loading) then
+      call read_reals(self%file, items//name, found, extents_of(self, name, 1))
+      if (self%file%well()) call move_alloc(found, value)
+    else if (allocated(value)) then
+      call write_reals(self%file, items//name, value, shape(value))
+    else
+      call write_reals(self%file, items//name, [real(wp) ::], [0])
+    end if
+  end subroutine reals_item
+
+  !> Visits a list of integers.
+  subroutine integers_item(self, name, value)
+    !> The checkpoint
+    class(checkpoint_archive_t), intent(inout) :: self
+    !> Name
+    character(len=*), intent(in) :: name
+    !> The item; not allocated counts as length 0 when saving
+    integer, allocatable, intent(inout) :: value(:)
+    integer, allocatable :: found(:)
+
+    if (self%loading) then
+      call read_integers(self%file, items//name, found, extents_of(self, name, 1))
+      if (self%file%well()) call move_alloc(found, value)
+    else if (allocated(value)) then
+      call write_integers(self%file, items//name, value, shape(value))
+    else
+      call write_integers(self%file, items//name, [integer ::], [0])
+    end if
+  end subroutine integers_item
+
+  !> Visits a table of reals.
+  subroutine table_item(self, name, value)
+    !> The checkpoint
+    class(checkpoint_archive_t), intent(inout) :: self
+    !> Name
+    character(len=*), intent(in) :: name
+    !> The item; not allocated counts as 0 by 0 when saving
+    real(wp), allocatable, intent(inout) :: value(:, :)
+    real(wp), allocatable :: found(:)
+    integer, allocatable :: extents(:)
+
+    if (self%loading) then
+      extents = extents_of(self, name, 2)
+      call read_reals(self%file, items//name, found, extents)
+      if (self%file%well()) value = reshape(found, extents(1:2))
+    else if (allocated(value)) then
+      call write_reals(self%file, items//name, pack(value, .true.), shape(value))
+    else
+      call write_reals(self%file, items//name, [real(wp) ::], [0, 0])
+    end if
+  end subroutine table_item
+
+  !> Visits a field spread over the ranks, stored in global order.
+  subroutine field(self, name, columns, global_columns, value)
+    !> The checkpoint
+    class(checkpoint_archive_t), intent(inout) :: self
+    !> Name
+    character(len=*), intent(in) :: name
+    !> Global columns (from 1) of the leading columns of `value`
+    integer, intent(in) :: columns(:)
+    !> Number of columns of the whole field
+    integer, intent(in) :: global_columns
+    !> The field
+    real(wp), intent(inout) :: value(:, :)
+
+    if (self%loading) then
+      call read_real_columns(self%file, items//name, columns, global_columns, value)
+    else
+      call write_real_columns(self%file, items//name, columns, global_columns, value)
+    end if
+  end subroutine field
+
+  !> Extents of a stored list or table, or zeros, which will not fit, if it has another rank or is not there.
+  function extents_of(self, name, rank) result(extents)
+    !> The checkpoint
+    class(checkpoint_archive_t), intent(in) :: self
+    !> Name
+    character(len=*), intent(in) :: name
+    !> 1: a list, 2: a table
+    integer, intent(in) :: rank
+    !> The extents
+    integer, allocatable :: extents(:)
+    integer :: i
+
+    extents = stored_shape(self%file, items//name)
+    if (size(extents) /= rank) extents = [(0, i=1, rank)]
+  end function extents_of
+end module checkpoints

@@ -1,0 +1,207 @@
+!> The faults of a deck: collected, so that all are told at once, and each in one line.
+module deck_problems
+  use errors, only: exit_done, exit_deck, exit_files
+  use text, only: line_t, append, to_text, lower_case
+  implicit none
+  private
+  public :: problems_t
+
+  !> Faults told at most; a deck with more is not a deck.
+  integer, parameter :: most_problems = 100
+  !> Characters of a name or value shown in a message.
+  integer, parameter, public :: most_shown = 60
+
+  !> One fault.
+  type :: problem_t
+    !> Line of the deck; 0: the deck as a whole
+    integer :: line = 0
+    !> True: the deck can still run
+    logical :: is_warning = .false.
+    !> Group and key it belongs to, in lower case; empty if none
+    character(len=:), allocatable :: group, key
+    !> What the user reads after `file:line:`
+    character(len=:), allocatable :: message
+  end type problem_t
+
+  !> Faults of one deck.
+  type :: problems_t
+    private
+    !> Path or name of the deck
+    character(len=:), allocatable :: source
+    !> The faults in the order they were found
+    type(problem_t), allocatable :: list(:)
+    !> True: the deck's file could not be read at all
+    logical :: unreadable = .false.
+  contains
+    procedure :: begin
+    procedure :: cannot_read
+    procedure :: error => add_error
+    procedure :: warning => add_warning
+    procedure :: errors => number_of_errors
+    procedure :: warnings => number_of_warnings
+    procedure :: concern
+    procedure :: is_full
+    procedure :: exit_code
+    procedure :: lines
+    procedure, private :: add
+    procedure, private :: line_of
+  end type problems_t
+
+contains
+
+  !> Starts an empty list.
+  subroutine begin(self, source)
+    class(problems_t), intent(inout) :: self
+    !> Path or name of the deck
+    character(len=*), intent(in) :: source
+
+    self%source = source
+    self%unreadable = .false.
+    if (allocated(self%list)) deallocate (self%list)
+    allocate (self%list(0))
+  end subroutine begin
+
+  !> The file can't be read: nothing else can be said about it.
+  subroutine cannot_read(self, message)
+    class(problems_t), intent(inout) :: self
+    !> Path and reason
+    character(len=*), intent(in) :: message
+
+    self%unreadable = .true.
+    call self%add(.false., 0, '', '', message)
+  end subroutine cannot_read
+
+  !> Adds a fault that forbids a run.
+  subroutine add_error(self, line, group, key, message)
+    class(problems_t), intent(inout) :: self
+    !> Line of the deck; 0: the deck as a whole
+    integer, intent(in) :: line
+    !> Group and key it belongs to; empty if none
+    character(len=*), intent(in) :: group, key
+    !> What the user reads after `file:line:`
+    character(len=*), intent(in) :: message
+
+    call self%add(.false., line, group, key, message)
+  end subroutine add_error
+
+  !> Adds a remark on a deck that can run.
+  subroutine add_warning(self, line, group, key, message)
+    class(problems_t), intent(inout) :: self
+    !> Line of the deck; 0: the deck as a whole
+    integer, intent(in) :: line
+    !> Group and key it belongs to; empty if none
+    character(len=*), intent(in) :: group, key
+    !> What the user reads after `file:line: warning:`
+    character(len=*), intent(in) :: message
+
+    call self%add(.true., line, group, key, message)
+  end subroutine add_warning
+
+  !> Adds a fault or remark.
+  subroutine add(self, is_warning, line, group, key, message)
+    class(problems_t), intent(inout) :: self
+    !> True: a remark
+    logical, intent(in) :: is_warning
+    !> Line of the deck; 0: the deck as a whole
+    integer, intent(in) :: line
+    !> Group and key it belongs to; empty if none
+    character(len=*), intent(in) :: group, key
+    !> What the user reads
+    character(len=*), intent(in) :: message
+    type(problem_t) :: problem
+
+    if (size(self%list) > most_problems) return
+    problem%is_warning = is_warning
+    problem%line = line
+    problem%group = lower_case(group)
+    problem%key = lower_case(key)
+    problem%message = message
+    if (size(self%list) == most_problems) problem%message = 'there are more faults; mend those above first.'
+    self%list = [self%list, problem]
+  end subroutine add
+
+  !> True: so many faults that looking further is of no use.
+  pure logical function is_full(self)
+    class(problems_t), intent(in) :: self
+
+    is_full = size(self%list) > most_problems
+  end function is_full
+
+  !> True: an error belongs to this group, or to this key of it, so checks that build on it would mislead.
+  pure logical function concern(self, group, key)
+    class(problems_t), intent(in) :: self
+    !> Name of the group
+    character(len=*), intent(in) :: group
+    !> Name of the key; absent: any
+    character(len=*), intent(in), optional :: key
+    integer :: i
+
+    concern = .false.
+    do i = 1, size(self%list)
+      if (self%list(i)%is_warning .or. self%list(i)%group /= lower_case(group)) cycle
+      if (present(key)) then
+        if (self%list(i)%key /= lower_case(key)) cycle
+      end if
+      concern = .true.
+    end do
+  end function concern
+
+  !> Number of faults that forbid a run.
+  pure integer function number_of_errors(self) result(number)
+    class(problems_t), intent(in) :: self
+
+    number = count(.not. self%list%is_warning)
+  end function number_of_errors
+
+  !> Number of remarks.
+  pure integer function number_of_warnings(self) result(number)
+    class(problems_t), intent(in) :: self
+
+    number = count(self%list%is_warning)
+  end function number_of_warnings
+
+  !> Exit code that the program ends with after a mere check.
+  pure integer function exit_code(self)
+    class(problems_t), intent(in) :: self
+
+    exit_code = exit_done
+    if (self%errors() > 0) exit_code = exit_deck
+    if (self%unreadable) exit_code = exit_files
+  end function exit_code
+
+  !> The errors, then the warnings, each in order of the deck's lines.
+  function lines(self) result(list)
+    class(problems_t), intent(in) :: self
+    !> Lines such as `deck.nml:7: &plate edges = 'soft': is not a choice; allowed: ...`
+    type(line_t), allocatable :: list(:)
+    logical :: told(size(self%list))
+    integer :: next(1), i, pass
+
+    allocate (list(0))
+    told = .false.
+    do pass = 1, 2
+      do i = 1, count(self%list%is_warning .eqv. pass == 2)
+        next = minloc(self%list%line, mask=.not. told .and. (self%list%is_warning .eqv. pass == 2))
+        told(next(1)) = .true.
+        call append(list, self%line_of(self%list(next(1))))
+      end do
+    end do
+  end function lines
+
+  !> One fault as the user reads it.
+  function line_of(self, problem) result(line)
+    class(problems_t), intent(in) :: self
+    !> The fault
+    type(problem_t), intent(in) :: problem
+    !> With the place in front
+    character(len=:), allocatable :: line
+
+    line = problem%message
+    if (problem%is_warning) line = 'warning: '//line
+    if (problem%line > 0) then
+      line = self%source//':'//to_text(problem%line)//': '//line
+    else if (.not. self%unreadable) then
+      line = self%source//': '//line
+    end if
+  end function line_of
+end module deck_problems

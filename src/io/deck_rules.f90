@@ -1,0 +1,309 @@
+!> Holds a scanned deck against the vocabulary: unknown and repeated names, types, counts and ranges.
+module deck_rules
+  use deck_entries, only: value_t, entry_t, shown, shown_values
+  use deck_problems, only: problems_t
+  use deck_scanner, only: scan_t
+  use deck_settings, only: settings_t, setting_t, present_group_t
+  use deck_values, only: fault_of_value, fault_of_count, allowed_sentence, literal_value
+  use deck_vocabulary, only: vocabulary_t, key_entry_t
+  use text, only: line_t, append, joined, lower_case, nearest_name, to_text
+  implicit none
+  private
+  public :: settle
+
+  !> Most groups of one name; no laminate has so many materials.
+  integer, parameter :: most_repetitions = 100
+
+contains
+
+  !> Turns a scanned deck into keys in effect and tells every name and value that isn't allowed.
+  subroutine settle(scan, vocabulary, settings, problems)
+    !> What the deck consists of
+    type(scan_t), intent(in) :: scan
+    !> What it may consist of
+    type(vocabulary_t), intent(in) :: vocabulary
+    !> Every key in effect
+    type(settings_t), intent(out) :: settings
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    logical :: accepted(size(scan%blocks))
+    integer :: i
+
+    allocate (settings%groups(0), settings%items(0))
+    do i = 1, size(scan%blocks)
+      call judge_group(scan, i, vocabulary, settings, problems, accepted(i))
+      if (problems%is_full()) return
+    end do
+    do i = 1, size(scan%entries)
+      if (accepted(scan%entries(i)%block)) call judge_key(scan, i, vocabulary, problems)
+      if (problems%is_full()) return
+    end do
+    do i = 1, size(vocabulary%groups)
+      call settle_group(scan, accepted, vocabulary, i, settings, problems)
+    end do
+  end subroutine settle
+
+  !> Whether a group is known and allowed here.
+  subroutine judge_group(scan, block, vocabulary, settings, problems, accepted)
+    !> What the deck consists of
+    type(scan_t), intent(in) :: scan
+    !> Index of the group in it
+    integer, intent(in) :: block
+    !> What it may consist of
+    type(vocabulary_t), intent(in) :: vocabulary
+    !> The group is added to these
+    type(settings_t), intent(inout) :: settings
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    !> True: its keys count
+    logical, intent(out) :: accepted
+    type(present_group_t) :: new
+    integer :: index, earlier
+
+    accepted = .false.
+    associate (group => scan%blocks(block))
+      index = vocabulary%group_index(group%name)
+      earlier = settings%groups_named(group%name)
+      if (index == 0) then
+        call tell_unknown_group(group%name, group%line, vocabulary, problems)
+      else if (earlier > 0 .and. vocabulary%groups(index)%presence /= 'repeatable') then
+        call problems%error(group%line, '', '', '&'//group%name//': the group was already given in line '// &
+                            to_text(settings%line_of_group(group%name))//'; give it once.')
+      else if (earlier >= most_repetitions) then
+        call problems%error(group%line, '', '', '&'//group%name//': the group comes more than '// &
+                            to_text(most_repetitions)//' times.')
+      else
+        accepted = .true.
+        new%name = lower_case(group%name)
+        new%line = group%line
+        settings%groups = [settings%groups, new]
+      end if
+    end associate
+  end subroutine judge_group
+
+  !> A group that isn't in the table.
+  subroutine tell_unknown_group(name, line, vocabulary, problems)
+    !> Name of the group
+    character(len=*), intent(in) :: name
+    !> Its line
+    integer, intent(in) :: line
+    !> The table
+    type(vocabulary_t), intent(in) :: vocabulary
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    character(len=:), allocatable :: nearest
+
+    nearest = nearest_name(name, vocabulary%group_names())
+    if (vocabulary%is_announced(name)) then
+      call problems%error(line, '', '', '&'//lower_case(name)//' is not modelled by this version; leave the group out.')
+    else if (nearest /= '') then
+      call problems%error(line, nearest, '', '&'//shown(name)//': there is no such group; did you mean &'//nearest//'?')
+    else
+      call problems%error(line, '', '', '&'//shown(name)//': there is no such group; allowed: '// &
+                          joined(vocabulary%group_names(), ', ')//'.')
+    end if
+  end subroutine tell_unknown_group
+
+  !> Whether a key belongs to its group and comes once.
+  subroutine judge_key(scan, entry, vocabulary, problems)
+    !> What the deck consists of
+    type(scan_t), intent(in) :: scan
+    !> Index of the key in it
+    integer, intent(in) :: entry
+    !> The table
+    type(vocabulary_t), intent(in) :: vocabulary
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    integer :: earlier
+
+    associate (this => scan%entries(entry), group => scan%blocks(scan%entries(entry)%block)%name)
+      if (this%key == '') return
+      if (vocabulary%key_index(group, this%key) == 0) then
+        call tell_unknown_key(lower_case(group), this, vocabulary, problems)
+        return
+      end if
+      earlier = entry_of(scan, this%block, this%key)
+      if (earlier /= entry) call problems%error(this%line, group, this%key, message_head(group, this)// &
+        'the key was already given in line '//to_text(scan%entries(earlier)%line)//'; give it once.')
+    end associate
+  end subroutine judge_key
+
+  !> A key that its group doesn't have.
+  subroutine tell_unknown_key(group, entry, vocabulary, problems)
+    !> Name of the group
+    character(len=*), intent(in) :: group
+    !> The key
+    type(entry_t), intent(in) :: entry
+    !> The table
+    type(vocabulary_t), intent(in) :: vocabulary
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    character(len=:), allocatable :: nearest
+    type(line_t), allocatable :: others(:)
+
+    nearest = nearest_name(entry%key, vocabulary%key_names(group))
+    others = vocabulary%groups_with(entry%key)
+    if (nearest /= '' .and. size(others) == 0) then
+      call problems%error(entry%line, group, nearest, message_head(group, entry)// &
+                          'the group has no such key; did you mean '//nearest//'?')
+    else if (size(others) > 0) then
+      call problems%error(entry%line, group, entry%key, message_head(group, entry)// &
+                          'the group has no such key; it belongs to &'//joined(others, ', &')//'.')
+    else
+      call problems%error(entry%line, group, entry%key, message_head(group, entry)// &
+                          'the group has no such key; allowed: '//joined(vocabulary%key_names(group), ', ')//'.')
+    end if
+  end subroutine tell_unknown_key
+
+  !> Adds all keys of the groups of one name, given or by default.
+  subroutine settle_group(scan, accepted, vocabulary, group, settings, problems)
+    !> What the deck consists of
+    type(scan_t), intent(in) :: scan
+    !> Which of its groups count
+    logical, intent(in) :: accepted(:)
+    !> The table
+    type(vocabulary_t), intent(in) :: vocabulary
+    !> Index of the group in the table
+    integer, intent(in) :: group
+    !> The keys are added to these
+    type(settings_t), intent(inout) :: settings
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    integer :: block, place
+
+    associate (entry => vocabulary%groups(group))
+      place = 0
+      do block = 1, size(scan%blocks)
+        if (.not. accepted(block) .or. lower_case(scan%blocks(block)%name) /= entry%name) cycle
+        place = place + 1
+        call settle_keys(scan, block, place, vocabulary, entry%name, settings, problems)
+      end do
+      if (place > 0) return
+      if (entry%presence == 'settings') then
+        call settle_keys(scan, 0, 1, vocabulary, entry%name, settings, problems)
+      else if (entry%presence /= 'optional' .and. .not. problems%concern(entry%name)) then
+        ! Without any group the deck was already told to have none.
+        if (size(scan%blocks) > 0) call problems%error(0, entry%name, '', &
+          '&'//entry%name//' is missing; `implam explain '//entry%name//'` shows what it takes.')
+      end if
+    end associate
+  end subroutine settle_group
+
+  !> Adds all keys of one group.
+  subroutine settle_keys(scan, block, place, vocabulary, group, settings, problems)
+    !> What the deck consists of
+    type(scan_t), intent(in) :: scan
+    !> Index of the group in it; 0: the deck hasn't got it
+    integer, intent(in) :: block
+    !> Which of the groups of this name
+    integer, intent(in) :: place
+    !> The table
+    type(vocabulary_t), intent(in) :: vocabulary
+    !> Name of the group
+    character(len=*), intent(in) :: group
+    !> The keys are added to these
+    type(settings_t), intent(inout) :: settings
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    type(setting_t) :: setting
+    integer :: i, entry
+
+    do i = 1, size(vocabulary%keys)
+      associate (key => vocabulary%keys(i))
+        if (key%group /= group) cycle
+        setting = setting_t(group=group, key=key%name, place=place)
+        entry = entry_of(scan, block, key%name)
+        if (entry > 0) then
+          setting%given = .true.
+          setting%line = scan%entries(entry)%line
+          setting%sound = scan%entries(entry)%sound
+          setting%values = scan%entries(entry)%values
+          if (setting%sound) call judge_values(key, scan%entries(entry), vocabulary, setting%sound, problems)
+        else
+          setting%line = settings%line_of_group(group, place)
+          call take_default(key, setting, problems)
+        end if
+        settings%items = [settings%items, setting]
+      end associate
+    end do
+  end subroutine settle_keys
+
+  !> A key that the deck doesn't give.
+  subroutine take_default(key, setting, problems)
+    !> The key as the table has it
+    type(key_entry_t), intent(in) :: key
+    !> Gets the default
+    type(setting_t), intent(inout) :: setting
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+
+    if (key%has_literal_default()) then
+      setting%values = [literal_value(key%default)]
+    else
+      allocate (setting%values(0))
+    end if
+    if (key%default == 'required' .and. .not. problems%concern(key%group, key%name)) then
+      call problems%error(setting%line, key%group, key%name, '&'//key%group//' '//key%name//' is missing; '// &
+                          allowed_sentence(key)//'.')
+    end if
+  end subroutine take_default
+
+  !> Number and values of a given key.
+  subroutine judge_values(key, entry, vocabulary, sound, problems)
+    !> The key as the table has it
+    type(key_entry_t), intent(in) :: key
+    !> The key as the deck gives it
+    type(entry_t), intent(in) :: entry
+    !> The table
+    type(vocabulary_t), intent(in) :: vocabulary
+    !> True: the values can be used
+    logical, intent(out) :: sound
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    character(len=:), allocatable :: fault
+    integer :: i, forgotten
+
+    fault = ''
+    do i = 1, size(entry%values)
+      if (fault == '') fault = fault_of_value(key, entry%values(i))
+      forgotten = 0
+      if (.not. entry%values(i)%quoted) forgotten = vocabulary%key_index(key%group, entry%values(i)%text)
+      if (forgotten == 0) cycle
+      call problems%error(entry%line, key%group, entry%values(i)%text, message_head(key%group, entry)// &
+                          'there is no = behind '//entry%values(i)%text//'; write key = value.')
+      sound = .false.
+      return
+    end do
+    if (fault == '') fault = fault_of_count(key, size(entry%values))
+    sound = fault == ''
+    if (.not. sound) call problems%error(entry%line, key%group, key%name, message_head(key%group, entry)// &
+                                         fault//'; '//allowed_sentence(key)//'.')
+  end subroutine judge_values
+
+  !> First key of this name in a group, 0 if it has none.
+  pure integer function entry_of(scan, block, key) result(index)
+    !> What the deck consists of
+    type(scan_t), intent(in) :: scan
+    !> Index of the group in it
+    integer, intent(in) :: block
+    !> Name of the key
+    character(len=*), intent(in) :: key
+
+    do index = 1, size(scan%entries)
+      if (scan%entries(index)%block == block .and. lower_case(scan%entries(index)%key) == lower_case(key)) return
+    end do
+    index = 0
+  end function entry_of
+
+  !> Beginning of a message: `&group key = values: `.
+  pure function message_head(group, entry) result(head)
+    !> Name of the group
+    character(len=*), intent(in) :: group
+    !> The key as the deck gives it
+    type(entry_t), intent(in) :: entry
+    !> The beginning
+    character(len=:), allocatable :: head
+
+    head = '&'//lower_case(group)//' '//shown(entry%key)//' ='//shown_values(entry%values)//': '
+  end function message_head
+end module deck_rules

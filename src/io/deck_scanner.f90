@@ -1,0 +1,324 @@
+!> Scans a deck before anything is read from it, because a compiler's own namelist READ takes a mis-spelt
+!> group as absent and passes over a missing slash, a repeated key, a cut text or an empty value in silence.
+module deck_scanner
+  use deck_entries, only: value_t, entry_t, block_t, append_entry, append_values, split_repeats, shown, shown_values, &
+                          most_values
+  use deck_problems, only: problems_t
+  use deck_tokens, only: token_t, cursor_t, next_token, skip_to_group, token_end, token_group, token_slash, &
+                         token_key, token_word, token_quoted, token_cut, token_comma, token_equals
+  use text, only: to_text, lower_case
+  implicit none
+  private
+  public :: scan_t, scan_deck
+
+  !> Largest deck in bytes, and longest line.
+  integer, parameter, public :: most_bytes = 1000000, longest_line = 4000
+
+  !> What a deck consists of.
+  type :: scan_t
+    !> The groups in order
+    type(block_t), allocatable :: blocks(:)
+    !> The keys in order
+    type(entry_t), allocatable :: entries(:)
+    !> Values found so far
+    integer :: values = 0
+    !> True: the last group isn't ended yet
+    logical, private :: open = .false.
+    !> True: the last key may still get values
+    logical, private :: collecting = .false.
+    !> True: a comma or = came last, so a value is due
+    logical, private :: value_due = .false.
+  end type scan_t
+
+contains
+
+  !> Finds groups, keys and values; tells every fault of the writing.
+  subroutine scan_deck(deck, scan, problems)
+    !> Text of the deck
+    character(len=*), intent(in) :: deck
+    !> What it consists of
+    type(scan_t), intent(out) :: scan
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    type(cursor_t) :: cursor
+    type(token_t) :: token
+    character(len=:), allocatable :: junk
+    integer :: junk_line
+    logical :: readable
+
+    allocate (scan%blocks(0), scan%entries(0))
+    call check_characters(deck, problems, readable)
+    if (.not. readable) return
+    if (index(deck, byte_order_mark()) == 1) cursor%at = 4
+    do while (.not. problems%is_full() .and. scan%values < most_values)
+      if (.not. scan%open) then
+        call skip_to_group(deck, cursor, junk, junk_line)
+        if (junk_line > 0) call problems%error(junk_line, '', '', shown(junk)// &
+          ' stands outside of a group, where Fortran would skip it; allowed here: comments with !, and groups &name ... /')
+        if (cursor%at > len(deck)) exit
+      end if
+      call next_token(deck, cursor, token)
+      call take(scan, token, problems)
+      if (token%kind == token_end) exit
+    end do
+    if (scan%values >= most_values) call problems%error(cursor%line, '', '', 'the deck has more than '// &
+      to_text(most_values)//' keys and values; no deck needs so many.')
+    if (size(scan%blocks) == 0 .and. problems%errors() == 0) call problems%error(0, '', '', &
+      'the deck has no group; it needs at least &plate, &mesh, &material and &laminate.')
+  end subroutine scan_deck
+
+  !> Bytes that some editors put at the start of a file.
+  pure function byte_order_mark() result(mark)
+    !> The three bytes of UTF-8's mark
+    character(len=3) :: mark
+
+    mark = char(239)//char(187)//char(191)
+  end function byte_order_mark
+
+  !> Tells whether this is text with lines of a sensible length.
+  subroutine check_characters(deck, problems, readable)
+    !> Text of the deck
+    character(len=*), intent(in) :: deck
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    !> False: scanning it would make no sense
+    logical, intent(out) :: readable
+    integer :: i, line, start, code
+
+    line = 1
+    start = 1
+    readable = .false.
+    do i = 1, len(deck)
+      code = iachar(deck(i:i))
+      if (code == 10) then
+        line = line + 1
+        start = i + 1
+      else if (code == 127 .or. (code < 32 .and. code /= 9 .and. .not. is_line_end(deck, i))) then
+        call problems%error(line, '', '', 'character '//to_text(i - start + 1)//' of the line has code '// &
+                            to_text(code)//', which is not printable; a deck is plain text.')
+        return
+      else if (i - start >= longest_line) then
+        call problems%error(line, '', '', 'the line is longer than '//to_text(longest_line)// &
+                            ' characters; spread the values over several lines.')
+        return
+      end if
+    end do
+    readable = len_trim(deck) > 0
+    if (.not. readable) call problems%error(0, '', '', &
+      'the deck is empty; it needs at least &plate, &mesh, &material and &laminate.')
+  end subroutine check_characters
+
+  !> True: here stands the carriage return of a line end as Windows writes it.
+  pure logical function is_line_end(deck, at)
+    !> Text of the deck
+    character(len=*), intent(in) :: deck
+    !> Place in it
+    integer, intent(in) :: at
+
+    is_line_end = iachar(deck(at:at)) == 13
+    if (is_line_end .and. at < len(deck)) is_line_end = iachar(deck(at + 1:at + 1)) == 10
+  end function is_line_end
+
+  !> Adds one word of the deck to what was found so far.
+  subroutine take(scan, token, problems)
+    !> What was found so far
+    type(scan_t), intent(inout) :: scan
+    !> The word
+    type(token_t), intent(in) :: token
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+
+    select case (token%kind)
+    case (token_group)
+      call begin_block(scan, token, problems)
+    case (token_slash)
+      call finish_entry(scan, problems)
+      scan%open = .false.
+    case (token_end)
+      call finish_entry(scan, problems)
+      if (scan%open) call tell_missing_slash(scan, 'the deck ends', problems)
+    case (token_key)
+      call begin_entry(scan, token, problems)
+    case (token_word, token_quoted, token_cut)
+      call take_value(scan, token, problems)
+    case (token_comma)
+      if (scan%value_due) call spoil(scan, token%line, 'has no value in front of a comma; leave the comma out', problems)
+      scan%value_due = .true.
+    case (token_equals)
+      call spoil(scan, token%line, 'has an = too many; write key = value', problems)
+    end select
+  end subroutine take
+
+  !> A group begins.
+  subroutine begin_block(scan, token, problems)
+    !> What was found so far
+    type(scan_t), intent(inout) :: scan
+    !> The group's name
+    type(token_t), intent(in) :: token
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+
+    call finish_entry(scan, problems)
+    if (lower_case(token%text) == 'end') then
+      call problems%error(token%line, '', '', '&end is no longer Fortran; end the group with /')
+      scan%open = .false.
+      return
+    end if
+    if (scan%open) call tell_missing_slash(scan, '&'//shown(token%text)//' begins in line '//to_text(token%line), problems)
+    scan%blocks = [scan%blocks, block_t(token%text, token%line)]
+    scan%values = scan%values + 1
+    scan%open = .true.
+  end subroutine begin_block
+
+  !> The open group isn't ended.
+  subroutine tell_missing_slash(scan, event, problems)
+    !> What was found so far
+    type(scan_t), intent(in) :: scan
+    !> What happens instead
+    character(len=*), intent(in) :: event
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+
+    associate (last => scan%blocks(size(scan%blocks)))
+      call problems%error(last%line, '', '', '&'//shown(last%name)//': '//event// &
+                          ' before the group does; end the group with /')
+    end associate
+  end subroutine tell_missing_slash
+
+  !> A key begins.
+  subroutine begin_entry(scan, token, problems)
+    !> What was found so far
+    type(scan_t), intent(inout) :: scan
+    !> The key's name
+    type(token_t), intent(in) :: token
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    type(entry_t) :: entry
+    integer :: index_start
+
+    call finish_entry(scan, problems)
+    entry%block = size(scan%blocks)
+    entry%line = token%line
+    entry%key = token%text
+    allocate (entry%values(0))
+    index_start = scan_for(token%text, '(%')
+    if (index_start > 1) entry%key = token%text(:index_start - 1)
+    call append_entry(scan%entries, entry)
+    scan%values = scan%values + 1
+    scan%collecting = .true.
+    scan%value_due = .true.
+    if (index_start > 0) call spoil(scan, token%line, 'is given part by part as '//shown(token%text)// &
+                                    '; list all values behind one =', problems)
+  end subroutine begin_entry
+
+  !> Place of the first of some characters in a word, 0 if there is none.
+  pure integer function scan_for(word, characters)
+    !> The word
+    character(len=*), intent(in) :: word
+    !> The characters
+    character(len=*), intent(in) :: characters
+    intrinsic :: scan
+
+    scan_for = scan(word, characters)
+  end function scan_for
+
+  !> The last key gets no more values.
+  subroutine finish_entry(scan, problems)
+    !> What was found so far
+    type(scan_t), intent(inout) :: scan
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+
+    if (scan%collecting) then
+      associate (last => scan%entries(size(scan%entries)))
+        if (size(last%values) == 0) call spoil(scan, last%line, 'has no value; give one or leave the key out', problems)
+      end associate
+    end if
+    scan%collecting = .false.
+    scan%value_due = .false.
+  end subroutine finish_entry
+
+  !> A value of the last key.
+  subroutine take_value(scan, token, problems)
+    !> What was found so far
+    type(scan_t), intent(inout) :: scan
+    !> The value
+    type(token_t), intent(in) :: token
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    integer :: repeats
+    character(len=:), allocatable :: word
+    logical :: quoted
+
+    if (.not. scan%collecting) then
+      call tell_stray_value(scan, token, problems)
+    else if (token%kind == token_cut) then
+      call spoil(scan, token%line, 'has a text whose closing quote isn''t in its line; close it', problems)
+    else
+      quoted = token%kind == token_quoted
+      call split_repeats(token%text, quoted, token%repeats, repeats, word)
+      if (repeats < 1 .or. (len(word) == 0 .and. .not. quoted)) then
+        call spoil(scan, token%line, 'has a wrong repeat count in '//shown(token%text)// &
+                   '; write count*value with a count from 1 to '//to_text(most_values), problems)
+      else if (scan%values + repeats > most_values) then
+        scan%values = most_values
+      else
+        call append_values(scan%entries(size(scan%entries))%values, repeats, value_t(word, quoted))
+        scan%values = scan%values + repeats
+      end if
+    end if
+    scan%value_due = .false.
+    ! A text that isn't closed swallows the slash that may end its line.
+    if (token%kind == token_cut .and. len_trim(token%text) > 0) then
+      if (index(token%text, '/', back=.true.) == len_trim(token%text)) scan%open = .false.
+      if (.not. scan%open) scan%collecting = .false.
+    end if
+  end subroutine take_value
+
+  !> A value without a key.
+  subroutine tell_stray_value(scan, token, problems)
+    !> What was found so far
+    type(scan_t), intent(inout) :: scan
+    !> The value
+    type(token_t), intent(in) :: token
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    type(entry_t) :: entry
+
+    associate (group => scan%blocks(size(scan%blocks))%name)
+      call problems%error(token%line, group, token%text, '&'//shown(group)//': '//shown(token%text)// &
+                          ' has no key or no = behind it; write key = value.')
+    end associate
+    ! What follows up to the next key belongs to the same fault.
+    entry = entry_t(block=size(scan%blocks), key='', line=token%line, sound=.false.)
+    allocate (entry%values(0))
+    call append_entry(scan%entries, entry)
+    scan%values = scan%values + 1
+    scan%collecting = .true.
+  end subroutine tell_stray_value
+
+  !> The writing of the last key is wrong: tells it once, and bars the key from further checks.
+  subroutine spoil(scan, line, fault, problems)
+    !> What was found so far
+    type(scan_t), intent(inout) :: scan
+    !> Line of the fault
+    integer, intent(in) :: line
+    !> What is wrong, and what is allowed
+    character(len=*), intent(in) :: fault
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    integer :: last
+
+    last = size(scan%entries)
+    associate (group => scan%blocks(size(scan%blocks))%name)
+      if (.not. scan%collecting) then
+        call problems%error(line, group, '', '&'//shown(group)//': a comma or = stands where a key should; write key = value.')
+      else if (scan%entries(last)%sound) then
+        call problems%error(line, group, scan%entries(last)%key, '&'//shown(group)//' '//shown(scan%entries(last)%key)// &
+                            ' ='//shown_values(scan%entries(last)%values)//': '//fault//'.')
+        scan%entries(last)%sound = .false.
+      end if
+    end associate
+  end subroutine spoil
+
+end module deck_scanner

@@ -1,0 +1,289 @@
+!> Every key in effect, from the deck or by default: what the parameters are filled from and the echo shows.
+module deck_settings
+  use deck_entries, only: value_t
+  use deck_values, only: real_value, integer_value, logical_value
+  use kinds, only: wp
+  use text, only: line_t, append, lower_case
+  implicit none
+  private
+  public :: settings_t, setting_t, present_group_t
+
+  !> One key in effect.
+  type :: setting_t
+    !> Names of the group and of the key as the manual writes it
+    character(len=:), allocatable :: group, key
+    !> Which of the groups of this name, from 1
+    integer :: place = 1
+    !> Line of the key, or of its group if it isn't given
+    integer :: line = 0
+    !> True: from the deck
+    logical :: given = .false.
+    !> True: the values can be used
+    logical :: sound = .true.
+    !> The values; none if the key has no default
+    type(value_t), allocatable :: values(:)
+  end type setting_t
+
+  !> One group of the deck.
+  type :: present_group_t
+    !> Name
+    character(len=:), allocatable :: name
+    !> Its line
+    integer :: line = 0
+  end type present_group_t
+
+  !> All keys in effect. Names are given in any case; `place` is 1 where it is left out.
+  type :: settings_t
+    !> The groups that the deck has
+    type(present_group_t), allocatable :: groups(:)
+    !> The keys in the order of the manual
+    type(setting_t), allocatable :: items(:)
+  contains
+    procedure :: groups_named
+    procedure :: has_group
+    procedure :: line_of_group
+    procedure :: find
+    procedure :: is_given
+    procedure :: is_known
+    procedure :: line_of
+    procedure :: values_of
+    procedure :: text_of
+    procedure :: texts_of
+    procedure :: real_of
+    procedure :: reals_of
+    procedure :: integers_of
+    procedure :: integer_of
+    procedure :: logical_of
+    procedure :: derive
+  end type settings_t
+
+contains
+
+  !> Number of groups of this name in the deck.
+  pure integer function groups_named(self, group) result(number)
+    class(settings_t), intent(in) :: self
+    !> Name of the group
+    character(len=*), intent(in) :: group
+    integer :: i
+
+    number = count([(self%groups(i)%name == lower_case(group), i=1, size(self%groups))])
+  end function groups_named
+
+  !> True: the deck has the group.
+  pure logical function has_group(self, group)
+    class(settings_t), intent(in) :: self
+    !> Name of the group
+    character(len=*), intent(in) :: group
+
+    has_group = self%groups_named(group) > 0
+  end function has_group
+
+  !> Line of a group, 0 if the deck hasn't got it.
+  pure integer function line_of_group(self, group, place) result(line)
+    class(settings_t), intent(in) :: self
+    !> Name of the group
+    character(len=*), intent(in) :: group
+    !> Which of this name
+    integer, intent(in), optional :: place
+    integer :: i, left
+
+    left = 1
+    if (present(place)) left = place
+    line = 0
+    do i = 1, size(self%groups)
+      if (self%groups(i)%name /= lower_case(group)) cycle
+      left = left - 1
+      if (left == 0) line = self%groups(i)%line
+    end do
+  end function line_of_group
+
+  !> Index of a key in the list, 0 if it isn't there.
+  pure integer function find(self, group, key, place) result(index)
+    class(settings_t), intent(in) :: self
+    !> Names of group and key
+    character(len=*), intent(in) :: group, key
+    !> Which group of this name
+    integer, intent(in), optional :: place
+    integer :: wanted
+
+    wanted = 1
+    if (present(place)) wanted = place
+    do index = size(self%items), 1, -1
+      if (self%items(index)%place /= wanted) cycle
+      if (self%items(index)%group == lower_case(group) .and. lower_case(self%items(index)%key) == lower_case(key)) return
+    end do
+  end function find
+
+  !> True: the deck gives the key.
+  pure logical function is_given(self, group, key, place)
+    class(settings_t), intent(in) :: self
+    !> Names of group and key
+    character(len=*), intent(in) :: group, key
+    !> Which group of this name
+    integer, intent(in), optional :: place
+    integer :: i
+
+    i = self%find(group, key, place)
+    is_given = .false.
+    if (i > 0) is_given = self%items(i)%given
+  end function is_given
+
+  !> True: the key has values, given or by default, that can be used.
+  pure logical function is_known(self, group, key, place)
+    class(settings_t), intent(in) :: self
+    !> Names of group and key
+    character(len=*), intent(in) :: group, key
+    !> Which group of this name
+    integer, intent(in), optional :: place
+
+    is_known = size(self%values_of(group, key, place)) > 0
+  end function is_known
+
+  !> Line to name when a key is at fault: its own, or its group's.
+  pure integer function line_of(self, group, key, place) result(line)
+    class(settings_t), intent(in) :: self
+    !> Names of group and key
+    character(len=*), intent(in) :: group, key
+    !> Which group of this name
+    integer, intent(in), optional :: place
+    integer :: i
+
+    i = self%find(group, key, place)
+    line = 0
+    if (i > 0) line = self%items(i)%line
+  end function line_of
+
+  !> Values of a key; none if there are none that can be used.
+  pure function values_of(self, group, key, place) result(values)
+    class(settings_t), intent(in) :: self
+    !> Names of group and key
+    character(len=*), intent(in) :: group, key
+    !> Which group of this name
+    integer, intent(in), optional :: place
+    !> The values
+    type(value_t), allocatable :: values(:)
+    integer :: i
+
+    i = self%find(group, key, place)
+    if (i > 0) then
+      if (self%items(i)%sound) values = self%items(i)%values
+    end if
+    if (.not. allocated(values)) allocate (values(0))
+  end function values_of
+
+  !> Text of a key with one value; empty if there is none.
+  pure function text_of(self, group, key, place) result(word)
+    class(settings_t), intent(in) :: self
+    !> Names of group and key
+    character(len=*), intent(in) :: group, key
+    !> Which group of this name
+    integer, intent(in), optional :: place
+    !> The text
+    character(len=:), allocatable :: word
+    type(value_t), allocatable :: values(:)
+
+    values = self%values_of(group, key, place)
+    word = ''
+    if (size(values) > 0) word = values(1)%text
+  end function text_of
+
+  !> Texts of a key.
+  pure function texts_of(self, group, key) result(words)
+    class(settings_t), intent(in) :: self
+    !> Names of group and key
+    character(len=*), intent(in) :: group, key
+    !> The texts
+    type(line_t), allocatable :: words(:)
+    type(value_t), allocatable :: values(:)
+    integer :: i
+
+    values = self%values_of(group, key)
+    allocate (words(0))
+    do i = 1, size(values)
+      call append(words, values(i)%text)
+    end do
+  end function texts_of
+
+  !> Number of a key with one value; 0 if there is none.
+  pure real(wp) function real_of(self, group, key, place)
+    class(settings_t), intent(in) :: self
+    !> Names of group and key
+    character(len=*), intent(in) :: group, key
+    !> Which group of this name
+    integer, intent(in), optional :: place
+    type(value_t), allocatable :: values(:)
+
+    values = self%values_of(group, key, place)
+    real_of = 0
+    if (size(values) > 0) real_of = real_value(values(1))
+  end function real_of
+
+  !> Numbers of a key.
+  pure function reals_of(self, group, key) result(numbers)
+    class(settings_t), intent(in) :: self
+    !> Names of group and key
+    character(len=*), intent(in) :: group, key
+    !> The numbers
+    real(wp), allocatable :: numbers(:)
+    type(value_t), allocatable :: values(:)
+    integer :: i
+
+    values = self%values_of(group, key)
+    numbers = [(real_value(values(i)), i=1, size(values))]
+  end function reals_of
+
+  !> Whole numbers of a key.
+  pure function integers_of(self, group, key) result(numbers)
+    class(settings_t), intent(in) :: self
+    !> Names of group and key
+    character(len=*), intent(in) :: group, key
+    !> The numbers
+    integer, allocatable :: numbers(:)
+    type(value_t), allocatable :: values(:)
+    integer :: i
+
+    values = self%values_of(group, key)
+    numbers = [(integer_value(values(i)), i=1, size(values))]
+  end function integers_of
+
+  !> Whole number of a key with one value; 0 if there is none.
+  pure integer function integer_of(self, group, key)
+    class(settings_t), intent(in) :: self
+    !> Names of group and key
+    character(len=*), intent(in) :: group, key
+    integer, allocatable :: numbers(:)
+
+    numbers = self%integers_of(group, key)
+    integer_of = 0
+    if (size(numbers) > 0) integer_of = numbers(1)
+  end function integer_of
+
+  !> Truth value of a key; false if there is none.
+  pure logical function logical_of(self, group, key)
+    class(settings_t), intent(in) :: self
+    !> Names of group and key
+    character(len=*), intent(in) :: group, key
+    type(value_t), allocatable :: values(:)
+
+    values = self%values_of(group, key)
+    logical_of = .false.
+    if (size(values) > 0) logical_of = logical_value(values(1))
+  end function logical_of
+
+  !> Sets the value of a key that the deck doesn't give and that follows from others.
+  pure subroutine derive(self, group, key, word, quoted, place)
+    class(settings_t), intent(inout) :: self
+    !> Names of group and key
+    character(len=*), intent(in) :: group, key
+    !> The value as it would stand in a deck, without quotes
+    character(len=*), intent(in) :: word
+    !> True: it is a text
+    logical, intent(in) :: quoted
+    !> Which group of this name
+    integer, intent(in), optional :: place
+    integer :: i
+
+    i = self%find(group, key, place)
+    if (i > 0) self%items(i)%values = [value_t(word, quoted)]
+  end subroutine derive
+end module deck_settings

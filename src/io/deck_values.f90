@@ -1,0 +1,286 @@
+!> Judges single values of a deck: is it a number, a choice, within its range, and what would be allowed.
+module deck_values
+  use deck_entries, only: value_t, shown
+  use deck_vocabulary, only: key_entry_t
+  use kinds, only: wp
+  use text, only: line_t, words_of, lower_case, joined, nearest_name
+  implicit none
+  private
+  public :: fault_of_value, fault_of_count, allowed_sentence, literal_value, real_value, integer_value, logical_value
+
+  !> Numbers other than 0 lie between 10**-30 and 10**30, so that their products stay finite and nonzero.
+  integer, parameter :: most_decades = 30
+  !> Longest number, name and text
+  integer, parameter :: longest_number = 60, longest_name = 80, longest_text = 1000
+
+contains
+
+  !> What is wrong with a value, or an empty text.
+  pure function fault_of_value(key, value) result(fault)
+    !> The key as the table has it
+    type(key_entry_t), intent(in) :: key
+    !> One of its values
+    type(value_t), intent(in) :: value
+    !> Part of a sentence, such as `1.5 is not a whole number`
+    character(len=:), allocatable :: fault
+
+    select case (key%kind)
+    case ('real', 'integer')
+      fault = fault_of_number(key, value)
+    case ('logical')
+      fault = ''
+      if (value%quoted .or. verify(lower_case(value%text), 'truefals.') > 0 .or. .not. any(lower_case(value%text) == &
+        [character(len=7) :: '.true.', '.false.', 'true', 'false', '.t.', '.f.', 't', 'f'])) then
+        fault = shown(value%text)//' is neither .true. nor .false.'
+      end if
+    case default
+      if (.not. value%quoted) then
+        fault = shown(value%text)//' stands without quotes'
+      else
+        fault = fault_of_text(key, value%text)
+      end if
+    end select
+  end function fault_of_value
+
+  !> What is wrong with a number, or an empty text.
+  pure function fault_of_number(key, value) result(fault)
+    !> The key as the table has it
+    type(key_entry_t), intent(in) :: key
+    !> One of its values
+    type(value_t), intent(in) :: value
+    !> Part of a sentence
+    character(len=:), allocatable :: fault
+    logical :: is_number
+    integer :: decade
+
+    call measure_number(value%text, is_number, decade)
+    fault = ''
+    if (value%quoted) then
+      fault = ''''//shown(value%text)//''' is a text in quotes, not a number'
+    else if (is_not_finite(value%text)) then
+      fault = shown(value%text)//' is not finite'
+    else if (.not. is_number) then
+      fault = shown(value%text)//' is not a number'
+    else if (key%kind == 'integer' .and. verify(value%text, '+-0123456789') > 0) then
+      fault = shown(value%text)//' is not a whole number'
+    else if (abs(decade) >= merge(9, most_decades, key%kind == 'integer')) then
+      fault = shown(value%text)//' is too '//trim(merge('large', 'small', decade > 0))//' a number'
+    else if (.not. in_range(key%allowed, real_value(value))) then
+      fault = shown(value%text)//' is outside the range'
+    end if
+  end function fault_of_number
+
+  !> What is wrong with a text, or an empty text.
+  pure function fault_of_text(key, word) result(fault)
+    !> The key as the table has it
+    type(key_entry_t), intent(in) :: key
+    !> The text without its quotes
+    character(len=*), intent(in) :: word
+    !> Part of a sentence
+    character(len=:), allocatable :: fault
+    type(line_t), allocatable :: choices(:)
+    integer :: i
+
+    fault = ''
+    select case (key%kind)
+    case ('choice')
+      choices = words_of(key%allowed, ' ')
+      if (any([(choices(i)%text == lower_case(word), i=1, size(choices))])) return
+      fault = ''''//shown(word)//''' is not a choice'
+      if (nearest_name(word, choices) /= '') fault = fault//' (meant '''//nearest_name(word, choices)//'''?)'
+    case ('name')
+      if (len(word) > longest_name) fault = 'the name is longer than 80 characters'
+      if (len(word) == 0) fault = 'the name is empty'
+      if (verify(lower_case(word), 'abcdefghijklmnopqrstuvwxyz0123456789._-') > 0) fault = 'the name has other characters'
+      if (index('._-', word(:min(1, len(word)))) > 0 .and. len(word) > 0) fault = 'the name begins with '//word(1:1)
+    case default
+      if (len(word) > longest_text) fault = 'the text is longer than 1000 characters'
+      if (key%allowed /= 'any text' .and. len_trim(word) == 0) fault = 'the text is empty'
+    end select
+  end function fault_of_text
+
+  !> What is wrong with the number of values, or an empty text; lists over the plies are checked where these are known.
+  pure function fault_of_count(key, number) result(fault)
+    !> The key as the table has it
+    type(key_entry_t), intent(in) :: key
+    !> Number of its values
+    integer, intent(in) :: number
+    !> Part of a sentence
+    character(len=:), allocatable :: fault
+    logical :: right
+
+    select case (key%values)
+    case ('1')
+      right = number == 1
+    case ('2')
+      right = number == 2
+    case ('1 or 4')
+      right = number == 1 .or. number == 4
+    case default
+      right = number >= 1
+    end select
+    fault = ''
+    if (.not. right) fault = trim(merge('too many', 'too few ', number > 2 .or. key%values == '1'))//' values'
+  end function fault_of_count
+
+  !> What a key takes, for the end of a message.
+  pure function allowed_sentence(key) result(sentence)
+    !> The key as the table has it
+    type(key_entry_t), intent(in) :: key
+    !> Such as `allowed: 2 real values > 0`
+    character(len=:), allocatable :: sentence
+    type(line_t), allocatable :: choices(:)
+
+    sentence = 'allowed: '//key%values//' '//key%kind//trim(merge('  ', 's ', key%values == '1'))
+    if (key%kind == 'real' .or. key%kind == 'text') sentence = 'allowed: '//key%values//' '//key%kind// &
+                                                               trim(merge(' value ', ' values', key%values == '1'))
+    if (key%kind == 'choice') then
+      choices = words_of(key%allowed, ' ')
+      sentence = 'allowed: '//key%values//' of '''//joined(choices, ''', ''')//''''
+    else if (key%kind == 'name') then
+      sentence = sentence//' of up to 80 characters: '//key%allowed//', the first a letter or digit'
+    else if (key%kind /= 'logical' .and. key%allowed /= 'any' .and. key%allowed /= 'any text') then
+      sentence = sentence//' '//key%allowed
+    else if (key%kind == 'logical') then
+      sentence = 'allowed: .true. or .false.'
+    end if
+    if (key%kind == 'text') sentence = sentence//' in quotes'
+  end function allowed_sentence
+
+  !> The value that the default of a key stands for.
+  pure function literal_value(default) result(value)
+    !> A default as the table has it
+    character(len=*), intent(in) :: default
+    !> The value
+    type(value_t) :: value
+
+    value%quoted = default(1:1) == ''''
+    value%text = default
+    if (value%quoted) value%text = default(2:len(default) - 1)
+  end function literal_value
+
+  !> The number that a word stands for, which was checked before.
+  pure real(wp) function real_value(value)
+    !> The word
+    type(value_t), intent(in) :: value
+    integer :: status
+
+    read (value%text, *, iostat=status) real_value
+    if (status /= 0) real_value = 0
+  end function real_value
+
+  !> The whole number that a word stands for, which was checked before.
+  pure integer function integer_value(value)
+    !> The word
+    type(value_t), intent(in) :: value
+    integer :: status
+
+    read (value%text, *, iostat=status) integer_value
+    if (status /= 0) integer_value = 0
+  end function integer_value
+
+  !> The truth value that a word stands for, which was checked before.
+  pure logical function logical_value(value)
+    !> The word
+    type(value_t), intent(in) :: value
+
+    logical_value = scan(lower_case(value%text), 't') > 0
+  end function logical_value
+
+  !> True: a way to write infinity or not-a-number.
+  pure logical function is_not_finite(word)
+    !> The word
+    character(len=*), intent(in) :: word
+    character(len=:), allocatable :: bare
+
+    bare = lower_case(word)
+    if (scan(bare(:min(1, len(bare))), '+-') == 1) bare = bare(2:)
+    is_not_finite = bare == 'nan' .or. bare == 'inf' .or. bare == 'infinity' .or. index(bare, 'nan(') == 1
+  end function is_not_finite
+
+  !> Whether a word is a number, and its decimal magnitude, found without a chance to overflow.
+  pure subroutine measure_number(word, is_number, decade)
+    !> The word
+    character(len=*), intent(in) :: word
+    !> True: sign, digits, point and exponent are as they should be
+    logical, intent(out) :: is_number
+    !> Power of ten of its first digit that isn't 0; 0 for the number 0
+    integer, intent(out) :: decade
+    integer :: mark, point, first, exponent, start, status
+    character(len=:), allocatable :: mantissa
+
+    decade = 0
+    is_number = .false.
+    if (len(word) == 0 .or. len(word) > longest_number) return
+    mark = scan(word, 'eEdD')
+    if (mark == 0) mark = len(word) + 1
+    start = 1
+    if (scan(word(1:1), '+-') == 1) start = 2
+    mantissa = word(start:mark - 1)
+    if (scan(mantissa, '0123456789') == 0 .or. verify(mantissa, '0123456789.') > 0) return
+    point = index(mantissa, '.')
+    if (point /= index(mantissa, '.', back=.true.)) return
+    exponent = 0
+    if (mark <= len(word)) then
+      call read_exponent(word(mark + 1:), exponent, status)
+      if (status /= 0) return
+    end if
+    is_number = .true.
+    if (point == 0) point = len(mantissa) + 1
+    first = scan(mantissa, '123456789')
+    if (first == 0) return
+    decade = exponent + point - first
+    if (first < point) decade = decade - 1
+  end subroutine measure_number
+
+  !> Reads an exponent; one of many digits counts as a thousand decades.
+  pure subroutine read_exponent(word, exponent, status)
+    !> Sign and digits
+    character(len=*), intent(in) :: word
+    !> Its value
+    integer, intent(out) :: exponent
+    !> 0: it is one
+    integer, intent(out) :: status
+    integer :: start
+
+    exponent = 0
+    status = 1
+    start = 1
+    if (len(word) > 0) start = merge(2, 1, scan(word(1:1), '+-') == 1)
+    if (start > len(word)) return
+    if (verify(word(start:), '0123456789') > 0) return
+    exponent = 1000
+    status = 0
+    if (len_trim(word(start:)) <= 4) read (word(start:), *, iostat=status) exponent
+    if (word(1:1) == '-') exponent = -exponent
+  end subroutine read_exponent
+
+  !> True: all conditions are met.
+  pure logical function in_range(conditions, number)
+    !> Such as `> 0, <= 1`; `any` is none
+    character(len=*), intent(in) :: conditions
+    !> The number
+    real(wp), intent(in) :: number
+    type(line_t), allocatable :: condition(:), parts(:)
+    real(wp) :: limit
+    integer :: i
+
+    in_range = .true.
+    if (conditions == 'any') return
+    condition = words_of(conditions, ',')
+    do i = 1, size(condition)
+      parts = words_of(condition(i)%text, ' ')
+      read (parts(2)%text, *) limit
+      select case (parts(1)%text)
+      case ('>')
+        in_range = in_range .and. number > limit
+      case ('>=')
+        in_range = in_range .and. number >= limit
+      case ('<')
+        in_range = in_range .and. number < limit
+      case ('<=')
+        in_range = in_range .and. number <= limit
+      end select
+    end do
+  end function in_range
+end module deck_values

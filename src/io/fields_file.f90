@@ -1,0 +1,317 @@
+!> NAME.h5 and NAME.xdmf: fields over the plate at chosen times, for ParaView and for scripts. The file is open only
+!> while a time is written. Every routine is collective.
+!>
+!> In NAME.h5: `provenance`, `part`, `restarts/N` (provenance of the runs that went on), `meshes/N` (coordinates,
+!> connectivity, cells/...), `times/N` (time, step, mesh, points/..., cells/...).
+module fields_file
+  use communicators, only: communicator_t
+  use errors, only: error_t, exit_files, fail
+  use fields_file_xdmf, only: grid_of_time, numbered, write_xdmf
+  use files, only: file_exists
+  use hdf5_data, only: read_reals, write_integer_columns, write_integers, write_real_columns, write_reals, write_text
+  use hdf5_file, only: hdf5_file_t
+  use kinds, only: wp
+  use run_provenance, only: provenance_t
+  use stored_provenance, only: write_provenance
+  use text, only: line_t
+  implicit none
+  private
+  public :: fields_file_t
+
+  !> Nodes of an element in XDMF's order, corners, sides, middle, as numbers in the order 1 + i + 3 j.
+  integer, parameter :: xdmf_order(9) = [1, 3, 9, 7, 2, 6, 8, 4, 5]
+
+  !> The fields of one run.
+  type :: fields_file_t
+    private
+    !> The ranks
+    type(communicator_t) :: communicator
+    !> Folder and name, without suffix
+    character(len=:), allocatable :: base
+    !> Which part of the plate is modelled: whole or quarter
+    character(len=:), allocatable :: part
+    !> The HDF5 file
+    type(hdf5_file_t) :: file
+    !> XDMF text of each time written
+    type(line_t), allocatable :: grids(:)
+    !> Number of the mesh that fields are on
+    integer :: mesh = 0
+    !> Group of the time being written
+    character(len=:), allocatable :: time_group
+    !> Global numbers of this rank's points
+    integer, allocatable :: points(:)
+    !> Number of points on all ranks
+    integer :: global_points = 0
+    !> Global numbers of this rank's elements
+    integer, allocatable :: cells(:)
+    !> Number of elements on all ranks
+    integer :: global_cells = 0
+  contains
+    procedure :: create
+    procedure :: resume
+    procedure :: write_mesh
+    procedure :: begin
+    procedure :: write_point_field
+    procedure :: write_cell_field
+    procedure :: finish
+    procedure, private :: name_files
+    procedure, private :: open_file
+    procedure, private :: close_file
+    procedure, private :: drop_times_after
+  end type fields_file_t
+
+contains
+
+  !> Starts the file, replacing one of that name.
+  subroutine create(self, communicator, base, provenance, part, error)
+    !> The fields
+    class(fields_file_t), intent(inout) :: self
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> Folder and name of the files, without suffix
+    character(len=*), intent(in) :: base
+    !> The run
+    type(provenance_t), intent(in) :: provenance
+    !> Which part of the plate is modelled: whole or quarter
+    character(len=*), intent(in) :: part
+    !> Raised if the file can't be written
+    type(error_t), allocatable, intent(inout) :: error
+
+    call self%name_files(communicator, base, part)
+    call self%file%create(communicator, base//'.h5', 0)
+    call write_provenance(self%file, 'provenance', provenance)
+    call write_text(self%file, 'part', part)
+    call self%file%make_group('meshes')
+    call self%file%make_group('times')
+    call self%file%make_group('restarts')
+    call self%close_file(error)
+  end subroutine create
+
+  !> Goes on with the file that is there: times after the checkpoint are dropped. Without a file a new one is started.
+  subroutine resume(self, communicator, base, provenance, part, last_time, error)
+    !> The fields
+    class(fields_file_t), intent(inout) :: self
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> Folder and name of the files, without suffix
+    character(len=*), intent(in) :: base
+    !> The run that goes on
+    type(provenance_t), intent(in) :: provenance
+    !> Which part of the plate is modelled: whole or quarter
+    character(len=*), intent(in) :: part
+    !> Time of the checkpoint
+    real(wp), intent(in) :: last_time
+    !> Raised if the file can't be used
+    type(error_t), allocatable, intent(inout) :: error
+    type(line_t), allocatable :: names(:)
+    logical :: present
+
+    present = .false.
+    if (communicator%is_root()) present = file_exists(base//'.h5')
+    call communicator%broadcast(present)
+    if (.not. present) then
+      call self%create(communicator, base, provenance, part, error)
+      return
+    end if
+    call self%name_files(communicator, base, part)
+    call self%open_file(error)
+    if (allocated(error)) return
+    call self%drop_times_after(last_time)
+    call self%file%members('meshes', names)
+    self%mesh = size(names)
+    call self%file%members('restarts', names)
+    call write_provenance(self%file, 'restarts/'//numbered(size(names) + 1), provenance)
+    call self%close_file(error)
+  end subroutine resume
+
+  !> Writes the mesh that the fields to come are on. Called at the start and whenever the mesh has changed.
+  subroutine write_mesh(self, points, global_points, coordinates, cells, global_cells, connectivity, names, values, error)
+    !> The fields
+    class(fields_file_t), intent(inout) :: self
+    !> Global numbers (from 1) of the points this rank owns
+    integer, intent(in) :: points(:)
+    !> Number of points on all ranks
+    integer, intent(in) :: global_points
+    !> Places of these points (x, y, z by points)
+    real(wp), intent(in) :: coordinates(:, :)
+    !> Global numbers (from 1) of this rank's elements
+    integer, intent(in) :: cells(:)
+    !> Number of elements on all ranks
+    integer, intent(in) :: global_cells
+    !> Global numbers of the nine points of each element, in the order 1 + i + 3 j (9 by elements)
+    integer, intent(in) :: connectivity(:, :)
+    !> Names of what stays with the elements, such as their layer; may be none
+    character(len=*), intent(in) :: names(:)
+    !> What stays with the elements (names by elements)
+    integer, intent(in) :: values(:, :)
+    !> Raised if the mesh can't be written
+    type(error_t), allocatable, intent(inout) :: error
+    character(len=:), allocatable :: group
+    integer :: i
+
+    call self%open_file(error)
+    if (allocated(error)) return
+    self%points = points
+    self%global_points = global_points
+    self%cells = cells
+    self%global_cells = global_cells
+    self%mesh = self%mesh + 1
+    group = 'meshes/'//numbered(self%mesh)
+    call write_real_columns(self%file, group//'/coordinates', points, global_points, coordinates)
+    call write_integer_columns(self%file, group//'/connectivity', cells, global_cells, connectivity(xdmf_order, :) - 1)
+    do i = 1, size(names)
+      call write_integer_columns(self%file, group//'/cells/'//trim(names(i)), cells, global_cells, values(i:i, :))
+    end do
+    call self%close_file(error)
+  end subroutine write_mesh
+
+  !> Starts a time.
+  subroutine begin(self, time, step, error)
+    !> The fields
+    class(fields_file_t), intent(inout) :: self
+    !> The time
+    real(wp), intent(in) :: time
+    !> Number of the time step
+    integer, intent(in) :: step
+    !> Raised if the file can't be opened
+    type(error_t), allocatable, intent(inout) :: error
+
+    call self%open_file(error)
+    if (allocated(error)) return
+    self%time_group = 'times/'//numbered(size(self%grids) + 1)
+    call write_reals(self%file, self%time_group//'/time', [time], [integer ::])
+    call write_integers(self%file, self%time_group//'/step', [step], [integer ::])
+    call write_integers(self%file, self%time_group//'/mesh', [self%mesh], [integer ::])
+  end subroutine begin
+
+  !> Writes a field over the points; three components make a vector.
+  subroutine write_point_field(self, name, values, error)
+    !> The fields
+    class(fields_file_t), intent(inout) :: self
+    !> Name of the field
+    character(len=*), intent(in) :: name
+    !> The field (components by points, those owned first)
+    real(wp), intent(in) :: values(:, :)
+    !> Raised if it can't be written
+    type(error_t), allocatable, intent(inout) :: error
+
+    call write_real_columns(self%file, self%time_group//'/points/'//name, self%points, self%global_points, values)
+    call report(self, error)
+  end subroutine write_point_field
+
+  !> Writes a field over the elements; three components make a vector.
+  subroutine write_cell_field(self, name, values, error)
+    !> The fields
+    class(fields_file_t), intent(inout) :: self
+    !> Name of the field
+    character(len=*), intent(in) :: name
+    !> The field (components by elements)
+    real(wp), intent(in) :: values(:, :)
+    !> Raised if it can't be written
+    type(error_t), allocatable, intent(inout) :: error
+
+    call write_real_columns(self%file, self%time_group//'/cells/'//name, self%cells, self%global_cells, values)
+    call report(self, error)
+  end subroutine write_cell_field
+
+  !> Ends the time: from now on the files show it.
+  subroutine finish(self, error)
+    !> The fields
+    class(fields_file_t), intent(inout) :: self
+    !> Raised if a field of this time couldn't be written
+    type(error_t), allocatable, intent(inout) :: error
+    character(len=:), allocatable :: grid
+
+    call grid_of_time(self%file, file_name(self), self%time_group, grid)
+    call self%close_file(error)
+    if (allocated(error)) return
+    self%grids = [self%grids, line_t(grid)]
+    if (self%communicator%is_root()) call write_xdmf(self%base//'.xdmf', self%part, self%grids, error)
+    call self%communicator%agree(error)
+  end subroutine finish
+
+  !> Notes what the files are called.
+  subroutine name_files(self, communicator, base, part)
+    !> The fields
+    class(fields_file_t), intent(inout) :: self
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> Folder and name of the files, without suffix
+    character(len=*), intent(in) :: base
+    !> Which part of the plate is modelled
+    character(len=*), intent(in) :: part
+
+    self%communicator = communicator
+    self%base = base
+    self%part = part
+    self%mesh = 0
+    if (allocated(self%grids)) deallocate (self%grids)
+    allocate (self%grids(0))
+  end subroutine name_files
+
+  !> Opens NAME.h5 to add to it.
+  subroutine open_file(self, error)
+    !> The fields
+    class(fields_file_t), intent(inout) :: self
+    !> Raised if it can't be opened
+    type(error_t), allocatable, intent(inout) :: error
+
+    call self%file%open(self%communicator, self%base//'.h5', writable=.true.)
+    if (allocated(self%file%trouble)) call self%close_file(error)
+  end subroutine open_file
+
+  !> Closes NAME.h5.
+  subroutine close_file(self, error)
+    !> The fields
+    class(fields_file_t), intent(inout) :: self
+    !> Raised if anything went wrong since it was opened
+    type(error_t), allocatable, intent(inout) :: error
+
+    call self%file%close()
+    call report(self, error)
+  end subroutine close_file
+
+  !> Raises an error if there was trouble with NAME.h5.
+  subroutine report(self, error)
+    !> The fields
+    class(fields_file_t), intent(in) :: self
+    !> Raised if there was
+    type(error_t), allocatable, intent(inout) :: error
+
+    if (allocated(self%file%trouble)) call fail(error, exit_files, &
+      'Trouble with the field file '//self%base//'.h5: '//self%file%trouble//'.')
+  end subroutine report
+
+  !> Drops the times after a checkpoint and describes the others.
+  subroutine drop_times_after(self, last_time)
+    !> The fields
+    class(fields_file_t), intent(inout) :: self
+    !> Time of the checkpoint
+    real(wp), intent(in) :: last_time
+    type(line_t), allocatable :: names(:)
+    character(len=:), allocatable :: grid
+    real(wp), allocatable :: time(:)
+    integer :: i
+
+    call self%file%members('times', names)
+    do i = 1, size(names)
+      call read_reals(self%file, 'times/'//names(i)%text//'/time', time, [integer ::])
+      if (time(1) > last_time) then
+        call self%file%remove('times/'//names(i)%text)
+      else
+        call grid_of_time(self%file, file_name(self), 'times/'//names(i)%text, grid)
+        self%grids = [self%grids, line_t(grid)]
+      end if
+    end do
+  end subroutine drop_times_after
+
+  !> Name of the HDF5 file without its folder.
+  pure function file_name(self) result(name)
+    !> The fields
+    class(fields_file_t), intent(in) :: self
+    !> The name
+    character(len=:), allocatable :: name
+
+    name = self%base(index(self%base, '/', back=.true.) + 1:)//'.h5'
+  end function file_name
+end module fields_file

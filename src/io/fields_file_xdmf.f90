@@ -1,0 +1,182 @@
+!> NAME.xdmf: tells ParaView and the like what lies where in NAME.h5.
+module fields_file_xdmf
+  use errors, only: error_t, exit_files, fail
+  use files, only: rename_file
+  use hdf5_data, only: read_integers, read_reals
+  use hdf5_file, only: hdf5_file_t
+  use hdf5_transfers, only: stored_shape
+  use kinds, only: wp
+  use text, only: line_t, to_text
+  implicit none
+  private
+  public :: grid_of_time, write_xdmf, numbered
+
+contains
+
+  !> Describes one time as an XDMF grid, from what is in the open file.
+  subroutine grid_of_time(file, name, time_group, grid)
+    !> The open file
+    type(hdf5_file_t), intent(inout) :: file
+    !> Name of the file, without its folder
+    character(len=*), intent(in) :: name
+    !> Path of the group of that time
+    character(len=*), intent(in) :: time_group
+    !> The XML text
+    character(len=:), allocatable, intent(out) :: grid
+    character(len=:), allocatable :: mesh
+    integer, allocatable :: shape_of_cells(:), shape_of_points(:), mesh_number(:), step(:)
+    real(wp), allocatable :: time(:)
+
+    call read_reals(file, time_group//'/time', time, [integer ::])
+    call read_integers(file, time_group//'/step', step, [integer ::])
+    call read_integers(file, time_group//'/mesh', mesh_number, [integer ::])
+    mesh = 'meshes/'//numbered(mesh_number(1))
+    shape_of_cells = stored_shape(file, mesh//'/connectivity')
+    shape_of_points = stored_shape(file, mesh//'/coordinates')
+    grid = line(2, '<Grid Name="plate" GridType="Uniform">') &
+      //line(3, '<Time Value="'//to_text(time(1))//'"/>') &
+      //line(3, '<Information Name="step" Value="'//to_text(step(1))//'"/>') &
+      //line(3, '<Topology TopologyType="Quadrilateral_9" NumberOfElements="' &
+             //to_text(shape_of_cells(size(shape_of_cells)))//'">') &
+      //line(4, data_item(name, mesh//'/connectivity', shape_of_cells, 'Int')) &
+      //line(3, '</Topology>') &
+      //line(3, '<Geometry GeometryType="XYZ">') &
+      //line(4, data_item(name, mesh//'/coordinates', shape_of_points, 'Float')) &
+      //line(3, '</Geometry>')
+    call add_attributes(file, name, mesh//'/cells', 'Cell', 'Int', grid)
+    call add_attributes(file, name, time_group//'/points', 'Node', 'Float', grid)
+    call add_attributes(file, name, time_group//'/cells', 'Cell', 'Float', grid)
+    grid = grid//line(2, '</Grid>')
+  end subroutine grid_of_time
+
+  !> Adds all that a group holds to a grid.
+  subroutine add_attributes(file, name, group, centre, kind_of_number, grid)
+    !> The open file
+    type(hdf5_file_t), intent(inout) :: file
+    !> Name of the file, without its folder
+    character(len=*), intent(in) :: name
+    !> Path of the group
+    character(len=*), intent(in) :: group
+    !> Node or Cell
+    character(len=*), intent(in) :: centre
+    !> Float or Int
+    character(len=*), intent(in) :: kind_of_number
+    !> The XML text
+    character(len=:), allocatable, intent(inout) :: grid
+    type(line_t), allocatable :: names(:)
+    character(len=:), allocatable :: form
+    integer, allocatable :: extents(:)
+    integer :: i
+
+    call file%members(group, names)
+    do i = 1, size(names)
+      extents = stored_shape(file, group//'/'//names(i)%text)
+      form = 'Matrix'
+      if (size(extents) == 1) then
+        form = 'Scalar'
+      else if (extents(1) == 3) then
+        form = 'Vector'
+      end if
+      grid = grid//line(3, '<Attribute Name="'//escaped(names(i)%text)//'" AttributeType="'//form//'" Center="' &
+                        //centre//'">') &
+        //line(4, data_item(name, group//'/'//names(i)%text, extents, kind_of_number)) &
+        //line(3, '</Attribute>')
+    end do
+  end subroutine add_attributes
+
+  !> Writes the whole document aside and gives it its name.
+  subroutine write_xdmf(path, part, grids, error)
+    !> Path of the document
+    character(len=*), intent(in) :: path
+    !> Which part of the plate the file holds
+    character(len=*), intent(in) :: part
+    !> One grid a time
+    type(line_t), intent(in) :: grids(:)
+    !> Raised if it can't be written
+    type(error_t), allocatable, intent(inout) :: error
+    integer :: unit, i, status, closed
+
+    open (newunit=unit, file=path//'.tmp', access='stream', form='unformatted', status='replace', action='write', &
+          iostat=status)
+    if (status == 0) write (unit, iostat=status) line(0, '<?xml version="1.0"?>'), &
+      line(0, '<Xdmf Version="3.0">'), line(0, '<Domain>'), &
+      line(0, '<Information Name="part of the plate" Value="'//part//'"/>'), &
+      line(1, '<Grid Name="times" GridType="Collection" CollectionType="Temporal">')
+    do i = 1, size(grids)
+      if (status == 0) write (unit, iostat=status) grids(i)%text
+    end do
+    if (status == 0) write (unit, iostat=status) line(1, '</Grid>'), line(0, '</Domain>'), line(0, '</Xdmf>')
+    if (status == 0) flush (unit, iostat=status)
+    close (unit, iostat=closed)
+    if (status /= 0) call fail(error, exit_files, "Can't write "//path//'.tmp.')
+    if (.not. allocated(error)) call rename_file(path//'.tmp', path, error)
+  end subroutine write_xdmf
+
+  !> Reference to an array in the HDF5 file.
+  pure function data_item(name, path, extents, kind_of_number) result(item)
+    !> Name of the file
+    character(len=*), intent(in) :: name
+    !> Path of the array
+    character(len=*), intent(in) :: path
+    !> Its extents, the fastest first
+    integer, intent(in) :: extents(:)
+    !> Float or Int
+    character(len=*), intent(in) :: kind_of_number
+    !> The XML text
+    character(len=:), allocatable :: item
+    integer :: i
+
+    item = '<DataItem Dimensions="'
+    do i = size(extents), 1, -1
+      item = item//to_text(extents(i))
+      if (i > 1) item = item//' '
+    end do
+    item = item//'" NumberType="'//kind_of_number//'" Precision="'//merge('8', '4', kind_of_number == 'Float') &
+      //'" Format="HDF">'//escaped(name)//':/'//escaped(path)//'</DataItem>'
+  end function data_item
+
+  !> Name of the n-th group of its kind; such names in alphabetical order are in order.
+  pure function numbered(number) result(name)
+    !> The number, from 1
+    integer, intent(in) :: number
+    !> The name
+    character(len=8) :: name
+
+    write (name, '(i8.8)') number
+  end function numbered
+
+  !> A line of the document.
+  pure function line(depth, content)
+    !> Depth of indentation
+    integer, intent(in) :: depth
+    !> What it says
+    character(len=*), intent(in) :: content
+    !> The line with its end
+    character(len=:), allocatable :: line
+
+    line = repeat('  ', depth)//content//new_line('a')
+  end function line
+
+  !> A name with XML's own characters written out.
+  pure function escaped(name)
+    !> The name
+    character(len=*), intent(in) :: name
+    !> As XML wants it
+    character(len=:), allocatable :: escaped
+    integer :: i
+
+    escaped = ''
+    do i = 1, len(name)
+      select case (name(i:i))
+      case ('&')
+        escaped = escaped//'&amp;'
+      case ('<')
+        escaped = escaped//'&lt;'
+      case ('"')
+        escaped = escaped//'&quot;'
+      case default
+        escaped = escaped//name(i:i)
+      end select
+    end do
+  end function escaped
+end module fields_file_xdmf

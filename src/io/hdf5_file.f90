@@ -1,0 +1,222 @@
+!> An HDF5 file shared by all ranks. Every routine is collective. Trouble is kept inside, agreed on
+!> by all ranks, and once there is some the routines do nothing: whoever owns the file asks at the end.
+module hdf5_file
+  use communicators, only: communicator_t
+  use hdf5, only: h5eset_auto_f, h5f_acc_rdonly_f, h5f_acc_rdwr_f, h5f_acc_trunc_f, h5fclose_f, h5fcreate_f, &
+    h5fopen_f, h5gclose_f, h5gcreate_f, h5gget_obj_info_idx_f, h5gn_members_f, h5iis_valid_f, h5ldelete_f, &
+    h5lexists_f, h5open_f, h5p_dataset_create_f, h5p_dataset_xfer_f, h5p_file_access_f, h5p_file_create_f, &
+    h5p_link_create_f, h5pclose_f, h5pcreate_f, h5pset_create_inter_group_f, h5pset_dxpl_mpio_f, &
+    h5pset_fapl_mpio_f, h5pset_obj_track_times_f, h5pset_userblock_f, h5t_native_integer, hid_t, hsize_t, &
+    h5fd_mpio_collective_f
+  use mpi, only: mpi_info_null
+  use text, only: line_t
+  implicit none
+  private
+  public :: hdf5_file_t
+
+  !> An open file.
+  type :: hdf5_file_t
+    !> What could not be done; unallocated while all is well
+    character(len=:), allocatable :: trouble
+    !> The ranks that share the file
+    type(communicator_t) :: communicator
+    !> Handle of the file
+    integer(hid_t) :: id = -1
+    !> Property list: all ranks transfer together
+    integer(hid_t) :: together = -1
+    !> Property list: missing groups of a path are made
+    integer(hid_t) :: with_groups = -1
+    !> Property list: datasets carry no dates, so equal runs give equal files
+    integer(hid_t) :: undated = -1
+    !> The file is open
+    logical :: is_open = .false.
+  contains
+    procedure :: create
+    procedure :: open
+    procedure :: close
+    procedure :: settle
+    procedure :: well
+    procedure :: exists
+    procedure :: make_group
+    procedure :: remove
+    procedure :: members
+  end type hdf5_file_t
+
+contains
+
+  !> Creates a file, replacing one of that name.
+  subroutine create(self, communicator, path, head)
+    !> The file
+    class(hdf5_file_t), intent(inout) :: self
+    !> The ranks that share it
+    type(communicator_t), intent(in) :: communicator
+    !> Path of the file
+    character(len=*), intent(in) :: path
+    !> Bytes kept free at the start of the file: 0, or a power of two of at least 512
+    integer, intent(in) :: head
+    integer(hid_t) :: access_list, creation_list
+    integer :: status, closed
+
+    call prepare(self, communicator, access_list)
+    call h5pcreate_f(h5p_file_create_f, creation_list, status)
+    call h5pset_userblock_f(creation_list, int(head, hsize_t), status)
+    call h5fcreate_f(path, h5f_acc_trunc_f, self%id, status, creation_list, access_list)
+    self%is_open = status == 0
+    call h5pclose_f(creation_list, closed)
+    call h5pclose_f(access_list, closed)
+    call self%settle(status, 'the file could not be created')
+  end subroutine create
+
+  !> Opens a file that is there.
+  subroutine open (self, communicator, path, writable)
+    !> The file
+    class(hdf5_file_t), intent(inout) :: self
+    !> The ranks that share it
+    type(communicator_t), intent(in) :: communicator
+    !> Path of the file
+    character(len=*), intent(in) :: path
+    !> The file is to be written to as well
+    logical, intent(in) :: writable
+    integer(hid_t) :: access_list
+    integer :: status, closed
+
+    call prepare(self, communicator, access_list)
+    call h5fopen_f(path, merge(h5f_acc_rdwr_f, h5f_acc_rdonly_f, writable), self%id, status, access_list)
+    self%is_open = status == 0
+    call h5pclose_f(access_list, closed)
+    call self%settle(status, 'the file could not be opened')
+  end subroutine open
+
+  !> Starts the library if need be, silences its own messages and makes the property lists.
+  subroutine prepare(self, communicator, access_list)
+    !> The file
+    class(hdf5_file_t), intent(inout) :: self
+    !> The ranks that share it
+    type(communicator_t), intent(in) :: communicator
+    !> Property list for opening the file
+    integer(hid_t), intent(out) :: access_list
+    integer :: status
+    logical :: started
+
+    if (allocated(self%trouble)) deallocate (self%trouble)
+    self%communicator = communicator
+    ! The library's type constants are made by h5open_f, anew at each call.
+    call h5iis_valid_f(h5t_native_integer, started, status)
+    if (.not. started) call h5open_f(status)
+    call h5eset_auto_f(0, status)
+    call h5pcreate_f(h5p_file_access_f, access_list, status)
+    call h5pset_fapl_mpio_f(access_list, communicator%handle(), mpi_info_null, status)
+    call h5pcreate_f(h5p_dataset_xfer_f, self%together, status)
+    call h5pset_dxpl_mpio_f(self%together, h5fd_mpio_collective_f, status)
+    call h5pcreate_f(h5p_link_create_f, self%with_groups, status)
+    call h5pset_create_inter_group_f(self%with_groups, 1, status)
+    call h5pcreate_f(h5p_dataset_create_f, self%undated, status)
+    call h5pset_obj_track_times_f(self%undated, .false., status)
+  end subroutine prepare
+
+  !> Closes the file; all that was written is then with the operating system.
+  subroutine close (self)
+    !> The file
+    class(hdf5_file_t), intent(inout) :: self
+    integer :: status, closed
+
+    status = 0
+    if (self%is_open) call h5fclose_f(self%id, status)
+    self%is_open = .false.
+    if (self%together >= 0) then
+      call h5pclose_f(self%together, closed)
+      call h5pclose_f(self%with_groups, closed)
+      call h5pclose_f(self%undated, closed)
+      self%together = -1
+    end if
+    call self%settle(status, 'the data could not be written out')
+  end subroutine close
+
+  !> Agrees on whether the last step failed on any rank.
+  subroutine settle(self, status, trouble)
+    !> The file
+    class(hdf5_file_t), intent(inout) :: self
+    !> Status the library returned on this rank; negative means failed
+    integer, intent(in) :: status
+    !> What could not be done, if it failed; equal on all ranks
+    character(len=*), intent(in) :: trouble
+
+    if (allocated(self%trouble)) return
+    if (self%communicator%any(status < 0)) self%trouble = trouble
+  end subroutine settle
+
+  !> Whether nothing has failed so far.
+  pure logical function well(self)
+    !> The file
+    class(hdf5_file_t), intent(in) :: self
+
+    well = self%is_open .and. .not. allocated(self%trouble)
+  end function well
+
+  !> Whether there is a group or dataset of that path.
+  logical function exists(self, path)
+    !> The file
+    class(hdf5_file_t), intent(in) :: self
+    !> Path inside the file
+    character(len=*), intent(in) :: path
+    integer :: status
+
+    exists = .false.
+    if (.not. self%well()) return
+    call h5lexists_f(self%id, path, exists, status)
+    exists = exists .and. status == 0
+  end function exists
+
+  !> Makes a group, and those above it that are missing.
+  subroutine make_group(self, path)
+    !> The file
+    class(hdf5_file_t), intent(inout) :: self
+    !> Path inside the file
+    character(len=*), intent(in) :: path
+    integer(hid_t) :: group
+    integer :: status
+
+    if (.not. self%well()) return
+    call h5gcreate_f(self%id, path, group, status, lcpl_id=self%with_groups)
+    if (status == 0) call h5gclose_f(group, status)
+    call self%settle(status, 'group '//path//' could not be made')
+  end subroutine make_group
+
+  !> Removes a group with all that is in it, or a dataset.
+  subroutine remove(self, path)
+    !> The file
+    class(hdf5_file_t), intent(inout) :: self
+    !> Path inside the file
+    character(len=*), intent(in) :: path
+    integer :: status
+
+    if (.not. self%well()) return
+    call h5ldelete_f(self%id, path, status)
+    call self%settle(status, path//' could not be removed')
+  end subroutine remove
+
+  !> Names of what a group holds, in alphabetical order; none if there is no such group.
+  subroutine members(self, path, names)
+    !> The file
+    class(hdf5_file_t), intent(inout) :: self
+    !> Path of the group
+    character(len=*), intent(in) :: path
+    !> Names of its members
+    type(line_t), allocatable, intent(out) :: names(:)
+    character(len=256) :: name
+    integer :: count, i, kind, status
+
+    count = 0
+    if (self%exists(path)) then
+      call h5gn_members_f(self%id, path, count, status)
+      if (status < 0) count = 0
+      call self%settle(status, 'group '//path//' could not be listed')
+    end if
+    allocate (names(count))
+    do i = 1, count
+      call h5gget_obj_info_idx_f(self%id, path, i - 1, name, kind, status)
+      names(i)%text = trim(name)
+      call self%settle(status, 'group '//path//' could not be listed')
+    end do
+  end subroutine members
+end module hdf5_file

@@ -1,0 +1,143 @@
+!> How far the run is: a bar on a terminal, an occasional line elsewhere, with the time left.
+module run_progress
+  use kinds, only: long, wp
+  use logger, only: log_t
+  use text, only: to_text
+  implicit none
+  private
+  public :: progress_t
+
+  !> Seconds between two drawings of the bar.
+  real(wp), parameter :: between_bars = 0.2_wp
+  !> Seconds between two lines, if not enough was done meanwhile.
+  real(wp), parameter :: between_lines = 10
+  !> Part of the run between two lines, if it took less time.
+  real(wp), parameter :: part_between_lines = 0.1_wp
+  !> Characters of the bar.
+  integer, parameter :: bar_length = 30
+
+  !> Progress of one run.
+  type :: progress_t
+    private
+    !> Part of the run done when this process took it up
+    real(wp) :: first = 0
+    !> Part done when it was last shown
+    real(wp) :: shown = 0
+    !> Clock when this process took the run up
+    integer(long) :: started = 0
+    !> Clock when progress was last shown
+    integer(long) :: shown_at = 0
+  contains
+    procedure :: start
+    procedure :: update
+    procedure :: finish
+  end type progress_t
+
+contains
+
+  !> Starts the clock.
+  subroutine start(self, fraction)
+    !> The progress
+    class(progress_t), intent(inout) :: self
+    !> Part of the run done already: 0, or more after a restart
+    real(wp), intent(in) :: fraction
+
+    self%first = fraction
+    self%shown = fraction
+    call system_clock(self%started)
+    self%shown_at = self%started
+  end subroutine start
+
+  !> Shows how far the run is, if it is time to.
+  subroutine update(self, log, fraction, text)
+    !> The progress
+    class(progress_t), intent(inout) :: self
+    !> Where it is shown
+    type(log_t), intent(inout) :: log
+    !> Part of the run done
+    real(wp), intent(in) :: fraction
+    !> What else is worth a glance, such as the time in the scene
+    character(len=*), intent(in) :: text
+    character(len=:), allocatable :: line
+    integer(long) :: now, rate
+    real(wp) :: since
+
+    call system_clock(now, rate)
+    since = real(now - self%shown_at, wp)/rate
+    if (log%interactive) then
+      if (since < between_bars) return
+    else
+      if (since < between_lines .and. fraction < self%shown + part_between_lines) return
+    end if
+    line = to_text(int(100*fraction))//' %, '//time_left(self, fraction, real(now - self%started, wp)/rate)//' left'
+    if (len(text) > 0) line = line//', '//text
+    if (log%interactive) then
+      call log%status(bar(fraction)//' '//line)
+    else
+      call log%note(line)
+    end if
+    self%shown = fraction
+    self%shown_at = now
+  end subroutine update
+
+  !> Says that the run is done and how long this process took.
+  subroutine finish(self, log, text)
+    !> The progress
+    class(progress_t), intent(in) :: self
+    !> Where it is said
+    type(log_t), intent(inout) :: log
+    !> How the run ended
+    character(len=*), intent(in) :: text
+    integer(long) :: now, rate
+
+    call system_clock(now, rate)
+    call log%note(text//' after '//duration(real(now - self%started, wp)/rate))
+  end subroutine finish
+
+  !> Time left, if the rest goes as fast as what was done.
+  pure function time_left(self, fraction, elapsed) result(left)
+    !> The progress
+    class(progress_t), intent(in) :: self
+    !> Part of the run done
+    real(wp), intent(in) :: fraction
+    !> Seconds since this process took the run up
+    real(wp), intent(in) :: elapsed
+    !> The time, or a question mark
+    character(len=:), allocatable :: left
+
+    left = '?'
+    if (fraction > self%first) left = duration(elapsed*(1 - fraction)/(fraction - self%first))
+  end function time_left
+
+  !> A time as people say it.
+  pure function duration(seconds) result(words)
+    !> The time in seconds
+    real(wp), intent(in) :: seconds
+    !> Such as 4.2 s, 12 min 5 s or 3 h 20 min
+    character(len=:), allocatable :: words
+    character(len=12) :: digits
+    integer :: whole
+
+    whole = nint(min(max(seconds, 0.0_wp), 1.0e9_wp))
+    if (seconds < 59.5_wp) then
+      write (digits, '(f12.1)') max(seconds, 0.0_wp)
+      words = trim(adjustl(digits))//' s'
+    else if (whole < 3600) then
+      words = to_text(whole/60)//' min '//to_text(mod(whole, 60))//' s'
+    else
+      words = to_text(whole/3600)//' h '//to_text(mod(whole, 3600)/60)//' min'
+    end if
+  end function duration
+
+  !> A bar such as [######......].
+  pure function bar(fraction)
+    !> Part to fill
+    real(wp), intent(in) :: fraction
+    !> The bar
+    character(len=bar_length + 2) :: bar
+    integer :: filled
+
+    filled = min(max(int(bar_length*fraction), 0), bar_length)
+    bar = '['//repeat('#', filled)//repeat('.', bar_length - filled)//']'
+  end function bar
+end module run_progress

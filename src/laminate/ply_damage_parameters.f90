@@ -1,0 +1,39 @@
+!> Damage of the plies, as the deck gives it.
+module ply_damage_parameters
+  use kinds, only: wp
+  implicit none
+  private
+  public :: ply_damage_t, ply_damage_objection
+
+  !> Ways a ply fails (Table 1 of the paper), and their number.
+  integer, parameter, public :: fibre_failure = 1, matrix_cracking = 2, matrix_crushing = 3, failure_modes = 3
+  !> Sets of failure criteria: those of Hou et al. (Table 1).
+  integer, parameter, public :: criteria_hou = 1
+
+  !> How a failed ply loses its stiffness (Table 2 of the paper).
+  type :: ply_damage_t
+    !> Divisor of the elastic constants that a mode of failure takes away
+    real(wp) :: d = 100
+    !> Least value left of an elastic constant, as a fraction of the undamaged one
+    real(wp) :: e = 1.0e-3_wp
+    !> criteria_hou
+    integer :: criteria = criteria_hou
+  end type ply_damage_t
+
+contains
+
+  !> What is wrong with these parameters, or an empty text.
+  pure function ply_damage_objection(damage) result(objection)
+    !> The parameters
+    type(ply_damage_t), intent(in) :: damage
+    !> One clause for the user; empty: nothing is wrong
+    character(len=:), allocatable :: objection
+
+    objection = ''
+    if (.not. (damage%d >= 1 .and. damage%d <= huge(damage%d))) then
+      objection = 'the divisor d must be at least 1'
+    else if (.not. (damage%e > 0 .and. damage%e <= 1)) then
+      objection = 'the least fraction e must be positive and at most 1'
+    end if
+  end function ply_damage_objection
+end module ply_damage_parameters

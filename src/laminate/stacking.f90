@@ -1,0 +1,106 @@
+!> From a stacking sequence to the stiffness and mass of a section of the plate, or of a layer of some of its plies.
+module stacking
+  use kinds, only: wp
+  use laminate_parameters, only: laminate_t, shear_energy
+  use material_parameters, only: material_t
+  use plies, only: ply_t, elasticity_t, elasticity_of, set_angle, in_plane_stiffness, shear_stiffness
+  use transverse_shear, only: shear_stiffness_from_energy
+  implicit none
+  private
+  public :: section_t, stacked_plies, section_of, section_stiffness, section_mass
+
+  !> A section of the laminate, or of a layer of it, per unit of area; z from the mid-plane of the whole laminate.
+  type :: section_t
+    !> A(11, 12, 16, 22, 26, 66), B and D alike, S(xz-xz, xz-yz, yz-yz)
+    real(wp) :: stiffness(21) = 0
+    !> Integrals of density, density z and density z**2
+    real(wp) :: mass(3) = 0
+  end type section_t
+
+contains
+
+  !> Plies of a laminate, from the struck face down.
+  pure function stacked_plies(laminate, materials) result(plies)
+    !> Stacking sequence
+    type(laminate_t), intent(in) :: laminate
+    !> Materials that it refers to
+    type(material_t), intent(in) :: materials(:)
+    !> The plies in their places
+    type(ply_t), allocatable :: plies(:)
+    real(wp) :: z
+    integer :: i
+
+    allocate (plies(size(laminate%material)))
+    z = -sum(laminate%thickness)/2
+    do i = 1, size(plies)
+      plies(i)%material = laminate%material(i)
+      plies(i)%elasticity = elasticity_of(materials(plies(i)%material))
+      plies(i)%density = materials(plies(i)%material)%density
+      call set_angle(plies(i), laminate%angle(i))
+      plies(i)%z_top = z
+      z = z + laminate%thickness(i)
+      plies(i)%z_bottom = z
+    end do
+  end function stacked_plies
+
+  !> Section of a range of plies without damage.
+  pure function section_of(plies, shear_correction) result(section)
+    !> Neighbouring plies: all of the laminate or those of one layer
+    type(ply_t), intent(in) :: plies(:)
+    !> shear_five_sixths or shear_energy
+    integer, intent(in) :: shear_correction
+    !> Their stiffness and mass
+    type(section_t) :: section
+
+    section%stiffness = section_stiffness(plies, plies%elasticity, shear_correction)
+    section%mass = section_mass(plies)
+  end function section_of
+
+  !> Stiffness of a range of plies whose elastic constants may have been reduced. Allocates nothing.
+  pure function section_stiffness(plies, elasticity, shear_correction) result(stiffness)
+    !> Neighbouring plies: all of the laminate or those of one layer
+    type(ply_t), intent(in) :: plies(:)
+    !> Present elastic constants of these plies
+    type(elasticity_t), intent(in) :: elasticity(:)
+    !> shear_five_sixths or shear_energy
+    integer, intent(in) :: shear_correction
+    !> Packed as in section_t
+    real(wp) :: stiffness(21)
+    real(wp) :: z(0:size(plies)), in_plane(6, size(plies)), shear(3, size(plies)), thickness
+    integer :: i
+
+    stiffness = 0
+    z(0) = plies(1)%z_top
+    do i = 1, size(plies)
+      associate (top => plies(i)%z_top, bottom => plies(i)%z_bottom)
+        in_plane(:, i) = in_plane_stiffness(plies(i), elasticity(i))
+        shear(:, i) = shear_stiffness(plies(i), elasticity(i))
+        z(i) = bottom
+        thickness = bottom - top
+        stiffness(1:6) = stiffness(1:6) + in_plane(:, i)*thickness
+        stiffness(7:12) = stiffness(7:12) + in_plane(:, i)*(thickness*(bottom + top)/2)
+        stiffness(13:18) = stiffness(13:18) + in_plane(:, i)*(thickness*(bottom**2 + bottom*top + top**2)/3)
+        stiffness(19:21) = stiffness(19:21) + shear(:, i)*thickness
+      end associate
+    end do
+    if (shear_correction == shear_energy) then
+      stiffness(19:21) = shear_stiffness_from_energy(z, in_plane, shear)
+    else
+      stiffness(19:21) = stiffness(19:21)*5/6
+    end if
+  end function section_stiffness
+
+  !> Mass of a range of plies.
+  pure function section_mass(plies) result(mass)
+    !> Neighbouring plies: all of the laminate or those of one layer
+    type(ply_t), intent(in) :: plies(:)
+    !> Integrals of density, density z and density z**2
+    real(wp) :: mass(3)
+
+    associate (top => plies%z_top, bottom => plies%z_bottom)
+      mass(1) = sum(plies%density*(bottom - top))
+      mass(2) = sum(plies%density*(bottom - top)*(bottom + top))/2
+      mass(3) = sum(plies%density*(bottom - top)*(bottom**2 + bottom*top + top**2))/3
+    end associate
+  end function section_mass
+end module stacking

@@ -1,0 +1,126 @@
+!> Transverse shear stiffness of a stack of plies from the energy of its equilibrium stresses.
+!>
+!> The shear stresses follow from integrating equilibrium through the thickness for moments that vary as in two
+!> cylindrical bendings, Mx,x = Qx and My,y = Qy, without membrane forces (Rolfes and Rohwer, Improved transverse
+!> shear stresses in composite finite elements based on first order shear deformation theory, International
+!> Journal for Numerical Methods in Engineering 40, 1997; on symmetric cross-plies the same as Whitney 1973 and
+!> Rohwer 1988). Their complementary energy equals that of the mean shear strain, Q S**-1 Q / 2. Both faces of the
+!> stack are taken as free of shear. The stresses add up to the shear forces, so S never exceeds the sum of G dz and is
+!> positive definite for any plies that are. The result does not depend on where z starts.
+module transverse_shear
+  use kinds, only: wp
+  use packed_matrices, only: unpacked, inverse, inverse_of_two
+  implicit none
+  private
+  public :: shear_stiffness_from_energy
+
+  !> Three Gauss points of the unit interval, exact for the fourth-degree energy density of a ply
+  real(wp), parameter :: abscissae(3) = 0.5_wp + [-1, 0, 1]*sqrt(0.15_wp)
+  !> Their weights
+  real(wp), parameter :: weights(3) = [5, 8, 5]/18.0_wp
+
+contains
+
+  !> Energy-consistent transverse shear stiffness.
+  pure function shear_stiffness_from_energy(z, in_plane, shear) result(stiffness)
+    !> z of the plies' faces, top of the first to bottom of the last, from any origin
+    real(wp), intent(in) :: z(0:)
+    !> Packed in-plane stiffness of each ply, shape (6, plies)
+    real(wp), intent(in) :: in_plane(:, :)
+    !> Packed transverse shear stiffness of each ply, shape (3, plies)
+    real(wp), intent(in) :: shear(:, :)
+    !> xz-xz, xz-yz, yz-yz, such that Q = S gamma
+    real(wp) :: stiffness(3)
+    real(wp) :: middle, top, bottom, height, q(3, 3), flexibility(3), compliance(3)
+    real(wp) :: constant(3, 2), slope(3, 2), flow(2, 2), flow_here(2, 2)
+    integer :: ply, point
+
+    ! From the middle of this stack, so that a thin layer far from the laminate's mid-plane loses no digits.
+    middle = (z(0) + z(ubound(z, 1)))/2
+    call strains_of_unit_shear(z - middle, in_plane, constant, slope)
+    flow = 0
+    compliance = 0
+    do ply = 1, size(in_plane, 2)
+      top = z(ply - 1) - middle
+      bottom = z(ply) - middle
+      q = unpacked(in_plane(:, ply))
+      flexibility = inverse_of_two(shear(:, ply))
+      do point = 1, 3
+        height = top + (bottom - top)*abscissae(point)
+        flow_here = flow + flow_between(top, height, q, constant, slope)
+        compliance = compliance + weights(point)*(bottom - top)*energy(flow_here, flexibility)
+      end do
+      flow = flow + flow_between(top, bottom, q, constant, slope)
+    end do
+    stiffness = inverse_of_two(compliance)
+  end function shear_stiffness_from_energy
+
+  !> Growth of the in-plane strain, constant + slope z, along x for Qx = 1 (column 1) and along y for Qy = 1 (column 2).
+  pure subroutine strains_of_unit_shear(z, in_plane, constant, slope)
+    !> z of the plies' faces
+    real(wp), intent(in) :: z(0:)
+    !> Packed in-plane stiffness of each ply
+    real(wp), intent(in) :: in_plane(:, :)
+    !> Membrane strains
+    real(wp), intent(out) :: constant(3, 2)
+    !> Curvatures
+    real(wp), intent(out) :: slope(3, 2)
+    real(wp), dimension(3, 3) :: membrane, coupling, bending, release, flexibility
+    real(wp) :: packed(6, 3)
+    integer :: ply
+
+    packed = 0
+    do ply = 1, size(in_plane, 2)
+      associate (top => z(ply - 1), bottom => z(ply))
+        packed(:, 1) = packed(:, 1) + in_plane(:, ply)*(bottom - top)
+        packed(:, 2) = packed(:, 2) + in_plane(:, ply)*(bottom**2 - top**2)/2
+        packed(:, 3) = packed(:, 3) + in_plane(:, ply)*(bottom**3 - top**3)/3
+      end associate
+    end do
+    membrane = unpacked(packed(:, 1))
+    coupling = unpacked(packed(:, 2))
+    bending = unpacked(packed(:, 3))
+    release = matmul(inverse(membrane), coupling)
+    flexibility = inverse(bending - matmul(coupling, release))
+    slope = flexibility(:, 1:2)
+    constant = -matmul(release, slope)
+  end subroutine strains_of_unit_shear
+
+  !> Shear flow gathered between two heights of one ply: integral of the stress growth that equilibrium turns into
+  !> (tau_xz, tau_yz), columns for Qx = 1 and Qy = 1. The sign is left out, the energy does not see it.
+  pure function flow_between(from, to, q, constant, slope) result(flow)
+    !> z where the integral starts
+    real(wp), intent(in) :: from
+    !> z where it ends
+    real(wp), intent(in) :: to
+    !> In-plane stiffness of the ply
+    real(wp), intent(in) :: q(3, 3)
+    !> Membrane strains of strains_of_unit_shear
+    real(wp), intent(in) :: constant(3, 2)
+    !> Curvatures of strains_of_unit_shear
+    real(wp), intent(in) :: slope(3, 2)
+    !> Rows tau_xz and tau_yz
+    real(wp) :: flow(2, 2)
+    real(wp) :: stress(3, 2)
+
+    stress = matmul(q, (to - from)*(constant + slope*(to + from)/2))
+    flow(1, :) = [stress(1, 1), stress(3, 2)]
+    flow(2, :) = [stress(3, 1), stress(2, 2)]
+  end function flow_between
+
+  !> Twice the complementary energy density of two unit shear forces: flow' flexibility flow.
+  pure function energy(flow, flexibility) result(doubled)
+    !> Shear stresses of the unit forces
+    real(wp), intent(in) :: flow(2, 2)
+    !> Packed shear flexibility of the ply
+    real(wp), intent(in) :: flexibility(3)
+    !> Packed quadratic form in (Qx, Qy)
+    real(wp) :: doubled(3)
+    real(wp) :: strain(2, 2)
+
+    strain(1, :) = flexibility(1)*flow(1, :) + flexibility(2)*flow(2, :)
+    strain(2, :) = flexibility(2)*flow(1, :) + flexibility(3)*flow(2, :)
+    doubled = [dot_product(flow(:, 1), strain(:, 1)), dot_product(flow(:, 1), strain(:, 2)), &
+               dot_product(flow(:, 2), strain(:, 2))]
+  end function energy
+end module transverse_shear

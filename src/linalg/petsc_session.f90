@@ -1,0 +1,117 @@
+!> Begin and end of PETSc within a run: our communicator, our command line, our error messages.
+module petsc_session
+  use, intrinsic :: iso_c_binding, only: c_int, c_ptr, c_null_ptr, c_char, c_null_char, c_funptr, c_funloc, &
+                                         c_associated, c_f_pointer
+  use petscsys, only: PETSC_COMM_WORLD, PETSC_NULL_OPTIONS
+  use communicators, only: communicator_t
+  use errors, only: error_t, fail, exit_usage, exit_internal
+  implicit none
+  private
+  public :: start_petsc, finish_petsc, report_petsc
+
+  interface
+    !> Pushes what PETSc does when it finds an error.
+    integer(c_int) function push_error_handler(handler, context) bind(c, name='PetscPushErrorHandler')
+      import :: c_int, c_funptr, c_ptr
+      !> The handler, and data of its own
+      type(c_funptr), value :: handler
+      type(c_ptr), value :: context
+    end function push_error_handler
+
+    !> PETSc's handler that says nothing and returns the code. It is never called from here, so its
+    !> arguments are left out.
+    integer(c_int) function quiet_handler() bind(c, name='PetscIgnoreErrorHandler')
+      import :: c_int
+    end function quiet_handler
+
+    !> Takes PETSc's signal handler away, so that signals reach us.
+    integer(c_int) function pop_signal_handler() bind(c, name='PetscPopSignalHandler')
+      import :: c_int
+    end function pop_signal_handler
+
+    !> Meaning of an error code, in general and for the latest error.
+    integer(c_int) function error_message(code, general, particular) bind(c, name='PetscErrorMessage')
+      import :: c_int, c_ptr
+      !> The code
+      integer(c_int), value :: code
+      !> Texts ended by a null character
+      type(c_ptr), intent(out) :: general, particular
+    end function error_message
+  end interface
+
+contains
+
+  !> Starts PETSc, unless it runs already. The command line stays ours.
+  subroutine start_petsc(communicator, options, error)
+    !> Ranks that PETSc works on
+    type(communicator_t), intent(in) :: communicator
+    !> Options for PETSc's database, such as `-log_view -mat_mumps_icntl_14 50`; may be blank
+    character(len=*), intent(in) :: options
+    !> Raised when PETSc does not understand the options or does not start
+    type(error_t), allocatable, intent(inout) :: error
+    logical :: running
+    integer :: ierr
+
+    call PetscInitialized(running, ierr)
+    if (running) return
+    PETSC_COMM_WORLD = communicator%handle()
+    ! Options such as -log_view take effect only when they are there before the start.
+    call PetscOptionsInsertString(PETSC_NULL_OPTIONS, trim(options), ierr)
+    if (ierr /= 0) then
+      call fail(error, exit_usage, 'PETSc does not understand the options "'//trim(options)//'".')
+      return
+    end if
+    call PetscInitializeNoArguments(ierr)
+    if (ierr /= 0) then
+      call fail(error, exit_internal, 'PETSc does not start.')
+      return
+    end if
+    ierr = push_error_handler(c_funloc(quiet_handler), c_null_ptr)
+    ierr = pop_signal_handler()
+  end subroutine start_petsc
+
+  !> Ends PETSc; its objects must have been freed before.
+  subroutine finish_petsc()
+    logical :: running
+    integer :: ierr
+
+    call PetscInitialized(running, ierr)
+    if (running) call PetscFinalize(ierr)
+  end subroutine finish_petsc
+
+  !> Raises an error when one of several codes that PETSc returned isn't zero.
+  subroutine report_petsc(codes, error)
+    !> Codes in the order of the calls
+    integer, intent(in) :: codes(:)
+    !> Raised with PETSc's own words
+    type(error_t), allocatable, intent(inout) :: error
+    type(c_ptr) :: general, particular
+    integer :: i, ierr
+
+    do i = 1, size(codes)
+      if (codes(i) == 0) cycle
+      ierr = error_message(int(codes(i), c_int), general, particular)
+      call fail(error, exit_internal, 'PETSc failed: '//text_at(general)//'; '//text_at(particular))
+      return
+    end do
+  end subroutine report_petsc
+
+  !> First line of a C text.
+  function text_at(address) result(text)
+    !> Where the text begins; nowhere for an empty text
+    type(c_ptr), intent(in) :: address
+    !> The text
+    character(len=:), allocatable :: text
+    character(kind=c_char), pointer :: letters(:)
+    integer, parameter :: longest = 1024
+    integer :: i
+
+    text = ''
+    if (.not. c_associated(address)) return
+    call c_f_pointer(address, letters, [longest])
+    do i = 1, longest
+      if (letters(i) == c_null_char .or. letters(i) == new_line('a')) exit
+      text = text//letters(i)
+    end do
+  end function text_at
+end module petsc_session

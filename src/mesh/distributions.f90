@@ -1,0 +1,152 @@
+!> Who computes what: cells are dealt out by METIS, the points of a node belong to one rank, and every
+!> rank keeps copies (ghosts) of the points its elements touch but do not own.
+module distributions
+  use errors, only: error_t
+  use communicators, only: communicator_t
+  use partitions, only: partition_graph
+  use layered_meshes, only: layered_mesh_t
+  implicit none
+  private
+  public :: distribution_t, distribute
+
+  !> One rank's share of the mesh.
+  type :: distribution_t
+    !> Elements of this rank
+    integer, allocatable :: elements(:)
+    !> Points of this rank, the owned ones first, then ghosts; both in ascending rank order
+    integer, allocatable :: points(:)
+    !> Number of points owned
+    integer :: owned = 0
+    !> First rank-ordered number of each rank's points, (0:ranks)
+    integer, allocatable :: first(:)
+    !> Rank-ordered number (from 0) of every point of the mesh
+    integer, allocatable :: number(:)
+    !> Position of every point of the mesh among this rank's; 0: not here
+    integer, allocatable :: local(:)
+    !> Points of this rank's elements as positions, (9, elements)
+    integer, allocatable :: connectivity(:, :)
+  end type distribution_t
+
+contains
+
+  !> Deals the mesh out to the ranks of a communicator. Every rank finds the same distribution.
+  subroutine distribute(mesh, communicator, self, error)
+    !> The mesh
+    type(layered_mesh_t), intent(in) :: mesh
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> This rank's share
+    type(distribution_t), intent(out) :: self
+    !> Set if METIS fails
+    type(error_t), allocatable, intent(out) :: error
+    integer :: owner(mesh%points())
+    integer, allocatable :: row_start(:), neighbours(:), part(:)
+    integer :: element
+
+    call cell_graph(mesh, row_start, neighbours)
+    call partition_graph(row_start, neighbours, communicator%size, part, error)
+    if (allocated(error)) return
+    call own_points(mesh, part, owner)
+    call number_points(owner, communicator%size, self)
+    self%elements = pack([(element, element=1, mesh%elements())], part(mesh%element_cell) == communicator%rank)
+    call gather_points(mesh, communicator%rank, owner, self)
+    allocate (self%connectivity(9, size(self%elements)))
+    do element = 1, size(self%elements)
+      self%connectivity(:, element) = self%local(mesh%connectivity(:, self%elements(element)))
+    end do
+  end subroutine distribute
+
+  !> Graph of the cells that share an edge, compressed rows.
+  pure subroutine cell_graph(mesh, row_start, neighbours)
+    !> The mesh
+    type(layered_mesh_t), intent(in) :: mesh
+    !> Start of each cell's neighbours, (cells + 1)
+    integer, allocatable, intent(out) :: row_start(:)
+    !> Neighbours
+    integer, allocatable, intent(out) :: neighbours(:)
+    integer :: i, j, cell, found, nearby(4)
+
+    allocate (row_start(product(mesh%cells) + 1), neighbours(4*product(mesh%cells)))
+    found = 0
+    do j = 1, mesh%cells(2)
+      do i = 1, mesh%cells(1)
+        cell = mesh%cell_at(i, j)
+        row_start(cell) = found + 1
+        nearby = [merge(cell - 1, 0, i > 1), merge(cell + 1, 0, i < mesh%cells(1)), &
+                  merge(cell - mesh%cells(1), 0, j > 1), merge(cell + mesh%cells(1), 0, j < mesh%cells(2))]
+        neighbours(found + 1:found + count(nearby > 0)) = pack(nearby, nearby > 0)
+        found = found + count(nearby > 0)
+      end do
+    end do
+    row_start(cell + 1) = found + 1
+    neighbours = neighbours(:found)
+  end subroutine cell_graph
+
+  !> Gives each point to the lowest rank whose cells touch its node.
+  pure subroutine own_points(mesh, part, owner)
+    !> The mesh
+    type(layered_mesh_t), intent(in) :: mesh
+    !> Rank of each cell
+    integer, intent(in) :: part(:)
+    !> Rank of each point, from 0
+    integer, intent(out) :: owner(:)
+    integer :: node_owner(mesh%nodes()), cell, nodes(9)
+
+    node_owner = huge(1)
+    do cell = 1, size(part)
+      nodes = mesh%cell_nodes(cell)
+      node_owner(nodes) = min(node_owner(nodes), part(cell))
+    end do
+    owner = node_owner(mesh%point_node)
+  end subroutine own_points
+
+  !> Numbers the points rank by rank.
+  pure subroutine number_points(owner, ranks, self)
+    !> Rank of each point
+    integer, intent(in) :: owner(:)
+    !> Number of ranks
+    integer, intent(in) :: ranks
+    !> Receives `first` and `number`
+    type(distribution_t), intent(inout) :: self
+    integer :: next(0:ranks), point, rank
+
+    next = 0
+    do point = 1, size(owner)
+      next(owner(point) + 1) = next(owner(point) + 1) + 1
+    end do
+    do rank = 1, ranks
+      next(rank) = next(rank) + next(rank - 1)
+    end do
+    allocate (self%first(0:ranks), self%number(size(owner)))
+    self%first = next
+    do point = 1, size(owner)
+      self%number(point) = next(owner(point))
+      next(owner(point)) = next(owner(point)) + 1
+    end do
+  end subroutine number_points
+
+  !> Lists this rank's points: owned, then ghosts.
+  pure subroutine gather_points(mesh, rank, owner, self)
+    !> The mesh
+    type(layered_mesh_t), intent(in) :: mesh
+    !> This rank
+    integer, intent(in) :: rank
+    !> Rank of each point
+    integer, intent(in) :: owner(:)
+    !> Receives `points`, `owned` and `local`
+    type(distribution_t), intent(inout) :: self
+    logical :: touched(size(owner))
+    integer :: in_order(size(owner)), point, element
+
+    touched = .false.
+    do element = 1, size(self%elements)
+      touched(mesh%connectivity(:, self%elements(element))) = .true.
+    end do
+    touched = touched .and. owner /= rank
+    in_order(self%number + 1) = [(point, point=1, size(owner))]
+    self%owned = count(owner == rank)
+    self%points = [pack(in_order, owner(in_order) == rank), pack(in_order, touched(in_order))]
+    allocate (self%local(size(owner)), source=0)
+    self%local(self%points) = [(point, point=1, size(self%points))]
+  end subroutine gather_points
+end module distributions

@@ -1,0 +1,133 @@
+!> Element edges along one side of the plate: the loaded patch is an exact number of elements, sizes
+!> outside grow geometrically.
+module gradings
+  use kinds, only: wp
+  implicit none
+  private
+  public :: graded_half_line, graded_line
+
+contains
+
+  !> Element edges from the struck point (0) to the border, for a model cut at the struck point.
+  pure function graded_half_line(half_length, elements, half_patch, grading) result(edges)
+    !> Distance from the struck point to the border
+    real(wp), intent(in) :: half_length
+    !> Number of elements
+    integer, intent(in) :: elements
+    !> Half the side of the loaded patch; 0: none
+    real(wp), intent(in) :: half_patch
+    !> Largest over smallest element edge outside the patch; 0: smooth from the patch's elements
+    real(wp), intent(in) :: grading
+    !> Ascending coordinates of the element edges, (0:elements)
+    real(wp) :: edges(0:elements)
+    integer :: inside, i
+
+    inside = patch_elements(half_patch, half_length, elements, 1)
+    do i = 0, inside
+      edges(i) = half_patch*i/max(inside, 1)
+    end do
+    if (inside < elements) edges(inside:) = outer_edges(edges(inside), half_length, elements - inside, &
+                                                        half_patch/max(inside, 1), grading)
+  end function graded_half_line
+
+  !> Element edges from border to border, symmetric about the struck point in the middle.
+  pure function graded_line(length, elements, patch, grading) result(edges)
+    !> Length of the plate
+    real(wp), intent(in) :: length
+    !> Number of elements
+    integer, intent(in) :: elements
+    !> Side of the loaded patch; 0: none
+    real(wp), intent(in) :: patch
+    !> Largest over smallest element edge outside the patch; 0: smooth from the patch's elements
+    real(wp), intent(in) :: grading
+    !> Ascending coordinates of the element edges, (0:elements)
+    real(wp) :: edges(0:elements)
+    real(wp) :: border
+    integer :: inside, outside, i
+
+    inside = patch_elements(patch, length, elements, 2)
+    outside = (elements - inside)/2
+    border = patch/2
+    if (patch <= 0) border = length*inside/elements/2
+    do i = 0, inside
+      edges(outside + i) = border*real(2*i - inside, wp)/max(inside, 1)
+    end do
+    if (inside == 0) edges(outside) = 0
+    if (outside == 0) return
+    edges(outside + inside:) = outer_edges(border, length/2, outside, 2*border/max(inside, 1), grading)
+    edges(:outside) = -edges(elements:elements - outside:-1)
+  end function graded_line
+
+  !> Number of elements across the patch: as near as can be to the mean element size, at least one.
+  pure integer function patch_elements(patch, length, elements, stride) result(inside)
+    !> Extent of the patch; 0: none
+    real(wp), intent(in) :: patch
+    !> Extent of the line
+    real(wp), intent(in) :: length
+    !> Elements along the line
+    integer, intent(in) :: elements
+    !> 1: any number will do; 2: as odd or even as `elements`
+    integer, intent(in) :: stride
+    integer :: offset, most
+
+    offset = modulo(elements, stride)
+    inside = offset
+    if (patch <= 0) return
+    most = elements
+    if (patch < length*(1 - 1.0e-9_wp)) most = elements - stride
+    inside = offset + stride*nint((patch*elements/length - offset)/stride)
+    inside = max(merge(offset, stride, offset > 0), min(inside, most))
+  end function patch_elements
+
+  !> Edges of `count` elements from `start` to `finish` whose sizes form a geometric series.
+  pure function outer_edges(start, finish, count, neighbour, grading) result(edges)
+    !> First and last edge
+    real(wp), intent(in) :: start, finish
+    !> Number of elements
+    integer, intent(in) :: count
+    !> Size of the element before `start`; 0: none
+    real(wp), intent(in) :: neighbour
+    !> Largest over smallest size; 0: continue smoothly from `neighbour`
+    real(wp), intent(in) :: grading
+    !> Ascending coordinates of the edges
+    real(wp) :: edges(0:count)
+    real(wp) :: ratio, sizes(count)
+    integer :: i
+
+    ratio = 1
+    if (grading > 0 .and. count > 1) then
+      ratio = grading**(1.0_wp/(count - 1))
+    else if (neighbour > 0) then
+      ratio = smooth_ratio((finish - start)/neighbour, count)
+    end if
+    sizes = [(ratio**(i - 1), i=1, count)]
+    sizes = sizes*(finish - start)/sum(sizes)
+    edges(0) = start
+    do i = 1, count
+      edges(i) = start + sum(sizes(:i))
+    end do
+    edges(count) = finish
+  end function outer_edges
+
+  !> Ratio r of a series r + r**2 + ... + r**count that sums to `total`, by bisection of its logarithm.
+  pure real(wp) function smooth_ratio(total, count) result(ratio)
+    !> Sum wanted, in sizes of the element before the series
+    real(wp), intent(in) :: total
+    !> Number of terms
+    integer, intent(in) :: count
+    real(wp) :: low, high
+    integer :: i, k
+
+    low = log(min(1.0_wp, total/count))
+    high = log(max(1.0_wp, total/count))
+    do i = 1, 60
+      ratio = exp((low + high)/2)
+      if (sum([(ratio**k, k=1, count)]) > total) then
+        high = log(ratio)
+      else
+        low = log(ratio)
+      end if
+    end do
+    if (abs(ratio - 1) < 1.0e-12_wp) ratio = 1
+  end function smooth_ratio
+end module gradings

@@ -1,0 +1,306 @@
+!> The mesh of the modelled part: a rectangle of nine-node cells, and over each cell the layers of
+!> plies that may separate there. Every rank holds the whole of it; it is small beside a factor.
+module layered_meshes
+  use kinds, only: wp
+  use mesh_parameters, only: plate_t, mesh_t, symmetry_quarter
+  use gradings, only: graded_half_line, graded_line
+  implicit none
+  private
+  public :: layered_mesh_t, zone_t, create_mesh
+
+  !> A rectangle in which the plies above and below an interface have unknowns of their own.
+  type :: zone_t
+    !> The interface lies below this ply
+    integer :: below_ply = 0
+    !> First and last column of cells, then of rows
+    integer :: columns(2) = 0, rows(2) = 0
+  end type zone_t
+
+  !> Nodes, cells, layers and the points (node and layer pairs) that carry five unknowns each.
+  type :: layered_mesh_t
+    !> Cells along x and y
+    integer :: cells(2) = 0
+    !> Edges of the cells along x and y, (0:cells)
+    real(wp), allocatable :: x_edges(:), y_edges(:)
+    !> Coordinates of the nodes, (2, nodes), x fastest
+    real(wp), allocatable :: node_coordinates(:, :)
+    !> Zones, from the struck face downwards
+    type(zone_t), allocatable :: zones(:)
+    !> Node of each point; points of a node follow each other from the struck face downwards
+    integer, allocatable :: point_node(:)
+    !> First point of each node, (nodes + 1)
+    integer, allocatable :: first_point(:)
+    !> Zone whose interface separates a point from the point above it; 0: first point of a node
+    integer, allocatable :: point_zone(:)
+    !> Points of each element, (9, elements), tensor order
+    integer, allocatable :: connectivity(:, :)
+    !> Cell under each element
+    integer, allocatable :: element_cell(:)
+    !> First and last ply of each element, (2, elements)
+    integer, allocatable :: element_plies(:, :)
+    !> Node at the struck point
+    integer :: struck_node = 0
+    !> Models that make up the whole plate: 4 for a quarter
+    integer :: multiplicity = 1
+  contains
+    !> Numbers of nodes, points and elements.
+    procedure :: nodes
+    procedure :: points
+    procedure :: elements
+    !> Cells of a column and row, and the nine nodes of a cell.
+    procedure :: cell_at
+    procedure :: cell_nodes
+    !> True where a cell lies under the loaded patch.
+    procedure :: in_patch
+  end type layered_mesh_t
+
+contains
+
+  !> Builds the mesh of the modelled part.
+  pure function create_mesh(plate, mesh, plies, zones) result(self)
+    !> Plate and symmetry
+    type(plate_t), intent(in) :: plate
+    !> Elements, grading and patch
+    type(mesh_t), intent(in) :: mesh
+    !> Number of plies
+    integer, intent(in) :: plies
+    !> Layered rectangles, from the struck face downwards
+    type(zone_t), intent(in) :: zones(:)
+    !> The mesh
+    type(layered_mesh_t) :: self
+    logical :: quarter
+
+    quarter = plate%symmetry == symmetry_quarter
+    self%multiplicity = merge(4, 1, quarter)
+    self%cells = mesh%elements
+    if (quarter) then
+      self%x_edges = graded_half_line(plate%length(1)/2, mesh%elements(1), mesh%patch/2, mesh%grading)
+      self%y_edges = graded_half_line(plate%length(2)/2, mesh%elements(2), mesh%patch/2, mesh%grading)
+    else
+      self%x_edges = graded_line(plate%length(1), mesh%elements(1), mesh%patch, mesh%grading)
+      self%y_edges = graded_line(plate%length(2), mesh%elements(2), mesh%patch, mesh%grading)
+    end if
+    self%zones = zones
+    call place_nodes(self, quarter)
+    call number_points(self)
+    call build_elements(self, plies)
+  end function create_mesh
+
+  !> Nodes at the edges and middles of the cells.
+  pure subroutine place_nodes(self, quarter)
+    !> The mesh, with its edges known
+    type(layered_mesh_t), intent(inout) :: self
+    !> True: the struck point is the corner of the model
+    logical, intent(in) :: quarter
+    real(wp) :: x(0:2*self%cells(1)), y(0:2*self%cells(2))
+    integer :: i, j, along
+
+    call edges_and_middles(self%x_edges, x)
+    call edges_and_middles(self%y_edges, y)
+    along = size(x)
+    allocate (self%node_coordinates(2, along*size(y)))
+    do j = 0, size(y) - 1
+      do i = 0, along - 1
+        self%node_coordinates(:, 1 + i + along*j) = [x(i), y(j)]
+      end do
+    end do
+    self%struck_node = 1
+    if (.not. quarter) self%struck_node = 1 + self%cells(1) + along*self%cells(2)
+  end subroutine place_nodes
+
+  !> Coordinates of the cells' edges with their middles in between.
+  pure subroutine edges_and_middles(edges, coordinates)
+    !> Edges, (0:cells)
+    real(wp), intent(in) :: edges(0:)
+    !> Edges and middles, (0:2*cells)
+    real(wp), intent(out) :: coordinates(0:)
+
+    coordinates(0::2) = edges
+    coordinates(1::2) = (edges(:size(edges) - 2) + edges(1:))/2
+  end subroutine edges_and_middles
+
+  !> Gives a node one point more for each zone that it lies inside of; on the border of a zone both
+  !> layers share the point, so that their displacements are continuous without a constraint.
+  pure subroutine number_points(self)
+    !> The mesh, with its nodes placed
+    type(layered_mesh_t), intent(inout) :: self
+    integer :: node, zone, points
+
+    allocate (self%first_point(self%nodes() + 1))
+    points = 0
+    do node = 1, self%nodes()
+      self%first_point(node) = points + 1
+      points = points + 1
+      do zone = 1, size(self%zones)
+        if (inside_zone(self, zone, node)) points = points + 1
+      end do
+    end do
+    self%first_point(self%nodes() + 1) = points + 1
+    allocate (self%point_node(points), self%point_zone(points))
+    points = 0
+    do node = 1, self%nodes()
+      points = points + 1
+      self%point_node(points) = node
+      self%point_zone(points) = 0
+      do zone = 1, size(self%zones)
+        if (.not. inside_zone(self, zone, node)) cycle
+        points = points + 1
+        self%point_node(points) = node
+        self%point_zone(points) = zone
+      end do
+    end do
+  end subroutine number_points
+
+  !> True if every cell around a node belongs to a zone.
+  pure logical function inside_zone(self, zone, node) result(inside)
+    !> The mesh
+    type(layered_mesh_t), intent(in) :: self
+    !> Index of the zone
+    integer, intent(in) :: zone
+    !> Node
+    integer, intent(in) :: node
+    integer :: i, j
+
+    i = modulo(node - 1, 2*self%cells(1) + 1)
+    j = (node - 1)/(2*self%cells(1) + 1)
+    inside = within(i, self%zones(zone)%columns, self%cells(1)) .and. within(j, self%zones(zone)%rows, self%cells(2))
+  end function inside_zone
+
+  !> True if all cells around a line of nodes are in a range; the model's own border counts as inside.
+  pure logical function within(line, range, cells)
+    !> Line of nodes, 0 to 2*cells
+    integer, intent(in) :: line
+    !> First and last cell of the range
+    integer, intent(in) :: range(2)
+    !> Cells along this direction
+    integer, intent(in) :: cells
+
+    within = (line > 2*(range(1) - 1) .or. (line == 0 .and. range(1) == 1)) .and. &
+             (line < 2*range(2) .or. (line == 2*cells .and. range(2) == cells))
+  end function within
+
+  !> One element for each layer over each cell.
+  pure subroutine build_elements(self, plies)
+    !> The mesh, with its points numbered
+    type(layered_mesh_t), intent(inout) :: self
+    !> Number of plies
+    integer, intent(in) :: plies
+    integer :: pass, cell, elements, zone, first
+
+    do pass = 1, 2
+      elements = 0
+      do cell = 1, product(self%cells)
+        first = 1
+        do zone = 1, size(self%zones) + 1
+          if (zone <= size(self%zones)) then
+            if (.not. covers(self%zones(zone), cell, self%cells(1))) cycle
+          end if
+          elements = elements + 1
+          if (pass == 1) cycle
+          self%element_cell(elements) = cell
+          self%element_plies(1, elements) = first
+          self%element_plies(2, elements) = plies
+          if (zone <= size(self%zones)) self%element_plies(2, elements) = self%zones(zone)%below_ply
+          self%connectivity(:, elements) = layer_points(self, cell, first)
+          first = self%element_plies(2, elements) + 1
+        end do
+      end do
+      if (pass == 1) allocate (self%connectivity(9, elements), self%element_cell(elements), &
+                               self%element_plies(2, elements))
+    end do
+  end subroutine build_elements
+
+  !> True if a zone covers a cell.
+  pure logical function covers(zone, cell, columns)
+    !> The zone
+    type(zone_t), intent(in) :: zone
+    !> Cell
+    integer, intent(in) :: cell
+    !> Cells along x
+    integer, intent(in) :: columns
+    integer :: place(2)
+
+    place = [modulo(cell - 1, columns) + 1, (cell - 1)/columns + 1]
+    covers = all(place >= [zone%columns(1), zone%rows(1)]) .and. all(place <= [zone%columns(2), zone%rows(2)])
+  end function covers
+
+  !> Points of the layer that begins with a ply: at each node the lowest point not below that ply's top.
+  pure function layer_points(self, cell, first_ply) result(points)
+    !> The mesh
+    type(layered_mesh_t), intent(in) :: self
+    !> Cell
+    integer, intent(in) :: cell
+    !> First ply of the layer
+    integer, intent(in) :: first_ply
+    !> Points, tensor order
+    integer :: points(9)
+    integer :: nodes(9), a, point
+
+    nodes = self%cell_nodes(cell)
+    do a = 1, 9
+      points(a) = self%first_point(nodes(a))
+      do point = points(a) + 1, self%first_point(nodes(a) + 1) - 1
+        if (self%zones(self%point_zone(point))%below_ply < first_ply) points(a) = point
+      end do
+    end do
+  end function layer_points
+
+  !> Number of nodes.
+  pure integer function nodes(self)
+    !> The mesh
+    class(layered_mesh_t), intent(in) :: self
+    nodes = size(self%node_coordinates, 2)
+  end function nodes
+
+  !> Number of points.
+  pure integer function points(self)
+    !> The mesh
+    class(layered_mesh_t), intent(in) :: self
+    points = size(self%point_node)
+  end function points
+
+  !> Number of elements.
+  pure integer function elements(self)
+    !> The mesh
+    class(layered_mesh_t), intent(in) :: self
+    elements = size(self%element_cell)
+  end function elements
+
+  !> Cell of a column and a row.
+  pure integer function cell_at(self, column, row) result(cell)
+    !> The mesh
+    class(layered_mesh_t), intent(in) :: self
+    !> Column and row, from 1
+    integer, intent(in) :: column, row
+    cell = column + self%cells(1)*(row - 1)
+  end function cell_at
+
+  !> The nine nodes of a cell, tensor order.
+  pure function cell_nodes(self, cell) result(nodes)
+    !> The mesh
+    class(layered_mesh_t), intent(in) :: self
+    !> Cell
+    integer, intent(in) :: cell
+    !> Nodes
+    integer :: nodes(9)
+    integer :: corner, along, i, j
+
+    along = 2*self%cells(1) + 1
+    corner = 1 + 2*modulo(cell - 1, self%cells(1)) + along*2*((cell - 1)/self%cells(1))
+    nodes = [((corner + i + along*j, i=0, 2), j=0, 2)]
+  end function cell_nodes
+
+  !> True where a cell lies under the loaded patch.
+  pure logical function in_patch(self, cell, patch)
+    !> The mesh
+    class(layered_mesh_t), intent(in) :: self
+    !> Cell
+    integer, intent(in) :: cell
+    !> Side of the patch
+    real(wp), intent(in) :: patch
+    integer :: nodes(9)
+
+    nodes = self%cell_nodes(cell)
+    in_patch = all(abs(self%node_coordinates(:, nodes(5))) < patch/2)
+  end function in_patch
+end module layered_meshes

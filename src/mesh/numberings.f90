@@ -1,0 +1,223 @@
+!> Equations: one for every unknown that is not held, numbered rank by rank, and the pattern of the
+!> matrix that couples them. Renewed as a whole when unknowns are released.
+module numberings
+  use kinds, only: wp
+  use layered_meshes, only: layered_mesh_t
+  use distributions, only: distribution_t
+  implicit none
+  private
+  public :: numbering_t, number_equations
+
+  !> Equation numbers and the rows of this rank.
+  type :: numbering_t
+    !> Equation (from 0) of each unknown of this rank's points, ghosts too; -1: held, (5, local points)
+    integer, allocatable :: equation(:, :)
+    !> First row of this rank, its rows, and all rows
+    integer :: first_row = 0, rows = 0, total = 0
+    !> Points that this rank owns
+    integer :: owned = 0
+    !> Pattern of this rank's rows: start of each row (from 1) and columns (from 0, ascending)
+    integer, allocatable :: row_start(:), columns(:)
+  contains
+    !> Copies between fields over points and vectors of this rank's rows.
+    procedure :: gather
+    procedure :: scatter
+  end type numbering_t
+
+contains
+
+  !> Numbers the unknowns that are not held and finds the pattern of this rank's rows.
+  subroutine number_equations(mesh, distribution, held, self)
+    !> The mesh
+    type(layered_mesh_t), intent(in) :: mesh
+    !> Owners of the points
+    type(distribution_t), intent(in) :: distribution
+    !> Held unknowns of every point of the mesh, (5, points)
+    logical, intent(in) :: held(:, :)
+    !> The numbering
+    type(numbering_t), intent(out) :: self
+    integer :: equation(5, mesh%points())
+
+    call number_all(distribution, held, equation)
+    self%total = count(.not. held)
+    self%owned = distribution%owned
+    self%rows = count(.not. held(:, distribution%points(:distribution%owned)))
+    self%first_row = first_row_of(equation, distribution)
+    self%equation = equation(:, distribution%points)
+    call find_pattern(mesh, distribution, equation, self)
+  end subroutine number_equations
+
+  !> Equation numbers of every point of the mesh, in rank order.
+  subroutine number_all(distribution, held, equation)
+    !> Rank order of the points
+    type(distribution_t), intent(in) :: distribution
+    !> Held unknowns
+    logical, intent(in) :: held(:, :)
+    !> Equations, from 0; -1: held
+    integer, intent(out) :: equation(:, :)
+    integer :: in_order(size(held, 2)), place, component, next
+
+    in_order(distribution%number + 1) = [(place, place=1, size(in_order))]
+    next = 0
+    equation = -1
+    do place = 1, size(in_order)
+      do component = 1, 5
+        if (held(component, in_order(place))) cycle
+        equation(component, in_order(place)) = next
+        next = next + 1
+      end do
+    end do
+  end subroutine number_all
+
+  !> Number of rows before this rank's.
+  pure integer function first_row_of(equation, distribution) result(first)
+    !> Equations of every point
+    integer, intent(in) :: equation(:, :)
+    !> Owners
+    type(distribution_t), intent(in) :: distribution
+    integer :: point, start
+
+    start = huge(1)
+    if (size(distribution%points) > 0) start = distribution%number(distribution%points(1))
+    first = 0
+    do point = 1, size(equation, 2)
+      if (distribution%number(point) < start) first = first + count(equation(:, point) >= 0)
+    end do
+  end function first_row_of
+
+  !> Columns of this rank's rows: all unknowns at the nodes of the cells around.
+  subroutine find_pattern(mesh, distribution, equation, self)
+    !> The mesh
+    type(layered_mesh_t), intent(in) :: mesh
+    !> Owners
+    type(distribution_t), intent(in) :: distribution
+    !> Equations of every point
+    integer, intent(in) :: equation(:, :)
+    !> Receives the pattern
+    type(numbering_t), intent(inout) :: self
+    integer, allocatable :: nearby(:)
+    integer :: pass, i, component, row, entries
+
+    do pass = 1, 2
+      row = 0
+      entries = 0
+      do i = 1, distribution%owned
+        if (all(self%equation(:, i) < 0)) cycle
+        nearby = columns_around(mesh, equation, mesh%point_node(distribution%points(i)))
+        do component = 1, 5
+          if (self%equation(component, i) < 0) cycle
+          row = row + 1
+          if (pass == 2) then
+            self%row_start(row) = entries + 1
+            self%columns(entries + 1:entries + size(nearby)) = nearby
+          end if
+          entries = entries + size(nearby)
+        end do
+      end do
+      if (pass == 1) allocate (self%row_start(self%rows + 1), self%columns(entries))
+    end do
+    self%row_start(self%rows + 1) = entries + 1
+  end subroutine find_pattern
+
+  !> Equations of all points at the nodes that share a cell with a node, ascending.
+  pure function columns_around(mesh, equation, node) result(columns)
+    !> The mesh
+    type(layered_mesh_t), intent(in) :: mesh
+    !> Equations of every point
+    integer, intent(in) :: equation(:, :)
+    !> The node
+    integer, intent(in) :: node
+    !> Equations, from 0
+    integer, allocatable :: columns(:)
+    integer :: i(2), j(2), line(2), along, row, first, last
+
+    along = 2*mesh%cells(1) + 1
+    line = [modulo(node - 1, along), (node - 1)/along]
+    i = reach(line(1), mesh%cells(1))
+    j = reach(line(2), mesh%cells(2))
+    allocate (columns(0))
+    do row = j(1), j(2)
+      first = mesh%first_point(1 + i(1) + along*row)
+      last = mesh%first_point(2 + i(2) + along*row) - 1
+      columns = [columns, pack(equation(:, first:last), equation(:, first:last) >= 0)]
+    end do
+    call sort(columns)
+  end function columns_around
+
+  !> Lines of nodes that share a cell with a line.
+  pure function reach(line, cells) result(range)
+    !> Line of nodes, from 0
+    integer, intent(in) :: line
+    !> Cells along this direction
+    integer, intent(in) :: cells
+    !> First and last line
+    integer :: range(2)
+
+    if (modulo(line, 2) == 1) then
+      range = [line - 1, line + 1]
+    else
+      range = [max(0, line - 2), min(2*cells, line + 2)]
+    end if
+  end function reach
+
+  !> Sorts a short list that is made of few ascending runs (insertion, which is linear for such).
+  pure subroutine sort(list)
+    !> The list
+    integer, intent(inout) :: list(:)
+    integer :: i, j, value
+
+    do i = 2, size(list)
+      value = list(i)
+      j = i - 1
+      do while (j >= 1)
+        if (list(j) <= value) exit
+        list(j + 1) = list(j)
+        j = j - 1
+      end do
+      list(j + 1) = value
+    end do
+  end subroutine sort
+
+  !> Rows of this rank from a field over its points.
+  pure subroutine gather(self, field, vector)
+    !> The numbering
+    class(numbering_t), intent(in) :: self
+    !> (5, local points)
+    real(wp), intent(in) :: field(:, :)
+    !> (rows)
+    real(wp), intent(out) :: vector(:)
+    integer :: point, component, row
+
+    row = 0
+    do point = 1, self%owned
+      do component = 1, 5
+        if (self%equation(component, point) < 0) cycle
+        row = row + 1
+        vector(row) = field(component, point)
+      end do
+    end do
+  end subroutine gather
+
+  !> Field over the owned points from the rows of this rank; held unknowns become zero, ghosts are left alone.
+  pure subroutine scatter(self, vector, field)
+    !> The numbering
+    class(numbering_t), intent(in) :: self
+    !> (rows)
+    real(wp), intent(in) :: vector(:)
+    !> (5, local points)
+    real(wp), intent(inout) :: field(:, :)
+    integer :: point, component, row
+
+    row = 0
+    do point = 1, self%owned
+      do component = 1, 5
+        if (self%equation(component, point) < 0) then
+          field(component, point) = 0
+        else
+          row = row + 1
+          field(component, point) = vector(row)
+        end if
+      end do
+    end do
+  end subroutine scatter
+end module numberings

@@ -1,0 +1,94 @@
+!> Which unknowns of the points are held: by supports, by symmetry, because the layers are still
+!> joined, or because the scene never moves them.
+module supports
+  use kinds, only: wp
+  use mesh_parameters, only: plate_t, edge_free, edge_clamped, symmetry_quarter
+  use layered_meshes, only: layered_mesh_t
+  implicit none
+  private
+  public :: held_unknowns
+
+contains
+
+  !> Table of the unknowns held at zero by supports and symmetry, and of the whole membrane when it is idle.
+  pure function held_unknowns(mesh, plate, membrane_idle, pin_plane) result(held)
+    !> The mesh
+    type(layered_mesh_t), intent(in) :: mesh
+    !> Supports and symmetry
+    type(plate_t), intent(in) :: plate
+    !> True: nothing ever moves u and v, so they need no equations
+    logical, intent(in) :: membrane_idle
+    !> True: hold rigid motion in the plane, which no support does
+    logical, intent(in) :: pin_plane
+    !> (5, points): u, v, w, theta_x, theta_y
+    logical, allocatable :: held(:, :)
+    integer :: point, line(2)
+
+    allocate (held(5, mesh%points()), source=.false.)
+    do point = 1, mesh%points()
+      line(1) = modulo(mesh%point_node(point) - 1, 2*mesh%cells(1) + 1)
+      line(2) = (mesh%point_node(point) - 1)/(2*mesh%cells(1) + 1)
+      held(:, point) = held_on_borders(mesh, plate, line)
+      if (membrane_idle) held(1:2, point) = .true.
+    end do
+    if (pin_plane) call pin(mesh, held)
+  end function held_unknowns
+
+  !> Unknowns held at a node by the borders it lies on.
+  pure function held_on_borders(mesh, plate, line) result(held)
+    !> The mesh
+    type(layered_mesh_t), intent(in) :: mesh
+    !> Supports and symmetry
+    type(plate_t), intent(in) :: plate
+    !> Lines of nodes along x and y that the node lies on, from 0
+    integer, intent(in) :: line(2)
+    !> u, v, w, theta_x, theta_y
+    logical :: held(5)
+    integer :: direction
+
+    held = .false.
+    do direction = 1, 2
+      if (line(direction) == 0) then
+        if (plate%symmetry == symmetry_quarter) then
+          held([direction, 3 + direction]) = .true.
+        else
+          held = held .or. held_by_edge(plate%edges(2*direction - 1), direction, plate%in_plane_fixed)
+        end if
+      else if (line(direction) == 2*mesh%cells(direction)) then
+        held = held .or. held_by_edge(plate%edges(2*direction), direction, plate%in_plane_fixed)
+      end if
+    end do
+  end function held_on_borders
+
+  !> Unknowns held by one edge. A simple support is a hard one: it also holds the rotation along the edge.
+  pure function held_by_edge(edge, normal, in_plane_fixed) result(held)
+    !> Kind of support
+    integer, intent(in) :: edge
+    !> Direction of the edge's normal: 1 for x, 2 for y
+    integer, intent(in) :: normal
+    !> True: u and v are held too
+    logical, intent(in) :: in_plane_fixed
+    !> u, v, w, theta_x, theta_y
+    logical :: held(5)
+
+    held = .false.
+    if (edge == edge_free) return
+    held(3) = .true.
+    held(3 + 3 - normal) = .true.
+    if (edge == edge_clamped) held(4:5) = .true.
+    if (in_plane_fixed) held(1:2) = .true.
+  end function held_by_edge
+
+  !> Holds the three rigid motions in the plane at the struck node and the node beside it along x.
+  pure subroutine pin(mesh, held)
+    !> The mesh
+    type(layered_mesh_t), intent(in) :: mesh
+    !> Table of held unknowns
+    logical, intent(inout) :: held(:, :)
+    integer :: node
+
+    node = mesh%struck_node
+    held(1:2, mesh%first_point(node)) = .true.
+    held(2, mesh%first_point(node + 1)) = .true.
+  end subroutine pin
+end module supports

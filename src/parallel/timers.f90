@@ -1,0 +1,126 @@
+!> Named stopwatches, of the clock on the wall and of the processor.
+module timers
+  use kinds, only: wp, long
+  implicit none
+  private
+  public :: timer_set_t, wall_time
+
+  !> Longest name of a timer.
+  integer, parameter :: name_length = 32
+
+  !> One stopwatch.
+  type :: timer_t
+    !> What is timed
+    character(len=name_length) :: name = ''
+    !> Seconds on the wall and of the processor, summed over all finished runs
+    real(wp) :: wall = 0, processor = 0
+    !> Times when the present run began
+    real(wp) :: wall_begun = 0, processor_begun = 0
+    !> Number of finished runs
+    integer :: runs = 0
+  end type timer_t
+
+  !> A set of stopwatches known by their names; a name is new the first time it is started.
+  type :: timer_set_t
+    !> The stopwatches in the order of their first start
+    type(timer_t), allocatable, private :: list(:)
+  contains
+    !> Starts a stopwatch.
+    procedure :: start
+    !> Stops it and adds the run.
+    procedure :: stop => stop_timer
+    !> Seconds on the wall of all its runs.
+    procedure :: seconds
+    !> A table for the log, one line a stopwatch.
+    procedure :: lines
+    procedure, private :: position
+  end type timer_set_t
+
+contains
+
+  !> Seconds on the wall since some moment in the past.
+  real(wp) function wall_time()
+    integer(long) :: ticks, rate
+
+    call system_clock(ticks, rate)
+    wall_time = real(ticks, wp)/real(rate, wp)
+  end function wall_time
+
+  !> Starts a stopwatch.
+  subroutine start(self, name)
+    class(timer_set_t), intent(inout) :: self
+    !> What is timed
+    character(len=*), intent(in) :: name
+    integer :: i
+
+    if (.not. allocated(self%list)) allocate (self%list(0))
+    i = self%position(name)
+    if (i == 0) then
+      self%list = [self%list, timer_t(name=name)]
+      i = size(self%list)
+    end if
+    self%list(i)%wall_begun = wall_time()
+    call cpu_time(self%list(i)%processor_begun)
+  end subroutine start
+
+  !> Stops a stopwatch that was started and adds the run.
+  subroutine stop_timer(self, name)
+    class(timer_set_t), intent(inout) :: self
+    !> What was timed
+    character(len=*), intent(in) :: name
+    real(wp) :: processor
+    integer :: i
+
+    i = self%position(name)
+    if (i == 0) return
+    call cpu_time(processor)
+    associate (timer => self%list(i))
+      timer%wall = timer%wall + wall_time() - timer%wall_begun
+      timer%processor = timer%processor + processor - timer%processor_begun
+      timer%runs = timer%runs + 1
+    end associate
+  end subroutine stop_timer
+
+  !> Seconds on the wall of all finished runs; 0 for a name that never ran.
+  pure real(wp) function seconds(self, name)
+    class(timer_set_t), intent(in) :: self
+    !> What was timed
+    character(len=*), intent(in) :: name
+    integer :: i
+
+    seconds = 0
+    i = self%position(name)
+    if (i > 0) seconds = self%list(i)%wall
+  end function seconds
+
+  !> A table for the log, one line a stopwatch.
+  pure function lines(self)
+    class(timer_set_t), intent(in) :: self
+    !> Name, runs, seconds on the wall, seconds of the processor
+    character(len=name_length + 40), allocatable :: lines(:)
+    integer :: i
+
+    allocate (lines(0))
+    if (.not. allocated(self%list)) return
+    deallocate (lines)
+    allocate (lines(size(self%list)))
+    do i = 1, size(lines)
+      associate (timer => self%list(i))
+        write (lines(i), '(a,i10,f13.3," s",f13.3," s")') timer%name, timer%runs, timer%wall, timer%processor
+      end associate
+    end do
+  end function lines
+
+  !> Position of a stopwatch in the list, 0 if there is none of that name.
+  pure integer function position(self, name)
+    class(timer_set_t), intent(in) :: self
+    !> What is timed
+    character(len=*), intent(in) :: name
+
+    position = 0
+    if (.not. allocated(self%list)) return
+    do position = size(self%list), 1, -1
+      if (self%list(position)%name == name) return
+    end do
+  end function position
+end module timers

@@ -1,0 +1,75 @@
+!> Section forces and moments of a batch of elements from its generalised strains.
+module batch_resultants
+  use kinds, only: wp
+  use element_batches, only: lanes
+  implicit none
+  private
+  public :: in_plane_resultants, shear_resultants
+
+contains
+
+  !> Turns membrane strains and curvatures into membrane forces and moments times the areas of the Gauss points.
+  pure subroutine in_plane_resultants(c, weight, s, energies)
+    !> Section stiffness
+    real(wp), intent(in) :: c(lanes, 21)
+    !> Area of each Gauss point
+    real(wp), intent(in) :: weight(lanes, 9)
+    !> Strains on entry, resultants on return (lane, point, component)
+    real(wp), intent(inout) :: s(lanes, 9, 6)
+    !> Strain energy of each lane, added to
+    real(wp), intent(inout) :: energies(lanes)
+    real(wp) :: exx, eyy, gxy, kxx, kyy, kxy, nxx, nyy, nxy, mxx, myy, mxy
+    integer :: g, lane
+
+    do g = 1, 9
+      do lane = 1, lanes
+        exx = s(lane, g, 1)*weight(lane, g)
+        eyy = s(lane, g, 2)*weight(lane, g)
+        gxy = s(lane, g, 3)*weight(lane, g)
+        kxx = s(lane, g, 4)*weight(lane, g)
+        kyy = s(lane, g, 5)*weight(lane, g)
+        kxy = s(lane, g, 6)*weight(lane, g)
+        nxx = c(lane, 1)*exx + c(lane, 2)*eyy + c(lane, 3)*gxy + c(lane, 7)*kxx + c(lane, 8)*kyy + c(lane, 9)*kxy
+        nyy = c(lane, 2)*exx + c(lane, 4)*eyy + c(lane, 5)*gxy + c(lane, 8)*kxx + c(lane, 10)*kyy + c(lane, 11)*kxy
+        nxy = c(lane, 3)*exx + c(lane, 5)*eyy + c(lane, 6)*gxy + c(lane, 9)*kxx + c(lane, 11)*kyy + c(lane, 12)*kxy
+        mxx = c(lane, 7)*exx + c(lane, 8)*eyy + c(lane, 9)*gxy + c(lane, 13)*kxx + c(lane, 14)*kyy + c(lane, 15)*kxy
+        myy = c(lane, 8)*exx + c(lane, 10)*eyy + c(lane, 11)*gxy + c(lane, 14)*kxx + c(lane, 16)*kyy + c(lane, 17)*kxy
+        mxy = c(lane, 9)*exx + c(lane, 11)*eyy + c(lane, 12)*gxy + c(lane, 15)*kxx + c(lane, 17)*kyy + c(lane, 18)*kxy
+        energies(lane) = energies(lane) + 0.5_wp*(s(lane, g, 1)*nxx + s(lane, g, 2)*nyy + s(lane, g, 3)*nxy &
+                                                  + s(lane, g, 4)*mxx + s(lane, g, 5)*myy + s(lane, g, 6)*mxy)
+        s(lane, g, 1) = nxx
+        s(lane, g, 2) = nyy
+        s(lane, g, 3) = nxy
+        s(lane, g, 4) = mxx
+        s(lane, g, 5) = myy
+        s(lane, g, 6) = mxy
+      end do
+    end do
+  end subroutine in_plane_resultants
+
+  !> Turns shear strains into shear forces times the areas of the shear points.
+  pure subroutine shear_resultants(n, c, weight, s, energies)
+    !> Number of shear points
+    integer, intent(in) :: n
+    !> Section stiffness
+    real(wp), intent(in) :: c(lanes, 21)
+    !> Area of each shear point
+    real(wp), intent(in) :: weight(lanes, n)
+    !> Strains on entry, shear forces on return (lane, point, component)
+    real(wp), intent(inout) :: s(lanes, n, 2)
+    !> Strain energy of each lane, added to
+    real(wp), intent(inout) :: energies(lanes)
+    real(wp) :: xz, yz
+    integer :: g, lane
+
+    do g = 1, n
+      do lane = 1, lanes
+        xz = weight(lane, g)*(c(lane, 19)*s(lane, g, 1) + c(lane, 20)*s(lane, g, 2))
+        yz = weight(lane, g)*(c(lane, 20)*s(lane, g, 1) + c(lane, 21)*s(lane, g, 2))
+        energies(lane) = energies(lane) + 0.5_wp*(s(lane, g, 1)*xz + s(lane, g, 2)*yz)
+        s(lane, g, 1) = xz
+        s(lane, g, 2) = yz
+      end do
+    end do
+  end subroutine shear_resultants
+end module batch_resultants

@@ -1,0 +1,88 @@
+!> Inertia of the plate: consistent mass applied without a matrix, and mass lumped at the points.
+module inertia_forces
+  use kinds, only: wp
+  use lagrange9, only: gauss_shapes
+  use element_batches, only: element_batches_t, lanes
+  use reference_fields, only: gather, scatter, reference_values, add_value_forces
+  implicit none
+  private
+  public :: add_inertia_force, add_lumped_mass
+
+contains
+
+  !> Adds the consistent mass times the accelerations of all elements, rotary inertia and eccentricity included.
+  subroutine add_inertia_force(batches, a, f)
+    !> The elements
+    type(element_batches_t), intent(in) :: batches
+    !> Accelerations of the unknowns (5, points)
+    real(wp), contiguous, intent(in) :: a(:, :)
+    !> Forces (5, points)
+    real(wp), contiguous, intent(inout) :: f(:, :)
+    real(wp) :: r(lanes, 9, 5), values(lanes, 9, 5)
+    integer :: b, component
+
+    do b = 1, batches%batches
+      call gather(batches%points(:, :, b), a, r)
+      do component = 1, 5
+        call reference_values(r(:, :, component), values(:, :, component))
+      end do
+      call momenta(batches%mass(:, :, b), batches%weight(:, :, b), values)
+      r = 0.0_wp
+      do component = 1, 5
+        call add_value_forces(values(:, :, component), r(:, :, component))
+      end do
+      call scatter(batches%points(:, :, b), r, f)
+    end do
+  end subroutine add_inertia_force
+
+  !> Turns accelerations at the Gauss points into inertia forces times the areas of the points.
+  pure subroutine momenta(mass, weight, values)
+    !> Section mass I0, I1, I2
+    real(wp), intent(in) :: mass(lanes, 3)
+    !> Area of each Gauss point
+    real(wp), intent(in) :: weight(lanes, 9)
+    !> Accelerations on entry, forces on return (lane, point, component)
+    real(wp), intent(inout) :: values(lanes, 9, 5)
+    real(wp) :: i0, i1, i2, u, v, w, theta_x, theta_y
+    integer :: g, lane
+
+    do g = 1, 9
+      do lane = 1, lanes
+        i0 = mass(lane, 1)*weight(lane, g)
+        i1 = mass(lane, 2)*weight(lane, g)
+        i2 = mass(lane, 3)*weight(lane, g)
+        u = values(lane, g, 1)
+        v = values(lane, g, 2)
+        w = values(lane, g, 3)
+        theta_x = values(lane, g, 4)
+        theta_y = values(lane, g, 5)
+        values(lane, g, 1) = i0*u + i1*theta_x
+        values(lane, g, 2) = i0*v + i1*theta_y
+        values(lane, g, 3) = i0*w
+        values(lane, g, 4) = i1*u + i2*theta_x
+        values(lane, g, 5) = i1*v + i2*theta_y
+      end do
+    end do
+  end subroutine momenta
+
+  !> Adds the mass of all elements lumped at their nodes by summing the rows of the consistent mass; for this element
+  !> that is Simpson's nodal quadrature, so every share is positive.
+  subroutine add_lumped_mass(batches, mass)
+    !> The elements
+    type(element_batches_t), intent(in) :: batches
+    !> Integrals of I0, I1, I2 that belong to each point (3, points)
+    real(wp), intent(inout) :: mass(:, :)
+    real(wp) :: share
+    integer :: b, lane, a, point
+
+    do b = 1, batches%batches
+      do a = 1, 9
+        do lane = 1, batches%lanes_used(b)
+          point = batches%points(lane, a, b)
+          share = dot_product(gauss_shapes(a, :), batches%weight(lane, :, b))
+          mass(:, point) = mass(:, point) + share*batches%mass(lane, :, b)
+        end do
+      end do
+    end do
+  end subroutine add_lumped_mass
+end module inertia_forces

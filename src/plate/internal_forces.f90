@@ -1,0 +1,50 @@
+!> Internal force of the plate: the exact gradient of its strain energy, evaluated without any matrix.
+module internal_forces
+  use kinds, only: wp
+  use plate_options, only: shear_assumed
+  use element_batches, only: element_batches_t, lanes
+  use reference_fields, only: gather, scatter
+  use batch_strains, only: in_plane_strains, add_in_plane_forces, shear_strains, add_shear_forces
+  use batch_resultants, only: in_plane_resultants, shear_resultants
+  implicit none
+  private
+  public :: add_internal_force
+
+contains
+
+  !> Adds the internal force of all elements to the forces on the points.
+  subroutine add_internal_force(batches, kinematics, u, f, energy)
+    !> The elements
+    type(element_batches_t), intent(in) :: batches
+    !> One of the kinematics_* choices
+    integer, intent(in) :: kinematics
+    !> Unknowns (5, points)
+    real(wp), contiguous, intent(in) :: u(:, :)
+    !> Forces (5, points)
+    real(wp), contiguous, intent(inout) :: f(:, :)
+    !> Strain energy of these elements
+    real(wp), intent(out) :: energy
+    real(wp) :: r(lanes, 9, 5), strains(lanes, 9, 6), slopes(lanes, 9, 2), shear(lanes, batches%shear_points, 2)
+    real(wp) :: energies(lanes)
+    integer :: b
+
+    energies = 0.0_wp
+    do b = 1, batches%batches
+      call gather(batches%points(:, :, b), u, r)
+      call in_plane_strains(batches%inverse_jacobian(:, :, :, b), kinematics, r, strains, slopes)
+      call shear_strains(batches, b, r, shear)
+      call in_plane_resultants(batches%stiffness(:, :, b), batches%weight(:, :, b), strains, energies)
+      if (batches%shear == shear_assumed) then
+        call shear_resultants(9, batches%stiffness(:, :, b), batches%weight(:, :, b), shear, energies)
+      else
+        call shear_resultants(batches%shear_points, batches%stiffness(:, :, b), batches%shear_weight(:, :, b), &
+                              shear, energies)
+      end if
+      r = 0.0_wp
+      call add_in_plane_forces(batches%inverse_jacobian(:, :, :, b), kinematics, strains, slopes, r)
+      call add_shear_forces(batches, b, shear, r)
+      call scatter(batches%points(:, :, b), r, f)
+    end do
+    energy = sum(energies)
+  end subroutine add_internal_force
+end module internal_forces

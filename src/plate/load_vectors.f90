@@ -1,0 +1,111 @@
+!> Nodal forces of pressures on the plate, and integrals of the deflection over a patch of elements.
+module load_vectors
+  use kinds, only: wp
+  use lagrange9, only: gauss_shapes
+  use element_batches, only: element_batches_t, lanes, first_element
+  implicit none
+  private
+  public :: add_uniform_pressure, add_pressure, gauss_coordinates, add_patch_weights, element_areas
+
+contains
+
+  !> Adds the consistent forces of one pressure on all elements.
+  pure subroutine add_uniform_pressure(batches, pressure, f)
+    !> The elements
+    type(element_batches_t), intent(in) :: batches
+    !> Pressure, positive downward
+    real(wp), intent(in) :: pressure
+    !> Forces (5, points)
+    real(wp), intent(inout) :: f(:, :)
+    integer :: element
+
+    do element = 1, batches%elements
+      call add_nodal_shares(batches, element, spread(pressure, 1, 9), f(3, :))
+    end do
+  end subroutine add_uniform_pressure
+
+  !> Adds the consistent forces of a pressure that varies.
+  pure subroutine add_pressure(batches, pressure, f)
+    !> The elements
+    type(element_batches_t), intent(in) :: batches
+    !> Pressure at the Gauss points (9, elements), positive downward
+    real(wp), intent(in) :: pressure(:, :)
+    !> Forces (5, points)
+    real(wp), intent(inout) :: f(:, :)
+    integer :: element
+
+    do element = 1, batches%elements
+      call add_nodal_shares(batches, element, pressure(:, element), f(3, :))
+    end do
+  end subroutine add_pressure
+
+  !> Adds the weights by which nodal deflections make the integral of the deflection over a patch of elements;
+  !> divided by the area of the patch they make its mean, and a force on the patch is spread by the same weights.
+  pure subroutine add_patch_weights(batches, elements, weights)
+    !> The elements
+    type(element_batches_t), intent(in) :: batches
+    !> Numbers of the elements of the patch
+    integer, intent(in) :: elements(:)
+    !> Weight of each point
+    real(wp), intent(inout) :: weights(:)
+    integer :: i
+
+    do i = 1, size(elements)
+      call add_nodal_shares(batches, elements(i), spread(1.0_wp, 1, 9), weights)
+    end do
+  end subroutine add_patch_weights
+
+  !> Adds the integrals of the shape functions of one element times a function given at its Gauss points.
+  pure subroutine add_nodal_shares(batches, element, values, shares)
+    !> The elements
+    type(element_batches_t), intent(in) :: batches
+    !> Number of the element
+    integer, intent(in) :: element
+    !> Function at the Gauss points
+    real(wp), intent(in) :: values(9)
+    !> Integral of each point
+    real(wp), intent(inout) :: shares(:)
+    real(wp) :: loads(9)
+    integer :: b, lane, a, point
+
+    b = 1 + (element - 1)/lanes
+    lane = 1 + mod(element - 1, lanes)
+    loads = values*batches%weight(lane, :, b)
+    do a = 1, 9
+      point = batches%points(lane, a, b)
+      shares(point) = shares(point) + dot_product(gauss_shapes(a, :), loads)
+    end do
+  end subroutine add_nodal_shares
+
+  !> Position of the Gauss points of all elements.
+  pure subroutine gauss_coordinates(batches, coordinates, x)
+    !> The elements
+    type(element_batches_t), intent(in) :: batches
+    !> Position of the points (2, points)
+    real(wp), intent(in) :: coordinates(:, :)
+    !> Position of the Gauss points (2, 9, elements)
+    real(wp), intent(out) :: x(:, :, :)
+    integer :: b, lane
+
+    do b = 1, batches%batches
+      do lane = 1, batches%lanes_used(b)
+        x(:, :, first_element(b) + lane - 1) = matmul(coordinates(:, batches%points(lane, :, b)), gauss_shapes)
+      end do
+    end do
+  end subroutine gauss_coordinates
+
+  !> Area of each element.
+  pure function element_areas(batches) result(areas)
+    !> The elements
+    type(element_batches_t), intent(in) :: batches
+    !> One area an element
+    real(wp) :: areas(batches%elements)
+    integer :: b, lane
+
+    do b = 1, batches%batches
+      do lane = 1, batches%lanes_used(b)
+        areas(first_element(b) + lane - 1) = sum(batches%weight(lane, :, b))
+      end do
+    end do
+  end function element_areas
+end module load_vectors

@@ -1,0 +1,56 @@
+# A small stand-in for pFUnit, used where that isn't installed: the same test files (.pf) and the
+# same CMake call. It always runs on MPI; a test program on one process needs no mpirun.
+find_package(Python3 REQUIRED COMPONENTS Interpreter)
+set(framework_dir ${CMAKE_CURRENT_BINARY_DIR}/framework)
+file(MAKE_DIRECTORY ${framework_dir})
+add_custom_command(OUTPUT ${framework_dir}/asserts.f90
+  COMMAND Python3::Interpreter ${CMAKE_CURRENT_LIST_DIR}/generate_asserts.py ${framework_dir}/asserts.f90
+  DEPENDS ${CMAKE_CURRENT_LIST_DIR}/generate_asserts.py VERBATIM)
+add_library(test_framework STATIC EXCLUDE_FROM_ALL ${framework_dir}/asserts.f90)
+foreach(module comparisons funit pfunit test_cases test_failures test_runs)
+  target_sources(test_framework PRIVATE ${CMAKE_CURRENT_LIST_DIR}/${module}.f90)
+endforeach()
+set_target_properties(test_framework PROPERTIES Fortran_MODULE_DIRECTORY ${framework_dir}/modules)
+target_include_directories(test_framework PUBLIC ${framework_dir}/modules)
+target_link_libraries(test_framework PUBLIC MPI::MPI_Fortran)
+
+# add_pfunit_ctest(name TEST_SOURCES a.pf... [OTHER_SOURCES ...] [LINK_LIBRARIES ...] [MAX_PES n]
+#                  [EXTRA_USE module] [EXTRA_INITIALIZE subroutine] [LABELS ...] [WORKING_DIRECTORY folder])
+function(add_pfunit_ctest name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "MAX_PES;EXTRA_USE;EXTRA_INITIALIZE;WORKING_DIRECTORY"
+                        "TEST_SOURCES;OTHER_SOURCES;LINK_LIBRARIES;LABELS")
+  set(output ${CMAKE_CURRENT_BINARY_DIR}/${name}.dir)
+  set(preprocessor ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/preprocess.py)
+  set(sources ${arg_OTHER_SOURCES})
+  foreach(test_file IN LISTS arg_TEST_SOURCES)
+    cmake_path(ABSOLUTE_PATH test_file)
+    cmake_path(GET test_file STEM module)
+    add_custom_command(OUTPUT ${output}/${module}.F90
+      COMMAND Python3::Interpreter ${preprocessor} ${test_file} ${output}/${module}.F90
+      DEPENDS ${test_file} ${preprocessor} VERBATIM)
+    list(APPEND sources ${output}/${module}.F90)
+    string(APPEND DRIVER_USES "  use ${module}_run, only: run_${module} => run_tests\n")
+    string(APPEND DRIVER_CALLS "  call run_${module}(run)\n")
+  endforeach()
+  if(arg_EXTRA_USE)
+    string(PREPEND DRIVER_USES "  use ${arg_EXTRA_USE}\n")
+  endif()
+  if(arg_EXTRA_INITIALIZE)
+    string(PREPEND DRIVER_CALLS "  call ${arg_EXTRA_INITIALIZE}()\n")
+  endif()
+  configure_file(${CMAKE_CURRENT_FUNCTION_LIST_DIR}/driver.f90.in ${output}/driver.f90 @ONLY)
+  add_executable(${name} ${sources} ${output}/driver.f90)
+  set_target_properties(${name} PROPERTIES Fortran_MODULE_DIRECTORY ${output}/modules)
+  target_compile_options(${name} PRIVATE $<$<Fortran_COMPILER_ID:GNU>:-ffree-line-length-none>)
+  target_link_libraries(${name} PRIVATE test_framework ${arg_LINK_LIBRARIES})
+
+  set(launcher "")
+  if(arg_MAX_PES)
+    set(launcher ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} ${arg_MAX_PES} ${MPIEXEC_PREFLAGS})
+  endif()
+  if(NOT arg_WORKING_DIRECTORY)
+    set(arg_WORKING_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR})
+  endif()
+  add_test(NAME ${name} COMMAND ${launcher} $<TARGET_FILE:${name}> WORKING_DIRECTORY ${arg_WORKING_DIRECTORY})
+  set_tests_properties(${name} PROPERTIES LABELS "${arg_LABELS}")
+endfunction()

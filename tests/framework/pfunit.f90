@@ -1,0 +1,7 @@
+!> What a test file on several processes uses.
+module pfunit
+  use funit
+  use test_cases, only: MpiTestCase, MpiTestMethod
+  implicit none
+  public
+end module pfunit
