@@ -9,7 +9,7 @@ if(CMAKE_Fortran_COMPILER_ID STREQUAL "GNU")
     -std=f2008            # the language of the project, no extensions
     -fimplicit-none
     -Wall -Wextra
-    -Wno-maybe-uninitialized   # gfortran 12 reports descriptors of allocatables that are fine
+    -Wno-maybe-uninitialized -Wno-uninitialized # gfortran 12 reports descriptors of allocatables that are fine
     -Wno-unused-dummy-argument # an override need not use every argument of its interface
     -Wno-compare-reals)        # exact comparisons are written where they are meant
   set(IMPLAM_RELEASE -O3 -funroll-loops

@@ -21,7 +21,7 @@ function(implam_add_layers)
   endforeach()
   implam_give_library(parallel MPI::MPI_Fortran)
   implam_give_library(linalg PkgConfig::PETSC MPI::MPI_Fortran)
-  implam_give_library(io hdf5::hdf5_fortran)
+  implam_give_library(io hdf5::hdf5_fortran MPI::MPI_Fortran)
   if(TARGET implam_io)
     target_include_directories(implam_io PRIVATE ${HDF5_Fortran_INCLUDE_DIRS})
   endif()
@@ -34,14 +34,20 @@ function(implam_give_library layer)
   endif()
 endfunction()
 
-# implam_link_layers(<target> <layer>...): links the objects of these layers and their libraries.
+# implam_link_layers(<target> <layer>...): links the objects of these layers and their libraries; an
+# interface library hands them on.
 function(implam_link_layers target)
+  get_target_property(type ${target} TYPE)
+  set(scope PRIVATE)
+  if(type STREQUAL "INTERFACE_LIBRARY")
+    set(scope INTERFACE)
+  endif()
   foreach(layer IN LISTS ARGN)
     if(TARGET implam_${layer})
-      target_sources(${target} PRIVATE $<TARGET_OBJECTS:implam_${layer}>)
-      target_include_directories(${target} PRIVATE ${CMAKE_BINARY_DIR}/modules/${layer})
+      target_sources(${target} ${scope} $<TARGET_OBJECTS:implam_${layer}>)
+      target_include_directories(${target} ${scope} ${CMAKE_BINARY_DIR}/modules/${layer})
     endif()
   endforeach()
-  target_link_libraries(${target} PRIVATE implam_flags PkgConfig::PETSC MPI::MPI_Fortran
+  target_link_libraries(${target} ${scope} implam_flags PkgConfig::PETSC MPI::MPI_Fortran
     ${HDF5_Fortran_LIBRARIES} ${METIS_LIBRARY} LAPACK::LAPACK)
 endfunction()

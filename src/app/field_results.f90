@@ -27,7 +27,7 @@ contains
       coordinates(3, :) = 0
       plies = mesh%element_plies(:, share%elements)
       call fields%write_mesh(share%points(:share%owned), mesh%points(), coordinates, share%elements, mesh%elements(), &
-                             reshape(share%points(share%connectivity), shape(share%connectivity)), &
+                             mesh%connectivity(:, share%elements), &
                              [character(len=10) :: 'first_ply', 'last_ply'], plies, error)
     end associate
   end subroutine write_mesh

@@ -16,8 +16,8 @@ module result_rows
     'patch_deflection', 'work_external', 'step_length', 'stress', 'iterations', 'force_iterations', &
     'total_iterations', 'total_force_iterations', 'rejected', 'refactorisations', 'solves']
   !> Which of them are whole numbers.
-  logical, parameter, public :: column_whole(columns) = [.false., .true., (i < 0, i=3, 21), (i > 0, i=22, 28)]
-  integer, private :: i
+  logical, parameter, public :: column_whole(columns) = &
+    [.false., .true., spread(.false., 1, 19), spread(.true., 1, 7)]
 
 contains
 

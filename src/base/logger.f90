@@ -6,6 +6,7 @@ module logger
   use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
   use errors, only: error_t, exit_files, fail
   use kinds, only: long, wp
+  use output_streams, only: output_stream_t
   implicit none
   private
   public :: log_t
@@ -25,10 +26,8 @@ module logger
     integer :: warnings = 0
     !> This rank writes
     logical, private :: writes = .false.
-    !> The file is open
-    logical, private :: has_file = .false.
-    !> Unit of the file
-    integer, private :: unit = 0
+    !> The file
+    type(output_stream_t), private :: file
     !> Length of the transient line on the terminal now
     integer, private :: transient = 0
     !> Clock at the last flush
@@ -69,19 +68,13 @@ contains
     logical, intent(in) :: append
     !> Raised, on the rank that writes, if the file can't be opened
     type(error_t), allocatable, intent(inout) :: error
-    integer :: status
 
     self%writes = writes
     if (.not. writes) return
     self%interactive = c_isatty(standard_output) == 1
     if (len_trim(path) == 0) return
-    if (append) then
-      open (newunit=self%unit, file=path, action='write', position='append', iostat=status)
-    else
-      open (newunit=self%unit, file=path, action='write', status='replace', iostat=status)
-    end if
-    self%has_file = status == 0
-    if (status /= 0) call fail(error, exit_files, "Can't open the log "//trim(path)//' for writing.')
+    call self%file%open(path, merge('a', 'w', append))
+    if (self%file%failed) call fail(error, exit_files, "Can't open the log "//trim(path)//' for writing.')
     call system_clock(self%flushed)
   end subroutine open
 
@@ -149,11 +142,9 @@ contains
   subroutine close (self)
     !> The log
     class(log_t), intent(inout) :: self
-    integer :: ignored
 
     call self%clear_status()
-    if (self%has_file) close (self%unit, iostat=ignored)
-    self%has_file = .false.
+    call self%file%close()
   end subroutine close
 
   !> Writes a line to the terminal; one that can't be written there is no reason to stop.
@@ -181,18 +172,16 @@ contains
     !> It must not wait
     logical, intent(in) :: at_once
     integer(long) :: now, rate
-    integer :: status
 
-    if (.not. self%has_file) return
-    write (self%unit, '(a)', iostat=status) line
+    if (.not. self%file%is_open()) return
+    call self%file%put_line(line)
     call system_clock(now, rate)
-    if (status == 0 .and. (at_once .or. now - self%flushed > longest_wait*rate)) then
-      flush (self%unit, iostat=status)
+    if (at_once .or. now - self%flushed > longest_wait*rate) then
+      call self%file%flush()
       self%flushed = now
     end if
-    if (status == 0) return
-    self%has_file = .false.
-    close (self%unit, iostat=status)
+    if (.not. self%file%failed) return
+    call self%file%close()
     call self%to_terminal(error_unit, 'implam: warning: the log file cannot be written any more')
   end subroutine to_file
 

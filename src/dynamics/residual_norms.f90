@@ -1,32 +1,63 @@
-!> Sizes of nodal forces, translations and rotations apart since their units differ.
+!> Size of a residual of equilibrium relative to the forces in play; translations and rotations apart,
+!> since their units differ.
 module residual_norms
+  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_positive_inf
   use kinds, only: wp
+  use communicators, only: communicator_t
+  use numberings, only: numbering_t
   implicit none
   private
-  public :: force_norms
+  public :: relative_residual
 
 contains
 
-  !> Sums of squares over the unknowns that are not held, of this rank's points.
-  pure function force_norms(equation, force, owned) result(squares)
-    !> Equation of each unknown; negative: held, (5, points)
-    integer, intent(in) :: equation(:, :)
+  !> Residual over the largest of the forces in play, the larger of translations and rotations; infinite if
+  !> any number is not finite. The same on every rank.
+  real(wp) function relative_residual(communicator, numbering, residual, first, second, load, largest) result(norm)
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> Knows which unknowns are held
+    type(numbering_t), intent(in) :: numbering
+    !> Residual at the owned points, (5, points)
+    real(wp), intent(in) :: residual(:, :)
+    !> Two kinds of forces in play, (5, points)
+    real(wp), intent(in) :: first(:, :), second(:, :)
+    !> This rank's share of the square of a further load on w
+    real(wp), intent(in) :: load
+    !> Largest forces so far, translations and rotations: judged by these once forces have faded
+    real(wp), intent(inout) :: largest(2)
+    real(wp) :: squares(8), scale(2)
+    real(wp), parameter :: faded = 1.0e-6_wp
+
+    squares = [sums_of_squares(numbering, residual), sums_of_squares(numbering, first), &
+               sums_of_squares(numbering, second), load, 0.0_wp]
+    call communicator%sum(squares)
+    norm = ieee_value(norm, ieee_positive_inf)
+    if (.not. all(squares <= huge(norm))) return
+    squares = sqrt(squares)
+    scale = max(squares(3:4), squares(5:6), squares(7:8), faded*largest)
+    largest = max(largest, scale)
+    norm = maxval(squares(1:2)/max(scale, tiny(norm)))
+  end function relative_residual
+
+  !> Sums of squares over this rank's unknowns that are not held.
+  pure function sums_of_squares(numbering, force) result(squares)
+    !> Knows which unknowns are held
+    type(numbering_t), intent(in) :: numbering
     !> Nodal forces, (5, points)
     real(wp), intent(in) :: force(:, :)
-    !> Points owned
-    integer, intent(in) :: owned
     !> Of u, v, w and of theta_x, theta_y
     real(wp) :: squares(2)
     integer :: point, component
 
     squares = 0
-    do point = 1, owned
+    do point = 1, numbering%owned
       do component = 1, 3
-        if (equation(component, point) >= 0) squares(1) = squares(1) + force(component, point)**2
+        if (numbering%equation(component, point) >= 0) squares(1) = squares(1) + force(component, point)**2
       end do
       do component = 4, 5
-        if (equation(component, point) >= 0) squares(2) = squares(2) + force(component, point)**2
+        if (numbering%equation(component, point) >= 0) squares(2) = squares(2) + force(component, point)**2
       end do
     end do
-  end function force_norms
+  end function sums_of_squares
 end module residual_norms

@@ -5,7 +5,7 @@ module static_steps
   use plate_options, only: kinematics_linear
   use models, only: model_t
   use states, only: state_t
-  use residual_norms, only: force_norms
+  use residual_norms, only: relative_residual
   use tangent_operators, only: tangent_operator_t
   implicit none
   private
@@ -40,7 +40,8 @@ contains
     do
       call model%internal(new%motion%displacement, new%motion%internal, energy)
       residual = load_factor*model%pressure - new%motion%internal
-      norm = relative_norm(model, operator, load_factor, new%motion%internal, residual)
+      norm = relative_residual(model%communicator, operator%numbering, residual, new%motion%internal, &
+                               load_factor*model%pressure, 0.0_wp, new%largest_forces)
       converged = norm <= model%scene%solver%tolerance
       if (converged .or. .not. norm <= huge(norm) .or. new%iterations >= model%scene%solver%max_iterations) exit
       if (.not. operator%ready .or. model%scene%kinematics /= kinematics_linear) &
@@ -55,31 +56,6 @@ contains
     end do
     if (converged) call finish(model, old, energy, new)
   end subroutine attempt_load
-
-  !> Residual over the larger of load and internal forces, translations and rotations each by its own.
-  real(wp) function relative_norm(model, operator, load_factor, internal, residual) result(norm)
-    !> The model
-    type(model_t), intent(in) :: model
-    !> Knows which unknowns are held
-    type(tangent_operator_t), intent(in) :: operator
-    !> Load over the full load
-    real(wp), intent(in) :: load_factor
-    !> Internal forces and residual, (5, points)
-    real(wp), intent(in) :: internal(:, :), residual(:, :)
-    real(wp) :: norms(2, 3), scale(2)
-
-    associate (equation => operator%numbering%equation, owned => model%distribution%owned)
-      norms(:, 1) = force_norms(equation, residual, owned)
-      norms(:, 2) = force_norms(equation, internal, owned)
-      norms(:, 3) = load_factor**2*force_norms(equation, model%pressure, owned)
-    end associate
-    call model%communicator%sum(norms)
-    norms = sqrt(norms)
-    scale = max(norms(:, 2), norms(:, 3))
-    norm = 0
-    if (scale(1) > 0) norm = norms(1, 1)/scale(1)
-    if (scale(2) > 0 .and. norm <= huge(norm)) norm = max(norm, norms(2, 1)/scale(2))
-  end function relative_norm
 
   !> Completes an accepted load step.
   subroutine finish(model, old, energy, new)

@@ -111,11 +111,13 @@ contains
     type(model_t), intent(in) :: model
     !> Set if the assembly fails
     type(error_t), allocatable, intent(inout) :: error
-    real(wp) :: matrices(lanes, 45, 45), consistent_factor
+    real(wp), allocatable :: matrices(:, :, :)
+    real(wp) :: consistent_factor
     integer :: b, lane, point
 
     consistent_factor = self%mass_factor
     if (allocated(model%lumped)) consistent_factor = 0
+    allocate (matrices(lanes, 45, 45))
     call self%solver%clear()
     do b = 1, model%elements%batches
       call tangent(model%elements, b, model%scene%kinematics, self%displacement, self%stiffness_factor, &

@@ -44,6 +44,7 @@ module impactors
     !> Velocities before those steps
     real(wp) :: past_velocity(past) = 0
   contains
+    !> Saves or loads the state
     procedure :: visit => visit_impactor
   end type impactor_t
 
@@ -268,19 +269,22 @@ contains
 
   !> Saves or loads the state.
   subroutine visit_impactor(self, archive)
+    !> The state
     class(impactor_t), intent(inout) :: self
     !> Where the state is saved to or loaded from
     class(archive_t), intent(inout) :: archive
-    real(wp), allocatable :: history(:, :)
+    integer :: i
+    character :: number
 
     call archive%item('impactor/displacement', self%displacement)
     call archive%item('impactor/velocity', self%velocity)
     call archive%item('impactor/force', self%force)
     call archive%item('impactor/has_history', self%has_history)
-    history = reshape([self%past_step, self%past_displacement, self%past_velocity], [past, 3])
-    call archive%item('impactor/history', history)
-    self%past_step = history(:, 1)
-    self%past_displacement = history(:, 2)
-    self%past_velocity = history(:, 3)
+    do i = 1, past
+      write (number, '(i1)') i
+      call archive%item('impactor/past_step_'//number, self%past_step(i))
+      call archive%item('impactor/past_displacement_'//number, self%past_displacement(i))
+      call archive%item('impactor/past_velocity_'//number, self%past_velocity(i))
+    end do
   end subroutine visit_impactor
 end module impactors

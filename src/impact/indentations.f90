@@ -37,6 +37,7 @@ module indentations
     !> Work the contact force has done on the indentation so far (stored and dissipated)
     real(wp) :: work = 0
   contains
+    !> Saves or loads the state
     procedure :: visit => visit_indentation
   end type indentation_t
 
@@ -259,6 +260,7 @@ contains
 
   !> Saves or loads the state.
   subroutine visit_indentation(self, archive)
+    !> The state
     class(indentation_t), intent(inout) :: self
     !> Where the state is saved to or loaded from
     class(archive_t), intent(inout) :: archive

@@ -1,13 +1,13 @@
 !> The seal at the head of a checkpoint: what the file is, how long, and a checksum of all that follows.
 !> It is written last, so a file with a valid seal is complete; any byte lost or changed later shows.
 module checkpoint_seal
-  use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_int, c_null_char, c_ptr
   use, intrinsic :: iso_fortran_env, only: int32, int8
   use errors, only: error_t, exit_files, fail
   use kinds, only: long
+  use output_streams, only: output_stream_t
   implicit none
   private
-  public :: seal, verify_seal, synchronise, crc32
+  public :: seal, verify_seal, synchronise_folder, crc32
 
   !> Bytes of the head of the file, which HDF5 leaves to its user.
   integer, parameter, public :: head_length = 512
@@ -22,57 +22,25 @@ module checkpoint_seal
   !> Polynomial of CRC-32 (IEEE 802.3), bits reversed: hexadecimal EDB88320.
   integer(int32), parameter :: polynomial = -306674912_int32
 
-  interface
-    !> C library: opens a file.
-    type(c_ptr) function c_fopen(path, mode) bind(c, name='fopen')
-      import :: c_char, c_ptr
-      !> Zero-terminated path and mode
-      character(kind=c_char), intent(in) :: path(*), mode(*)
-    end function c_fopen
-
-    !> C library: descriptor of an open file.
-    integer(c_int) function c_fileno(stream) bind(c, name='fileno')
-      import :: c_int, c_ptr
-      !> The open file
-      type(c_ptr), value :: stream
-    end function c_fileno
-
-    !> C library: waits until a file is on the disk.
-    integer(c_int) function c_fsync(descriptor) bind(c, name='fsync')
-      import :: c_int
-      !> Descriptor of the file
-      integer(c_int), value :: descriptor
-    end function c_fsync
-
-    !> C library: closes a file.
-    integer(c_int) function c_fclose(stream) bind(c, name='fclose')
-      import :: c_int, c_ptr
-      !> The open file
-      type(c_ptr), value :: stream
-    end function c_fclose
-  end interface
-
 contains
 
-  !> Writes the seal into the free head of a file.
+  !> Writes the seal into the free head of a file, and waits until the file is on the disk.
   subroutine seal(path, error)
     !> Path of the file
     character(len=*), intent(in) :: path
     !> Raised if the file can't be read or written
     type(error_t), allocatable, intent(inout) :: error
+    type(output_stream_t) :: file
     integer(long) :: bytes
     integer(int32) :: crc
-    integer :: unit, status, closed
+    integer :: status
 
     call read_body(path, bytes, crc, status)
-    if (status == 0) open (newunit=unit, file=path, access='stream', form='unformatted', status='old', &
-                           action='readwrite', iostat=status)
-    if (status == 0) then
-      write (unit, pos=1, iostat=status) head(bytes, crc)
-      close (unit, iostat=closed)
-      if (status == 0) status = closed
-    end if
-    if (status /= 0) call fail(error, exit_files, "Can't complete the checkpoint "//path//'.')
+    call file%open(path, 'r+')
+    call file%put(head(bytes, crc))
+    call file%synchronise()
+    call file%close()
+    if (status /= 0 .or. file%failed) call fail(error, exit_files, "Can't complete the checkpoint "//path//'.')
   end subroutine seal
 
   !> Makes sure that a file is a checkpoint and whole.
@@ -101,23 +69,19 @@ contains
     end if
   end subroutine verify_seal
 
-  !> Waits until a file, or the entries of a folder, are on the disk.
-  subroutine synchronise(path, error)
-    !> Path of the file or folder
+  !> Waits until the names of the files in a folder are on the disk.
+  subroutine synchronise_folder(path, error)
+    !> Path of the folder
     character(len=*), intent(in) :: path
     !> Raised if that fails
     type(error_t), allocatable, intent(inout) :: error
-    type(c_ptr) :: stream
-    integer(c_int) :: status, closed
+    type(output_stream_t) :: entries
 
-    status = -1
-    stream = c_fopen(path//c_null_char, 'r'//c_null_char)
-    if (c_associated(stream)) then
-      status = c_fsync(c_fileno(stream))
-      closed = c_fclose(stream)
-    end if
-    if (status /= 0) call fail(error, exit_files, "Can't write "//path//' out to the disk.')
-  end subroutine synchronise
+    call entries%open(path, 'r')
+    call entries%synchronise()
+    call entries%close()
+    if (entries%failed) call fail(error, exit_files, "Can't write the folder "//path//' out to the disk.')
+  end subroutine synchronise_folder
 
   !> The head of a file with a given body.
   pure function head(bytes, crc)

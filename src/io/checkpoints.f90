@@ -2,7 +2,7 @@
 !> renamed: whenever the run is killed, the file of that name is whole, the one before or the new one.
 module checkpoints
   use archives, only: archive_t
-  use checkpoint_seal, only: head_length, seal, synchronise, verify_seal
+  use checkpoint_seal, only: head_length, seal, synchronise_folder, verify_seal
   use communicators, only: communicator_t
   use errors, only: error_t, exit_files, fail
   use files, only: rename_file
@@ -10,6 +10,7 @@ module checkpoints
   use hdf5_file, only: hdf5_file_t
   use hdf5_transfers, only: stored_shape
   use kinds, only: wp
+  use output_streams, only: output_stream_t
   use run_provenance, only: provenance_t
   use stored_provenance, only: read_provenance, write_provenance
   implicit none
@@ -59,9 +60,7 @@ contains
     self%path = path
     call self%file%create(communicator, aside(path), head_length)
     call write_provenance(self%file, 'provenance', provenance)
-    if (.not. allocated(self%file%trouble)) return
-    call fail(error, exit_files, "Can't write the checkpoint "//aside(path)//': '//self%file%trouble//'.')
-    call self%file%close()
+    if (allocated(self%file%trouble)) call self%close(error)
   end subroutine open_for_saving
 
   !> Opens a checkpoint, after making sure that it is one and whole.
@@ -94,6 +93,7 @@ contains
     !> Raised if an item couldn't be saved or loaded; the checkpoint before is then still there
     type(error_t), allocatable, intent(inout) :: error
 
+    if (.not. self%loading) call finish_writing(self)
     call self%file%close()
     if (allocated(self%file%trouble)) then
       call fail(error, exit_files, "Can't "//trim(merge('read ', 'write', self%loading))//' the checkpoint ' &
@@ -104,7 +104,22 @@ contains
     end if
   end subroutine close
 
-  !> Seals the new file, waits until it is on the disk and gives it its name.
+  !> Writes all out. If that fails, the disk may be full: the new file is emptied, so that HDF5 has the room to close it.
+  subroutine finish_writing(self)
+    !> The checkpoint
+    class(checkpoint_archive_t), intent(inout) :: self
+    type(output_stream_t) :: emptied
+
+    call self%file%flush()
+    if (.not. allocated(self%file%trouble)) return
+    if (self%file%communicator%is_root()) then
+      call emptied%open(aside(self%path), 'w')
+      call emptied%close()
+    end if
+    call self%file%communicator%barrier()
+  end subroutine finish_writing
+
+  !> Seals the new file and gives it its name.
   subroutine put_in_place(path, error)
     !> Path of the file in the end
     character(len=*), intent(in) :: path
@@ -112,9 +127,8 @@ contains
     type(error_t), allocatable, intent(inout) :: error
 
     call seal(aside(path), error)
-    if (.not. allocated(error)) call synchronise(aside(path), error)
     if (.not. allocated(error)) call rename_file(aside(path), path, error)
-    if (.not. allocated(error)) call synchronise(folder(path), error)
+    if (.not. allocated(error)) call synchronise_folder(folder(path), error)
   end subroutine put_in_place
 
   !> Path under which the file is written until it is whole.

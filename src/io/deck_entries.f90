@@ -3,7 +3,7 @@ module deck_entries
   use deck_problems, only: most_shown
   implicit none
   private
-  public :: value_t, entry_t, block_t, append_entry, append_values, split_repeats, shown, shown_values
+  public :: value_t, entry_t, block_t, append_entry, append_values, split_repeats, shown, shown_values, written_values
 
   !> Most values and keys that a deck may have.
   integer, parameter, public :: most_values = 10000
@@ -132,18 +132,31 @@ contains
     type(value_t), intent(in) :: values(:)
     !> Separated by commas, cut if it is long
     character(len=:), allocatable :: short
-    integer :: i
 
     short = ''
-    do i = 1, size(values)
-      if (i > 1) short = short//', '
-      if (values(i)%quoted) then
-        short = short//''''//values(i)%text//''''
-      else
-        short = short//values(i)%text
-      end if
-      if (len(short) > most_shown) exit
-    end do
-    if (size(values) > 0) short = ' '//shown(short)
+    if (size(values) > 0) short = ' '//shown(written_values(values(:min(size(values), most_shown))))
   end function shown_values
+
+  !> Values as they would stand in a deck.
+  pure function written_values(values) result(words)
+    !> The values
+    type(value_t), intent(in) :: values(:)
+    !> Separated by commas
+    character(len=:), allocatable :: words
+    integer :: i, j
+
+    words = ''
+    do i = 1, size(values)
+      if (i > 1) words = words//', '
+      if (.not. values(i)%quoted) then
+        words = words//values(i)%text
+        cycle
+      end if
+      words = words//''''
+      do j = 1, len(values(i)%text)
+        words = words//repeat(values(i)%text(j:j), merge(2, 1, values(i)%text(j:j) == ''''))
+      end do
+      words = words//''''
+    end do
+  end function written_values
 end module deck_entries

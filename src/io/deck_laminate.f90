@@ -49,6 +49,7 @@ contains
     integer, intent(in) :: place
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
+    logical :: complete
 
     associate (s => deck%settings, m => deck%materials(place))
       m%name = trim(s%text_of('material', 'name', place))
@@ -60,7 +61,8 @@ contains
       m%s12 = s%real_of('material', 'S12', place)
       m%sf = s%real_of('material', 'Sf', place)
       m%sm23 = s%real_of('material', 'Sm23', place)
-      if (.not. is_complete(deck, place, problems)) return
+      call judge_completeness(deck, place, problems, complete)
+      if (.not. complete) return
       if (s%is_given('material', 'E', place)) then
         call fill_isotropic(deck, place)
       else
@@ -68,24 +70,36 @@ contains
       end if
       if (material_objection(m) /= '') then
         call tell(deck, problems, 'material', '', material_objection(m)//'.', place)
-      else if (maxval([m%e1, m%e2, m%g12, m%g13, m%g23]) > most_contrast*minval([m%e1, m%e2, m%g12, m%g13, m%g23])) then
+      else if (contrast(m) > most_contrast) then
         call tell(deck, problems, 'material', '', 'its moduli differ by more than a factor of '// &
                   to_text(most_contrast)//', where rounding spoils the answer.', place)
       end if
     end associate
   end subroutine fill_material
 
+  !> Largest over smallest modulus of a material.
+  pure real(wp) function contrast(material)
+    !> The material
+    type(material_t), intent(in) :: material
+    real(wp) :: moduli(5)
+
+    moduli = [material%e1, material%e2, material%g12, material%g13, material%g23]
+    contrast = maxval(moduli)/minval(moduli)
+  end function contrast
+
   !> Whether the elastic constants are all there and sound; tells what is missing.
-  logical function is_complete(deck, place, problems)
+  subroutine judge_completeness(deck, place, problems, complete)
     !> The deck
     type(deck_t), intent(in) :: deck
     !> Index of the material
     integer, intent(in) :: place
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
+    !> True: they are
+    logical, intent(out) :: complete
     type(line_t), allocatable :: given(:), missing(:)
 
-    is_complete = .false.
+    complete = .false.
     given = words_with(deck, place, orthotropic_keys, .true.)
     if (deck%settings%is_given('material', 'E', place) .or. deck%settings%is_given('material', 'nu', place)) then
       missing = words_with(deck, place, 'E nu', .false.)
@@ -96,15 +110,18 @@ contains
       end if
     else
       missing = words_with(deck, place, needed_keys, .false.)
-      if (size(given) == 0) missing = [line_t('E and nu (isotropic) or E1, E2, G12, G23, nu12 (orthotropic)')]
+      if (size(given) == 0) then
+        deallocate (missing)
+        call append(missing, 'E and nu (isotropic) or E1, E2, G12, G23, nu12 (orthotropic)')
+      end if
     end if
     if (size(missing) > 0) then
       if (.not. is_misspelt(missing, problems)) call tell(deck, problems, 'material', '', &
         joined(missing, ', ')//' must be given too.', place)
       return
     end if
-    is_complete = all_known(deck, place)
-  end function is_complete
+    complete = all_known(deck, place)
+  end subroutine judge_completeness
 
   !> Those of some keys that the deck gives, or those that it doesn't.
   function words_with(deck, place, keys, given) result(words)
@@ -211,8 +228,12 @@ contains
       names = s%texts_of('laminate', 'materials')
     end associate
     plies = size(angles)
-    materials = [(index_of(deck, trim(names(i)%text), problems), i=1, size(names))]
-    if (plies > most_plies) call tell(deck, problems, 'laminate', 'angles', 'more than '//to_text(most_plies)//' plies.')
+    allocate (materials(size(names)))
+    do i = 1, size(names)
+      call find_material(deck, trim(names(i)%text), problems, materials(i))
+    end do
+    if (plies > most_plies) call tell(deck, problems, 'laminate', 'angles', 'more than '//to_text(most_plies)// &
+                                      ' plies.')
     if (plies == 0 .or. plies > most_plies) return
     call check_number(deck, 'thicknesses', size(thicknesses), plies, problems)
     call check_number(deck, 'materials', size(names), plies, problems)
@@ -241,13 +262,15 @@ contains
   end subroutine check_number
 
   !> Index of a material by its name, 0 if there is none.
-  integer function index_of(deck, name, problems) result(index)
+  subroutine find_material(deck, name, problems, index)
     !> The deck
     type(deck_t), intent(in) :: deck
     !> Name of the material
     character(len=*), intent(in) :: name
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
+    !> The index
+    integer, intent(out) :: index
     type(line_t), allocatable :: names(:)
 
     allocate (names(0))
@@ -266,5 +289,5 @@ contains
       call tell(deck, problems, 'laminate', 'materials', 'no &material is named '''//name//'''; allowed: '''// &
                 joined(names, ''', ''')//'''.')
     end if
-  end function index_of
+  end subroutine find_material
 end module deck_laminate

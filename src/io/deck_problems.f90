@@ -11,6 +11,9 @@ module deck_problems
   !> Characters of a name or value shown in a message.
   integer, parameter, public :: most_shown = 60
 
+  !> Stands for any key of a group, when a fault may have swallowed some.
+  character(len=*), parameter, public :: any_key = '*'
+
   !> One fault.
   type :: problem_t
     !> Line of the deck; 0: the deck as a whole
@@ -140,7 +143,7 @@ contains
     do i = 1, size(self%list)
       if (self%list(i)%is_warning .or. self%list(i)%group /= lower_case(group)) cycle
       if (present(key)) then
-        if (self%list(i)%key /= lower_case(key)) cycle
+        if (self%list(i)%key /= lower_case(key) .and. self%list(i)%key /= any_key) cycle
       end if
       concern = .true.
     end do

@@ -205,13 +205,16 @@ contains
     type(settings_t), intent(inout) :: settings
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
-    type(setting_t) :: setting
+    type(setting_t) :: setting, blank
     integer :: i, entry
 
     do i = 1, size(vocabulary%keys)
       associate (key => vocabulary%keys(i))
         if (key%group /= group) cycle
-        setting = setting_t(group=group, key=key%name, place=place)
+        setting = blank
+        setting%group = group
+        setting%key = key%name
+        setting%place = place
         entry = entry_of(scan, block, key%name)
         if (entry > 0) then
           setting%given = .true.
@@ -237,11 +240,8 @@ contains
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
 
-    if (key%has_literal_default()) then
-      setting%values = [literal_value(key%default)]
-    else
-      allocate (setting%values(0))
-    end if
+    allocate (setting%values(merge(1, 0, key%has_literal_default())))
+    if (key%has_literal_default()) setting%values(1) = literal_value(key%default)
     if (key%default == 'required' .and. .not. problems%concern(key%group, key%name)) then
       call problems%error(setting%line, key%group, key%name, '&'//key%group//' '//key%name//' is missing; '// &
                           allowed_sentence(key)//'.')

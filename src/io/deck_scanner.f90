@@ -3,7 +3,7 @@
 module deck_scanner
   use deck_entries, only: value_t, entry_t, block_t, append_entry, append_values, split_repeats, shown, shown_values, &
                           most_values
-  use deck_problems, only: problems_t
+  use deck_problems, only: problems_t, any_key
   use deck_tokens, only: token_t, cursor_t, next_token, skip_to_group, token_end, token_group, token_slash, &
                          token_key, token_word, token_quoted, token_cut, token_comma, token_equals
   use text, only: to_text, lower_case
@@ -54,7 +54,7 @@ contains
       if (.not. scan%open) then
         call skip_to_group(deck, cursor, junk, junk_line)
         if (junk_line > 0) call problems%error(junk_line, '', '', shown(junk)// &
-          ' stands outside of a group, where Fortran would skip it; allowed here: comments with !, and groups &name ... /')
+          ' stands outside of a group, where Fortran would skip it; allowed: comments with ! and groups &name ... /')
         if (cursor%at > len(deck)) exit
       end if
       call next_token(deck, cursor, token)
@@ -103,7 +103,7 @@ contains
         return
       end if
     end do
-    readable = len_trim(deck) > 0
+    readable = verify(deck, ' '//achar(9)//achar(10)//achar(13)) > 0
     if (.not. readable) call problems%error(0, '', '', &
       'the deck is empty; it needs at least &plate, &mesh, &material and &laminate.')
   end subroutine check_characters
@@ -142,7 +142,8 @@ contains
     case (token_word, token_quoted, token_cut)
       call take_value(scan, token, problems)
     case (token_comma)
-      if (scan%value_due) call spoil(scan, token%line, 'has no value in front of a comma; leave the comma out', problems)
+      if (scan%value_due) call spoil(scan, token%line, 'has no value in front of a comma; leave the comma out', &
+                                     problems)
       scan%value_due = .true.
     case (token_equals)
       call spoil(scan, token%line, 'has an = too many; write key = value', problems)
@@ -157,6 +158,7 @@ contains
     type(token_t), intent(in) :: token
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
+    type(block_t) :: block
 
     call finish_entry(scan, problems)
     if (lower_case(token%text) == 'end') then
@@ -164,8 +166,11 @@ contains
       scan%open = .false.
       return
     end if
-    if (scan%open) call tell_missing_slash(scan, '&'//shown(token%text)//' begins in line '//to_text(token%line), problems)
-    scan%blocks = [scan%blocks, block_t(token%text, token%line)]
+    if (scan%open) call tell_missing_slash(scan, '&'//shown(token%text)//' begins in line '// &
+                                           to_text(token%line), problems)
+    block%name = token%text
+    block%line = token%line
+    scan%blocks = [scan%blocks, block]
     scan%values = scan%values + 1
     scan%open = .true.
   end subroutine begin_block
@@ -247,23 +252,23 @@ contains
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
     integer :: repeats
-    character(len=:), allocatable :: word
-    logical :: quoted
+    type(value_t) :: value
 
     if (.not. scan%collecting) then
       call tell_stray_value(scan, token, problems)
     else if (token%kind == token_cut) then
-      call spoil(scan, token%line, 'has a text whose closing quote isn''t in its line; close it', problems)
+      call spoil(scan, token%line, 'has a text whose closing quote isn''t in its line; close it', problems, any_key)
     else
-      quoted = token%kind == token_quoted
-      call split_repeats(token%text, quoted, token%repeats, repeats, word)
-      if (repeats < 1 .or. (len(word) == 0 .and. .not. quoted)) then
+      value%quoted = token%kind == token_quoted
+      call split_repeats(token%text, value%quoted, token%repeats, repeats, value%text)
+      if (repeats < 1 .or. (len(value%text) == 0 .and. .not. value%quoted)) then
         call spoil(scan, token%line, 'has a wrong repeat count in '//shown(token%text)// &
                    '; write count*value with a count from 1 to '//to_text(most_values), problems)
       else if (scan%values + repeats > most_values) then
         scan%values = most_values
+        scan%entries(size(scan%entries))%sound = .false.
       else
-        call append_values(scan%entries(size(scan%entries))%values, repeats, value_t(word, quoted))
+        call append_values(scan%entries(size(scan%entries))%values, repeats, value)
         scan%values = scan%values + repeats
       end if
     end if
@@ -290,7 +295,10 @@ contains
                           ' has no key or no = behind it; write key = value.')
     end associate
     ! What follows up to the next key belongs to the same fault.
-    entry = entry_t(block=size(scan%blocks), key='', line=token%line, sound=.false.)
+    entry%block = size(scan%blocks)
+    entry%key = ''
+    entry%line = token%line
+    entry%sound = .false.
     allocate (entry%values(0))
     call append_entry(scan%entries, entry)
     scan%values = scan%values + 1
@@ -298,7 +306,7 @@ contains
   end subroutine tell_stray_value
 
   !> The writing of the last key is wrong: tells it once, and bars the key from further checks.
-  subroutine spoil(scan, line, fault, problems)
+  subroutine spoil(scan, line, fault, problems, keys)
     !> What was found so far
     type(scan_t), intent(inout) :: scan
     !> Line of the fault
@@ -307,15 +315,22 @@ contains
     character(len=*), intent(in) :: fault
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
+    !> What the fault concerns if not just this key
+    character(len=*), intent(in), optional :: keys
+    character(len=:), allocatable :: concerned
     integer :: last
 
     last = size(scan%entries)
     associate (group => scan%blocks(size(scan%blocks))%name)
       if (.not. scan%collecting) then
-        call problems%error(line, group, '', '&'//shown(group)//': a comma or = stands where a key should; write key = value.')
+        call problems%error(line, group, '', '&'//shown(group)// &
+                            ': a comma or = stands where a key should; write key = value.')
       else if (scan%entries(last)%sound) then
-        call problems%error(line, group, scan%entries(last)%key, '&'//shown(group)//' '//shown(scan%entries(last)%key)// &
-                            ' ='//shown_values(scan%entries(last)%values)//': '//fault//'.')
+        concerned = scan%entries(last)%key
+        if (present(keys)) concerned = keys
+        call problems%error(line, group, concerned, '&'//shown(group)//' '// &
+                            shown(scan%entries(last)%key)//' ='//shown_values(scan%entries(last)%values)//': '// &
+                            fault//'.')
         scan%entries(last)%sound = .false.
       end if
     end associate

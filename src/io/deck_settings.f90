@@ -110,7 +110,8 @@ contains
     if (present(place)) wanted = place
     do index = size(self%items), 1, -1
       if (self%items(index)%place /= wanted) cycle
-      if (self%items(index)%group == lower_case(group) .and. lower_case(self%items(index)%key) == lower_case(key)) return
+      if (self%items(index)%group /= lower_case(group)) cycle
+      if (lower_case(self%items(index)%key) == lower_case(key)) return
     end do
   end function find
 
@@ -281,9 +282,14 @@ contains
     logical, intent(in) :: quoted
     !> Which group of this name
     integer, intent(in), optional :: place
+    type(value_t), allocatable :: values(:)
     integer :: i
 
     i = self%find(group, key, place)
-    if (i > 0) self%items(i)%values = [value_t(word, quoted)]
+    if (i == 0) return
+    allocate (values(1))
+    values(1)%text = word
+    values(1)%quoted = quoted
+    call move_alloc(values, self%items(i)%values)
   end subroutine derive
 end module deck_settings

@@ -163,8 +163,11 @@ contains
 
     finish = cursor%at + 1
     do while (finish < len(deck))
-      if (.not. (is_letter(deck(finish + 1:finish + 1)) .or. index('0123456789_', deck(finish + 1:finish + 1)) > 0)) exit
-      finish = finish + 1
+      if (is_letter(deck(finish + 1:finish + 1)) .or. scan('0123456789_', deck(finish + 1:finish + 1)) > 0) then
+        finish = finish + 1
+      else
+        exit
+      end if
     end do
     token%kind = token_group
     token%text = deck(cursor%at + 1:finish)

@@ -10,6 +10,8 @@ module deck_values
 
   !> Numbers other than 0 lie between 10**-30 and 10**30, so that their products stay finite and nonzero.
   integer, parameter :: most_decades = 30
+  !> Characters of a name, in lower case
+  character(len=*), parameter :: name_characters = 'abcdefghijklmnopqrstuvwxyz0123456789._-'
   !> Longest number, name and text
   integer, parameter :: longest_number = 60, longest_name = 80, longest_text = 1000
 
@@ -89,10 +91,15 @@ contains
       fault = ''''//shown(word)//''' is not a choice'
       if (nearest_name(word, choices) /= '') fault = fault//' (meant '''//nearest_name(word, choices)//'''?)'
     case ('name')
-      if (len(word) > longest_name) fault = 'the name is longer than 80 characters'
-      if (len(word) == 0) fault = 'the name is empty'
-      if (verify(lower_case(word), 'abcdefghijklmnopqrstuvwxyz0123456789._-') > 0) fault = 'the name has other characters'
-      if (index('._-', word(:min(1, len(word)))) > 0 .and. len(word) > 0) fault = 'the name begins with '//word(1:1)
+      if (len(word) == 0) then
+        fault = 'the name is empty'
+      else if (len(word) > longest_name) then
+        fault = 'the name is longer than 80 characters'
+      else if (verify(lower_case(word), name_characters) > 0) then
+        fault = 'the name has other characters'
+      else if (verify(word(1:1), '._-') == 0) then
+        fault = 'the name begins with '//word(1:1)
+      end if
     case default
       if (len(word) > longest_text) fault = 'the text is longer than 1000 characters'
       if (key%allowed /= 'any text' .and. len_trim(word) == 0) fault = 'the text is empty'

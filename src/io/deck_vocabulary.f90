@@ -63,14 +63,32 @@ contains
     allocate (vocabulary%groups(size(group_rows)), vocabulary%keys(size(key_rows)))
     do i = 1, size(group_rows)
       column = words_of(trim(group_rows(i)), '|')
-      vocabulary%groups(i) = group_entry_t(column(1)%text, column(2)%text, column(3)%text)
+      vocabulary%groups(i)%name = column(1)%text
+      vocabulary%groups(i)%presence = column(2)%text
+      vocabulary%groups(i)%meaning = column(3)%text
     end do
     do i = 1, size(key_rows)
       column = words_of(trim(key_rows(i)), '|')
-      vocabulary%keys(i) = key_entry_t(column(1)%text, column(2)%text, column(3)%text, column(4)%text, &
-                                       column(5)%text, column(6)%text, column(7)%text, column(8)%text)
+      call set_key(column, vocabulary%keys(i))
     end do
   end subroutine load_vocabulary
+
+  !> Sets a key from the columns of its row, one by one: gfortran 12 spoils memory if a constructor does it.
+  pure subroutine set_key(column, key)
+    !> Columns of the row
+    type(line_t), intent(in) :: column(8)
+    !> The key
+    type(key_entry_t), intent(out) :: key
+
+    key%group = column(1)%text
+    key%name = column(2)%text
+    key%kind = column(3)%text
+    key%values = column(4)%text
+    key%unit = column(5)%text
+    key%default = column(6)%text
+    key%allowed = column(7)%text
+    key%meaning = column(8)%text
+  end subroutine set_key
 
   !> True: the default is a value that could stand in the deck.
   pure logical function has_literal_default(self)
@@ -97,7 +115,8 @@ contains
     character(len=*), intent(in) :: group, name
 
     do place = size(self%keys), 1, -1
-      if (self%keys(place)%group == lower_case(group) .and. lower_case(self%keys(place)%name) == lower_case(name)) return
+      if (self%keys(place)%group /= lower_case(group)) cycle
+      if (lower_case(self%keys(place)%name) == lower_case(name)) return
     end do
   end function key_index
 

@@ -13,7 +13,7 @@ module fields_file
   use kinds, only: wp
   use run_provenance, only: provenance_t
   use stored_provenance, only: write_provenance
-  use text, only: line_t
+  use text, only: line_t, to_text
   implicit none
   private
   public :: fields_file_t
@@ -162,7 +162,7 @@ contains
     do i = 1, size(names)
       call write_integer_columns(self%file, group//'/cells/'//trim(names(i)), cells, global_cells, values(i:i, :))
     end do
-    call self%close_file(error)
+    call self%close_file(error, group)
   end subroutine write_mesh
 
   !> Starts a time.
@@ -184,7 +184,8 @@ contains
     call write_integers(self%file, self%time_group//'/mesh', [self%mesh], [integer ::])
   end subroutine begin
 
-  !> Writes a field over the points; three components make a vector.
+  !> Writes a field over the points: a scalar, a vector of three components, or any other number of components, which then
+  !> become scalars NAME_1, NAME_2, ... because readers of XDMF do not agree on anything else.
   subroutine write_point_field(self, name, values, error)
     !> The fields
     class(fields_file_t), intent(inout) :: self
@@ -195,11 +196,11 @@ contains
     !> Raised if it can't be written
     type(error_t), allocatable, intent(inout) :: error
 
-    call write_real_columns(self%file, self%time_group//'/points/'//name, self%points, self%global_points, values)
+    call write_field(self%file, self%time_group//'/points/'//name, self%points, self%global_points, values)
     call report(self, error)
   end subroutine write_point_field
 
-  !> Writes a field over the elements; three components make a vector.
+  !> Writes a field over the elements, with components as over points.
   subroutine write_cell_field(self, name, values, error)
     !> The fields
     class(fields_file_t), intent(inout) :: self
@@ -210,9 +211,33 @@ contains
     !> Raised if it can't be written
     type(error_t), allocatable, intent(inout) :: error
 
-    call write_real_columns(self%file, self%time_group//'/cells/'//name, self%cells, self%global_cells, values)
+    call write_field(self%file, self%time_group//'/cells/'//name, self%cells, self%global_cells, values)
     call report(self, error)
   end subroutine write_cell_field
+
+  !> Writes a scalar or vector field as it is and any other by components.
+  subroutine write_field(file, path, columns, global_columns, values)
+    !> The file
+    type(hdf5_file_t), intent(inout) :: file
+    !> Path of the field in the file
+    character(len=*), intent(in) :: path
+    !> Global numbers of the leading columns
+    integer, intent(in) :: columns(:)
+    !> Number of columns on all ranks
+    integer, intent(in) :: global_columns
+    !> The field (components by columns)
+    real(wp), intent(in) :: values(:, :)
+    integer :: i
+
+    select case (size(values, 1))
+    case (1, 3)
+      call write_real_columns(file, path, columns, global_columns, values)
+    case default
+      do i = 1, size(values, 1)
+        call write_real_columns(file, path//'_'//to_text(i), columns, global_columns, values(i:i, :))
+      end do
+    end select
+  end subroutine write_field
 
   !> Ends the time: from now on the files show it.
   subroutine finish(self, error)
@@ -223,7 +248,7 @@ contains
     character(len=:), allocatable :: grid
 
     call grid_of_time(self%file, file_name(self), self%time_group, grid)
-    call self%close_file(error)
+    call self%close_file(error, self%time_group)
     if (allocated(error)) return
     self%grids = [self%grids, line_t(grid)]
     if (self%communicator%is_root()) call write_xdmf(self%base//'.xdmf', self%part, self%grids, error)
@@ -260,13 +285,18 @@ contains
     if (allocated(self%file%trouble)) call self%close_file(error)
   end subroutine open_file
 
-  !> Closes NAME.h5.
-  subroutine close_file(self, error)
+  !> Closes NAME.h5. If what was added can't be written, as when the disk is full, it is taken out again, so that what was
+  !> there before stays readable.
+  subroutine close_file(self, error, added)
     !> The fields
     class(fields_file_t), intent(inout) :: self
     !> Raised if anything went wrong since it was opened
     type(error_t), allocatable, intent(inout) :: error
+    !> Group that was added
+    character(len=*), intent(in), optional :: added
 
+    call self%file%flush()
+    if (allocated(self%file%trouble) .and. present(added)) call self%file%discard(added)
     call self%file%close()
     call report(self, error)
   end subroutine close_file

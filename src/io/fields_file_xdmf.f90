@@ -6,6 +6,7 @@ module fields_file_xdmf
   use hdf5_file, only: hdf5_file_t
   use hdf5_transfers, only: stored_shape
   use kinds, only: wp
+  use output_streams, only: output_stream_t
   use text, only: line_t, to_text
   implicit none
   private
@@ -71,12 +72,7 @@ contains
     call file%members(group, names)
     do i = 1, size(names)
       extents = stored_shape(file, group//'/'//names(i)%text)
-      form = 'Matrix'
-      if (size(extents) == 1) then
-        form = 'Scalar'
-      else if (extents(1) == 3) then
-        form = 'Vector'
-      end if
+      form = merge('Scalar', 'Vector', size(extents) == 1)
       grid = grid//line(3, '<Attribute Name="'//escaped(names(i)%text)//'" AttributeType="'//form//'" Center="' &
                         //centre//'">') &
         //line(4, data_item(name, group//'/'//names(i)%text, extents, kind_of_number)) &
@@ -94,21 +90,19 @@ contains
     type(line_t), intent(in) :: grids(:)
     !> Raised if it can't be written
     type(error_t), allocatable, intent(inout) :: error
-    integer :: unit, i, status, closed
+    type(output_stream_t) :: file
+    integer :: i
 
-    open (newunit=unit, file=path//'.tmp', access='stream', form='unformatted', status='replace', action='write', &
-          iostat=status)
-    if (status == 0) write (unit, iostat=status) line(0, '<?xml version="1.0"?>'), &
-      line(0, '<Xdmf Version="3.0">'), line(0, '<Domain>'), &
-      line(0, '<Information Name="part of the plate" Value="'//part//'"/>'), &
-      line(1, '<Grid Name="times" GridType="Collection" CollectionType="Temporal">')
+    call file%open(path//'.tmp', 'w')
+    call file%put(line(0, '<?xml version="1.0"?>')//line(0, '<Xdmf Version="3.0">')//line(0, '<Domain>'))
+    call file%put(line(1, '<Information Name="part of the plate" Value="'//part//'"/>'))
+    call file%put(line(1, '<Grid Name="times" GridType="Collection" CollectionType="Temporal">'))
     do i = 1, size(grids)
-      if (status == 0) write (unit, iostat=status) grids(i)%text
+      call file%put(grids(i)%text)
     end do
-    if (status == 0) write (unit, iostat=status) line(1, '</Grid>'), line(0, '</Domain>'), line(0, '</Xdmf>')
-    if (status == 0) flush (unit, iostat=status)
-    close (unit, iostat=closed)
-    if (status /= 0) call fail(error, exit_files, "Can't write "//path//'.tmp.')
+    call file%put(line(1, '</Grid>')//line(0, '</Domain>')//line(0, '</Xdmf>'))
+    call file%close()
+    if (file%failed) call fail(error, exit_files, "Can't write "//path//'.tmp.')
     if (.not. allocated(error)) call rename_file(path//'.tmp', path, error)
   end subroutine write_xdmf
 

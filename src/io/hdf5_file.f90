@@ -2,8 +2,8 @@
 !> by all ranks, and once there is some the routines do nothing: whoever owns the file asks at the end.
 module hdf5_file
   use communicators, only: communicator_t
-  use hdf5, only: h5eset_auto_f, h5f_acc_rdonly_f, h5f_acc_rdwr_f, h5f_acc_trunc_f, h5fclose_f, h5fcreate_f, &
-    h5fopen_f, h5gclose_f, h5gcreate_f, h5gget_obj_info_idx_f, h5gn_members_f, h5iis_valid_f, h5ldelete_f, &
+  use hdf5, only: h5eset_auto_f, h5f_acc_rdonly_f, h5f_acc_rdwr_f, h5f_acc_trunc_f, h5f_scope_global_f, &
+    h5fclose_f, h5fcreate_f, h5fflush_f, h5fopen_f, h5gclose_f, h5gcreate_f, h5gget_obj_info_idx_f, h5gn_members_f, h5iis_valid_f, h5ldelete_f, &
     h5lexists_f, h5open_f, h5p_dataset_create_f, h5p_dataset_xfer_f, h5p_file_access_f, h5p_file_create_f, &
     h5p_link_create_f, h5pclose_f, h5pcreate_f, h5pset_create_inter_group_f, h5pset_dxpl_mpio_f, &
     h5pset_fapl_mpio_f, h5pset_obj_track_times_f, h5pset_userblock_f, h5t_native_integer, hid_t, hsize_t, &
@@ -33,12 +33,14 @@ module hdf5_file
   contains
     procedure :: create
     procedure :: open
+    procedure :: flush
     procedure :: close
     procedure :: settle
     procedure :: well
     procedure :: exists
     procedure :: make_group
     procedure :: remove
+    procedure :: discard
     procedure :: members
   end type hdf5_file_t
 
@@ -114,7 +116,19 @@ contains
     call h5pset_obj_track_times_f(self%undated, .false., status)
   end subroutine prepare
 
-  !> Closes the file; all that was written is then with the operating system.
+  !> Hands all that was written to the operating system. Done before closing, while it can still be undone: a file that
+  !> HDF5 fails to close crashes the program when MPI ends.
+  subroutine flush(self)
+    !> The file
+    class(hdf5_file_t), intent(inout) :: self
+    integer :: status
+
+    if (.not. self%well()) return
+    call h5fflush_f(self%id, h5f_scope_global_f, status)
+    call self%settle(status, 'the data could not be written out')
+  end subroutine flush
+
+  !> Closes the file.
   subroutine close (self)
     !> The file
     class(hdf5_file_t), intent(inout) :: self
@@ -129,7 +143,7 @@ contains
       call h5pclose_f(self%undated, closed)
       self%together = -1
     end if
-    call self%settle(status, 'the data could not be written out')
+    call self%settle(status, 'the file could not be closed')
   end subroutine close
 
   !> Agrees on whether the last step failed on any rank.
@@ -194,6 +208,17 @@ contains
     call h5ldelete_f(self%id, path, status)
     call self%settle(status, path//' could not be removed')
   end subroutine remove
+
+  !> Removes a group after there was trouble with it, so that what is left can be closed.
+  subroutine discard(self, path)
+    !> The file
+    class(hdf5_file_t), intent(inout) :: self
+    !> Path inside the file
+    character(len=*), intent(in) :: path
+    integer :: status
+
+    if (self%is_open) call h5ldelete_f(self%id, path, status)
+  end subroutine discard
 
   !> Names of what a group holds, in alphabetical order; none if there is no such group.
   subroutine members(self, path, names)

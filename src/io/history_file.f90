@@ -5,12 +5,15 @@ module history_file
   use errors, only: error_t, exit_files, exit_internal, fail
   use files, only: file_exists, rename_file
   use kinds, only: long, wp
+  use output_streams, only: output_stream_t
   implicit none
   private
   public :: history_file_t
 
   !> Longest time in seconds that a row may wait before it is in the file.
   real(wp), parameter :: longest_wait = 3
+  !> Bytes read at a time.
+  integer, parameter :: block_length = 65536
 
   !> An open history.
   type :: history_file_t
@@ -22,10 +25,8 @@ module history_file
     character(len=:), allocatable, private :: path
     !> Columns that hold integers
     logical, allocatable, private :: whole(:)
-    !> Unit of the file, on the first rank
-    integer, private :: unit = 0
-    !> The file is open, on the first rank
-    logical, private :: is_open = .false.
+    !> The file, open on the first rank
+    type(output_stream_t), private :: file
     !> Clock at the last flush
     integer(long), private :: flushed = 0
   contains
@@ -34,7 +35,6 @@ module history_file
     procedure :: write_row
     procedure :: flush
     procedure :: close
-    procedure, private :: open_unit
     procedure, private :: check
   end type history_file_t
 
@@ -54,18 +54,14 @@ contains
     logical, intent(in) :: whole(:)
     !> Raised if the file can't be written
     type(error_t), allocatable, intent(inout) :: error
-    integer :: status
 
     self%communicator = communicator
     self%path = path
     self%whole = whole
     self%rows = 0
     if (communicator%is_root()) then
-      call self%open_unit(path, 'rewind', error)
-      if (.not. allocated(error)) then
-        write (self%unit, '(a)', iostat=status) header(columns)
-        call self%check(status, error)
-      end if
+      call self%file%open(path, 'w')
+      call self%file%put_line(header(columns))
     end if
     call self%flush(error)
   end subroutine create
@@ -104,7 +100,7 @@ contains
     if (communicator%is_root()) then
       call keep_rows(path, path//'.tmp', header(columns), rows_to_keep, self%rows, error)
       if (.not. allocated(error)) call rename_file(path//'.tmp', path, error)
-      if (.not. allocated(error)) call self%open_unit(path, 'append', error)
+      if (.not. allocated(error)) call self%file%open(path, 'a')
     end if
     call communicator%broadcast(self%rows)
     call self%flush(error)
@@ -119,23 +115,21 @@ contains
     !> Raised if the row can't be written
     type(error_t), allocatable, intent(inout) :: error
     integer(long) :: now, rate
-    integer :: status
 
     if (size(values) /= size(self%whole)) then
       call fail(error, exit_internal, 'A row of the history has another number of values than there are columns.')
       return
     end if
     self%rows = self%rows + 1
-    if (self%is_open) then
-      write (self%unit, '(a)', iostat=status) row(values, self%whole)
+    if (self%file%is_open()) then
+      call self%file%put_line(row(values, self%whole))
       call system_clock(now, rate)
-      if (status == 0 .and. now - self%flushed > longest_wait*rate) then
-        flush (self%unit, iostat=status)
+      if (now - self%flushed > longest_wait*rate) then
+        call self%file%flush()
         self%flushed = now
       end if
-      call self%check(status, error)
     end if
-    call self%communicator%agree(error)
+    call self%check(error)
   end subroutine write_row
 
   !> Hands all rows to the operating system, as is due before a checkpoint.
@@ -144,14 +138,10 @@ contains
     class(history_file_t), intent(inout) :: self
     !> Raised if they can't be written
     type(error_t), allocatable, intent(inout) :: error
-    integer :: status
 
-    if (self%is_open) then
-      flush (self%unit, iostat=status)
-      call self%check(status, error)
-      call system_clock(self%flushed)
-    end if
-    call self%communicator%agree(error)
+    if (self%file%is_open()) call self%file%flush()
+    call system_clock(self%flushed)
+    call self%check(error)
   end subroutine flush
 
   !> Ends the history.
@@ -160,50 +150,21 @@ contains
     class(history_file_t), intent(inout) :: self
     !> Raised if the last rows can't be written
     type(error_t), allocatable, intent(inout) :: error
-    integer :: status
 
-    if (self%is_open) then
-      flush (self%unit, iostat=status)
-      call self%check(status, error)
-      close (self%unit, iostat=status)
-      call self%check(status, error)
-      self%is_open = .false.
-    end if
-    call self%communicator%agree(error)
+    call self%file%close()
+    call self%check(error)
   end subroutine close
 
-  !> Opens the file for writing.
-  subroutine open_unit(self, path, position, error)
-    !> The history
-    class(history_file_t), intent(inout) :: self
-    !> Path of the file
-    character(len=*), intent(in) :: path
-    !> Fortran's position: rewind (the file is emptied) or append
-    character(len=*), intent(in) :: position
-    !> Raised if it can't be opened
-    type(error_t), allocatable, intent(inout) :: error
-    integer :: status
-
-    if (position == 'rewind') then
-      open (newunit=self%unit, file=path, action='write', status='replace', iostat=status)
-    else
-      open (newunit=self%unit, file=path, action='write', position=position, iostat=status)
-    end if
-    self%is_open = status == 0
-    if (status /= 0) call fail(error, exit_files, "Can't open the history "//path//' for writing.')
-  end subroutine open_unit
-
-  !> Raises an error if a transfer failed.
-  subroutine check(self, status, error)
+  !> Raises an error on all ranks if the first one could not write.
+  subroutine check(self, error)
     !> The history
     class(history_file_t), intent(in) :: self
-    !> Status of the transfer
-    integer, intent(in) :: status
-    !> Raised unless the status is 0
+    !> Raised if so
     type(error_t), allocatable, intent(inout) :: error
 
-    if (status /= 0) call fail(error, exit_files, "Can't write to the history "//self%path &
-                               //': is the disk full, or the quota used up?')
+    if (self%file%failed) call fail(error, exit_files, "Can't write the history "//self%path &
+                                    //': does the folder exist, is the disk full or the quota used up?')
+    call self%communicator%agree(error)
   end subroutine check
 
   !> Copies the header and the first rows of a history.
@@ -220,55 +181,83 @@ contains
     integer, intent(out) :: kept
     !> Raised on a failure
     type(error_t), allocatable, intent(inout) :: error
-    character(len=:), allocatable :: line
-    logical :: complete
-    integer :: source, copy, status, closed
+    character(len=len(expected) + 1) :: found
+    type(output_stream_t) :: copy
+    integer(long) :: bytes
+    integer :: unit, status
 
     kept = 0
-    open (newunit=source, file=from, action='read', status='old', iostat=status)
+    open (newunit=unit, file=from, access='stream', form='unformatted', action='read', status='old', iostat=status)
     if (status /= 0) then
       call fail(error, exit_files, "Can't read the history "//from//'.')
       return
     end if
-    call read_line(source, line, complete)
-    if (.not. complete .or. line /= expected) then
+    read (unit, iostat=status) found
+    if (status /= 0 .or. found /= expected//new_line('a')) then
       call fail(error, exit_files, 'The history '//from//' has other columns than this run writes; move it away.')
-      close (source)
-      return
+    else
+      call measure_rows(unit, len(found, long), wanted, bytes, kept)
+      call copy%open(to, 'w')
+      call copy_bytes(unit, bytes, copy)
+      call copy%close()
+      if (copy%failed) call fail(error, exit_files, "Can't write "//to//'.')
     end if
-    open (newunit=copy, file=to, action='write', status='replace', iostat=status)
-    if (status == 0) write (copy, '(a)', iostat=status) line
-    do while (status == 0 .and. kept < wanted)
-      call read_line(source, line, complete)
-      if (.not. complete) exit
-      write (copy, '(a)', iostat=status) line
-      kept = kept + 1
-    end do
-    if (status == 0) flush (copy, iostat=status)
-    if (status /= 0) call fail(error, exit_files, "Can't write "//to//'.')
-    close (copy, iostat=closed)
-    close (source, iostat=closed)
+    close (unit, iostat=status)
   end subroutine keep_rows
 
-  !> Reads a line of any length.
-  subroutine read_line(unit, line, complete)
+  !> Finds where the last row to keep ends. A row without its line end was cut by a kill and does not count.
+  subroutine measure_rows(unit, header_bytes, wanted, bytes, kept)
+    !> Unit of the history
+    integer, intent(in) :: unit
+    !> Length of the header
+    integer(long), intent(in) :: header_bytes
+    !> Rows to keep
+    integer, intent(in) :: wanted
+    !> Length of the header and the rows to keep
+    integer(long), intent(out) :: bytes
+    !> Number of these rows
+    integer, intent(out) :: kept
+    character(len=block_length) :: block
+    integer(long) :: place, length
+    integer :: i, status
+
+    kept = 0
+    bytes = header_bytes
+    place = header_bytes
+    inquire (unit, size=length)
+    do while (place < length .and. kept < wanted)
+      block = ''
+      read (unit, pos=place + 1, iostat=status) block(:min(length - place, len(block, long)))
+      do i = 1, block_length
+        if (block(i:i) /= new_line('a')) cycle
+        kept = kept + 1
+        bytes = place + i
+        if (kept == wanted) exit
+      end do
+      place = place + block_length
+    end do
+  end subroutine measure_rows
+
+  !> Copies the beginning of a file.
+  subroutine copy_bytes(unit, bytes, copy)
     !> Unit of the file
     integer, intent(in) :: unit
-    !> The line
-    character(len=:), allocatable, intent(out) :: line
-    !> There was a line, with its end
-    logical, intent(out) :: complete
-    character(len=512) :: part
+    !> How much to copy
+    integer(long), intent(in) :: bytes
+    !> Where to
+    type(output_stream_t), intent(inout) :: copy
+    character(len=block_length) :: block
+    integer(long) :: place
     integer :: length, status
 
-    line = ''
-    do
-      read (unit, '(a)', advance='no', iostat=status, size=length) part
-      line = line//part(:length)
-      if (status /= 0) exit
+    place = 0
+    do while (place < bytes)
+      length = int(min(bytes - place, len(block, long)))
+      read (unit, pos=place + 1, iostat=status) block(:length)
+      call copy%put(block(:length))
+      place = place + length
     end do
-    complete = is_iostat_eor(status)
-  end subroutine read_line
+  end subroutine copy_bytes
 
   !> First line of the file.
   pure function header(columns) result(line)

@@ -2,7 +2,7 @@
 module petsc_session
   use, intrinsic :: iso_c_binding, only: c_int, c_ptr, c_null_ptr, c_char, c_null_char, c_funptr, c_funloc, &
                                          c_associated, c_f_pointer
-  use petscsys, only: PETSC_COMM_WORLD, PETSC_NULL_OPTIONS
+  use petscsys, only: PETSC_COMM_WORLD, PETSC_NULL_OPTIONS, PetscInitializeNoArguments
   use communicators, only: communicator_t
   use errors, only: error_t, fail, exit_usage, exit_internal
   implicit none

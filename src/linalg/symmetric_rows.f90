@@ -72,15 +72,13 @@ contains
         do while (k < last .and. self%columns(k) < column)
           k = k + 1
         end do
-        if (k > last) then
+        if (self%columns(k) /= column) then
           self%complete = .false.
-        else if (self%columns(k) /= column) then
-          self%complete = .false.
-        else
-          self%values(k) = self%values(k) + matrix(order(b), order(a))
-          ! Two rows of the element in the same equation: both triangles fall on the diagonal.
-          if (column == row .and. b > a) self%values(k) = self%values(k) + matrix(order(a), order(b))
+          cycle
         end if
+        self%values(k) = self%values(k) + matrix(order(b), order(a))
+        ! Two rows of the element in the same equation: both triangles fall on the diagonal.
+        if (column == row .and. b > a) self%values(k) = self%values(k) + matrix(order(a), order(b))
       end do
     end do
   end subroutine add

@@ -17,8 +17,6 @@ module halos
     integer, allocatable :: start(:)
     !> Local points, grouped by rank
     integer, allocatable :: points(:)
-    !> Values on their way, column after column
-    real(wp), allocatable :: buffer(:)
   end type traffic_t
 
   !> The points of this rank, owned ones first and ghosts after them. Global numbers of points run
@@ -128,101 +126,60 @@ contains
     allocate (traffic%start(size(traffic%ranks) + 1))
     traffic%start = [1, (1 + sum(counts(:traffic%ranks(r))), r=1, size(traffic%ranks))]
     allocate (traffic%points(size(points)), source=points)
-    allocate (traffic%buffer(0))
   end function new_traffic
 
   !> Copies values of owned points to their ghosts.
   subroutine update(self, field)
-    class(halo_t), intent(inout) :: self
+    class(halo_t), intent(in) :: self
     !> Values, shape (components, points)
     real(wp), intent(inout) :: field(:, :)
+    real(wp), allocatable :: values(:, :)
 
     if (self%size == 1) return
-    call exchange(self%group, self%shared, self%seen, field)
-    call unpack_points(self%seen, field)
+    call exchange(self%group, self%shared, self%seen, field, values)
+    field(:, self%seen%points) = values
   end subroutine update
 
   !> Adds values of ghosts to their owned points, in the order of ranks, and zeroes the ghosts.
   subroutine accumulate(self, field)
-    class(halo_t), intent(inout) :: self
+    class(halo_t), intent(in) :: self
     !> Values, shape (components, points)
     real(wp), intent(inout) :: field(:, :)
+    real(wp), allocatable :: values(:, :)
+    integer :: i
 
     if (self%size == 1) return
-    call exchange(self%group, self%seen, self%shared, field)
-    call add_points(self%shared, field)
+    call exchange(self%group, self%seen, self%shared, field, values)
+    do i = 1, size(self%shared%points)
+      field(:, self%shared%points(i)) = field(:, self%shared%points(i)) + values(:, i)
+    end do
     field(:, self%owned + 1:) = 0
   end subroutine accumulate
 
-  !> Sends the values of some points while receiving those of others into their buffer.
-  subroutine exchange(group, sent, received, field)
+  !> Sends the values of some points while receiving those of others.
+  subroutine exchange(group, sent, received, field, values)
     !> All ranks
     type(MPI_Comm), intent(in) :: group
-    !> Points whose values are sent
-    type(traffic_t), intent(inout), asynchronous :: sent
-    !> Points whose values are received
-    type(traffic_t), intent(inout), asynchronous :: received
+    !> Points whose values are sent, and points whose values are received
+    type(traffic_t), intent(in) :: sent, received
     !> Values, shape (components, points)
     real(wp), intent(in) :: field(:, :)
+    !> Values received, shape (components, points received)
+    real(wp), allocatable, asynchronous, intent(out) :: values(:, :)
+    real(wp), allocatable, asynchronous :: own(:, :)
     type(MPI_Request) :: requests(size(sent%ranks) + size(received%ranks))
-    integer :: n, i, count
+    integer :: i
 
-    n = size(field, 1)
-    call grow(sent, n)
-    call grow(received, n)
+    allocate (values(size(field, 1), size(received%points)))
     do i = 1, size(received%ranks)
-      count = n*(received%start(i + 1) - received%start(i))
-      call MPI_Irecv(received%buffer(n*(received%start(i) - 1) + 1), count, MPI_DOUBLE_PRECISION, &
-                     received%ranks(i), 0, group, requests(i))
+      call MPI_Irecv(values(1, received%start(i)), size(field, 1)*(received%start(i + 1) - received%start(i)), &
+                     MPI_DOUBLE_PRECISION, received%ranks(i), 0, group, requests(i))
     end do
-    do i = 1, size(sent%points)
-      sent%buffer(n*(i - 1) + 1:n*i) = field(:, sent%points(i))
-    end do
+    own = field(:, sent%points)
     do i = 1, size(sent%ranks)
-      count = n*(sent%start(i + 1) - sent%start(i))
-      call MPI_Isend(sent%buffer(n*(sent%start(i) - 1) + 1), count, MPI_DOUBLE_PRECISION, &
-                     sent%ranks(i), 0, group, requests(size(received%ranks) + i))
+      call MPI_Isend(own(1, sent%start(i)), size(field, 1)*(sent%start(i + 1) - sent%start(i)), &
+                     MPI_DOUBLE_PRECISION, sent%ranks(i), 0, group, requests(size(received%ranks) + i))
     end do
     call MPI_Waitall(size(requests), requests, MPI_STATUSES_IGNORE)
   end subroutine exchange
-
-  !> Makes room for a number of components, once.
-  subroutine grow(traffic, components)
-    !> The traffic whose buffer may be too short
-    type(traffic_t), intent(inout) :: traffic
-    !> Number of values a point
-    integer, intent(in) :: components
-
-    if (size(traffic%buffer) >= components*size(traffic%points)) return
-    deallocate (traffic%buffer)
-    allocate (traffic%buffer(components*size(traffic%points)))
-  end subroutine grow
-
-  !> Moves received values to their points.
-  subroutine unpack_points(traffic, field)
-    !> What was received
-    type(traffic_t), intent(in) :: traffic
-    !> Values, shape (components, points)
-    real(wp), intent(inout) :: field(:, :)
-    integer :: n, i
-
-    n = size(field, 1)
-    do i = 1, size(traffic%points)
-      field(:, traffic%points(i)) = traffic%buffer(n*(i - 1) + 1:n*i)
-    end do
-  end subroutine unpack_points
-
-  !> Adds received values to their points.
-  subroutine add_points(traffic, field)
-    !> What was received
-    type(traffic_t), intent(in) :: traffic
-    !> Values, shape (components, points)
-    real(wp), intent(inout) :: field(:, :)
-    integer :: n, i
-
-    n = size(field, 1)
-    do i = 1, size(traffic%points)
-      field(:, traffic%points(i)) = field(:, traffic%points(i)) + traffic%buffer(n*(i - 1) + 1:n*i)
-    end do
-  end subroutine add_points
 end module halos

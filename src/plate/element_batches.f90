@@ -196,7 +196,8 @@ contains
   end subroutine invert_jacobian
 
   !> Tangent vectors at the samples of the assumed shear strains (Huang and Hinton, 1986): gamma_xi at
-    character(len=12) :: number
+  !> xi = -+1/sqrt(3), eta = -1, 0, 1 (sample p + 2 j) and gamma_eta at xi = -1, 0, 1, eta = -+1/sqrt(3)
+  !> (sample 6 + p + 2 i).
   pure function sample_tangents(x) result(tangents)
     !> Position of the nodes
     real(wp), intent(in) :: x(2, 9)

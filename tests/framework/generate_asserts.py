@@ -48,6 +48,7 @@ TAIL_ARGUMENTS = """\
 
 
 def dims(rank):
+    """Shape of a dummy argument of a rank."""
     return "(" + ",".join(":" * rank) + ")" if rank else ""
 
 
@@ -58,6 +59,7 @@ def flat(name, rank, kind):
 
 
 def comparison(name, relation, expected, found, ranks):
+    """An assert that compares two sides."""
     kind = found.split("(")[0]
     tolerance = "tolerance, " if kind == "real" else ""
     yield f"  subroutine {name}(expected, found, {tolerance}message, location)"
@@ -134,6 +136,7 @@ STRINGS = """\
 
 
 def main(path):
+    """Write the module to a file."""
     procedures, interfaces = [], {}
     for name, specific, lines in overloads():
         procedures += lines

@@ -61,15 +61,18 @@ class Translator:
     """Reads one file line by line."""
 
     def __init__(self, path):
+        """Start at the beginning of a file."""
         self.path = path
         self.suite = Suite()
         self.awaited = None  # what the next subroutine or type is
         self.out = [f'#line 1 "{path}"']
 
     def error(self, number, sentence):
+        """Stop with a sentence about a line."""
         sys.exit(f"{self.path}:{number}: {sentence}")
 
     def translate(self, text):
+        """Return the whole file in Fortran."""
         for number, line in enumerate(text.splitlines(), 1):
             found = DIRECTIVE.match(line)
             if found:
@@ -79,13 +82,14 @@ class Translator:
             else:
                 self.declaration(number, line)
                 self.out.append(line)
-        if isinstance(self.awaited, Test) or self.awaited:
+        if self.awaited:
             self.error(number, "the last directive has nothing to apply to")
         if self.suite.module.lower() != Path(self.path).stem.lower():
             self.error(1, "the module must have the name of the file")
         return "\n".join(self.out + run_module(self.suite)) + "\n"
 
     def directive(self, number, keyword, spelling, text):
+        """Replace a directive by Fortran, or note what it announces."""
         if keyword.startswith(("assert", "mpiassert")):
             name = spelling[3:] if keyword.startswith("mpi") else spelling
             place = f"location=SourceLocation('{self.path}', {number})"
@@ -151,10 +155,10 @@ def run_module(suite):
         end = ["#endif"] * len(guard)
         title = f"{suite.name or suite.module}.{test.name}"
         if test.disabled:
-            calls += guard + [f"    call run%skips('{title}')"] + end
+            calls += [*guard, f"    call run%skips('{title}')", *end]
             continue
-        calls += guard + [f"    call run_{test.name}(run)"] + end
-        bodies += guard + run_test(suite, test, title) + end
+        calls += [*guard, f"    call run_{test.name}(run)", *end]
+        bodies += [*guard, *run_test(suite, test, title), *end]
     return lines + calls + ["  end subroutine run_tests"] + bodies + [f"end module {suite.module}_run"]
 
 

@@ -1,0 +1,58 @@
+# How the tests of Implam are registered.
+
+# The same processors, threads and launcher settings for every test, so that two tests at a time don't
+# disturb each other: one thread a rank, ranks not bound to cores, more ranks than cores allowed.
+set(IMPLAM_TEST_ENVIRONMENT OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
+  OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_hwloc_base_binding_policy=none OMPI_MCA_mpi_yield_when_idle=1)
+execute_process(COMMAND id -u OUTPUT_VARIABLE user OUTPUT_STRIP_TRAILING_WHITESPACE)
+if(user EQUAL 0) # Open MPI refuses to start for root unless told twice
+  list(APPEND IMPLAM_TEST_ENVIRONMENT OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1)
+endif()
+
+# implam_settle_test(<test> <label>): label, environment and time limit of a registered test.
+function(implam_settle_test test label)
+  set_tests_properties(${test} PROPERTIES LABELS ${label} ENVIRONMENT "${IMPLAM_TEST_ENVIRONMENT}" TIMEOUT 300)
+endfunction()
+
+# implam_add_unit_tests(<layer>...): one test program a layer from tests/unit/<layer>/*.pf and the helpers
+# beside them (*.f90); it sees this layer and those left of it. From linalg on, PETSc is started first.
+function(implam_add_unit_tests)
+  set(lower "")
+  foreach(layer IN LISTS ARGN)
+    list(APPEND lower ${layer})
+    set(folder ${CMAKE_CURRENT_SOURCE_DIR}/unit/${layer})
+    file(GLOB tests CONFIGURE_DEPENDS ${folder}/*.pf)
+    file(GLOB helpers CONFIGURE_DEPENDS ${folder}/*.f90)
+    if(NOT tests OR NOT TARGET implam_${layer})
+      continue()
+    endif()
+    set(arguments "")
+    implam_wants_processes(processes ${tests})
+    if(processes)
+      list(APPEND arguments MAX_PES 4)
+    endif()
+    if("linalg" IN_LIST lower)
+      list(APPEND helpers ${CMAKE_CURRENT_SOURCE_DIR}/support/petsc_fixture.f90)
+      list(APPEND arguments EXTRA_USE petsc_fixture EXTRA_INITIALIZE start_petsc_for_tests)
+    endif()
+    add_library(tested_${layer} INTERFACE)
+    implam_link_layers(tested_${layer} ${lower})
+    add_pfunit_ctest(unit_${layer} TEST_SOURCES ${tests} OTHER_SOURCES ${helpers}
+                     LINK_LIBRARIES tested_${layer} ${arguments})
+    implam_settle_test(unit_${layer} unit)
+    if(processes) # on two cores one such program at a time
+      set_tests_properties(unit_${layer} PROPERTIES PROCESSORS 2)
+    endif()
+  endforeach()
+endfunction()
+
+# implam_wants_processes(<variable> <test file>...): does any of the files test on several processes?
+function(implam_wants_processes variable)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${ARGN})
+  set(found "")
+  foreach(name IN LISTS ARGN)
+    file(STRINGS ${name} uses REGEX "^ *use +pfunit" LIMIT_COUNT 1)
+    list(APPEND found ${uses})
+  endforeach()
+  set(${variable} ${found} PARENT_SCOPE)
+endfunction()

@@ -1,0 +1,112 @@
+#!/usr/bin/env python3
+"""Spoils valid decks at random and holds `implam check` against them: it must pass or refuse each, with exit
+code 0 or 2, never crash, hang or print a backtrace.
+
+usage: fuzz.py IMPLAM [--count N] [--seed S] [--keep FOLDER] [DECK ...]
+
+Without decks those in good/ are spoilt. Decks that break the program are kept in FOLDER.
+"""
+import argparse
+import os
+import random
+import re
+import subprocess
+import sys
+import tempfile
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+NUMBER = re.compile(rb"[-+]?\d+\.?\d*(?:[eEdD][-+]?\d+)?")
+EXTREMES = [b"0", b"-0.0", b"1", b"-1", b"1e-300", b"1e300", b"1e999", b"1e-999", b"1d30", b"9.99e29", b"NaN", b"Inf",
+            b"-Infinity", b"2147483647", b"2147483648", b"-2147483648", b"99999999999999999999", b"1.5", b".", b"1e",
+            b"+", b"1e+", b"0x7f", b"1e99999999999999999999", b"3*", b"0*1", b"10000*1", b"9999999999*1", b"'1'", b"",
+            b"1" * 500]
+PIECES = [b"&", b"/", b"'", b'"', b"!", b"=", b",", b"(", b")", b"%", b"*", b"\n", b"\r", b"\0", b"\t", b"&end",
+          b"&plate ", b"&material ", b"&time /", b"$", b";", b"2*'a'", b"'\n", b"//", b"\xff\xfe", b"\xc3\xa9", b" a=1 ",
+          b".true.", b".false.", b"name='x'", b"T", b"-", b"e", b"x" * 5000, b"a=1 " * 300, b"'" * 301]
+
+
+def spoil(deck, chance):
+    """The deck with one thing changed."""
+    start = chance.randrange(len(deck) + 1)
+    end = min(len(deck), start + int(chance.expovariate(1 / 12)) + 1)
+    kind = chance.randrange(9)
+    if kind == 0:
+        flipped = bytearray(deck)
+        for _ in range(chance.randint(1, 8)):
+            flipped[chance.randrange(len(flipped))] ^= 1 << chance.randrange(8)
+        return bytes(flipped)
+    if kind == 1:
+        return deck[:start]
+    if kind == 2:
+        return deck[:start] + deck[end:]
+    if kind == 3:
+        return deck[:end] + deck[start:end] * chance.choice([1, 1, 2, 40]) + deck[end:]
+    if kind == 4:
+        lines = deck.split(b"\n")
+        chance.shuffle(lines)
+        return b"\n".join(lines)
+    if kind == 5:
+        words = re.split(rb"([\s,=/]+)", deck)
+        first, second = chance.randrange(len(words)), chance.randrange(len(words))
+        words[first], words[second] = words[second], words[first]
+        return b"".join(words)
+    if kind in (6, 7):
+        numbers = list(NUMBER.finditer(deck))
+        if numbers:
+            number = chance.choice(numbers)
+            return deck[:number.start()] + chance.choice(EXTREMES) + deck[number.end():]
+    return deck[:start] + chance.choice(PIECES) + deck[start:]
+
+
+def fault(program, path):
+    """What is wrong with the program's answer to a deck, or nothing."""
+    try:
+        done = subprocess.run([program, "check", path], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=60)
+    except subprocess.TimeoutExpired:
+        return "hangs"
+    output = done.stdout.lower()
+    if done.returncode not in (0, 2):
+        return f"exit code {done.returncode}: {done.stdout[-300:]!r}"
+    for sign in (b"backtrace", b"runtime error", b"sanitizer", b"sigsegv"):
+        if sign in output:
+            return f"{sign.decode()}: {done.stdout[-300:]!r}"
+    if done.returncode == 2 and not output.strip():
+        return "refuses without a word"
+    return None
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("program")
+    parser.add_argument("decks", nargs="*")
+    parser.add_argument("--count", type=int, default=200)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--keep", default=".")
+    asked = parser.parse_args()
+    folder = os.path.join(HERE, "good")
+    seeds = []
+    for path in asked.decks or [os.path.join(folder, name) for name in sorted(os.listdir(folder))]:
+        with open(path, "rb") as deck:
+            seeds.append(deck.read())
+    chance = random.Random(asked.seed)
+    broken = 0
+    with tempfile.TemporaryDirectory() as work:
+        path = os.path.join(work, "fuzz.nml")
+        for number in range(asked.count):
+            deck = chance.choice(seeds)
+            for _ in range(chance.choice([1, 1, 2, 4, 10])):
+                deck = spoil(deck or b"&", chance)
+            with open(path, "wb") as file:
+                file.write(deck[:500000])
+            wrong = fault(os.path.abspath(asked.program), path)
+            if wrong:
+                broken += 1
+                kept = os.path.join(asked.keep, f"fuzz-{asked.seed}-{number}.nml")
+                os.replace(path, kept)
+                print(f"{kept}: {wrong}")
+    print(f"{asked.count} decks, {broken} broke the program")
+    return 1 if broken else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,277 @@
+"""Checks that the Fortran sources keep the rules of the project. Usage: check_style.py FILE_OR_FOLDER...
+
+Prints one line a breach, as file:line: sentence, and ends with code 1 if there is any.
+"""
+
+import re
+import sys
+from dataclasses import dataclass, field
+from pathlib import Path
+
+MAX_COLUMNS = 120
+MAX_PROCEDURE = 100
+MAX_FILE = 600
+INDENT = 2
+# Libraries whose modules are made to be used whole.
+WHOLE_MODULES = {"mpi", "mpi_f08", "hdf5"}
+
+PREFIX = (
+    r"(?:(?:pure|impure|elemental|recursive|module)\s+|"
+    r"(?:integer|real|logical|complex|character|type|class|double)\b[^:!]*?\s+)*"
+)
+UNIT = re.compile(r"(module|submodule|program)\s+(?!procedure\b|subroutine\b|function\b)(?:\(.*?\)\s*)?(\w+)$")
+PROCEDURE = re.compile(PREFIX + r"(subroutine|function)\s+(\w+)\s*(\((.*?)\))?")
+MODULE_PROCEDURE = re.compile(r"module\s+procedure\s+(\w+)$")
+TYPE = re.compile(r"type(?:\s*,[^:]*)?\s*(?:::)?\s*(\w+)$|type\s*,.*::\s*(\w+)$")
+CONSTRUCT = re.compile(
+    r"(?:\w+\s*:\s*)?(?:if\s*\(.*\)\s*then|do\b(?!\s*=)|select\s*(?:case|type|rank)\b|associate\s*\(|block|critical|"
+    r"(?:where|forall)\s*(?P<mask>\(.*))$|(?:\w+\s*:\s*)?(?:do\b.*|select\s*(?:case|type|rank)\s*\(.*|associate\s*\(.*)$"
+)
+MIDDLE = re.compile(r"(?:else|elsewhere|case|contains)\b(?!\s*=)|(?:class|type)\s+(?:is|default)\b|rank\s*\(")
+END = re.compile(r"end\s*(?!file\b)(\w*)\b\s*\w*$")
+DECLARATION = re.compile(
+    r"(integer|real|logical|complex|character|double\s+precision|type\s*\(|class\s*\(|procedure\s*\()(.*?)::(.*)$"
+)
+
+
+@dataclass
+class Statement:
+    """One statement, its continuation lines joined, its strings emptied, in lower case."""
+
+    line: int
+    last: int
+    indent: int
+    text: str
+    documented: bool
+
+
+@dataclass
+class Scope:
+    """An open program unit, procedure, type, interface or construct."""
+
+    kind: str
+    line: int
+    name: str = ""
+    arguments: set = field(default_factory=set)
+    seen: set = field(default_factory=set)
+
+
+def without_strings(line, quote):
+    """The line without comment and contents of strings, and the quote left open at its end."""
+    out = []
+    for character in line:
+        if quote:
+            if character == quote:
+                quote = ""
+                out.append(character)
+        elif character == "!":
+            break
+        else:
+            quote = character if character in "'\"" else ""
+            out.append(character)
+    if quote and line.rstrip().endswith("&"):
+        out.append("&")
+    return "".join(out), quote
+
+
+def statements(lines):
+    """The statements of a file. Documented means that a line starting with !> stands right above."""
+    current, documented, quote = None, False, ""
+    for number, line in enumerate(lines, 1):
+        if line.lstrip().startswith("!"):
+            documented = documented if current else documented or line.lstrip().startswith("!>")
+            continue
+        if line.startswith("#"):
+            continue
+        code, quote = without_strings(line, quote)
+        code = code.rstrip()
+        if not code:
+            documented = documented if current else False
+            continue
+        text = code.strip().lstrip("&").lower()
+        if current:
+            current.text += " " + text.strip()
+        else:
+            current = Statement(number, number, len(code) - len(code.lstrip()), text.strip(), documented)
+        current.last = number
+        if current.text.endswith("&"):
+            current.text = current.text[:-1].rstrip()
+        else:
+            yield current
+            current, documented, quote = None, False, ""
+
+
+def split_top(text):
+    """Splits at commas outside brackets."""
+    parts, depth = [""], 0
+    for character in text:
+        depth += (character in "([") - (character in ")]")
+        if character == "," and depth == 0:
+            parts.append("")
+        else:
+            parts[-1] += character
+    return [part.strip() for part in parts]
+
+
+def initialised(entity):
+    """Does a declared entity carry a value?"""
+    flat = re.sub(r"\([^()]*\)", "", re.sub(r"\([^()]*\)", "", entity))
+    return "=" in flat
+
+
+class Checker:
+    """Walks through the statements of one file and collects breaches."""
+
+    def __init__(self, path):
+        """Read the file."""
+        self.path = path
+        self.lines = path.read_text(encoding="utf-8").splitlines()
+        self.breaches = []
+        self.scopes = []
+
+    def report(self, line, sentence):
+        """Note a breach."""
+        self.breaches.append((line, f"{self.path}:{line}: {sentence}"))
+
+    def check(self):
+        """Return the breaches in the order of lines."""
+        self.check_layout()
+        for statement in statements(self.lines):
+            self.check_indent(statement)
+            self.check_words(statement)
+            self.walk(statement)
+        return [text for _, text in sorted(self.breaches)]
+
+    def check_layout(self):
+        """Check what needs no understanding of Fortran."""
+        if len(self.lines) > MAX_FILE:
+            self.report(len(self.lines), f"the file has more than {MAX_FILE} lines")
+        for number, line in enumerate(self.lines, 1):
+            if "\t" in line:
+                self.report(number, "tab")
+            if line != line.rstrip():
+                self.report(number, "trailing blank")
+            if len(line) > MAX_COLUMNS:
+                self.report(number, f"more than {MAX_COLUMNS} columns")
+
+    def check_indent(self, statement):
+        """Check the indentation of a statement's first line."""
+        closes = END.match(statement.text) or MIDDLE.match(statement.text)
+        wanted = INDENT * (len(self.scopes) - bool(closes and self.scopes))
+        if statement.indent != wanted:
+            self.report(statement.line, f"indented by {statement.indent}, not {wanted} blanks")
+
+    def check_words(self, statement):
+        """Check for statements that have no place in the project."""
+        text = statement.text
+        action = re.sub(r"^if\s*\(.*?\)\s*(?=(error\s+)?stop\b|go\s*to\b)", "", text)
+        if re.match(r"save\b(?!\s*=)", text) or re.search(r",\s*save\b.*::", text):
+            self.report(statement.line, "save: a module keeps no state")
+        if re.match(r"(error\s+)?stop\b(?!\s*[=(%])", action) and self.path.name != "main.f90":
+            self.report(statement.line, "stop: errors are returned, only main stops the program")
+        if re.match(r"go\s*to\s+\d", action):
+            self.report(statement.line, "goto")
+        used = re.match(r"use\b\s*(?:,\s*\w+\s*::)?\s*(\w+)(.*)", text)
+        whole = used and (used.group(1) in WHOLE_MODULES or used.group(1).startswith("petsc"))
+        if used and not whole and not re.match(r"\s*,\s*only\s*:", used.group(2)):
+            self.report(statement.line, f"use {used.group(1)} without only")
+
+    def walk(self, statement):
+        """Follow the nesting and check what begins or ends here."""
+        text = statement.text
+        inner = self.scopes[-1] if self.scopes else None
+        if END.match(text) and inner:
+            self.close(self.scopes.pop(), statement)
+            return
+        if inner and re.match(r"implicit\s+none\b|private$", text):
+            inner.seen.add(text.split()[0])
+        unit, procedure, kind = UNIT.match(text), PROCEDURE.match(text), TYPE.match(text)
+        if unit:
+            self.open_unit(unit, statement)
+        elif procedure and not text.startswith("end"):
+            arguments = {a for a in split_top(procedure.group(4) or "") if a not in ("", "*", "self", "this")}
+            self.require_doc(statement, f"{procedure.group(1)} {procedure.group(2)}")
+            self.scopes.append(Scope("procedure", statement.line, procedure.group(2), arguments))
+        elif MODULE_PROCEDURE.match(text) and (not inner or inner.kind != "interface"):
+            self.scopes.append(Scope("procedure", statement.line, MODULE_PROCEDURE.match(text).group(1)))
+        elif kind and not text.startswith("type is"):
+            name = kind.group(1) or kind.group(2)
+            self.require_doc(statement, f"type {name}")
+            self.scopes.append(Scope("type", statement.line, name))
+        elif re.match(r"(abstract\s+)?interface\b", text):
+            self.scopes.append(Scope("interface", statement.line))
+        elif self.opens_construct(text):
+            self.scopes.append(Scope("construct", statement.line))
+        else:
+            self.check_declaration(statement, inner)
+
+    @staticmethod
+    def opens_construct(text):
+        """Tell whether a statement opens a construct (a where or forall may be a statement of its own)."""
+        found = CONSTRUCT.match(text)
+        if not found:
+            return re.match(r"enum\s*,", text) is not None
+        mask = found.group("mask")
+        if mask is None:
+            return True
+        depth = 0
+        for position, character in enumerate(mask):
+            depth += (character == "(") - (character == ")")
+            if depth == 0:
+                return not mask[position + 1 :].strip()
+        return False
+
+    def open_unit(self, unit, statement):
+        """Begin a module or program."""
+        self.require_doc(statement, f"{unit.group(1)} {unit.group(2)}")
+        self.scopes.append(Scope(unit.group(1), statement.line, unit.group(2)))
+        if unit.group(1) == "module" and unit.group(2) != self.path.stem.lower():
+            self.report(statement.line, f"module {unit.group(2)} stands in a file of another name")
+
+    def close(self, scope, statement):
+        """Check what is known only at the end of a scope."""
+        if scope.kind == "module":
+            if "implicit" not in scope.seen:
+                self.report(scope.line, f"module {scope.name} has no implicit none")
+            if "private" not in scope.seen:
+                self.report(scope.line, f"module {scope.name} isn't private")
+        if scope.kind == "procedure" and statement.line - scope.line + 1 > MAX_PROCEDURE:
+            self.report(scope.line, f"{scope.name} has more than {MAX_PROCEDURE} lines")
+
+    def require_doc(self, statement, what):
+        """Check that documentation stands above a statement."""
+        if not statement.documented:
+            self.report(statement.line, f"{what} has no !> documentation above it")
+
+    def check_declaration(self, statement, scope):
+        """Check a declaration by where it stands."""
+        found = DECLARATION.match(statement.text)
+        if not found or not scope:
+            return
+        attributes, entities = found.group(1) + found.group(2), split_top(found.group(3))
+        names = [re.match(r"\w*", entity).group() for entity in entities]
+        constant = re.search(r"\bparameter\b", attributes)
+        if scope.kind == "type" and not found.group(1).startswith("procedure"):
+            self.require_doc(statement, f"component {', '.join(names)}")
+        elif scope.kind == "module" and not constant:
+            self.report(statement.line, f"module variable {', '.join(names)}")
+        elif scope.kind in ("procedure", "construct") and not constant:
+            for name, entity in zip(names, entities, strict=True):
+                if initialised(entity):
+                    self.report(statement.line, f"{name} is initialised where it is declared, so it is saved")
+        if scope.kind == "procedure" and scope.arguments.intersection(names):
+            self.require_doc(statement, f"argument {', '.join(names)}")
+
+
+def main(arguments):
+    """Check files and folders; return the exit code."""
+    files = []
+    for argument in map(Path, arguments):
+        files += sorted(argument.rglob("*.[fF]90")) if argument.is_dir() else [argument]
+    breaches = [breach for path in files for breach in Checker(path).check()]
+    print("\n".join(breaches) if breaches else f"{len(files)} files keep the rules")
+    return 1 if breaches or not files else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

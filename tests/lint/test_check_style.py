@@ -1,0 +1,141 @@
+"""Shows that the checker accepts good code and finds each kind of breach."""
+
+import contextlib
+import io
+import tempfile
+import unittest
+from pathlib import Path
+
+import check_style
+
+GOOD = """\
+!> A thing.
+module good
+  use kinds, only: wp
+  use mpi
+  implicit none
+  private
+  public :: thing_t, double
+
+  !> Kinds of things, in a text that goes on & over
+  character(len=*), parameter :: rows(*) = [character(len=20) :: &
+    'one; save | &
+      &goto 1 ! stop', &
+    'two']
+
+  !> Thing
+  type, abstract :: thing_t
+    !> Size
+    real(wp) :: size = 0
+    !> Parts
+    type(thing_t), pointer :: part => null()
+  contains
+    procedure(measure), deferred :: area
+  end type thing_t
+
+  abstract interface
+    !> Area of a thing.
+    real(wp) function measure(self)
+      import :: thing_t, wp
+      class(thing_t), intent(in) :: self
+    end function measure
+  end interface
+
+contains
+
+  !> Twice a value.
+  pure real(wp) function double(value, shape) result(twice)
+    !> The value
+    real(wp), intent(in) :: value
+    !> Shape, which goes &
+    !> on
+    integer, intent(in), &
+      optional :: shape(:)
+    real(wp) :: save_it(merge(2, 1, value == 1))
+    integer, parameter :: two = 2
+    integer :: i
+
+    if (value > 0) save_it(1) = 1
+    where (save_it > 0) save_it = 1
+    outer: do i = 1, 2
+      select case (i)
+      case (1)
+        twice = two*value
+      case default
+        if (i == 2) exit outer
+      end select
+    end do outer
+    associate (v => value)
+      if (v > 0 .and. &
+          v < 1) then
+        twice = v
+      else if (v > 1) then
+        twice = 2
+      else
+        twice = 3
+      end if
+    end associate
+  end function double
+end module good
+"""
+
+# name of the breach: (text in GOOD, its replacement, words of the report)
+BREACHES = {
+    "tab": ("    integer :: i\n", "    integer ::\ti\n", "tab"),
+    "blank": ("  private\n", "  private \n", "trailing blank"),
+    "columns": ("twice = 3", "twice = 3" + "0" * 120, "more than 120 columns"),
+    "implicit": ("  implicit none\n", "", "no implicit none"),
+    "private": ("  private\n", "", "isn't private"),
+    "name": ("module good", "module bad", "another name"),
+    "save": ("    integer :: i\n", "    integer, save :: i\n", "keeps no state"),
+    "stop": ("twice = 3", "stop 3", "only main stops"),
+    "stop after if": ("exit outer", "error stop 'x'", "only main stops"),
+    "goto": ("exit outer", "go to 10", "goto"),
+    "use": ("use kinds, only: wp", "use kinds", "without only"),
+    "initialised": ("    integer :: i\n", "    integer :: i = 1\n", "initialised"),
+    "initialised array": ("    integer :: i\n", "    integer :: i, n(2) = [1, 2]\n", "initialised"),
+    "module variable": ("  public :: thing_t", "  integer :: counter\n  public :: thing_t", "module variable"),
+    "module doc": ("!> A thing.\n", "", "module good has no"),
+    "type doc": ("  !> Thing\n", "", "type thing_t has no"),
+    "component doc": ("    !> Size\n", "", "component size has no"),
+    "procedure doc": ("  !> Twice a value.\n", "", "function double has no"),
+    "interface doc": ("    !> Area of a thing.\n", "", "function measure has no"),
+    "argument doc": ("    !> The value\n", "", "argument value has no"),
+    "plain comment is no doc": ("    !> The value\n", "    ! The value\n", "argument value has no"),
+    "indent": ("        twice = 3", "       twice = 3", "indented by 7, not 8"),
+    "long procedure": ("        twice = 3\n", "        twice = 3\n" * 100, "more than 100 lines"),
+    "long file": ("!> A thing.\n", "! Why\n" * 600 + "!> A thing.\n", "more than 600 lines"),
+}
+
+
+class StyleTest(unittest.TestCase):
+    """The checker on a good file and on files with one breach each."""
+
+    def check(self, text):
+        """Run the checker on a file; return its exit code and report."""
+        with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()) as out:
+            Path(folder, "good.f90").write_text(text, encoding="utf-8")
+            code = check_style.main([folder])
+        return code, out.getvalue()
+
+    def test_good_code_passes(self):
+        """No false alarm."""
+        self.assertEqual(self.check(GOOD), (0, "1 files keep the rules\n"))
+
+    def test_each_breach_is_found(self):
+        """Every rule can fail."""
+        for name, (old, new, words) in BREACHES.items():
+            with self.subTest(name):
+                self.assertIn(old, GOOD)
+                code, report = self.check(GOOD.replace(old, new))
+                self.assertEqual(code, 1)
+                self.assertIn(words, report)
+
+    def test_an_empty_folder_fails(self):
+        """A check of nothing is no check."""
+        with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
+            self.assertEqual(check_style.main([folder]), 1)
+
+
+if __name__ == "__main__":
+    unittest.main()
