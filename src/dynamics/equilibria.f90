@@ -70,7 +70,9 @@ contains
     do
       call find_residual(model, integrator, old, new, strike%load(), residual, energy)
       norm = relative_residual(model%communicator, operator%numbering, residual, new%motion%internal, &
-                               new%motion%inertia, patch_square*strike%load()**2, new%largest_forces)
+                               new%motion%inertia, patch_square*strike%load()**2, &
+                               operator%diagonal*new%motion%displacement, model%scene%solver%tolerance, &
+                               new%largest_forces)
       ! The force answers to the motion only within an iteration, so an impact needs one.
       converged = norm <= model%scene%solver%tolerance .and. (new%iterations > 0 .or. .not. model%scene%has_impactor)
       if (converged .or. .not. norm <= huge(norm) .or. new%iterations >= model%scene%solver%max_iterations) exit

@@ -54,6 +54,7 @@ contains
 
     self%now = new_state(model)
     self%trial = self%now
+    self%controller%wanted = 1.0_wp/model%scene%static_steps
     call self%operator%create(model, error)
     if (allocated(error) .or. model%scene%has_static) return
     self%integrator = plate_integrator(model%scene%time)
@@ -185,7 +186,6 @@ contains
     !> Set if the solver fails for good
     type(error_t), allocatable, intent(out) :: error
 
-    if (self%controller%wanted <= 0) self%controller%wanted = event - self%now%time
     step = self%controller%propose(event - self%now%time, huge(step))
     call attempt_load(model, self%operator, self%now, self%now%time + step, self%trial, converged, error)
   end subroutine try_load

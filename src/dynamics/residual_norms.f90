@@ -13,7 +13,8 @@ contains
 
   !> Residual over the largest of the forces in play, the larger of translations and rotations; infinite if
   !> any number is not finite. The same on every rank.
-  real(wp) function relative_residual(communicator, numbering, residual, first, second, load, largest) result(norm)
+  real(wp) function relative_residual(communicator, numbering, residual, first, second, load, rounding, &
+                                         tolerance, largest) result(norm)
     !> The ranks
     type(communicator_t), intent(in) :: communicator
     !> Knows which unknowns are held
@@ -24,20 +25,25 @@ contains
     real(wp), intent(in) :: first(:, :), second(:, :)
     !> This rank's share of the square of a further load on w
     real(wp), intent(in) :: load
+    !> Forces whose last digit the residual cannot fall below, however exact the solution, (5, points): a thin
+    !> plate's shear forces are small differences of large numbers
+    real(wp), intent(in) :: rounding(:, :)
+    !> Relative residual that will be accepted
+    real(wp), intent(in) :: tolerance
     !> Largest forces so far, translations and rotations: judged by these once forces have faded
     real(wp), intent(inout) :: largest(2)
-    real(wp) :: squares(8), scale(2)
-    real(wp), parameter :: faded = 1.0e-6_wp
+    real(wp) :: squares(10), scale(2)
+    real(wp), parameter :: faded = 1.0e-6_wp, last_digits = 32*epsilon(1.0_wp)
 
     squares = [sums_of_squares(numbering, residual), sums_of_squares(numbering, first), &
-               sums_of_squares(numbering, second), load, 0.0_wp]
+               sums_of_squares(numbering, second), sums_of_squares(numbering, rounding), load, 0.0_wp]
     call communicator%sum(squares)
     norm = ieee_value(norm, ieee_positive_inf)
     if (.not. all(squares <= huge(norm))) return
     squares = sqrt(squares)
-    scale = max(squares(3:4), squares(5:6), squares(7:8), faded*largest)
+    scale = max(squares(3:4), squares(5:6), squares(9:10), faded*largest)
     largest = max(largest, scale)
-    norm = maxval(squares(1:2)/max(scale, tiny(norm)))
+    norm = maxval(squares(1:2)/max(scale, last_digits/tolerance*squares(7:8), tiny(norm)))
   end function relative_residual
 
   !> Sums of squares over this rank's unknowns that are not held.

@@ -41,7 +41,9 @@ contains
       call model%internal(new%motion%displacement, new%motion%internal, energy)
       residual = load_factor*model%pressure - new%motion%internal
       norm = relative_residual(model%communicator, operator%numbering, residual, new%motion%internal, &
-                               load_factor*model%pressure, 0.0_wp, new%largest_forces)
+                               load_factor*model%pressure, 0.0_wp, &
+                               operator%diagonal*new%motion%displacement, model%scene%solver%tolerance, &
+                               new%largest_forces)
       converged = norm <= model%scene%solver%tolerance
       if (converged .or. .not. norm <= huge(norm) .or. new%iterations >= model%scene%solver%max_iterations) exit
       if (.not. operator%ready .or. model%scene%kinematics /= kinematics_linear) &

@@ -29,6 +29,8 @@ module tangent_operators
     real(wp) :: stiffness_factor = 0, mass_factor = 0
     !> Displacement at which the tangent was taken, (5, points)
     real(wp), allocatable :: displacement(:, :)
+    !> Diagonal of the operator, (5, points)
+    real(wp), allocatable :: diagonal(:, :)
     !> Displacement under a unit force of the impactor, (5, points)
     real(wp), allocatable :: response(:, :)
     !> Deflection of the struck point at which the tangent was taken
@@ -62,7 +64,7 @@ contains
     integer :: points
 
     points = size(model%distribution%points)
-    allocate (self%displacement(5, points), self%response(5, points), source=0.0_wp)
+    allocate (self%displacement(5, points), self%response(5, points), self%diagonal(5, points), source=0.0_wp)
     call number_equations(model%mesh, model%distribution, model%held, self%numbering)
     if (model%scene%solver%factorization == factorization_cholmod) solver%package = 'cholmod'
     allocate (self%solver, source=solver)
@@ -113,8 +115,9 @@ contains
     type(error_t), allocatable, intent(inout) :: error
     real(wp), allocatable :: matrices(:, :, :)
     real(wp) :: consistent_factor
-    integer :: b, lane, point
+    integer :: b, lane, point, a, component
 
+    self%diagonal = 0
     consistent_factor = self%mass_factor
     if (allocated(model%lumped)) consistent_factor = 0
     allocate (matrices(lanes, 45, 45))
@@ -125,9 +128,14 @@ contains
       do lane = 1, model%elements%lanes_used(b)
         associate (points => model%distribution%connectivity(:, first_element(b) + lane - 1))
           call self%solver%add(reshape(self%numbering%equation(:, points), [45]), matrices(lane, :, :))
+          do a = 1, 9
+            self%diagonal(:, points(a)) = self%diagonal(:, points(a)) &
+              + [(matrices(lane, 5*(a - 1) + component, 5*(a - 1) + component), component=1, 5)]
+          end do
         end associate
       end do
     end do
+    call model%halo%accumulate(self%diagonal)
     if (allocated(model%lumped)) then
       do point = 1, model%distribution%owned
         call self%solver%add(self%numbering%equation(:, point), self%mass_factor*nodal_mass(model%lumped(:, point)))

@@ -237,7 +237,8 @@ contains
     if (plies == 0 .or. plies > most_plies) return
     call check_number(deck, 'thicknesses', size(thicknesses), plies, problems)
     call check_number(deck, 'materials', size(names), plies, problems)
-    if (problems%concern('laminate') .or. any(materials == 0) .or. size(materials) == 0) return
+    if (problems%concern('laminate') .or. any(materials == 0)) return
+    if (size(materials) == 0 .or. size(thicknesses) == 0) return
     deck%laminate%angle = angles
     deck%laminate%thickness = [(thicknesses(min(i, size(thicknesses))), i=1, plies)]
     deck%laminate%material = [(materials(min(i, size(materials))), i=1, plies)]

@@ -22,7 +22,7 @@ contains
     character(len=*), intent(in) :: name
     !> Path of the group of that time
     character(len=*), intent(in) :: time_group
-    !> The XML text
+    !> The XML text; empty if there is trouble
     character(len=:), allocatable, intent(out) :: grid
     character(len=:), allocatable :: mesh
     integer, allocatable :: shape_of_cells(:), shape_of_points(:), mesh_number(:), step(:)
@@ -34,6 +34,8 @@ contains
     mesh = 'meshes/'//numbered(mesh_number(1))
     shape_of_cells = stored_shape(file, mesh//'/connectivity')
     shape_of_points = stored_shape(file, mesh//'/coordinates')
+    grid = ''
+    if (.not. file%well()) return
     grid = line(2, '<Grid Name="plate" GridType="Uniform">') &
       //line(3, '<Time Value="'//to_text(time(1))//'"/>') &
       //line(3, '<Information Name="step" Value="'//to_text(step(1))//'"/>') &

@@ -2,12 +2,12 @@
 !> by all ranks, and once there is some the routines do nothing: whoever owns the file asks at the end.
 module hdf5_file
   use communicators, only: communicator_t
-  use hdf5, only: h5eset_auto_f, h5f_acc_rdonly_f, h5f_acc_rdwr_f, h5f_acc_trunc_f, h5f_scope_global_f, &
-    h5fclose_f, h5fcreate_f, h5fflush_f, h5fopen_f, h5gclose_f, h5gcreate_f, h5gget_obj_info_idx_f, h5gn_members_f, h5iis_valid_f, h5ldelete_f, &
-    h5lexists_f, h5open_f, h5p_dataset_create_f, h5p_dataset_xfer_f, h5p_file_access_f, h5p_file_create_f, &
-    h5p_link_create_f, h5pclose_f, h5pcreate_f, h5pset_create_inter_group_f, h5pset_dxpl_mpio_f, &
-    h5pset_fapl_mpio_f, h5pset_obj_track_times_f, h5pset_userblock_f, h5t_native_integer, hid_t, hsize_t, &
-    h5fd_mpio_collective_f
+  use hdf5, only: h5eset_auto_f, h5f_acc_rdonly_f, h5f_acc_rdwr_f, h5f_acc_trunc_f, h5f_scope_global_f, h5fclose_f, &
+    h5fcreate_f, h5fd_mpio_collective_f, h5fflush_f, h5fopen_f, h5gclose_f, h5gcreate_f, &
+    h5gget_obj_info_idx_f, h5gn_members_f, h5iis_valid_f, h5ldelete_f, h5lexists_f, h5open_f, &
+    h5p_dataset_create_f, h5p_dataset_xfer_f, h5p_file_access_f, h5p_file_create_f, h5p_link_create_f, &
+    h5pclose_f, h5pcreate_f, h5pset_create_inter_group_f, h5pset_dxpl_mpio_f, h5pset_fapl_mpio_f, &
+    h5pset_obj_track_times_f, h5pset_userblock_f, h5t_native_integer, hid_t, hsize_t
   use mpi, only: mpi_info_null
   use text, only: line_t
   implicit none

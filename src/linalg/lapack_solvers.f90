@@ -84,8 +84,9 @@ module lapack_solvers
       real(wp), intent(in) :: norm
       !> Reciprocal condition number
       real(wp), intent(out) :: condition
-      !> Work spaces
+      !> Work space of reals
       real(wp), intent(out) :: work(*)
+      !> Work space of integers
       integer, intent(out) :: integer_work(*)
       !> 0 for success
       integer, intent(out) :: info

@@ -13,8 +13,9 @@ module petsc_session
     !> Pushes what PETSc does when it finds an error.
     integer(c_int) function push_error_handler(handler, context) bind(c, name='PetscPushErrorHandler')
       import :: c_int, c_funptr, c_ptr
-      !> The handler, and data of its own
+      !> The handler
       type(c_funptr), value :: handler
+      !> Data of its own
       type(c_ptr), value :: context
     end function push_error_handler
 

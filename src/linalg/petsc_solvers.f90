@@ -2,11 +2,12 @@
 !> (Amestoy et al., SIAM J. Matrix Anal. Appl. 23, 2001), CHOLMOD on one (Chen et al., ACM TOMS 35, 2008).
 module petsc_solvers
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
-  use petscksp, only: tMat, tVec, tKSP, tPC, PETSC_DECIDE, PETSC_TRUE, PETSC_FALSE, PETSC_NULL_SCALAR, ADD_VALUES, &
-                      INSERT_VALUES, MAT_FINAL_ASSEMBLY, MAT_IGNORE_LOWER_TRIANGULAR, MAT_NEW_NONZERO_LOCATION_ERR, &
-                      MAT_SPD, MAT_GLOBAL_SUM, MAT_INFO_SIZE, MAT_INFO_NZ_USED, MAT_INFO_MEMORY, MatSetValues, &
-                      KSPSetOperators, VecGetArrayF90, VecRestoreArrayF90, VecGetArrayReadF90, &
-                      VecRestoreArrayReadF90, MatDenseGetArrayF90, MatDenseRestoreArrayF90
+  use petscksp, only: tMat, tVec, tKSP, tPC, PETSC_DECIDE, PETSC_TRUE, PETSC_FALSE, PETSC_NULL_SCALAR, &
+                      PETSC_NULL_OPTIONS, ADD_VALUES, INSERT_VALUES, MAT_FINAL_ASSEMBLY, &
+                      MAT_IGNORE_LOWER_TRIANGULAR, MAT_NEW_NONZERO_LOCATION_ERR, MAT_SPD, MAT_GLOBAL_SUM, &
+                      MAT_INFO_SIZE, MAT_INFO_NZ_USED, MAT_INFO_MEMORY, MatSetValues, KSPSetOperators, &
+                      VecGetArrayF90, VecRestoreArrayF90, VecGetArrayReadF90, VecRestoreArrayReadF90, &
+                      MatDenseGetArrayF90, MatDenseRestoreArrayF90
   use communicators, only: communicator_t
   use errors, only: error_t, fail, exit_convergence, exit_internal, exit_usage
   use kinds, only: wp
@@ -27,6 +28,10 @@ module petsc_solvers
                         report_null_pivots = 28
   !> Outcomes of MUMPS that more room cures
   integer, parameter :: outcomes_short_of_room(*) = [-8, -9, -11, -14, -15, -17, -19, -20]
+  !> MUMPS' outcome for a singular matrix
+  integer, parameter :: outcome_singular = -10
+  !> PETSC_ERR_MAT_CH_ZRPVT, which CHOLMOD returns when a pivot is zero or negative
+  integer, parameter :: petsc_zero_pivot = 81
   !> A pivot that is smaller consists of rounding errors
   real(wp), parameter :: null_pivot = 1e-14_wp
 
@@ -40,11 +45,13 @@ module petsc_solvers
     logical, private :: defined = .false.
     !> True if MUMPS factors, which the options of the user may have changed
     logical, private :: by_mumps = .false.
-    !> The matrix on one rank
+    !> Rows of the matrix on one rank
     type(symmetric_rows_t), private :: rows
+    !> The matrix as PETSc knows it
     type(tMat), private :: matrix
-    !> Solver and factor
+    !> PETSc's solver, which applies the factor once
     type(tKSP), private :: solver
+    !> What makes and keeps the factor
     type(tPC), private :: factorization
     !> Right-hand side and solution
     type(tVec), private :: right, left
@@ -64,7 +71,9 @@ module petsc_solvers
     procedure :: release
     procedure, private :: create_matrix
     procedure, private :: create_solver
-    procedure, private :: factorize_with_room
+    procedure, private :: prepare_mumps
+    procedure, private :: factorize_once
+    procedure, private :: test_solve_explodes
     procedure, private :: finish_solve
     procedure, private :: mumps_report
   end type petsc_solver_t
@@ -168,10 +177,10 @@ contains
     !> Raised when PETSc fails
     type(error_t), allocatable, intent(inout) :: error
     character(len=32) :: package
-    type(tMat) :: factor
     integer :: ierr(9), unasked
 
     ierr = 0
+    if (self%package == 'cholmod') call prepare_cholmod(ierr(9))
     call MatCreateVecs(self%matrix, self%left, self%right, ierr(1))
     call KSPCreate(self%communicator%handle(), self%solver, ierr(2))
     call KSPSetOperators(self%solver, self%matrix, self%matrix, ierr(3))
@@ -185,14 +194,40 @@ contains
     package = ''
     call PCFactorGetMatSolverType(self%factorization, package, unasked)
     self%by_mumps = unasked == 0 .and. package == 'mumps'
-    if (.not. self%by_mumps) return
-    call PCFactorSetUpMatSolverType(self%factorization, ierr(1))
-    call PCFactorGetMatrix(self%factorization, factor, ierr(2))
-    call MatMumpsSetIcntl(factor, control_root, 1, ierr(3))
-    call MatMumpsSetIcntl(factor, control_null_pivots, 1, ierr(4))
-    call MatMumpsSetCntl(factor, control_null_size, null_pivot, ierr(5))
-    call report_petsc(ierr, error)
+    if (self%by_mumps) call self%prepare_mumps(0, error)
   end subroutine create_solver
+
+  !> Makes CHOLMOD find out, without words, that a matrix is not positive definite.
+  subroutine prepare_cholmod(ierr)
+    !> PETSc's code
+    integer, intent(out) :: ierr
+
+    call PetscOptionsSetValue(PETSC_NULL_OPTIONS, '-mat_cholmod_print', '0', ierr)
+    ! Its other form, L D L^T, takes negative pivots without complaint.
+    if (ierr == 0) call PetscOptionsSetValue(PETSC_NULL_OPTIONS, '-mat_cholmod_factor', 'supernodal', ierr)
+  end subroutine prepare_cholmod
+
+  !> Gives MUMPS a new factor to fill and sets its controls.
+  subroutine prepare_mumps(self, room, error)
+    class(petsc_solver_t), intent(inout) :: self
+    !> Room beyond MUMPS' estimate in %, 0 for its own choice
+    integer, intent(in) :: room
+    !> Raised when PETSc fails
+    type(error_t), allocatable, intent(inout) :: error
+    type(tMat) :: factor
+    integer :: ierr(8)
+
+    ierr = 0
+    call PCReset(self%factorization, ierr(1))
+    call KSPSetOperators(self%solver, self%matrix, self%matrix, ierr(2))
+    call PCFactorSetUpMatSolverType(self%factorization, ierr(3))
+    call PCFactorGetMatrix(self%factorization, factor, ierr(4))
+    call MatMumpsSetIcntl(factor, control_root, 1, ierr(5))
+    call MatMumpsSetIcntl(factor, control_null_pivots, 1, ierr(6))
+    call MatMumpsSetCntl(factor, control_null_size, null_pivot, ierr(7))
+    if (room > 0) call MatMumpsSetIcntl(factor, control_room, room, ierr(8))
+    call report_petsc(ierr, error)
+  end subroutine prepare_mumps
 
   !> Zeroes the values of the matrix.
   subroutine clear(self)
@@ -245,23 +280,19 @@ contains
     class(petsc_solver_t), intent(inout) :: self
     !> Raised on all ranks when the matrix is singular or memory is short
     type(error_t), allocatable, intent(inout) :: error
-    integer :: failure, ierr, attempt, outcome, nulls
+    logical :: singular
+    integer :: ierr, attempt, outcome
     integer, parameter :: rooms(*) = [100, 400]
 
-    call self%factorize_with_room(0, failure, error)
+    call self%factorize_once(singular, outcome, error)
     do attempt = 1, size(rooms)
-      if (allocated(error) .or. failure == 0 .or. .not. self%by_mumps) exit
-      outcome = self%mumps_report(report_outcome)
-      if (all(outcome /= outcomes_short_of_room)) exit
-      call self%factorize_with_room(rooms(attempt), failure, error)
+      if (allocated(error) .or. all(outcome /= outcomes_short_of_room)) exit
+      call self%prepare_mumps(rooms(attempt), error)
+      call self%factorize_once(singular, outcome, error)
     end do
-    outcome = 0
-    if (self%by_mumps .and. .not. allocated(error)) then
-      outcome = self%mumps_report(report_outcome)
-      nulls = self%mumps_report(report_null_pivots)
-      if (nulls > 0) failure = 1
-    end if
-    if (failure /= 0) call fail(error, exit_convergence, why_not_factored(self%by_mumps, outcome))
+    ! After a failure MUMPS refuses to go on with the factor that it has.
+    if (outcome < 0) call self%prepare_mumps(0, error)
+    if (singular .or. outcome < 0) call fail(error, exit_convergence, why_not_factored(self%by_mumps, outcome))
     call self%communicator%agree(error)
     self%factorisations = self%factorisations + 1
     if (allocated(error)) return
@@ -270,32 +301,59 @@ contains
   end subroutine factorize
 
   !> Factors the matrix once.
-  subroutine factorize_with_room(self, room, failure, error)
+  subroutine factorize_once(self, singular, outcome, error)
     class(petsc_solver_t), intent(inout) :: self
-    !> Room beyond MUMPS' estimate in %, 0 for its own choice
-    integer, intent(in) :: room
-    !> 0 when there is a factor
-    integer, intent(out) :: failure
+    !> Whether the matrix proved singular, or not positive definite without MUMPS
+    logical, intent(out) :: singular
+    !> MUMPS' outcome, negative for a failure; 0 without MUMPS
+    integer, intent(out) :: outcome
     !> Raised when PETSc fails for another reason than the numbers
     type(error_t), allocatable, intent(inout) :: error
-    type(tMat) :: factor
-    integer :: ierr(7)
+    integer :: ierr(3), failure
 
-    ierr = 0
+    outcome = 0
     failure = 0
-    if (room > 0) then
-      call PCFactorGetMatrix(self%factorization, factor, ierr(1))
-      call MatMumpsSetIcntl(factor, control_room, room, ierr(2))
-      ! The same numbers are to be factored again, which PETSc does only after a change.
-      call PetscObjectStateIncrease(self%matrix, ierr(3))
-    end if
-    call KSPSetReusePreconditioner(self%solver, PETSC_FALSE, ierr(4))
+    call KSPSetReusePreconditioner(self%solver, PETSC_FALSE, ierr(1))
     ! Setting the same matrix again is what makes the solver look whether its values changed.
-    call KSPSetOperators(self%solver, self%matrix, self%matrix, ierr(5))
-    call KSPSetUp(self%solver, ierr(6))
-    if (ierr(6) == 0) call PCGetFailedReason(self%factorization, failure, ierr(7))
+    call KSPSetOperators(self%solver, self%matrix, self%matrix, ierr(2))
+    call KSPSetUp(self%solver, ierr(3))
+    singular = ierr(3) == petsc_zero_pivot
+    if (singular) return
     call report_petsc(ierr, error)
-  end subroutine factorize_with_room
+    if (allocated(error)) return
+    call PCGetFailedReason(self%factorization, failure, ierr(3))
+    singular = failure /= 0
+    if (self%by_mumps) then
+      outcome = self%mumps_report(report_outcome)
+      failure = self%mumps_report(report_null_pivots)
+      singular = outcome == outcome_singular .or. (outcome >= 0 .and. failure > 0)
+    else
+      if (.not. singular) singular = self%test_solve_explodes()
+    end if
+  end subroutine factorize_once
+
+  !> Whether the solution of a test case grows beyond what rounding errors allow, the matrix being scaled
+  !> to a diagonal of ones.
+  logical function test_solve_explodes(self)
+    class(petsc_solver_t), intent(inout) :: self
+    real(wp), pointer :: values(:)
+    real(wp), allocatable :: scale(:)
+    integer :: ierr, i
+
+    test_solve_explodes = .true.
+    call MatGetDiagonal(self%matrix, self%left, ierr)
+    call VecGetArrayReadF90(self%left, values, ierr)
+    allocate (scale(size(values)), source=sqrt(max(values, 0.0_wp)))
+    call VecRestoreArrayReadF90(self%left, values, ierr)
+    call put(self%right, scale*[(cos(real(i, wp)), i=1, size(scale))], ierr)
+    call KSPSolve(self%solver, self%right, self%left, ierr)
+    if (ierr == 0) then
+      call VecGetArrayReadF90(self%left, values, ierr)
+      test_solve_explodes = .not. all(ieee_is_finite(values))
+      if (.not. test_solve_explodes) test_solve_explodes = any(scale*abs(values)*null_pivot > 1)
+      call VecRestoreArrayReadF90(self%left, values, ierr)
+    end if
+  end function test_solve_explodes
 
   !> A sentence that says why there is no factor.
   pure function why_not_factored(by_mumps, outcome) result(sentence)
@@ -307,7 +365,7 @@ contains
     character(len=:), allocatable :: sentence
     character(len=12) :: number
 
-    if (by_mumps .and. outcome < 0 .and. outcome /= -10) then
+    if (by_mumps .and. outcome < 0 .and. outcome /= outcome_singular) then
       write (number, '(i0)') outcome
       sentence = 'MUMPS could not factor the stiffness matrix, probably for lack of memory (code '//trim(number)//').'
     else if (by_mumps) then

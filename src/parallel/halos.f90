@@ -32,6 +32,7 @@ module halos
     integer :: total = 0
     !> Global number of the first owned point
     integer :: first = 1
+    !> All ranks
     type(MPI_Comm), private :: group
     !> Number of ranks
     integer, private :: size = 1

@@ -1,0 +1,69 @@
+#!/usr/bin/env bash
+# ./setup.sh       installs what is missing, builds Implam and strikes a first plate
+# ./setup.sh test  the same set-up, then builds and runs the tests
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")"
+
+task=${1:-run}
+if [[ $task != run && $task != test ]] || (($# > 1)); then
+  echo "Usage: ./setup.sh [test]" >&2
+  exit 1
+fi
+
+packages=(gfortran cmake ninja-build pkg-config git openmpi-bin libopenmpi-dev libpetsc-real-dev libmumps-dev
+  libmetis-dev libhdf5-openmpi-dev libopenblas0-pthread hdf5-tools python3-venv)
+
+install_packages() {
+  local missing=() package
+  if ! command -v apt-get >/dev/null; then
+    echo "No apt here: assuming that a Fortran compiler, CMake, Ninja, MPI, PETSc, METIS and parallel HDF5 are installed."
+    return
+  fi
+  for package in "${packages[@]}"; do
+    [[ $(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null) == installed ]] || missing+=("$package")
+  done
+  ((${#missing[@]})) || return 0
+  if ((EUID != 0)); then
+    echo "Missing packages. Install them, then run this script again:" >&2
+    echo "  sudo apt-get install --no-install-recommends ${missing[*]}" >&2
+    exit 1
+  fi
+  export DEBIAN_FRONTEND=noninteractive
+  apt-get -o DPkg::Lock::Timeout=300 -qq update
+  apt-get -o DPkg::Lock::Timeout=300 -qq install --no-install-recommends "${missing[@]}"
+}
+
+# The commands that check and plot results go into .venv, and with them, for the tests, a checker of style.
+install_python_tools() {
+  local stamp=.venv/ready-to-$task tools=(./postproc) python=/usr/bin/python3
+  [[ $task == run ]] || tools+=('ruff==0.17.*')
+  [[ -x $python ]] || python=python3
+  if [[ -e $stamp && -z $(find postproc -name '*.py' -newer "$stamp" -o -name pyproject.toml -newer "$stamp") ]]; then
+    return
+  fi
+  if [[ ! -x .venv/bin/pip ]]; then
+    "$python" -m venv --clear .venv
+  fi
+  if .venv/bin/pip install --quiet --disable-pip-version-check "${tools[@]}"; then
+    touch "$stamp"
+  else
+    echo "Warning: pip failed (see above), so the commands that check and plot results are left out." >&2
+  fi
+}
+
+install_packages
+install_python_tools
+cmake --preset release
+
+if [[ $task == test ]]; then
+  cmake --build --preset release
+  exec ctest --preset release
+fi
+
+cmake --build --preset release --target implam
+export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
+build/implam input/sun_chen.nml --output results/sun_chen
+echo
+echo "Done. The history of force, deflection and energies is in results/sun_chen/sun_chen_history.csv,"
+echo "the fields for ParaView in results/sun_chen/sun_chen.xdmf. To plot the history:"
+echo "  .venv/bin/implam-plot results/sun_chen/sun_chen_history.csv"

@@ -1,0 +1,245 @@
+!> The delaminated cells of one interface, and the nodes whose two faces have come apart there.
+module delaminated_regions
+  use archives, only: archive_t
+  use kinds, only: wp
+  use layered_meshes, only: layered_mesh_t
+  implicit none
+  private
+  public :: delaminated_region_t, create_region, cells_within
+
+  !> The cells of a zone, intact or delaminated. Only ever grows.
+  type :: delaminated_region_t
+    !> Cells of the model along x and y
+    integer :: cells(2) = 0
+    !> First and last column, then row, of the zone's cells
+    integer :: columns(2) = 0, rows(2) = 0
+    !> True where the interface has come apart, (columns(1):columns(2), rows(1):rows(2))
+    logical, allocatable :: delaminated(:, :)
+  contains
+    !> True for a cell of the zone; false also for a cell outside the model.
+    procedure :: in_zone
+    !> True for a delaminated cell; false also outside the zone.
+    procedure :: is_delaminated
+    !> Number of delaminated cells.
+    procedure :: cells_delaminated
+    !> True for a node whose two faces are apart, and the list of all such nodes.
+    procedure :: released
+    procedure :: released_nodes
+    !> Node on two lines of nodes, in the numbering of the mesh.
+    procedure :: node_at
+    !> Takes a cell apart.
+    procedure :: release
+    !> Moves the zone's border outwards.
+    procedure :: enlarge
+    !> Saves or loads.
+    procedure :: visit
+  end type delaminated_region_t
+
+contains
+
+  !> The region of a zone with the starter as its only delamination. The starter takes the cells whose
+  !> middle lies in its square; a starter smaller than a cell takes those that touch the struck point.
+  pure function create_region(mesh, zone, starter) result(self)
+    !> The mesh
+    type(layered_mesh_t), intent(in) :: mesh
+    !> Index of the zone
+    integer, intent(in) :: zone
+    !> Side of the starter, of the whole plate; 0: none
+    real(wp), intent(in) :: starter
+    !> The region
+    type(delaminated_region_t) :: self
+    integer :: columns(2), rows(2)
+
+    self%cells = mesh%cells
+    self%columns = mesh%zones(zone)%columns
+    self%rows = mesh%zones(zone)%rows
+    allocate (self%delaminated(self%columns(1):self%columns(2), self%rows(1):self%rows(2)), source=.false.)
+    if (.not. starter > 0) return
+    columns = cells_within(mesh%x_edges, starter)
+    rows = cells_within(mesh%y_edges, starter)
+    columns = [max(columns(1), self%columns(1)), min(columns(2), self%columns(2))]
+    rows = [max(rows(1), self%rows(1)), min(rows(2), self%rows(2))]
+    self%delaminated(columns(1):columns(2), rows(1):rows(2)) = .true.
+  end function create_region
+
+  !> First and last of the cells whose middle lies within an extent centred on the struck point;
+  !> at least those that touch the struck point.
+  pure function cells_within(edges, extent) result(range)
+    !> Edges of the cells along one direction, the struck point at 0
+    real(wp), intent(in) :: edges(:)
+    !> Full extent
+    real(wp), intent(in) :: extent
+    !> First and last cell
+    integer :: range(2)
+    logical, allocatable :: taken(:)
+    real(wp) :: rounding
+    integer :: cells, cell
+
+    cells = size(edges) - 1
+    rounding = 1.0e-9_wp*(edges(cells + 1) - edges(1))
+    taken = abs(edges(:cells) + edges(2:)) < extent .or. &
+            (edges(:cells) < rounding .and. edges(2:) > -rounding)
+    range = [findloc(taken, .true., dim=1), cells]
+    do cell = range(1), cells
+      if (taken(cell)) range(2) = cell
+    end do
+  end function cells_within
+
+  !> True for a cell of the zone.
+  pure logical function in_zone(self, column, row)
+    !> The region
+    class(delaminated_region_t), intent(in) :: self
+    !> Column and row of the cell
+    integer, intent(in) :: column, row
+    in_zone = column >= self%columns(1) .and. column <= self%columns(2) .and. &
+              row >= self%rows(1) .and. row <= self%rows(2)
+  end function in_zone
+
+  !> True for a delaminated cell.
+  pure logical function is_delaminated(self, column, row)
+    !> The region
+    class(delaminated_region_t), intent(in) :: self
+    !> Column and row of the cell
+    integer, intent(in) :: column, row
+
+    is_delaminated = self%in_zone(column, row)
+    if (is_delaminated) is_delaminated = self%delaminated(column, row)
+  end function is_delaminated
+
+  !> Number of delaminated cells.
+  pure integer function cells_delaminated(self)
+    !> The region
+    class(delaminated_region_t), intent(in) :: self
+    cells_delaminated = count(self%delaminated)
+  end function cells_delaminated
+
+  !> True if all cells around a node are delaminated. Beyond the model's border and its symmetry lines
+  !> there is no cell to ask; nodes on the zone's own border never come apart, as both layers share them.
+  pure logical function released(self, i, j)
+    !> The region
+    class(delaminated_region_t), intent(in) :: self
+    !> Lines of nodes, 0 to twice the cells along x and y
+    integer, intent(in) :: i, j
+    integer :: columns(2), rows(2), column, row
+
+    columns = cells_around(i, self%cells(1))
+    rows = cells_around(j, self%cells(2))
+    released = .false.
+    do row = rows(1), rows(2)
+      do column = columns(1), columns(2)
+        if (.not. self%is_delaminated(column, row)) return
+      end do
+    end do
+    released = .true.
+  end function released
+
+  !> First and last of the model's cells around a line of nodes.
+  pure function cells_around(line, cells) result(range)
+    !> Line of nodes, 0 to 2*cells
+    integer, intent(in) :: line
+    !> Cells along this direction
+    integer, intent(in) :: cells
+    !> First and last cell
+    integer :: range(2)
+    range = [max(1, (line + 1)/2), min(cells, line/2 + 1)]
+  end function cells_around
+
+  !> Nodes whose faces are apart, in ascending order.
+  pure function released_nodes(self) result(nodes)
+    !> The region
+    class(delaminated_region_t), intent(in) :: self
+    !> Node numbers of the mesh
+    integer, allocatable :: nodes(:)
+    nodes = released_within(self, 2*[self%columns(1) - 1, self%columns(2)], 2*[self%rows(1) - 1, self%rows(2)])
+  end function released_nodes
+
+  !> Released nodes on a range of lines, in ascending order.
+  pure function released_within(self, columns, rows) result(nodes)
+    !> The region
+    class(delaminated_region_t), intent(in) :: self
+    !> First and last line along x, then along y
+    integer, intent(in) :: columns(2), rows(2)
+    !> Node numbers of the mesh
+    integer, allocatable :: nodes(:)
+    integer :: i, j, pass, found
+
+    do pass = 1, 2
+      found = 0
+      do j = rows(1), rows(2)
+        do i = columns(1), columns(2)
+          if (.not. self%released(i, j)) cycle
+          found = found + 1
+          if (pass == 2) nodes(found) = self%node_at(i, j)
+        end do
+      end do
+      if (pass == 1) allocate (nodes(found))
+    end do
+  end function released_within
+
+  !> Node on two lines of nodes, as the mesh numbers them.
+  pure integer function node_at(self, i, j) result(node)
+    !> The region
+    class(delaminated_region_t), intent(in) :: self
+    !> Lines of nodes, 0 to twice the cells along x and y
+    integer, intent(in) :: i, j
+    node = 1 + i + (2*self%cells(1) + 1)*j
+  end function node_at
+
+  !> Takes a cell of the zone apart. Nothing happens if it is apart already or outside the zone.
+  pure subroutine release(self, cell, nodes)
+    !> The region
+    class(delaminated_region_t), intent(inout) :: self
+    !> Column and row of the cell
+    integer, intent(in) :: cell(2)
+    !> Nodes whose faces come apart with it, node numbers of the mesh in ascending order
+    integer, allocatable, intent(out) :: nodes(:)
+
+    if (self%in_zone(cell(1), cell(2)) .and. .not. self%is_delaminated(cell(1), cell(2))) then
+      self%delaminated(cell(1), cell(2)) = .true.
+      nodes = released_within(self, 2*[cell(1) - 1, cell(1)], 2*[cell(2) - 1, cell(2)])
+    else
+      allocate (nodes(0))
+    end if
+  end subroutine release
+
+  !> Moves the zone's border outwards; the delaminated cells stay as they are.
+  pure subroutine enlarge(self, columns, rows)
+    !> The region
+    class(delaminated_region_t), intent(inout) :: self
+    !> First and last column, then row, of the new zone, which contains the old one
+    integer, intent(in) :: columns(2), rows(2)
+    logical, allocatable :: delaminated(:, :)
+
+    allocate (delaminated(columns(1):columns(2), rows(1):rows(2)), source=.false.)
+    delaminated(self%columns(1):self%columns(2), self%rows(1):self%rows(2)) = self%delaminated
+    call move_alloc(delaminated, self%delaminated)
+    self%columns = columns
+    self%rows = rows
+  end subroutine enlarge
+
+  !> Saves or loads the region; its zone may have been enlarged, so that is part of it.
+  subroutine visit(self, archive, name)
+    !> The region
+    class(delaminated_region_t), intent(inout) :: self
+    !> Where to or from
+    class(archive_t), intent(inout) :: archive
+    !> Name of the region within the archive
+    character(len=*), intent(in) :: name
+    integer, allocatable :: places(:), flags(:)
+
+    places = [self%cells, self%columns, self%rows]
+    allocate (flags(0))
+    if (.not. archive%loading) flags = merge(1, 0, reshape(self%delaminated, [size(self%delaminated)]))
+    call archive%item(name//'/zone', places)
+    call archive%item(name//'/delaminated', flags)
+    if (.not. archive%loading) return
+    if (size(places) /= 6) return
+    if (size(flags) /= product(places([4, 6]) - places([3, 5]) + 1)) return
+    self%cells = places(1:2)
+    self%columns = places(3:4)
+    self%rows = places(5:6)
+    if (allocated(self%delaminated)) deallocate (self%delaminated)
+    allocate (self%delaminated(self%columns(1):self%columns(2), self%rows(1):self%rows(2)))
+    self%delaminated = reshape(flags == 1, shape(self%delaminated))
+  end subroutine visit
+end module delaminated_regions

@@ -1,0 +1,117 @@
+!> Delamination of one interface, as the deck gives it.
+module delamination_parameters
+  use kinds, only: wp
+  implicit none
+  private
+  public :: delamination_t, delamination_objection, default_starter
+
+  !> Ways to the energy release rate: strain states on both sides of the front (Eq. 11 with its sign
+  !> put right), or virtual crack closure.
+  integer, parameter, public :: release_two_state = 1, release_vcct = 2
+  !> Growth: cells are released at a frozen time until no front exceeds its toughness, or one a step
+  !> (section 3.3.3 of the paper).
+  integer, parameter, public :: growth_equilibrium = 1, growth_one_per_step = 2
+  !> Intact faces: their jumps are no unknowns, or penalised as in the paper.
+  integer, parameter, public :: tie_eliminate = 1, tie_penalty = 2
+  !> Contact of delaminated faces.
+  integer, parameter, public :: contact_augmented_lagrangian = 1, contact_continuous_penalty = 2, contact_none = 3
+  !> While the impactor rebounds: real contact, or both faces glued together (Eq. 13b).
+  integer, parameter, public :: unloading_contact = 1, unloading_glued = 2
+
+  !> One interface that may delaminate.
+  type :: delamination_t
+    !> The interface lies below this ply
+    integer :: below_ply = 0
+    !> Critical energy release rate of every mode, G_c; 0: the mixed-mode values below hold
+    real(wp) :: toughness = 0
+    !> Critical energy release rate of pure opening, G_Ic, and of pure shear, G_IIc
+    real(wp) :: toughness_opening = 0, toughness_shear = 0
+    !> Exponent eta of Benzeggagh and Kenane
+    real(wp) :: mixing_exponent = 1.75_wp
+    !> Full extents of the layered rectangle along x and y, centred on the struck point
+    real(wp) :: zone(2) = 0
+    !> Side of the square starter, centred on the struck point
+    real(wp) :: starter = 0
+    !> release_two_state or release_vcct
+    integer :: energy_release = release_vcct
+    !> growth_equilibrium or growth_one_per_step
+    integer :: growth = growth_equilibrium
+    !> tie_eliminate or tie_penalty
+    integer :: tie = tie_eliminate
+    !> Stiffness of penalty ties, force per volume (pressure per jump); 0: chosen from the layers' stiffness
+    real(wp) :: penalty_stiffness = 0
+    !> One of the contact methods above
+    integer :: contact = contact_augmented_lagrangian
+    !> Exponent q of Eq. 12
+    real(wp) :: contact_exponent = 1
+    !> unloading_contact or unloading_glued
+    integer :: unloading = unloading_contact
+    !> True: the layered rectangle grows when the delamination reaches its border
+    logical :: enlarge_zone = .false.
+  end type delamination_t
+
+contains
+
+  !> Side of a starter that covers 0.05 % of the plate, as in section 3.3.2 of the paper.
+  pure real(wp) function default_starter(length) result(side)
+    !> Lengths of the plate along x and y
+    real(wp), intent(in) :: length(2)
+    side = sqrt(5.0e-4_wp*product(length))
+  end function default_starter
+
+  !> What is wrong with these parameters, or an empty text.
+  pure function delamination_objection(delamination, plies) result(objection)
+    !> The parameters
+    type(delamination_t), intent(in) :: delamination
+    !> Number of plies of the laminate
+    integer, intent(in) :: plies
+    !> One clause for the user; empty: nothing is wrong
+    character(len=:), allocatable :: objection
+
+    objection = toughness_objection(delamination)
+    if (len(objection) > 0) return
+    if (delamination%below_ply < 1 .or. delamination%below_ply >= plies) then
+      objection = 'below_ply must name a ply with another one below it'
+    else if (.not. all(positive(delamination%zone))) then
+      objection = 'both extents of the zone must be positive'
+    else if (.not. positive(delamination%starter)) then
+      objection = 'the side of the starter must be positive'
+    else if (.not. all(delamination%starter < delamination%zone)) then
+      objection = 'the starter must be smaller than the zone'
+    else if (.not. (delamination%contact_exponent >= 1 .and. delamination%contact_exponent <= 2)) then
+      objection = 'the contact exponent q must lie between 1 and 2'
+    else if (.not. (delamination%penalty_stiffness >= 0 .and. &
+                    delamination%penalty_stiffness <= huge(delamination%penalty_stiffness))) then
+      objection = 'the penalty stiffness must not be negative'
+    end if
+  end function delamination_objection
+
+  !> What is wrong with the toughnesses, or an empty text.
+  pure function toughness_objection(delamination) result(objection)
+    !> The parameters
+    type(delamination_t), intent(in) :: delamination
+    !> One clause for the user; empty: nothing is wrong
+    character(len=:), allocatable :: objection
+
+    objection = ''
+    associate (d => delamination)
+      if (positive(d%toughness)) then
+        if (d%toughness_opening /= 0 .or. d%toughness_shear /= 0) &
+          objection = 'give either G_c or G_Ic and G_IIc, not both'
+      else if (d%toughness /= 0) then
+        objection = 'the toughness G_c must be positive'
+      else if (.not. (positive(d%toughness_opening) .and. positive(d%toughness_shear))) then
+        objection = 'give a positive G_c, or positive G_Ic and G_IIc'
+      else if (.not. positive(d%mixing_exponent)) then
+        objection = 'the exponent eta must be positive'
+      end if
+    end associate
+  end function toughness_objection
+
+  !> True for a positive finite number.
+  elemental logical function positive(value)
+    !> The number
+    real(wp), intent(in) :: value
+    positive = value > 0 .and. value <= huge(value)
+  end function positive
+end module delamination_parameters

@@ -1,0 +1,133 @@
+!> Energy release rates at the front of a delamination.
+!>
+!> Virtual crack closure. Tying the faces over the cell ahead of a segment holds back forces F on jumps d
+!> that the cell would have as soon as it came apart; it would then look like the delaminated cell behind,
+!> so d is taken from there. Closing it again takes the work of forces that grow in proportion to the
+!> closing, 1/2 sum F.d, hence G A = 1/2 sum F.d with A the area of the cell ahead. In a nine-node cell a
+!> line of nodes that crosses the front gets two pairs: the force on the front with the jump one cell
+!> behind, and the force one node ahead with the jump half a cell behind.
+!>
+!> Corner lines belong to two segments, so their forces are shared (see `delamination_fronts`): the works
+!> of all segments of a straight front then add up to what the ties really do. Where the front turns around
+!> delaminated cells the corner line has no jump behind, as the other leg of the front runs there: it adds
+!> nothing. Where it turns around an intact cell both legs lead into that cell, the shared forces are split
+!> between them, and only both together release what the cell does: see `over_outside_cells`.
+module energy_release
+  use delamination_fronts, only: front_segment_t
+  use kinds, only: wp
+  use packed_matrices, only: unpacked
+  implicit none
+  private
+  public :: two_state_release, segment_mean, vcct_release, over_outside_cells
+
+contains
+
+  !> Energy release rate at a node of the front from the strains on both of its sides, Eq. 11 with the
+  !> sign of Eq. 9 put right: with the same stiffness on both sides, sum of N'(E' - E) - (N'E' - NE)/2
+  !> is half the square of the jump of strain. The stiffness is that of the plies as they are, damaged or
+  !> not, on both sides: two different ones would count the damage as released.
+  pure real(wp) function two_state_release(stiffness, delaminated, intact) result(rate)
+    !> Section stiffness of the layers above and below the interface, (21, layers)
+    real(wp), intent(in) :: stiffness(:, :)
+    !> Generalised strains of the layers on the delaminated side of the node: membrane, curvature, shear, (8, layers)
+    real(wp), intent(in) :: delaminated(:, :)
+    !> The same on the intact side
+    real(wp), intent(in) :: intact(:, :)
+    real(wp) :: jump(8)
+    integer :: layer
+
+    rate = 0
+    do layer = 1, size(stiffness, 2)
+      jump = delaminated(:, layer) - intact(:, layer)
+      rate = rate + strain_energy(stiffness(:, layer), jump)
+    end do
+  end function two_state_release
+
+  !> Elastic energy per area of generalised strains.
+  pure real(wp) function strain_energy(stiffness, strains) result(energy)
+    !> Section stiffness
+    real(wp), intent(in) :: stiffness(21)
+    !> Membrane strains, curvatures, transverse shear strains
+    real(wp), intent(in) :: strains(8)
+
+    associate (membrane => strains(1:3), curvature => strains(4:6), shear => strains(7:8))
+      energy = dot_product(membrane, matmul(unpacked(stiffness(1:6)), membrane))/2 + &
+               dot_product(membrane, matmul(unpacked(stiffness(7:12)), curvature)) + &
+               dot_product(curvature, matmul(unpacked(stiffness(13:18)), curvature))/2 + &
+               (stiffness(19)*shear(1)**2 + stiffness(21)*shear(2)**2)/2 + stiffness(20)*shear(1)*shear(2)
+    end associate
+  end function strain_energy
+
+  !> Energy release rate of a segment from those of its three nodes (step 3 of section 3.3.3).
+  pure real(wp) function segment_mean(rates) result(mean)
+    !> Energy release rates at the corners and the middle of the segment
+    real(wp), intent(in) :: rates(3)
+    mean = sum(rates)/3
+  end function segment_mean
+
+  !> Energy release rates G_I (opening), G_II (sliding across the front) and G_III (sliding along it) of a
+  !> segment by virtual crack closure. A negative rate of a mode (closed faces pressed together) counts as zero.
+  pure function vcct_release(segment, tie_force, jump) result(modes)
+    !> The segment
+    type(front_segment_t), intent(in) :: segment
+    !> Forces x, y, z that hold the jumps at zero at the nodes of the edge (1) and one ahead (2), positive where
+    !> they hold back a positive jump: external less internal and inertia force on the held jump, (3, 2, lines)
+    real(wp), intent(in) :: tie_force(3, 2, 3)
+    !> Jumps of the displacements x, y, z at the nodes one (1) and two (2) behind the edge, zero where the faces
+    !> are tied, as at the opposite front of a region one cell wide, (3, 2, lines)
+    real(wp), intent(in) :: jump(3, 2, 3)
+    !> G_I, G_II, G_III, none negative
+    real(wp) :: modes(3)
+    real(wp) :: ratio, work(3)
+    integer :: line
+
+    ratio = segment%ahead_length/segment%behind_length
+    work = 0
+    do line = 1, 3
+      work = work + segment%edge_share(line)*tie_force(:, 1, line)*jump_behind(jump(:, :, line), ratio) + &
+             segment%ahead_share(line)*tie_force(:, 2, line)*jump_behind(jump(:, :, line), ratio/2)
+    end do
+    work = max(0.0_wp, work/2)
+    modes = work([3, segment%direction, 3 - segment%direction])/(segment%width*segment%ahead_length)
+  end function vcct_release
+
+  !> Jump at a distance behind the front: the quadratic through the nodes of the cell there, and beyond
+  !> the cell in proportion to the distance.
+  pure function jump_behind(jump, distance) result(value)
+    !> Jumps half a cell and a whole cell behind the front, (3, 2)
+    real(wp), intent(in) :: jump(3, 2)
+    !> Distance in lengths of the cell
+    real(wp), intent(in) :: distance
+    !> The jump
+    real(wp) :: value(3)
+    real(wp) :: inside
+
+    inside = min(distance, 1.0_wp)
+    value = (4*inside*(1 - inside)*jump(:, 1) + inside*(2*inside - 1)*jump(:, 2))*(distance/inside)
+  end function jump_behind
+
+  !> Sums the rates of all segments that lead into the same intact cell: together they are the rate at which
+  !> that cell releases energy when it comes apart. On a straight front nothing changes.
+  pure function over_outside_cells(segments, rates) result(summed)
+    !> All segments of a front, those into the same cell one after the other
+    type(front_segment_t), intent(in) :: segments(:)
+    !> G_I, G_II, G_III of each segment, (3, segments)
+    real(wp), intent(in) :: rates(:, :)
+    !> The sums, repeated for each segment of a cell, (3, segments)
+    real(wp) :: summed(3, size(segments))
+    integer :: first, last, s
+
+    first = 1
+    do while (first <= size(segments))
+      last = first
+      do while (last < size(segments))
+        if (any(segments(last + 1)%outside /= segments(first)%outside)) exit
+        last = last + 1
+      end do
+      do s = first, last
+        summed(:, s) = sum(rates(:, first:last), dim=2)
+      end do
+      first = last + 1
+    end do
+  end function over_outside_cells
+end module energy_release

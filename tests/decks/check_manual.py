@@ -1,0 +1,80 @@
+#!/usr/bin/env python3
+"""Holds the manual's page of every group against the program.
+
+usage: check_manual.py IMPLAM [--write]
+
+The table of a page must be what `implam explain --markdown GROUP` prints, and every ```fortran block of a page must
+be a deck that `implam check` passes, once the groups it leaves out are filled in from tests/decks/good/impact.nml.
+With --write the tables are replaced.
+"""
+import os
+import re
+import subprocess
+import sys
+import tempfile
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+MANUAL = os.path.join(HERE, "..", "..", "doc", "manual")
+TABLE = re.compile(r"^\| key \|.*?(?=\n\n|\Z)", re.DOTALL | re.MULTILINE)
+EXAMPLE = re.compile(r"^```fortran\n(.*?)^```", re.DOTALL | re.MULTILINE)
+GROUP = re.compile(r"^&(\w+).*?/[ ]*$", re.DOTALL | re.MULTILINE)
+# Groups that a static example puts in place of these of the deck that fills in the rest.
+TRANSIENT = ("impactor", "indentation", "time")
+
+
+def ask(program, *words):
+    """Exit code and output of the program."""
+    done = subprocess.run([program, *words], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=60, text=True)
+    return done.returncode, done.stdout
+
+
+def completed(example):
+    """An example with the groups it lacks."""
+    with open(os.path.join(HERE, "good", "impact.nml"), encoding="utf-8") as deck:
+        rest = deck.read()
+    own = [match.group(1) for match in GROUP.finditer(example)]
+    for match in GROUP.finditer(rest):
+        name = match.group(1)
+        if name not in own and not ("static" in own and name in TRANSIENT):
+            example += match.group(0) + "\n"
+    if "static" in own and "pressure" not in own:
+        example += "&pressure value=1 /\n"
+    return example
+
+
+def main():
+    program = os.path.abspath(sys.argv[1])
+    overview = ask(program, "explain")[1]
+    groups = re.findall(r"^  &(\w+)", overview, re.MULTILINE)
+    wrong = [] if groups else [f"`implam explain` names no groups: {overview}"]
+    for group in groups:
+        path = os.path.join(MANUAL, group + ".md")
+        if not os.path.exists(path):
+            wrong.append(f"{path}: there is no such page")
+            continue
+        with open(path, encoding="utf-8") as page:
+            text = page.read()
+        table = ask(program, "explain", "--markdown", group)[1].strip()
+        if "--write" in sys.argv:
+            text = TABLE.sub(lambda _: table, text)
+            with open(path, "w", encoding="utf-8") as page:
+                page.write(text)
+        written = TABLE.search(text)
+        if not written or written.group(0).strip() != table:
+            wrong.append(f"{path}: the table isn't the program's; run check_manual.py IMPLAM --write")
+        examples = EXAMPLE.findall(text)
+        if not examples:
+            wrong.append(f"{path}: there is no example")
+        for example in examples:
+            with tempfile.NamedTemporaryFile("w", suffix=".nml", encoding="utf-8") as deck:
+                deck.write(completed(example))
+                deck.flush()
+                code, output = ask(program, "check", deck.name)
+            if code != 0 or ": warning: " in output:
+                wrong.append(f"{path}: the example doesn't pass: {output}")
+    print("\n".join(wrong) or f"{len(groups)} pages agree with the program")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
