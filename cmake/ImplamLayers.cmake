@@ -13,7 +13,7 @@ function(implam_add_layers)
         Fortran_MODULE_DIRECTORY ${CMAKE_BINARY_DIR}/modules/${layer})
       foreach(name IN LISTS lower)
         target_include_directories(implam_${layer} PRIVATE ${CMAKE_BINARY_DIR}/modules/${name})
-        add_dependencies(implam_${layer} implam_${name})
+        target_link_libraries(implam_${layer} PRIVATE implam_${name})  # so that a changed module is seen
       endforeach()
       target_link_libraries(implam_${layer} PRIVATE implam_flags)
       list(APPEND lower ${layer})

@@ -5,6 +5,7 @@ module simulations
   use text, only: to_text, line_t
   use files, only: make_directory
   use logger, only: log_t
+  use timers, only: timer_set_t
   use communicators, only: communicator_t
   use models, only: model_t, create_model
   use marches, only: march_t
@@ -35,6 +36,8 @@ module simulations
     type(march_t) :: march
     !> Log, progress and result files
     type(log_t) :: log
+    !> Time spent in set-up, steps and results
+    type(timer_set_t) :: timers
     !> Bar or lines of progress
     type(progress_t) :: progress
     !> Version, deck and machine, for every result
@@ -93,6 +96,7 @@ contains
     !> Set if something cannot be set up
     type(error_t), allocatable, intent(out) :: error
 
+    call self%timers%start('set-up')
     self%deck = deck
     self%communicator = communicator
     self%base = deck%output%directory//'/'//deck%name
@@ -207,11 +211,16 @@ contains
     type(error_t), allocatable, intent(out) :: error
     real(wp) :: event
 
+    call self%timers%stop('set-up')
     do while (self%march%now%time < end_of(self))
       event = min(end_of(self), self%history_clock%next(), self%fields_clock%next(), self%checkpoint_clock%next())
+      call self%timers%start('steps')
       call self%march%advance(self%model, event, error)
+      call self%timers%stop('steps')
       if (allocated(error)) return
+      call self%timers%start('results')
       call write_results(self, error)
+      call self%timers%stop('results')
       if (allocated(error)) return
       call self%progress%update(self%log, self%march%now%time/end_of(self), 'step '//to_text(self%march%now%step)// &
                                 ', time '//to_text(self%march%now%time))
@@ -271,9 +280,30 @@ contains
     if (allocated(error)) return
     call self%history%close(error)
     call self%progress%finish(self%log, summary(self))
+    call log_costs(self)
     call self%log%note('Results: '//self%base//'_history.csv, '//self%base//'.xdmf, '//self%base//'.log')
     call self%march%operator%solver%release()
   end subroutine finalize
+
+  !> Lists in the log where time and memory went; the second part of the list is contained in the steps.
+  subroutine log_costs(self)
+    !> The run
+    class(simulation_t), intent(inout) :: self
+    real(wp) :: factor_entries, megabytes
+    integer :: i
+
+    associate (operator => self%march%operator)
+      call operator%solver%statistics(factor_entries, megabytes)
+      call self%log%detail('Factor: '//to_text(factor_entries)//' numbers, '//to_text(megabytes)//' MB; matrix: '// &
+                           to_text(size(operator%numbering%columns))//' numbers on this rank.')
+      associate (lines => [self%timers%lines(), operator%timers%lines()])
+        call self%log%detail(repeat(' ', 37)//'times    on the wall      processor')
+        do i = 1, size(lines)
+          call self%log%detail(lines(i))
+        end do
+      end associate
+    end associate
+  end subroutine log_costs
 
   !> What a run took, in one line.
   function summary(self) result(line)

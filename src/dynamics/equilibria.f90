@@ -17,6 +17,10 @@ module equilibria
   private
   public :: attempt_step
 
+  !> Residual below which contact pressures are taken as the next estimates, and the change of these over
+  !> the largest pressure so far at which they have settled.
+  real(wp), parameter :: multiplier_norm = 1.0e-2_wp, contact_tolerance = 1.0e-7_wp
+
   !> The impactor's side of a step: its motion and the indentation are affine in one unknown force.
   type :: strike_t
     !> Displacement of the impactor at the end of the step without force, and its fall per unit of force
@@ -68,24 +72,23 @@ contains
     converged = .false.
     previous = huge(1.0_wp)
     do
+      call operator%timers%start('element forces')
       call find_residual(model, integrator, old, new, strike%load(), residual, energy)
+      call new%separation%act(model, new%motion%displacement, residual)
+      call operator%timers%stop('element forces')
       norm = relative_residual(model%communicator, operator%numbering, residual, new%motion%internal, &
                                new%motion%inertia, patch_square*strike%load()**2, &
                                operator%diagonal*new%motion%displacement, model%scene%solver%tolerance, &
                                new%largest_forces)
       ! The force answers to the motion only within an iteration, so an impact needs one.
       converged = norm <= model%scene%solver%tolerance .and. (new%iterations > 0 .or. .not. model%scene%has_impactor)
+      if (norm < multiplier_norm) call settle_contact(model, new, converged)
       if (converged .or. .not. norm <= huge(norm) .or. new%iterations >= model%scene%solver%max_iterations) exit
-      if (too_slow(model, new%iterations, norm, previous)) then
-        call operator%renew(model, new%motion%displacement, integrator%stiffness_factor(), &
-                            integrator%mass_factor(step), error)
-        if (unsolvable(error)) return
-        previous = huge(1.0_wp)
-      else
-        previous = norm
-      end if
+      call prepare_operator(model, integrator, operator, step, new, norm, previous, error)
+      if (unsolvable(error)) return
       call operator%correct(model, residual, correction, error)
       if (unsolvable(error)) return
+      call new%separation%hold(model, correction)
       if (model%scene%has_impactor) call solve_strike(model, operator, old, new, strike, correction, error)
       if (allocated(error)) return
       new%motion%displacement = new%motion%displacement + correction
@@ -94,6 +97,50 @@ contains
     end do
     if (converged) call finish(model, integrator, old, step, strike, energy, new)
   end subroutine attempt_step
+
+  !> Takes the contact pressures found as the next estimates; they must repeat themselves for a step to be done.
+  subroutine settle_contact(model, new, converged)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> State at the end
+    type(state_t), intent(inout) :: new
+    !> False on return where the pressures have not settled
+    logical, intent(inout) :: converged
+    real(wp) :: change
+
+    call new%separation%update_multipliers(model, new%motion%displacement, change)
+    new%contact_iterations = new%contact_iterations + merge(1, 0, change > 0)
+    converged = converged .and. change <= contact_tolerance
+  end subroutine settle_contact
+
+  !> Makes the operator follow ties and contacts, or renews it where that or its age asks for it.
+  subroutine prepare_operator(model, integrator, operator, step, new, norm, previous, error)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Integrator of the plate
+    type(plate_integrator_t), intent(in) :: integrator
+    !> The factored operator
+    type(tangent_operator_t), intent(inout) :: operator
+    !> Time step
+    real(wp), intent(in) :: step
+    !> State at the end
+    type(state_t), intent(in) :: new
+    !> Residual now
+    real(wp), intent(in) :: norm
+    !> Residual one iteration before; receives the present one
+    real(wp), intent(inout) :: previous
+    !> Set if the solver fails
+    type(error_t), allocatable, intent(inout) :: error
+    logical :: follows
+
+    follows = .not. too_slow(model, new%iterations, norm, previous)
+    previous = norm
+    if (follows) call operator%follow(model, new%separation, follows, error)
+    if (follows .or. allocated(error)) return
+    call operator%renew(model, new%separation, new%motion%displacement, integrator%stiffness_factor(), &
+                        integrator%mass_factor(step), error)
+    previous = huge(1.0_wp)
+  end subroutine prepare_operator
 
   !> True if the solver failed; lack of convergence is dropped, since a shorter step may cure it.
   logical function unsolvable(error)
@@ -163,6 +210,7 @@ contains
     call integrator%complete(step, old%motion, new%motion%displacement, new%motion%velocity, new%motion%acceleration)
     new%iterations = 0
     new%force_iterations = 0
+    new%contact_iterations = 0
   end subroutine predict_motion
 
   !> Residual of the equation of motion (Eq. 1 with the exact internal force).
@@ -245,6 +293,7 @@ contains
     new%step = old%step + 1
     new%all_iterations = old%all_iterations + new%iterations
     new%all_force_iterations = old%all_force_iterations + new%force_iterations
+    new%all_contact_iterations = old%all_contact_iterations + new%contact_iterations
     new%deflection = model%deflection(new%motion%displacement)
     new%patch_mean = model%patch_mean(new%motion%displacement)
     if (model%scene%has_impactor) then

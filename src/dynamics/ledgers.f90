@@ -14,6 +14,10 @@ module ledgers
     real(wp) :: kinetic = 0, strain = 0
     !> Work done on the indentation, stored and lost
     real(wp) :: indentation = 0
+    !> Energy that new delaminated faces have taken, and that plies lost by damage
+    real(wp) :: delamination = 0, ply_damage = 0
+    !> Energy lost where faces meet, and held by penalty ties
+    real(wp) :: contact = 0
     !> Energy that the time integrators have taken out of the motion
     real(wp) :: algorithmic = 0
     !> Work of the pressure
@@ -34,7 +38,8 @@ contains
     !> The ledger
     class(ledger_t), intent(in) :: self
 
-    error = self%impactor + self%kinetic + self%strain + self%indentation + self%algorithmic &
+    error = self%impactor + self%kinetic + self%strain + self%indentation + self%delamination &
+            + self%ply_damage + self%contact + self%algorithmic &
             - self%external_work - self%initial
   end function error
 
@@ -49,6 +54,9 @@ contains
     call archive%item('ledger/kinetic', self%kinetic)
     call archive%item('ledger/strain', self%strain)
     call archive%item('ledger/indentation', self%indentation)
+    call archive%item('ledger/delamination', self%delamination)
+    call archive%item('ledger/ply_damage', self%ply_damage)
+    call archive%item('ledger/contact', self%contact)
     call archive%item('ledger/algorithmic', self%algorithmic)
     call archive%item('ledger/external_work', self%external_work)
     call archive%item('ledger/initial', self%initial)

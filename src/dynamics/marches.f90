@@ -72,7 +72,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     associate (motion => self%now%motion)
-      call self%operator%renew(model, motion%displacement, 0.0_wp, 1.0_wp, error)
+      call self%operator%renew(model, self%now%separation, motion%displacement, 0.0_wp, 1.0_wp, error)
       if (allocated(error)) return
       call self%operator%correct(model, pressure_amplitude(model%scene, 0.0_wp)*model%pressure, &
                                  motion%acceleration, error)
@@ -147,7 +147,7 @@ contains
     if (.not. due) due = self%controller%renewal_due(model%scene, mass_factor/self%operator%mass_factor, &
                                                      self%now%deflection - self%operator%deflection, model%thickness)
     if (due) then
-      call self%operator%renew(model, self%now%motion%displacement, self%integrator%stiffness_factor(), &
+      call self%operator%renew(model, self%now%separation, self%now%motion%displacement, self%integrator%stiffness_factor(), &
                                mass_factor, error)
       if (allocated(error)) return
       call self%controller%renewed()

@@ -12,7 +12,10 @@ module models
   use stacking, only: section_t, stacked_plies, section_of
   use plies, only: ply_t
   use mesh_parameters, only: edge_free, symmetry_none
-  use layered_meshes, only: layered_mesh_t, zone_t, create_mesh
+  use layered_meshes, only: layered_mesh_t, zone_t, create_mesh, cell_edges
+  use layer_maps, only: layer_map_t, create_layer_map
+  use delaminated_regions, only: cells_within
+  use face_contact, only: contact_law_t, create_contact_law
   use distributions, only: distribution_t, distribute
   use supports, only: held_unknowns
   use dynamics_parameters, only: distribution_sine
@@ -49,6 +52,14 @@ module models
     real(wp), allocatable :: pressure(:, :)
     !> Nodal I0, I1, I2 of a lumped mass, (3, local points); allocated only if asked for
     real(wp), allocatable :: lumped(:, :)
+    !> Motion of stacked layers from their unknowns
+    type(layer_map_t) :: map
+    !> Area that belongs to each point of a lower layer, (local points)
+    real(wp), allocatable :: contact_area(:)
+    !> Contact of each zone's faces
+    type(contact_law_t), allocatable :: contact_laws(:)
+    !> Zone of each of this rank's points; 0: first layer
+    integer, allocatable :: zone(:)
     !> Position of the struck node's first point on the rank that owns it; 0 elsewhere
     integer :: struck = 0
     !> This rank's elements around the struck node
@@ -58,6 +69,8 @@ module models
     !> True: nothing moves u and v (linear, no coupling), so they have no equations
     logical :: membrane_idle = .false.
   contains
+    !> Motion of every layer from the unknowns.
+    procedure :: motion_of
     !> Internal forces and strain energy of a displacement field.
     procedure :: internal
     !> Mass times a field.
@@ -82,15 +95,17 @@ contains
     type(model_t), intent(out) :: self
     !> Set if the mesh can't be dealt out or an element is ill-shaped; the same on every rank
     type(error_t), allocatable, intent(out) :: error
-    type(zone_t) :: no_zones(0)
+    type(zone_t), allocatable :: zones(:)
 
     self%scene = scene
     self%communicator = communicator
     self%plies = stacked_plies(scene%laminate, scene%materials)
     self%thickness = sum(scene%laminate%thickness)
     self%section = section_of(self%plies, scene%laminate%shear_correction)
-    self%mesh = create_mesh(scene%plate, scene%mesh, size(self%plies), no_zones)
-    self%membrane_idle = scene%kinematics == kinematics_linear .and. uncoupled(self%section)
+    zones = zones_of(scene)
+    self%mesh = create_mesh(scene%plate, scene%mesh, size(self%plies), zones)
+    self%membrane_idle = scene%kinematics == kinematics_linear .and. size(zones) == 0 .and. &
+                         .not. scene%has_ply_damage .and. uncoupled(self%section)
     self%held = held_unknowns(self%mesh, scene%plate, self%membrane_idle, adrift(scene))
     call distribute(self%mesh, communicator, self%distribution, error)
     if (.not. allocated(error)) call build_elements(self, error)
@@ -100,6 +115,7 @@ contains
                           self%distribution%points(self%distribution%owned + 1:)), error)
     if (allocated(error)) return
     call build_loads(self)
+    call build_interfaces(self)
     call find_struck_point(self)
   end subroutine create_model
 
@@ -222,6 +238,73 @@ contains
     if (self%struck > self%distribution%owned) self%struck = 0
   end subroutine find_struck_point
 
+  !> The cells of each interface's layered rectangle.
+  pure function zones_of(scene) result(zones)
+    !> The scene
+    type(scene_t), intent(in) :: scene
+    !> One zone an interface
+    type(zone_t), allocatable :: zones(:)
+    integer :: i
+
+    if (.not. allocated(scene%delaminations)) then
+      allocate (zones(0))
+      return
+    end if
+    allocate (zones(size(scene%delaminations)))
+    do i = 1, size(zones)
+      associate (interface => scene%delaminations(i))
+        zones(i)%below_ply = interface%below_ply
+        zones(i)%columns = cells_within(cell_edges(scene%plate, scene%mesh, 1), interface%zone(1))
+        zones(i)%rows = cells_within(cell_edges(scene%plate, scene%mesh, 2), interface%zone(2))
+      end associate
+    end do
+  end function zones_of
+
+  !> Heights, areas and contact laws of the interfaces.
+  subroutine build_interfaces(self)
+    !> The model, with its elements and halo
+    type(model_t), intent(inout) :: self
+    real(wp), allocatable :: areas(:, :)
+    real(wp) :: thickness
+    integer :: zone, i
+
+    associate (mesh => self%mesh, share => self%distribution)
+      self%map = create_layer_map(mesh, share, self%plies(mesh%zones%below_ply)%z_bottom)
+      self%zone = mesh%point_zone(share%points)
+      allocate (areas(1, size(share%points)), source=0.0_wp)
+      if (self%map%layered) then
+        call add_patch_weights(self%elements, pack([(i, i=1, self%elements%elements)], &
+                                                   mesh%element_plies(1, share%elements) > 1), areas(1, :))
+        call self%halo%accumulate(areas)
+        call self%halo%update(areas)
+        where (self%zone == 0) areas(1, :) = 0
+      end if
+      self%contact_area = areas(1, :)
+      allocate (self%contact_laws(size(mesh%zones)))
+      do zone = 1, size(mesh%zones)
+        associate (below => mesh%zones(zone)%below_ply, interface => self%scene%delaminations(zone))
+          thickness = min(self%plies(below)%z_bottom - self%plies(1)%z_top, &
+                          self%plies(size(self%plies))%z_bottom - self%plies(below)%z_bottom)
+          self%contact_laws(zone) = create_contact_law(interface%contact, interface%contact_exponent, &
+                                                       self%plies(below)%elasticity%e2/thickness, thickness)
+        end associate
+      end do
+    end associate
+  end subroutine build_interfaces
+
+  !> Motion of every layer from the unknowns.
+  pure function motion_of(self, unknowns) result(motion)
+    !> The model
+    class(model_t), intent(in) :: self
+    !> Unknowns, (5, points)
+    real(wp), intent(in) :: unknowns(:, :)
+    !> Motion of each point's layer, (5, points)
+    real(wp), allocatable :: motion(:, :)
+
+    motion = unknowns
+    if (self%map%layered) call self%map%to_motion(motion)
+  end function motion_of
+
   !> Internal forces at the owned points and this rank's share of the strain energy.
   subroutine internal(self, displacement, force, energy)
     !> The model
@@ -234,7 +317,12 @@ contains
     real(wp), intent(out) :: energy
 
     force = 0
-    call add_internal_force(self%elements, self%scene%kinematics, displacement, force, energy)
+    if (self%map%layered) then
+      call add_internal_force(self%elements, self%scene%kinematics, self%motion_of(displacement), force, energy)
+      call self%map%to_unknowns(force)
+    else
+      call add_internal_force(self%elements, self%scene%kinematics, displacement, force, energy)
+    end if
     call self%halo%accumulate(force)
   end subroutine internal
 
@@ -250,15 +338,21 @@ contains
 
     force = 0
     if (allocated(self%lumped)) then
+      force = self%motion_of(field)
+      force(:, self%distribution%owned + 1:) = 0
       do point = 1, self%distribution%owned
-        associate (mass => self%lumped(:, point))
-          force(1:2, point) = mass(1)*field(1:2, point) + mass(2)*field(4:5, point)
-          force(3, point) = mass(1)*field(3, point)
-          force(4:5, point) = mass(2)*field(1:2, point) + mass(3)*field(4:5, point)
+        associate (mass => self%lumped(:, point), value => force(:, point))
+          value = [mass(1)*value(1:2) + mass(2)*value(4:5), mass(1)*value(3), mass(2)*value(1:2) + mass(3)*value(4:5)]
         end associate
       end do
+      if (self%map%layered) call self%map%to_unknowns(force)
     else
-      call add_inertia_force(self%elements, field, force)
+      if (self%map%layered) then
+        call add_inertia_force(self%elements, self%motion_of(field), force)
+        call self%map%to_unknowns(force)
+      else
+        call add_inertia_force(self%elements, field, force)
+      end if
       call self%halo%accumulate(force)
     end if
   end subroutine inertia

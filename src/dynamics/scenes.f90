@@ -4,6 +4,8 @@ module scenes
   use mesh_parameters, only: plate_t, mesh_t
   use material_parameters, only: material_t
   use laminate_parameters, only: laminate_t
+  use ply_damage_parameters, only: ply_damage_t
+  use delamination_parameters, only: delamination_t
   use impact_parameters, only: impactor_parameters_t, indentation_law_t
   use dynamics_parameters, only: pressure_t, time_t, adapt_t, solver_t
   implicit none
@@ -24,13 +26,17 @@ module scenes
     type(laminate_t) :: laminate
     !> Which groups the deck has
     logical :: has_impactor = .false., has_indentation = .false., has_pressure = .false., has_static = .false., &
-               has_time = .false., has_adapt = .false.
+               has_time = .false., has_adapt = .false., has_ply_damage = .false.
     !> Impactor
     type(impactor_parameters_t) :: impactor
     !> Indentation law
     type(indentation_law_t) :: indentation
     !> Pressure
     type(pressure_t) :: pressure
+    !> Damage of the plies
+    type(ply_damage_t) :: ply_damage
+    !> Interfaces that may delaminate, from the struck face downwards; unallocated: none
+    type(delamination_t), allocatable :: delaminations(:)
     !> Load steps of a static analysis
     integer :: static_steps = 1
     !> Time integration

@@ -8,6 +8,7 @@ module states
   use ledgers, only: ledger_t
   use plate_integrators, only: motion_t
   use models, only: model_t
+  use separations, only: separation_t, new_separation
   implicit none
   private
   public :: state_t, new_state
@@ -24,6 +25,8 @@ module states
     type(impactor_t) :: impactor
     !> Memory of the indentation
     type(indentation_t) :: indentation
+    !> Ties and contacts of the interfaces
+    type(separation_t) :: separation
     !> Impact force at this time
     real(wp) :: force = 0
     !> Mean deflection of the patch, and deflection of the struck point
@@ -32,8 +35,10 @@ module states
     real(wp) :: stress = 0, largest_stress = 0
     !> The energy ledger
     type(ledger_t) :: ledger
-    !> Iterations of equilibrium and of the force in the last step, and their sums
-    integer :: iterations = 0, force_iterations = 0, all_iterations = 0, all_force_iterations = 0
+    !> Iterations of equilibrium, of the force and of the contact pressures in the last step
+    integer :: iterations = 0, force_iterations = 0, contact_iterations = 0
+    !> Their sums over all steps
+    integer :: all_iterations = 0, all_force_iterations = 0, all_contact_iterations = 0
     !> Largest forces so far, by which a residual is judged when forces fade: translations, rotations
     real(wp) :: largest_forces(2) = 0
   contains
@@ -55,6 +60,7 @@ contains
     allocate (self%motion%displacement(5, points), self%motion%velocity(5, points), &
               self%motion%acceleration(5, points), self%motion%internal(5, points), &
               self%motion%inertia(5, points), source=0.0_wp)
+    self%separation = new_separation(model)
     if (.not. model%scene%has_impactor) return
     self%impactor = new_impactor(model%scene%impactor)
     self%ledger%impactor = impactor_energy(model%scene%impactor, self%impactor)
@@ -80,9 +86,12 @@ contains
     call archive%item('deflection', self%deflection)
     call archive%item('stress', self%stress)
     call archive%item('largest_stress', self%largest_stress)
+    call self%separation%visit(archive, model)
     call self%ledger%visit(archive)
     call archive%item('iterations', self%iterations)
     call archive%item('force_iterations', self%force_iterations)
+    call archive%item('contact_iterations', self%contact_iterations)
+    call archive%item('all_contact_iterations', self%all_contact_iterations)
     call archive%item('all_iterations', self%all_iterations)
     call archive%item('all_force_iterations', self%all_force_iterations)
     call archive%item('largest_forces/translation', self%largest_forces(1))

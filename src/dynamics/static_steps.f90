@@ -47,7 +47,7 @@ contains
       converged = norm <= model%scene%solver%tolerance
       if (converged .or. .not. norm <= huge(norm) .or. new%iterations >= model%scene%solver%max_iterations) exit
       if (.not. operator%ready .or. model%scene%kinematics /= kinematics_linear) &
-        call operator%renew(model, new%motion%displacement, 1.0_wp, 0.0_wp, error)
+        call operator%renew(model, new%separation, new%motion%displacement, 1.0_wp, 0.0_wp, error)
       if (.not. allocated(error)) call operator%correct(model, residual, correction, error)
       if (allocated(error)) then
         if (error%code == exit_convergence .and. model%scene%kinematics /= kinematics_linear) deallocate (error)

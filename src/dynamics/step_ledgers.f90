@@ -20,6 +20,8 @@ module step_ledgers
     real(wp) :: mean_internal = 0, internal_change = 0, pressure = 0, inertia_change = 0
     !> a.Ma at the end and at the start; change of a times change of Ma
     real(wp) :: jerk_new = 0, jerk_old = 0, jerk_change = 0
+    !> Work of the forces between faces
+    real(wp) :: faces = 0
   end type products_t
 
 contains
@@ -47,6 +49,7 @@ contains
     amplitudes = [pressure_amplitude(model%scene, old%time), pressure_amplitude(model%scene, new%time)]
     new%ledger%kinetic = products%kinetic/2
     new%ledger%strain = products%strain
+    new%ledger%contact = old%ledger%contact - products%faces
     new%ledger%external_work = old%ledger%external_work + sum(amplitudes)/2*products%pressure
     gain = integrator_gain(integrator, step, products, amplitudes(2) - amplitudes(1)) &
            + (products%strain - old%ledger%strain - products%mean_internal)
@@ -92,7 +95,7 @@ contains
     !> The products
     type(products_t) :: products
     real(wp), allocatable :: change(:, :), momentum(:, :)
-    real(wp) :: sums(9)
+    real(wp) :: sums(10)
 
     allocate (momentum, mold=old%motion%displacement)
     call model%inertia(new%motion%velocity, momentum)
@@ -107,8 +110,9 @@ contains
     sums(8) = model%product(old%motion%acceleration, old%motion%inertia)
     sums(9) = model%product(new%motion%acceleration - old%motion%acceleration, &
                             new%motion%inertia - old%motion%inertia)
+    if (model%map%layered) sums(10) = new%separation%work(model, new%motion%displacement, change)
     call model%communicator%sum(sums)
     sums = sums*model%mesh%multiplicity
-    products = products_t(sums(1), sums(2), sums(3), sums(4), sums(5), sums(6), sums(7), sums(8), sums(9))
+    products = products_t(sums(1), sums(2), sums(3), sums(4), sums(5), sums(6), sums(7), sums(8), sums(9), sums(10))
   end function step_products
 end module step_ledgers

@@ -17,12 +17,14 @@ contains
     !> Displacement, ghosts up to date, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     real(wp) :: curvature(3), moment(3), strains(lanes, 8)
+    real(wp), allocatable :: motion(:, :)
     integer :: i, batch
 
     curvature = 0
+    motion = model%motion_of(displacement)
     do i = 1, size(model%struck_elements)
       batch = 1 + (model%struck_elements(i) - 1)/lanes
-      call mean_strains(model%elements, batch, model%scene%kinematics, displacement, strains)
+      call mean_strains(model%elements, batch, model%scene%kinematics, motion, strains)
       curvature = curvature + strains(1 + modulo(model%struck_elements(i) - 1, lanes), 4:6)/model%struck_count
     end do
     call model%communicator%sum(curvature)

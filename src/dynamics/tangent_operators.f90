@@ -5,17 +5,22 @@ module tangent_operators
   use kinds, only: wp
   use errors, only: error_t
   use archives, only: archive_t
-  use element_batches, only: lanes, first_element
-  use element_tangents, only: tangent
+  use timers, only: timer_set_t
   use linear_solvers, only: linear_solver_t
   use petsc_solvers, only: petsc_solver_t
   use plate_options, only: kinematics_linear
   use dynamics_parameters, only: factorization_cholmod
   use numberings, only: numbering_t, number_equations
   use models, only: model_t
+  use separations, only: separation_t
+  use operator_assembly, only: assemble_elements, assemble_diagonal
+  use operator_changes, only: operator_changes_t
   implicit none
   private
   public :: tangent_operator_t
+
+  !> Changes that are followed before a factorisation is cheaper.
+  integer, parameter :: most_changes = 32
 
   !> A factor of `stiffness_factor * tangent stiffness + mass_factor * mass`.
   type :: tangent_operator_t
@@ -33,17 +38,27 @@ module tangent_operators
     real(wp), allocatable :: diagonal(:, :)
     !> Displacement under a unit force of the impactor, (5, points)
     real(wp), allocatable :: response(:, :)
+    !> That response without the changes since the factorisation; allocated only with layers
+    real(wp), allocatable :: fresh_response(:, :)
+    !> Stiffness added to the three jumps of each point when factored, (3, points)
+    real(wp), allocatable :: added(:, :)
+    !> Changes of ties and contacts since then
+    type(operator_changes_t) :: changes
     !> Deflection of the struck point at which the tangent was taken
     real(wp) :: deflection = 0
     !> Mean deflection of the patch under that force
     real(wp) :: compliance = 0
     !> Factorisations and solves so far
     integer :: factorizations = 0, solves = 0
+    !> Time spent in the parts of a step
+    type(timer_set_t) :: timers
   contains
     !> Numbers the equations and sets the solver up.
     procedure :: create
     !> Assembles and factors the operator at a displacement.
     procedure :: renew
+    !> Follows changes of ties and contacts without a factorisation.
+    procedure :: follow
     !> Correction of the displacement for a residual.
     procedure :: correct
     !> Saves what is needed to make the same factor again, or loads it and makes it.
@@ -65,6 +80,7 @@ contains
 
     points = size(model%distribution%points)
     allocate (self%displacement(5, points), self%response(5, points), self%diagonal(5, points), source=0.0_wp)
+    allocate (self%added(3, points), source=0.0_wp)
     call number_equations(model%mesh, model%distribution, model%held, self%numbering)
     if (model%scene%solver%factorization == factorization_cholmod) solver%package = 'cholmod'
     allocate (self%solver, source=solver)
@@ -74,94 +90,166 @@ contains
   end subroutine create
 
   !> Assembles and factors the operator at a displacement, and finds the response to a unit force.
-  subroutine renew(self, model, displacement, stiffness_factor, mass_factor, error)
+  subroutine renew(self, model, separation, displacement, stiffness_factor, mass_factor, error)
     !> The operator
     class(tangent_operator_t), intent(inout) :: self
     !> The model
     type(model_t), intent(in) :: model
+    !> Ties and contacts
+    type(separation_t), intent(in) :: separation
     !> Displacement, ghosts up to date, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Factors of stiffness and mass
     real(wp), intent(in) :: stiffness_factor, mass_factor
     !> Set if the operator is singular
     type(error_t), allocatable, intent(out) :: error
-    real(wp), allocatable :: force(:, :)
 
     self%displacement = displacement
     self%deflection = model%deflection(displacement)
     self%stiffness_factor = stiffness_factor
     self%mass_factor = mass_factor
-    call assemble(self, model, error)
+    call self%timers%start('assembly')
+    call self%solver%clear()
+    call assemble_elements(model, self%numbering, displacement, stiffness_factor, mass_factor, self%solver, self%diagonal)
+    call separation%added_stiffness(model, self%diagonal, self%added)
+    call self%timers%stop('assembly')
+    call factorize(self, model, error)
+  end subroutine renew
+
+  !> Factors what has been assembled, the stiffness added to the jumps included, and finds the response
+  !> to a unit force.
+  subroutine factorize(self, model, error)
+    !> The operator
+    type(tangent_operator_t), intent(inout) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Set if the operator is singular
+    type(error_t), allocatable, intent(inout) :: error
+    real(wp), allocatable :: force(:, :)
+
+    if (model%map%layered) call assemble_diagonal(model, self%numbering, self%added, self%solver)
+    call self%solver%finish_assembly(error)
+    call self%timers%start('factorisation')
     if (.not. allocated(error)) call self%solver%factorize(error)
+    call self%timers%stop('factorisation')
     self%ready = .not. allocated(error)
     if (.not. self%ready) return
     self%factorizations = self%factorizations + 1
+    call self%changes%clear()
     self%response = 0
     self%compliance = 0
     if (.not. model%scene%has_impactor) return
-    allocate (force(5, size(self%response, 2)), source=0.0_wp)
+    allocate (force, mold=self%response)
+    force = 0
     force(3, :) = model%patch/model%mesh%multiplicity
-    call self%correct(model, force, self%response, error)
+    call solve_factor(self, model, force, self%response, error)
     self%compliance = model%patch_mean(self%response)
-  end subroutine renew
+    if (model%map%layered) self%fresh_response = self%response
+  end subroutine factorize
 
-  !> Assembles the operator at the stored displacement and factors.
-  subroutine assemble(self, model, error)
+  !> Follows changes of ties and contacts since the factorisation.
+  subroutine follow(self, model, separation, possible, error)
     !> The operator
     class(tangent_operator_t), intent(inout) :: self
     !> The model
     type(model_t), intent(in) :: model
-    !> Set if the assembly fails
+    !> Ties and contacts now
+    type(separation_t), intent(in) :: separation
+    !> False: they are too many, the operator has to be renewed
+    logical, intent(out) :: possible
+    !> Set if a solve fails
     type(error_t), allocatable, intent(inout) :: error
-    real(wp), allocatable :: matrices(:, :, :)
-    real(wp) :: consistent_factor
-    integer :: b, lane, point, a, component
+    real(wp), allocatable :: wanted(:, :)
+    integer, allocatable :: equations(:)
+    real(wp), allocatable :: stiffness(:)
 
-    self%diagonal = 0
-    consistent_factor = self%mass_factor
-    if (allocated(model%lumped)) consistent_factor = 0
-    allocate (matrices(lanes, 45, 45))
-    call self%solver%clear()
-    do b = 1, model%elements%batches
-      call tangent(model%elements, b, model%scene%kinematics, self%displacement, self%stiffness_factor, &
-                   consistent_factor, matrices)
-      do lane = 1, model%elements%lanes_used(b)
-        associate (points => model%distribution%connectivity(:, first_element(b) + lane - 1))
-          call self%solver%add(reshape(self%numbering%equation(:, points), [45]), matrices(lane, :, :))
-          do a = 1, 9
-            self%diagonal(:, points(a)) = self%diagonal(:, points(a)) &
-              + [(matrices(lane, 5*(a - 1) + component, 5*(a - 1) + component), component=1, 5)]
-          end do
+    possible = .true.
+    if (.not. model%map%layered) return
+    allocate (wanted, mold=self%added)
+    call separation%added_stiffness(model, self%diagonal, wanted)
+    call list_changes(self, model, wanted, equations, stiffness)
+    possible = size(equations) <= most_changes
+    if (.not. possible .or. same_changes(self%changes, equations, stiffness)) return
+    call find_columns(self, model, equations, error)
+    if (allocated(error)) return
+    call self%changes%set(model%communicator, self%numbering, equations, stiffness)
+    self%response = self%fresh_response
+    call self%changes%correct(model%communicator, self%numbering, self%response)
+    self%compliance = model%patch_mean(self%response)
+  end subroutine follow
+
+  !> True if changes are those already in force.
+  pure logical function same_changes(changes, equations, stiffness)
+    !> Changes in force
+    type(operator_changes_t), intent(in) :: changes
+    !> Equations and stiffness wanted
+    integer, intent(in) :: equations(:)
+    !> Stiffness wanted
+    real(wp), intent(in) :: stiffness(:)
+
+    same_changes = size(equations) == size(changes%equations)
+    if (same_changes) same_changes = all(equations == changes%equations) .and. all(stiffness == changes%stiffness)
+  end function same_changes
+
+  !> Lists the unknowns whose added stiffness has changed much since the factorisation, on every rank.
+  subroutine list_changes(self, model, wanted, equations, stiffness)
+    !> The operator
+    type(tangent_operator_t), intent(in) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Stiffness wanted on the jumps, (3, points)
+    real(wp), intent(in) :: wanted(:, :)
+    !> Equations, ascending
+    integer, allocatable, intent(out) :: equations(:)
+    !> Change of stiffness
+    real(wp), allocatable, intent(out) :: stiffness(:)
+    integer, allocatable :: mine(:)
+    real(wp), allocatable :: change(:)
+    integer :: i, component
+
+    allocate (mine(0), change(0))
+    do i = 1, model%distribution%owned
+      if (model%zone(i) == 0) cycle
+      do component = 1, 3
+        if (self%numbering%equation(component, i) < 0) cycle
+        associate (want => wanted(component, i), have => self%added(component, i))
+          if (abs(want - have) <= 0.2_wp*max(want, have, 0.1_wp*self%diagonal(component, i))) cycle
+          mine = [mine, self%numbering%equation(component, i)]
+          change = [change, want - have]
         end associate
       end do
     end do
-    call model%halo%accumulate(self%diagonal)
-    if (allocated(model%lumped)) then
-      do point = 1, model%distribution%owned
-        call self%solver%add(self%numbering%equation(:, point), self%mass_factor*nodal_mass(model%lumped(:, point)))
-      end do
-    end if
-    call self%solver%finish_assembly(error)
-  end subroutine assemble
+    call model%communicator%allgather(mine, equations)
+    call model%communicator%allgather(change, stiffness)
+  end subroutine list_changes
 
-  !> Mass matrix of one point from its nodal I0, I1, I2.
-  pure function nodal_mass(lumped) result(mass)
-    !> I0, I1, I2
-    real(wp), intent(in) :: lumped(3)
-    !> Mass of u, v, w, theta_x, theta_y
-    real(wp) :: mass(5, 5)
-    integer :: i
+  !> Finds the columns that are still missing, one solve each.
+  subroutine find_columns(self, model, equations, error)
+    !> The operator
+    type(tangent_operator_t), intent(inout) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Equations wanted
+    integer, intent(in) :: equations(:)
+    !> Set if a solve fails
+    type(error_t), allocatable, intent(inout) :: error
+    real(wp), allocatable :: force(:, :), column(:, :)
+    integer :: k, point, component
 
-    mass = 0
-    do i = 1, 3
-      mass(i, i) = lumped(1)
+    allocate (force, column, mold=self%response)
+    column = 0
+    do k = 1, size(equations)
+      if (self%changes%column_of(equations(k)) > 0) cycle
+      force = 0
+      if (self%numbering%owns(equations(k))) then
+        call self%numbering%place_of(equations(k), point, component)
+        force(component, point) = 1
+      end if
+      call solve_factor(self, model, force, column, error)
+      if (allocated(error)) return
+      call self%changes%keep(equations(k), column)
     end do
-    do i = 1, 2
-      mass(i, 3 + i) = lumped(2)
-      mass(3 + i, i) = lumped(2)
-      mass(3 + i, 3 + i) = lumped(3)
-    end do
-  end function nodal_mass
+  end subroutine find_columns
 
   !> Correction of the displacement for a residual, ghosts included.
   subroutine correct(self, model, residual, correction, error)
@@ -175,15 +263,35 @@ contains
     real(wp), intent(inout) :: correction(:, :)
     !> Set if the solution is not finite
     type(error_t), allocatable, intent(out) :: error
-    real(wp) :: right_hand_side(self%numbering%rows), solution(self%numbering%rows)
 
-    call self%numbering%gather(residual, right_hand_side)
-    call self%solver%solve(right_hand_side, solution, error)
+    call solve_factor(self, model, residual, correction, error)
+    if (.not. allocated(error)) call self%changes%correct(model%communicator, self%numbering, correction)
+  end subroutine correct
+
+  !> Solution of the operator as it was factored, ghosts included.
+  subroutine solve_factor(self, model, force, solution, error)
+    !> The operator
+    type(tangent_operator_t), intent(inout) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Force at the owned points, (5, points)
+    real(wp), intent(in) :: force(:, :)
+    !> Solution, (5, points)
+    real(wp), intent(inout) :: solution(:, :)
+    !> Set if the solution is not finite
+    type(error_t), allocatable, intent(inout) :: error
+    real(wp), allocatable :: right_hand_side(:), values(:)
+
+    allocate (right_hand_side(self%numbering%rows), values(self%numbering%rows))
+    call self%numbering%gather(force, right_hand_side)
+    call self%timers%start('solve')
+    call self%solver%solve(right_hand_side, values, error)
+    call self%timers%stop('solve')
     self%solves = self%solves + 1
     if (allocated(error)) return
-    call self%numbering%scatter(solution, correction)
-    call model%halo%update(correction)
-  end subroutine correct
+    call self%numbering%scatter(values, solution)
+    call model%halo%update(solution)
+  end subroutine solve_factor
 
   !> Saves what is needed to make the same factor again, or loads it and makes it: a lagged factor
   !> shapes the iterations, so a restart must go on with the very same one.
@@ -196,7 +304,6 @@ contains
     type(model_t), intent(in) :: model
     !> Set if the factor cannot be made again
     type(error_t), allocatable, intent(out) :: error
-    integer :: factorizations, solves
 
     call archive%item('operator/ready', self%ready)
     call archive%item('operator/stiffness_factor', self%stiffness_factor)
@@ -205,13 +312,31 @@ contains
     call archive%item('operator/solves', self%solves)
     associate (share => model%distribution)
       call archive%field('operator/displacement', share%points(:share%owned), model%mesh%points(), self%displacement)
+      if (model%map%layered) &
+        call archive%field('operator/added', share%points(:share%owned), model%mesh%points(), self%added)
     end associate
-    if (.not. archive%loading .or. .not. self%ready) return
+    if (archive%loading .and. self%ready) call remake(self, model, error)
+  end subroutine visit
+
+  !> Makes the factor again from what was loaded.
+  subroutine remake(self, model, error)
+    !> The operator
+    type(tangent_operator_t), intent(inout) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Set if it cannot be made
+    type(error_t), allocatable, intent(inout) :: error
+    integer :: factorizations, solves
+
     factorizations = self%factorizations
     solves = self%solves
     call model%halo%update(self%displacement)
-    call self%renew(model, self%displacement, self%stiffness_factor, self%mass_factor, error)
+    self%deflection = model%deflection(self%displacement)
+    call self%solver%clear()
+    call assemble_elements(model, self%numbering, self%displacement, self%stiffness_factor, self%mass_factor, &
+                           self%solver, self%diagonal)
+    call factorize(self, model, error)
     self%factorizations = factorizations
     self%solves = solves
-  end subroutine visit
+  end subroutine remake
 end module tangent_operators

@@ -15,6 +15,8 @@ module checkpoint_seal
   character(len=*), parameter :: title = 'IMPLAM CHECKPOINT'
   !> Second line of the head; the number changes whenever older files can't be read any more.
   character(len=*), parameter :: format_line = 'format 1'
+  !> What ends a line.
+  character(len=*), parameter :: end_of_line = new_line('a')
   !> Bytes read at a time.
   integer, parameter :: block_length = 1048576
   !> CRC of nothing.
@@ -60,10 +62,9 @@ contains
       call fail(error, exit_files, "Can't read the checkpoint "//path//'.')
     else if (found(:len(title)) /= title) then
       call fail(error, exit_files, path//' is not a checkpoint of Implam.')
-    else if (index(found, new_line('a')//'format ') > 0 .and. index(found, new_line('a')//format_line//new_line('a')) == 0) &
-      then
-      call fail(error, exit_files, 'The checkpoint '//path//' was written by another version of Implam, which this one ' &
-                //'cannot read ('//format_line//').')
+    else if (index(found, end_of_line//'format ') > 0 .and. index(found, end_of_line//format_line//end_of_line) == 0) then
+      call fail(error, exit_files, 'The checkpoint '//path//' was written by another version of Implam; this one reads ' &
+                //format_line//' only.')
     else if (found /= head(bytes, crc)) then
       call fail(error, exit_files, 'The checkpoint '//path//' is damaged: it was cut short or altered.')
     end if
@@ -91,7 +92,6 @@ contains
     integer(int32), intent(in) :: crc
     !> The head: lines of text, blanks and a last line end
     character(len=head_length) :: head
-    character(len=*), parameter :: end_of_line = new_line('a')
 
     write (head, '(4a,a,i0,2a,z8.8,a)') title, end_of_line, format_line, end_of_line, &
       'bytes ', bytes, end_of_line, 'crc32 ', crc, end_of_line

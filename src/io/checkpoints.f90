@@ -10,7 +10,6 @@ module checkpoints
   use hdf5_file, only: hdf5_file_t
   use hdf5_transfers, only: stored_shape
   use kinds, only: wp
-  use output_streams, only: output_stream_t
   use run_provenance, only: provenance_t
   use stored_provenance, only: read_provenance, write_provenance
   implicit none
@@ -93,31 +92,16 @@ contains
     !> Raised if an item couldn't be saved or loaded; the checkpoint before is then still there
     type(error_t), allocatable, intent(inout) :: error
 
-    if (.not. self%loading) call finish_writing(self)
     call self%file%close()
     if (allocated(self%file%trouble)) then
       call fail(error, exit_files, "Can't "//trim(merge('read ', 'write', self%loading))//' the checkpoint ' &
                 //self%path//': '//self%file%trouble//'.')
+      if (.not. self%loading .and. self%file%communicator%is_root()) call remove_file(aside(self%path))
     else if (.not. self%loading) then
       if (self%file%communicator%is_root()) call put_in_place(self%path, error)
       call self%file%communicator%agree(error)
     end if
   end subroutine close
-
-  !> Writes all out. If that fails, the disk may be full: the new file is emptied, so that HDF5 has the room to close it.
-  subroutine finish_writing(self)
-    !> The checkpoint
-    class(checkpoint_archive_t), intent(inout) :: self
-    type(output_stream_t) :: emptied
-
-    call self%file%flush()
-    if (.not. allocated(self%file%trouble)) return
-    if (self%file%communicator%is_root()) then
-      call emptied%open(aside(self%path), 'w')
-      call emptied%close()
-    end if
-    call self%file%communicator%barrier()
-  end subroutine finish_writing
 
   !> Seals the new file and gives it its name.
   subroutine put_in_place(path, error)
@@ -130,6 +114,16 @@ contains
     if (.not. allocated(error)) call rename_file(aside(path), path, error)
     if (.not. allocated(error)) call synchronise_folder(folder(path), error)
   end subroutine put_in_place
+
+  !> Removes a file, if it is there: what could not be finished would only take up room.
+  subroutine remove_file(path)
+    !> Path of the file
+    character(len=*), intent(in) :: path
+    integer :: unit, status
+
+    open (newunit=unit, file=path, status='old', iostat=status)
+    if (status == 0) close (unit, status='delete', iostat=status)
+  end subroutine remove_file
 
   !> Path under which the file is written until it is whole.
   pure function aside(path)

@@ -1,7 +1,7 @@
 !> Writes the messages of checks across keys and groups in the one form that all messages have.
 module deck_remarks
   use deck_contents, only: deck_t
-  use deck_entries, only: shown_values
+  use deck_entries, only: value_t, shown_values
   use deck_problems, only: problems_t
   implicit none
   private
@@ -65,11 +65,14 @@ contains
     integer, intent(in), optional :: place
     !> Such as `&time step = 1e-6: `
     character(len=:), allocatable :: beginning
+    type(value_t), allocatable :: values(:)
 
     beginning = '&'//group
     if (key /= '') beginning = beginning//' '//key
-    if (deck%settings%is_given(group, key, place)) beginning = beginning//' ='// &
-                                                        shown_values(deck%settings%values_of(group, key, place))
+    if (deck%settings%is_given(group, key, place)) then
+      call deck%settings%take_values(group, key, values, place)
+      beginning = beginning//' ='//shown_values(values)
+    end if
     beginning = beginning//': '
   end function head
 end module deck_remarks

@@ -46,7 +46,7 @@ module deck_settings
     procedure :: is_given
     procedure :: is_known
     procedure :: line_of
-    procedure :: values_of
+    procedure :: take_values
     procedure :: text_of
     procedure :: texts_of
     procedure :: real_of
@@ -136,8 +136,11 @@ contains
     character(len=*), intent(in) :: group, key
     !> Which group of this name
     integer, intent(in), optional :: place
+    integer :: i
 
-    is_known = size(self%values_of(group, key, place)) > 0
+    i = self%find(group, key, place)
+    is_known = .false.
+    if (i > 0) is_known = self%items(i)%sound .and. size(self%items(i)%values) > 0
   end function is_known
 
   !> Line to name when a key is at fault: its own, or its group's.
@@ -154,15 +157,16 @@ contains
     if (i > 0) line = self%items(i)%line
   end function line_of
 
-  !> Values of a key; none if there are none that can be used.
-  pure function values_of(self, group, key, place) result(values)
+  !> Takes the values of a key; none if there are none that can be used.
+  !> No function, because gfortran 12 loses the memory of texts in a list that a function returns.
+  pure subroutine take_values(self, group, key, values, place)
     class(settings_t), intent(in) :: self
     !> Names of group and key
     character(len=*), intent(in) :: group, key
+    !> The values
+    type(value_t), allocatable, intent(out) :: values(:)
     !> Which group of this name
     integer, intent(in), optional :: place
-    !> The values
-    type(value_t), allocatable :: values(:)
     integer :: i
 
     i = self%find(group, key, place)
@@ -170,7 +174,7 @@ contains
       if (self%items(i)%sound) values = self%items(i)%values
     end if
     if (.not. allocated(values)) allocate (values(0))
-  end function values_of
+  end subroutine take_values
 
   !> Text of a key with one value; empty if there is none.
   pure function text_of(self, group, key, place) result(word)
@@ -183,7 +187,7 @@ contains
     character(len=:), allocatable :: word
     type(value_t), allocatable :: values(:)
 
-    values = self%values_of(group, key, place)
+    call self%take_values(group, key, values, place)
     word = ''
     if (size(values) > 0) word = values(1)%text
   end function text_of
@@ -198,7 +202,7 @@ contains
     type(value_t), allocatable :: values(:)
     integer :: i
 
-    values = self%values_of(group, key)
+    call self%take_values(group, key, values)
     allocate (words(0))
     do i = 1, size(values)
       call append(words, values(i)%text)
@@ -214,7 +218,7 @@ contains
     integer, intent(in), optional :: place
     type(value_t), allocatable :: values(:)
 
-    values = self%values_of(group, key, place)
+    call self%take_values(group, key, values, place)
     real_of = 0
     if (size(values) > 0) real_of = real_value(values(1))
   end function real_of
@@ -229,7 +233,7 @@ contains
     type(value_t), allocatable :: values(:)
     integer :: i
 
-    values = self%values_of(group, key)
+    call self%take_values(group, key, values)
     numbers = [(real_value(values(i)), i=1, size(values))]
   end function reals_of
 
@@ -243,7 +247,7 @@ contains
     type(value_t), allocatable :: values(:)
     integer :: i
 
-    values = self%values_of(group, key)
+    call self%take_values(group, key, values)
     numbers = [(integer_value(values(i)), i=1, size(values))]
   end function integers_of
 
@@ -266,7 +270,7 @@ contains
     character(len=*), intent(in) :: group, key
     type(value_t), allocatable :: values(:)
 
-    values = self%values_of(group, key)
+    call self%take_values(group, key, values)
     logical_of = .false.
     if (size(values) > 0) logical_of = logical_value(values(1))
   end function logical_of

@@ -1,5 +1,6 @@
 !> NAME.h5 and NAME.xdmf: fields over the plate at chosen times, for ParaView and for scripts. The file is open only
-!> while a time is written. Every routine is collective.
+!> while a time is written. Every routine is collective; given an error already raised they do nothing, but `finish` still
+!> closes what is open.
 !>
 !> In NAME.h5: `provenance`, `part`, `restarts/N` (provenance of the runs that went on), `meshes/N` (coordinates,
 !> connectivity, cells/...), `times/N` (time, step, mesh, points/..., cells/...).
@@ -77,6 +78,7 @@ contains
     !> Raised if the file can't be written
     type(error_t), allocatable, intent(inout) :: error
 
+    if (allocated(error)) return
     call self%name_files(communicator, base, part)
     call self%file%create(communicator, base//'.h5', 0)
     call write_provenance(self%file, 'provenance', provenance)
@@ -106,6 +108,7 @@ contains
     type(line_t), allocatable :: names(:)
     logical :: present
 
+    if (allocated(error)) return
     present = .false.
     if (communicator%is_root()) present = file_exists(base//'.h5')
     call communicator%broadcast(present)
@@ -149,6 +152,7 @@ contains
     character(len=:), allocatable :: group
     integer :: i
 
+    if (allocated(error)) return
     call self%open_file(error)
     if (allocated(error)) return
     self%points = points
@@ -176,6 +180,7 @@ contains
     !> Raised if the file can't be opened
     type(error_t), allocatable, intent(inout) :: error
 
+    if (allocated(error)) return
     call self%open_file(error)
     if (allocated(error)) return
     self%time_group = 'times/'//numbered(size(self%grids) + 1)
@@ -196,6 +201,7 @@ contains
     !> Raised if it can't be written
     type(error_t), allocatable, intent(inout) :: error
 
+    if (allocated(error)) return
     call write_field(self%file, self%time_group//'/points/'//name, self%points, self%global_points, values)
     call report(self, error)
   end subroutine write_point_field
@@ -211,6 +217,7 @@ contains
     !> Raised if it can't be written
     type(error_t), allocatable, intent(inout) :: error
 
+    if (allocated(error)) return
     call write_field(self%file, self%time_group//'/cells/'//name, self%cells, self%global_cells, values)
     call report(self, error)
   end subroutine write_cell_field
@@ -247,6 +254,7 @@ contains
     type(error_t), allocatable, intent(inout) :: error
     character(len=:), allocatable :: grid
 
+    if (.not. self%file%is_open) return
     call grid_of_time(self%file, file_name(self), self%time_group, grid)
     call self%close_file(error, self%time_group)
     if (allocated(error)) return
@@ -295,7 +303,6 @@ contains
     !> Group that was added
     character(len=*), intent(in), optional :: added
 
-    call self%file%flush()
     if (allocated(self%file%trouble) .and. present(added)) call self%file%discard(added)
     call self%file%close()
     call report(self, error)

@@ -2,17 +2,22 @@
 !> by all ranks, and once there is some the routines do nothing: whoever owns the file asks at the end.
 module hdf5_file
   use communicators, only: communicator_t
-  use hdf5, only: h5eset_auto_f, h5f_acc_rdonly_f, h5f_acc_rdwr_f, h5f_acc_trunc_f, h5f_scope_global_f, h5fclose_f, &
-    h5fcreate_f, h5fd_mpio_collective_f, h5fflush_f, h5fopen_f, h5gclose_f, h5gcreate_f, &
+  use hdf5, only: h5eset_auto_f, h5f_acc_rdonly_f, h5f_acc_rdwr_f, h5f_acc_trunc_f, h5fclose_f, &
+    h5fcreate_f, h5fd_mpio_collective_f, h5fopen_f, h5gclose_f, h5gcreate_f, &
     h5gget_obj_info_idx_f, h5gn_members_f, h5iis_valid_f, h5ldelete_f, h5lexists_f, h5open_f, &
     h5p_dataset_create_f, h5p_dataset_xfer_f, h5p_file_access_f, h5p_file_create_f, h5p_link_create_f, &
     h5pclose_f, h5pcreate_f, h5pset_create_inter_group_f, h5pset_dxpl_mpio_f, h5pset_fapl_mpio_f, &
     h5pset_obj_track_times_f, h5pset_userblock_f, h5t_native_integer, hid_t, hsize_t
   use mpi, only: mpi_info_null
+  use output_streams, only: output_stream_t
   use text, only: line_t
   implicit none
   private
   public :: hdf5_file_t
+
+  !> Bytes held in reserve on the disk while data is written, and given up before the file is closed: there is room then
+  !> for what HDF5 has to write about the data. It crashes or hangs when it can't close a file.
+  integer, parameter :: reserved_bytes = 1048576
 
   !> An open file.
   type :: hdf5_file_t
@@ -22,7 +27,7 @@ module hdf5_file
     type(communicator_t) :: communicator
     !> Handle of the file
     integer(hid_t) :: id = -1
-    !> Property list: all ranks transfer together
+    !> Property list: all ranks transfer together; negative between closing and opening
     integer(hid_t) :: together = -1
     !> Property list: missing groups of a path are made
     integer(hid_t) :: with_groups = -1
@@ -30,10 +35,13 @@ module hdf5_file
     integer(hid_t) :: undated = -1
     !> The file is open
     logical :: is_open = .false.
+    !> Path of the file that holds the reserve, on the first rank; not allocated if there is none
+    character(len=:), allocatable, private :: reserve
   contains
     procedure :: create
     procedure :: open
-    procedure :: flush
+    procedure, private :: hold_reserve
+    procedure, private :: give_up_reserve
     procedure :: close
     procedure :: settle
     procedure :: well
@@ -59,7 +67,10 @@ contains
     integer(hid_t) :: access_list, creation_list
     integer :: status, closed
 
-    call prepare(self, communicator, access_list)
+    call start_over(self, communicator)
+    call self%hold_reserve(path)
+    if (allocated(self%trouble)) return
+    call prepare(self, access_list)
     call h5pcreate_f(h5p_file_create_f, creation_list, status)
     call h5pset_userblock_f(creation_list, int(head, hsize_t), status)
     call h5fcreate_f(path, h5f_acc_trunc_f, self%id, status, creation_list, access_list)
@@ -82,32 +93,74 @@ contains
     integer(hid_t) :: access_list
     integer :: status, closed
 
-    call prepare(self, communicator, access_list)
+    call start_over(self, communicator)
+    if (writable) call self%hold_reserve(path)
+    if (allocated(self%trouble)) return
+    call prepare(self, access_list)
     call h5fopen_f(path, merge(h5f_acc_rdwr_f, h5f_acc_rdonly_f, writable), self%id, status, access_list)
     self%is_open = status == 0
     call h5pclose_f(access_list, closed)
     call self%settle(status, 'the file could not be opened')
   end subroutine open
 
-  !> Starts the library if need be, silences its own messages and makes the property lists.
-  subroutine prepare(self, communicator, access_list)
+  !> Forgets the file before.
+  subroutine start_over(self, communicator)
     !> The file
     class(hdf5_file_t), intent(inout) :: self
-    !> The ranks that share it
+    !> The ranks that share the file
     type(communicator_t), intent(in) :: communicator
+
+    if (allocated(self%trouble)) deallocate (self%trouble)
+    self%communicator = communicator
+  end subroutine start_over
+
+  !> Writes the reserve beside the file; if there is no room for it there is trouble before HDF5 knows of the file.
+  subroutine hold_reserve(self, path)
+    !> The file
+    class(hdf5_file_t), intent(inout) :: self
+    !> Path of the file
+    character(len=*), intent(in) :: path
+    type(output_stream_t) :: stream
+
+    if (self%communicator%is_root()) then
+      self%reserve = path//'.reserve'
+      call stream%open(self%reserve, 'w')
+      call stream%put(repeat('.', reserved_bytes))
+      call stream%close()
+    end if
+    call self%settle(merge(-1, 0, stream%failed), 'the folder cannot be written to or the disk is full')
+    if (allocated(self%trouble)) call self%give_up_reserve()
+  end subroutine hold_reserve
+
+  !> Removes the reserve.
+  subroutine give_up_reserve(self)
+    !> The file
+    class(hdf5_file_t), intent(inout) :: self
+    integer :: unit, status
+
+    if (allocated(self%reserve)) then
+      open (newunit=unit, file=self%reserve, status='old', iostat=status)
+      if (status == 0) close (unit, status='delete', iostat=status)
+      deallocate (self%reserve)
+    end if
+    call self%communicator%barrier()
+  end subroutine give_up_reserve
+
+  !> Starts the library if need be, silences its own messages and makes the property lists.
+  subroutine prepare(self, access_list)
+    !> The file
+    class(hdf5_file_t), intent(inout) :: self
     !> Property list for opening the file
     integer(hid_t), intent(out) :: access_list
     integer :: status
     logical :: started
 
-    if (allocated(self%trouble)) deallocate (self%trouble)
-    self%communicator = communicator
     ! The library's type constants are made by h5open_f, anew at each call.
     call h5iis_valid_f(h5t_native_integer, started, status)
     if (.not. started) call h5open_f(status)
     call h5eset_auto_f(0, status)
     call h5pcreate_f(h5p_file_access_f, access_list, status)
-    call h5pset_fapl_mpio_f(access_list, communicator%handle(), mpi_info_null, status)
+    call h5pset_fapl_mpio_f(access_list, self%communicator%handle(), mpi_info_null, status)
     call h5pcreate_f(h5p_dataset_xfer_f, self%together, status)
     call h5pset_dxpl_mpio_f(self%together, h5fd_mpio_collective_f, status)
     call h5pcreate_f(h5p_link_create_f, self%with_groups, status)
@@ -116,33 +169,21 @@ contains
     call h5pset_obj_track_times_f(self%undated, .false., status)
   end subroutine prepare
 
-  !> Hands all that was written to the operating system. Done before closing, while it can still be undone: a file that
-  !> HDF5 fails to close crashes the program when MPI ends.
-  subroutine flush(self)
-    !> The file
-    class(hdf5_file_t), intent(inout) :: self
-    integer :: status
-
-    if (.not. self%well()) return
-    call h5fflush_f(self%id, h5f_scope_global_f, status)
-    call self%settle(status, 'the data could not be written out')
-  end subroutine flush
-
-  !> Closes the file.
+  !> Closes the file, if it was opened or that was tried.
   subroutine close (self)
     !> The file
     class(hdf5_file_t), intent(inout) :: self
     integer :: status, closed
 
+    if (self%together < 0) return
+    call self%give_up_reserve()
     status = 0
     if (self%is_open) call h5fclose_f(self%id, status)
     self%is_open = .false.
-    if (self%together >= 0) then
-      call h5pclose_f(self%together, closed)
-      call h5pclose_f(self%with_groups, closed)
-      call h5pclose_f(self%undated, closed)
-      self%together = -1
-    end if
+    call h5pclose_f(self%together, closed)
+    call h5pclose_f(self%with_groups, closed)
+    call h5pclose_f(self%undated, closed)
+    self%together = -1
     call self%settle(status, 'the file could not be closed')
   end subroutine close
 
@@ -217,6 +258,7 @@ contains
     character(len=*), intent(in) :: path
     integer :: status
 
+    call self%give_up_reserve()
     if (self%is_open) call h5ldelete_f(self%id, path, status)
   end subroutine discard
 

@@ -24,7 +24,7 @@ module linear_solvers
     procedure(add), deferred :: add
     !> Brings the matrix together; called by all ranks after the last `add`.
     procedure(attempt), deferred :: finish_assembly
-    !> Factors the matrix as it was assembled last; called by all ranks together.
+    !> Factors the matrix as it was assembled last; called by all ranks together. If it fails there is no factor.
     procedure(attempt), deferred :: factorize
     !> Solves for one right-hand side with the factor; called by all ranks together.
     procedure(solve), deferred :: solve

@@ -25,11 +25,6 @@ module petsc_session
       import :: c_int
     end function quiet_handler
 
-    !> Takes PETSc's signal handler away, so that signals reach us.
-    integer(c_int) function pop_signal_handler() bind(c, name='PetscPopSignalHandler')
-      import :: c_int
-    end function pop_signal_handler
-
     !> Meaning of an error code, in general and for the latest error.
     integer(c_int) function error_message(code, general, particular) bind(c, name='PetscErrorMessage')
       import :: c_int, c_ptr
@@ -56,8 +51,9 @@ contains
     call PetscInitialized(running, ierr)
     if (running) return
     PETSC_COMM_WORLD = communicator%handle()
-    ! Options such as -log_view take effect only when they are there before the start.
-    call PetscOptionsInsertString(PETSC_NULL_OPTIONS, trim(options), ierr)
+    ! Options such as -log_view take effect only when they are there before the start. So early, PETSc
+    ! forgets the value of the first option; ours has none. It keeps PETSc's hands off signals.
+    call PetscOptionsInsertString(PETSC_NULL_OPTIONS, '-no_signal_handler '//trim(options), ierr)
     if (ierr /= 0) then
       call fail(error, exit_usage, 'PETSc does not understand the options "'//trim(options)//'".')
       return
@@ -68,7 +64,6 @@ contains
       return
     end if
     ierr = push_error_handler(c_funloc(quiet_handler), c_null_ptr)
-    ierr = pop_signal_handler()
   end subroutine start_petsc
 
   !> Ends PETSc; its objects must have been freed before.

@@ -2,40 +2,29 @@
 !> (Amestoy et al., SIAM J. Matrix Anal. Appl. 23, 2001), CHOLMOD on one (Chen et al., ACM TOMS 35, 2008).
 module petsc_solvers
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
-  use petscksp, only: tMat, tVec, tKSP, tPC, PETSC_DECIDE, PETSC_TRUE, PETSC_FALSE, PETSC_NULL_SCALAR, &
-                      PETSC_NULL_OPTIONS, ADD_VALUES, INSERT_VALUES, MAT_FINAL_ASSEMBLY, &
-                      MAT_IGNORE_LOWER_TRIANGULAR, MAT_NEW_NONZERO_LOCATION_ERR, MAT_SPD, MAT_GLOBAL_SUM, &
-                      MAT_INFO_SIZE, MAT_INFO_NZ_USED, MAT_INFO_MEMORY, MatSetValues, KSPSetOperators, &
-                      VecGetArrayF90, VecRestoreArrayF90, VecGetArrayReadF90, VecRestoreArrayReadF90, &
-                      MatDenseGetArrayF90, MatDenseRestoreArrayF90
+  use petscksp, only: tMat, tKSP, tPC, PETSC_DECIDE, PETSC_TRUE, PETSC_FALSE, PETSC_NULL_SCALAR, MAT_GLOBAL_SUM, &
+                      MAT_INFO_SIZE, MAT_INFO_NZ_USED, MAT_INFO_MEMORY, KSPSetOperators, MatDenseGetArrayF90, &
+                      MatDenseRestoreArrayF90
   use communicators, only: communicator_t
   use errors, only: error_t, fail, exit_convergence, exit_internal, exit_usage
+  use factor_packages, only: prepare_mumps, prepare_cholmod, mumps_report, why_not_factored, mumps_outcome, &
+                             mumps_negative, mumps_memory, mumps_entries, mumps_singular, mumps_short_of_room
   use kinds, only: wp
   use linear_solvers, only: linear_solver_t
+  use petsc_matrices, only: petsc_matrix_t, put, take
   use petsc_session, only: report_petsc
-  use symmetric_rows, only: symmetric_rows_t
   implicit none
   private
   public :: petsc_solver_t
 
-  !> MUMPS' controls: room beyond the estimate in %, whether the root of the elimination tree stays on
-  !> one rank (only then are its negative pivots counted), whether pivots of zero are found.
-  integer, parameter :: control_room = 14, control_root = 13, control_null_pivots = 24
-  !> MUMPS' control of what a pivot of zero is, relative to the scaled matrix
-  integer, parameter :: control_null_size = 3
-  !> MUMPS' reports: outcome, negative pivots, memory in MB, entries of the factor, pivots of zero
-  integer, parameter :: report_outcome = 1, report_negative = 12, report_memory = 22, report_entries = 29, &
-                        report_null_pivots = 28
-  !> Outcomes of MUMPS that more room cures
-  integer, parameter :: outcomes_short_of_room(*) = [-8, -9, -11, -14, -15, -17, -19, -20]
-  !> MUMPS' outcome for a singular matrix
-  integer, parameter :: outcome_singular = -10
   !> PETSC_ERR_MAT_CH_ZRPVT, which CHOLMOD returns when a pivot is zero or negative
   integer, parameter :: petsc_zero_pivot = 81
-  !> A pivot that is smaller consists of rounding errors
-  real(wp), parameter :: null_pivot = 1e-14_wp
+  !> Inverse of an eigenvalue that consists of rounding errors
+  real(wp), parameter :: largest_growth = 1e15_wp
+  !> What is wrong with a solve that comes too early
+  character(len=*), parameter :: no_factor = 'The linear equations were to be solved before they were factored.'
 
-  !> A symmetric matrix in PETSc and its factor. On one rank PETSc works on our own rows in place.
+  !> A symmetric matrix in PETSc and its factor.
   type, extends(linear_solver_t) :: petsc_solver_t
     !> What factors the matrix: `mumps`, or `cholmod` on one rank for positive definite matrices. Set before `define`.
     character(len=8) :: package = 'mumps'
@@ -43,20 +32,20 @@ module petsc_solvers
     type(communicator_t), private :: communicator
     !> True between `define` and `release`
     logical, private :: defined = .false.
+    !> True while there is a factor
+    logical, private :: factored = .false.
     !> True if MUMPS factors, which the options of the user may have changed
     logical, private :: by_mumps = .false.
-    !> Rows of the matrix on one rank
-    type(symmetric_rows_t), private :: rows
-    !> The matrix as PETSc knows it
-    type(tMat), private :: matrix
+    !> Number of rows that this rank owns
+    integer, private :: rows = 0
+    !> The matrix
+    type(petsc_matrix_t), private :: matrix
+    !> Eigenvector of the least eigenvalue of the scaled matrix, roughly; its greatest item is 1
+    real(wp), allocatable, private :: mode(:)
     !> PETSc's solver, which applies the factor once
     type(tKSP), private :: solver
     !> What makes and keeps the factor
     type(tPC), private :: factorization
-    !> Right-hand side and solution
-    type(tVec), private :: right, left
-    !> First code that PETSc returned for an added matrix, 0 for success
-    integer, private :: trouble = 0
   contains
     procedure :: define
     procedure :: clear
@@ -69,13 +58,11 @@ module petsc_solvers
     procedure :: negative_pivots
     procedure :: statistics
     procedure :: release
-    procedure, private :: create_matrix
     procedure, private :: create_solver
-    procedure, private :: prepare_mumps
+    procedure, private :: renew_factor
     procedure, private :: factorize_once
-    procedure, private :: test_solve_explodes
+    procedure, private :: find_mechanism
     procedure, private :: finish_solve
-    procedure, private :: mumps_report
   end type petsc_solver_t
 
 contains
@@ -97,7 +84,6 @@ contains
     logical, intent(in) :: positive_definite
     !> Raised when PETSc fails or the package doesn't suit
     type(error_t), allocatable, intent(inout) :: error
-    integer :: ierr
 
     call self%release()
     if (self%package == 'cholmod' .and. (communicator%size > 1 .or. .not. positive_definite)) then
@@ -105,71 +91,12 @@ contains
       return
     end if
     self%communicator = communicator
+    self%rows = size(row_start) - 1
     self%defined = .true.
-    call self%create_matrix(first_row, total_rows, row_start, columns, error)
-    if (.not. allocated(error)) then
-      call MatSetOption(self%matrix, MAT_SPD, merge(PETSC_TRUE, PETSC_FALSE, positive_definite), ierr)
-      call self%create_solver(error)
-    end if
+    call self%matrix%define(communicator, first_row, total_rows, row_start, columns, positive_definite, error)
+    if (.not. allocated(error)) call self%create_solver(error)
     call communicator%agree(error)
   end subroutine define
-
-  !> Makes the matrix, with a place for every entry of the pattern.
-  subroutine create_matrix(self, first_row, total_rows, row_start, columns, error)
-    class(petsc_solver_t), intent(inout) :: self
-    !> First row that this rank owns, and number of rows of all ranks
-    integer, intent(in) :: first_row, total_rows
-    !> Pattern of the owned rows, as for `define`
-    integer, intent(in) :: row_start(:), columns(:)
-    !> Raised when PETSc fails
-    type(error_t), allocatable, intent(inout) :: error
-    integer :: rows, row, ierr(4), inner(size(row_start) - 1), outer(size(row_start) - 1)
-
-    ierr = 0
-    rows = size(row_start) - 1
-    if (self%communicator%size == 1) then
-      call self%rows%define(row_start, columns)
-      call MatCreateSeqSBAIJWithArrays(self%communicator%handle(), 1, rows, rows, self%rows%start, &
-                                       self%rows%columns, self%rows%values, self%matrix, ierr(1))
-    else
-      do row = 1, rows
-        associate (mine => columns(row_start(row):row_start(row + 1) - 1))
-          inner(row) = count(mine >= first_row + row - 1 .and. mine < first_row + rows)
-          outer(row) = count(mine >= first_row + rows)
-        end associate
-      end do
-      call MatCreateSBAIJ(self%communicator%handle(), 1, rows, rows, total_rows, total_rows, 0, inner, 0, outer, &
-                          self%matrix, ierr(1))
-      call MatSetOption(self%matrix, MAT_IGNORE_LOWER_TRIANGULAR, PETSC_TRUE, ierr(2))
-      call fill_pattern(self%matrix, first_row, row_start, columns, ierr(3))
-      call MatSetOption(self%matrix, MAT_NEW_NONZERO_LOCATION_ERR, PETSC_TRUE, ierr(4))
-    end if
-    call report_petsc(ierr, error)
-  end subroutine create_matrix
-
-  !> Puts zeros at all places of the pattern, as PETSc forgets places that the first assembly leaves out.
-  subroutine fill_pattern(matrix, first_row, row_start, columns, ierr)
-    !> The matrix
-    type(tMat), intent(inout) :: matrix
-    !> First row that this rank owns
-    integer, intent(in) :: first_row
-    !> Pattern of the owned rows, as for `define`
-    integer, intent(in) :: row_start(:), columns(:)
-    !> First code of PETSc that is not zero
-    integer, intent(out) :: ierr
-    real(wp), allocatable :: zeros(:)
-    integer :: row, n
-
-    allocate (zeros(size(columns)), source=0.0_wp)
-    do row = 1, size(row_start) - 1
-      n = row_start(row + 1) - row_start(row)
-      call MatSetValues(matrix, 1, [first_row + row - 1], n, columns(row_start(row):row_start(row + 1) - 1), &
-                        zeros(:n), INSERT_VALUES, ierr)
-      if (ierr /= 0) return
-    end do
-    call MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY, ierr)
-    call MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY, ierr)
-  end subroutine fill_pattern
 
   !> Makes the solver and chooses what factors the matrix; options of the user come last.
   subroutine create_solver(self, error)
@@ -177,13 +104,12 @@ contains
     !> Raised when PETSc fails
     type(error_t), allocatable, intent(inout) :: error
     character(len=32) :: package
-    integer :: ierr(9), unasked
+    integer :: ierr(8), unasked
 
     ierr = 0
-    if (self%package == 'cholmod') call prepare_cholmod(ierr(9))
-    call MatCreateVecs(self%matrix, self%left, self%right, ierr(1))
+    if (self%package == 'cholmod') call prepare_cholmod(ierr(1))
     call KSPCreate(self%communicator%handle(), self%solver, ierr(2))
-    call KSPSetOperators(self%solver, self%matrix, self%matrix, ierr(3))
+    call KSPSetOperators(self%solver, self%matrix%object, self%matrix%object, ierr(3))
     call KSPSetType(self%solver, 'preonly', ierr(4))
     call KSPGetPC(self%solver, self%factorization, ierr(5))
     call PCSetType(self%factorization, 'cholesky', ierr(6))
@@ -194,52 +120,30 @@ contains
     package = ''
     call PCFactorGetMatSolverType(self%factorization, package, unasked)
     self%by_mumps = unasked == 0 .and. package == 'mumps'
-    if (self%by_mumps) call self%prepare_mumps(0, error)
+    call self%renew_factor(0, error)
   end subroutine create_solver
 
-  !> Makes CHOLMOD find out, without words, that a matrix is not positive definite.
-  subroutine prepare_cholmod(ierr)
-    !> PETSc's code
-    integer, intent(out) :: ierr
-
-    call PetscOptionsSetValue(PETSC_NULL_OPTIONS, '-mat_cholmod_print', '0', ierr)
-    ! Its other form, L D L^T, takes negative pivots without complaint.
-    if (ierr == 0) call PetscOptionsSetValue(PETSC_NULL_OPTIONS, '-mat_cholmod_factor', 'supernodal', ierr)
-  end subroutine prepare_cholmod
-
-  !> Gives MUMPS a new factor to fill and sets its controls.
-  subroutine prepare_mumps(self, room, error)
+  !> Gives the package a new factor to fill and sets its controls.
+  subroutine renew_factor(self, room, error)
     class(petsc_solver_t), intent(inout) :: self
     !> Room beyond MUMPS' estimate in %, 0 for its own choice
     integer, intent(in) :: room
     !> Raised when PETSc fails
     type(error_t), allocatable, intent(inout) :: error
-    type(tMat) :: factor
-    integer :: ierr(8)
+    integer :: ierr(3)
 
-    ierr = 0
+    ierr(3) = 0
     call PCReset(self%factorization, ierr(1))
-    call KSPSetOperators(self%solver, self%matrix, self%matrix, ierr(2))
-    call PCFactorSetUpMatSolverType(self%factorization, ierr(3))
-    call PCFactorGetMatrix(self%factorization, factor, ierr(4))
-    call MatMumpsSetIcntl(factor, control_root, 1, ierr(5))
-    call MatMumpsSetIcntl(factor, control_null_pivots, 1, ierr(6))
-    call MatMumpsSetCntl(factor, control_null_size, null_pivot, ierr(7))
-    if (room > 0) call MatMumpsSetIcntl(factor, control_room, room, ierr(8))
+    call KSPSetOperators(self%solver, self%matrix%object, self%matrix%object, ierr(2))
+    if (self%by_mumps) call prepare_mumps(self%factorization, room, ierr(3))
     call report_petsc(ierr, error)
-  end subroutine prepare_mumps
+  end subroutine renew_factor
 
   !> Zeroes the values of the matrix.
   subroutine clear(self)
     class(petsc_solver_t), intent(inout) :: self
 
-    self%trouble = 0
-    if (self%communicator%size == 1) then
-      self%rows%values = 0
-      self%rows%complete = .true.
-    else
-      call MatZeroEntries(self%matrix, self%trouble)
-    end if
+    call self%matrix%clear()
   end subroutine clear
 
   !> Adds an element's matrix; each element is added by one rank only.
@@ -249,14 +153,8 @@ contains
     integer, intent(in) :: equations(:)
     !> The symmetric matrix, shape (equations, equations)
     real(wp), intent(in) :: values(:, :)
-    integer :: ierr
 
-    if (self%communicator%size == 1) then
-      call self%rows%add(equations, values)
-    else
-      call MatSetValues(self%matrix, size(equations), equations, size(equations), equations, values, ADD_VALUES, ierr)
-      if (self%trouble == 0) self%trouble = ierr
-    end if
+    call self%matrix%add(equations, values)
   end subroutine add
 
   !> Brings the matrix together.
@@ -264,15 +162,8 @@ contains
     class(petsc_solver_t), intent(inout) :: self
     !> Raised on all ranks when an entry falls outside the pattern
     type(error_t), allocatable, intent(inout) :: error
-    integer :: ierr(3)
 
-    ierr(1) = self%trouble
-    call MatAssemblyBegin(self%matrix, MAT_FINAL_ASSEMBLY, ierr(2))
-    call MatAssemblyEnd(self%matrix, MAT_FINAL_ASSEMBLY, ierr(3))
-    if (any(ierr /= 0) .or. .not. self%rows%complete) then
-      call fail(error, exit_internal, 'An element couples unknowns that the pattern of the matrix does not couple.')
-    end if
-    call self%communicator%agree(error)
+    call self%matrix%finish_assembly(error)
   end subroutine finish_assembly
 
   !> Factors the matrix as it was assembled last, with ever more room if that is what lacks.
@@ -286,16 +177,19 @@ contains
 
     call self%factorize_once(singular, outcome, error)
     do attempt = 1, size(rooms)
-      if (allocated(error) .or. all(outcome /= outcomes_short_of_room)) exit
-      call self%prepare_mumps(rooms(attempt), error)
+      if (allocated(error) .or. all(outcome /= mumps_short_of_room)) exit
+      call self%renew_factor(rooms(attempt), error)
       call self%factorize_once(singular, outcome, error)
     end do
-    ! After a failure MUMPS refuses to go on with the factor that it has.
-    if (outcome < 0) call self%prepare_mumps(0, error)
-    if (singular .or. outcome < 0) call fail(error, exit_convergence, why_not_factored(self%by_mumps, outcome))
+    if (singular .or. outcome < 0) then
+      ! After a failure the packages refuse to go on with the factor that they have.
+      call self%renew_factor(0, error)
+      call fail(error, exit_convergence, why_not_factored(self%by_mumps, outcome))
+    end if
     call self%communicator%agree(error)
     self%factorisations = self%factorisations + 1
-    if (allocated(error)) return
+    self%factored = .not. allocated(error)
+    if (.not. self%factored) return
     ! The factor stays, whatever is assembled, until the next call of this procedure.
     call KSPSetReusePreconditioner(self%solver, PETSC_TRUE, ierr)
   end subroutine factorize
@@ -315,65 +209,52 @@ contains
     failure = 0
     call KSPSetReusePreconditioner(self%solver, PETSC_FALSE, ierr(1))
     ! Setting the same matrix again is what makes the solver look whether its values changed.
-    call KSPSetOperators(self%solver, self%matrix, self%matrix, ierr(2))
+    call KSPSetOperators(self%solver, self%matrix%object, self%matrix%object, ierr(2))
     call KSPSetUp(self%solver, ierr(3))
     singular = ierr(3) == petsc_zero_pivot
     if (singular) return
     call report_petsc(ierr, error)
     if (allocated(error)) return
+    if (self%by_mumps) outcome = mumps_report(self%factorization, mumps_outcome)
     call PCGetFailedReason(self%factorization, failure, ierr(3))
-    singular = failure /= 0
-    if (self%by_mumps) then
-      outcome = self%mumps_report(report_outcome)
-      failure = self%mumps_report(report_null_pivots)
-      singular = outcome == outcome_singular .or. (outcome >= 0 .and. failure > 0)
-    else
-      if (.not. singular) singular = self%test_solve_explodes()
-    end if
+    singular = failure /= 0 .and. (outcome == 0 .or. outcome == mumps_singular)
+    if (failure == 0 .and. outcome >= 0) call self%find_mechanism(singular)
   end subroutine factorize_once
 
-  !> Whether the solution of a test case grows beyond what rounding errors allow, the matrix being scaled
-  !> to a diagonal of ones.
-  logical function test_solve_explodes(self)
+  !> Finds out whether the matrix, scaled to a diagonal of ones, has an eigenvalue that consists of rounding
+  !> errors, by inverse iteration. The eigenvector found goes on serving later factors.
+  subroutine find_mechanism(self, found)
     class(petsc_solver_t), intent(inout) :: self
-    real(wp), pointer :: values(:)
+    !> Whether a part of the structure can move freely
+    logical, intent(out) :: found
     real(wp), allocatable :: scale(:)
-    integer :: ierr, i
+    real(wp) :: growth
+    integer :: ierr(4), pass, passes, i
 
-    test_solve_explodes = .true.
-    call MatGetDiagonal(self%matrix, self%left, ierr)
-    call VecGetArrayReadF90(self%left, values, ierr)
-    allocate (scale(size(values)), source=sqrt(max(values, 0.0_wp)))
-    call VecRestoreArrayReadF90(self%left, values, ierr)
-    call put(self%right, scale*[(cos(real(i, wp)), i=1, size(scale))], ierr)
-    call KSPSolve(self%solver, self%right, self%left, ierr)
-    if (ierr == 0) then
-      call VecGetArrayReadF90(self%left, values, ierr)
-      test_solve_explodes = .not. all(ieee_is_finite(values))
-      if (.not. test_solve_explodes) test_solve_explodes = any(scale*abs(values)*null_pivot > 1)
-      call VecRestoreArrayReadF90(self%left, values, ierr)
+    passes = 1
+    allocate (scale(self%rows))
+    if (.not. allocated(self%mode)) then
+      passes = 2
+      self%mode = [(cos(real(i, wp)), i=1, self%rows)]
     end if
-  end function test_solve_explodes
-
-  !> A sentence that says why there is no factor.
-  pure function why_not_factored(by_mumps, outcome) result(sentence)
-    !> Whether MUMPS failed
-    logical, intent(in) :: by_mumps
-    !> Its outcome, INFOG(1)
-    integer, intent(in) :: outcome
-    !> The sentence
-    character(len=:), allocatable :: sentence
-    character(len=12) :: number
-
-    if (by_mumps .and. outcome < 0 .and. outcome /= outcome_singular) then
-      write (number, '(i0)') outcome
-      sentence = 'MUMPS could not factor the stiffness matrix, probably for lack of memory (code '//trim(number)//').'
-    else if (by_mumps) then
-      sentence = 'The stiffness matrix is singular: a part of the plate can move freely.'
-    else
-      sentence = 'The stiffness matrix is singular or not positive definite.'
-    end if
-  end function why_not_factored
+    call MatGetDiagonal(self%matrix%object, self%matrix%left, ierr(1))
+    call take(self%matrix%left, scale, ierr(2))
+    scale = sqrt(abs(scale))
+    do pass = 1, passes
+      call put(self%matrix%right, scale*self%mode, ierr(2))
+      call KSPSolve(self%solver, self%matrix%right, self%matrix%left, ierr(3))
+      call take(self%matrix%left, self%mode, ierr(4))
+      found = self%communicator%any(any(ierr /= 0) .or. .not. all(ieee_is_finite(self%mode)))
+      if (found) exit
+      self%mode = scale*self%mode
+      growth = maxval(abs(self%mode))
+      call self%communicator%maximum(growth)
+      found = growth > largest_growth .or. .not. growth > 0
+      if (found) exit
+      self%mode = self%mode/growth
+    end do
+    if (found) deallocate (self%mode)
+  end subroutine find_mechanism
 
   !> Solves for one right-hand side with the factor.
   subroutine solve(self, right_hand_side, solution, error)
@@ -386,9 +267,12 @@ contains
     type(error_t), allocatable, intent(inout) :: error
     integer :: ierr(3)
 
-    call put(self%right, right_hand_side, ierr(1))
-    call KSPSolve(self%solver, self%right, self%left, ierr(2))
-    call take(self%left, solution, ierr(3))
+    solution = 0
+    if (.not. self%factored) call fail(error, exit_internal, no_factor)
+    if (allocated(error)) return
+    call put(self%matrix%right, right_hand_side, ierr(1))
+    call KSPSolve(self%solver, self%matrix%right, self%matrix%left, ierr(2))
+    call take(self%matrix%left, solution, ierr(3))
     call self%finish_solve(all(ieee_is_finite(solution)), 1, ierr, error)
   end subroutine solve
 
@@ -405,6 +289,9 @@ contains
     real(wp), pointer :: values(:, :)
     integer :: ierr(9)
 
+    solutions = 0
+    if (.not. self%factored) call fail(error, exit_internal, no_factor)
+    if (allocated(error)) return
     associate (rows => size(solutions, 1), count => size(solutions, 2))
       call MatCreateDense(self%communicator%handle(), rows, PETSC_DECIDE, PETSC_DECIDE, count, PETSC_NULL_SCALAR, &
                           right, ierr(1))
@@ -451,11 +338,8 @@ contains
     real(wp), intent(in) :: vector(:)
     !> Owned part of matrix times vector
     real(wp), intent(out) :: product(:)
-    integer :: ierr
 
-    call put(self%right, vector, ierr)
-    call MatMult(self%matrix, self%right, self%left, ierr)
-    call take(self%left, product, ierr)
+    call self%matrix%multiply(vector, product)
   end subroutine multiply
 
   !> Number of negative pivots of the factor, the same on every rank.
@@ -464,7 +348,7 @@ contains
 
     ! Without MUMPS only positive definite matrices have a factor.
     negative_pivots = 0
-    if (self%by_mumps) negative_pivots = self%mumps_report(report_negative)
+    if (self%by_mumps) negative_pivots = mumps_report(self%factorization, mumps_negative)
   end function negative_pivots
 
   !> Size of the factor, the same on every rank.
@@ -479,10 +363,10 @@ contains
     integer :: entries, ierr
 
     if (self%by_mumps) then
-      entries = self%mumps_report(report_entries)
+      entries = mumps_report(self%factorization, mumps_entries)
       ! MUMPS counts in millions, with a negative sign, what an integer can't hold.
       factor_entries = merge(-1e6_wp, 1.0_wp, entries < 0)*entries
-      megabytes = self%mumps_report(report_memory)
+      megabytes = mumps_report(self%factorization, mumps_memory)
     else
       info = 0
       call PCFactorGetMatrix(self%factorization, factor, ierr)
@@ -499,55 +383,10 @@ contains
 
     if (.not. self%defined) return
     call KSPDestroy(self%solver, ierr)
-    call VecDestroy(self%right, ierr)
-    call VecDestroy(self%left, ierr)
-    call MatDestroy(self%matrix, ierr)
-    call self%rows%release()
+    call self%matrix%release()
     self%defined = .false.
+    self%factored = .false.
+    if (allocated(self%mode)) deallocate (self%mode)
   end subroutine release
 
-  !> One of MUMPS' reports on the factor, INFOG.
-  integer function mumps_report(self, number)
-    class(petsc_solver_t), intent(in) :: self
-    !> Which report
-    integer, intent(in) :: number
-    type(tMat) :: factor
-    integer :: ierr
-
-    mumps_report = 0
-    call PCFactorGetMatrix(self%factorization, factor, ierr)
-    if (ierr == 0) call MatMumpsGetInfog(factor, number, mumps_report, ierr)
-  end function mumps_report
-
-  !> Copies values into a vector.
-  subroutine put(vector, values, ierr)
-    !> The vector
-    type(tVec), intent(inout) :: vector
-    !> Its owned part
-    real(wp), intent(in) :: values(:)
-    !> PETSc's code
-    integer, intent(out) :: ierr
-    real(wp), pointer :: inside(:)
-
-    call VecGetArrayF90(vector, inside, ierr)
-    if (ierr /= 0) return
-    inside(:) = values
-    call VecRestoreArrayF90(vector, inside, ierr)
-  end subroutine put
-
-  !> Copies values out of a vector.
-  subroutine take(vector, values, ierr)
-    !> The vector
-    type(tVec), intent(inout) :: vector
-    !> Its owned part
-    real(wp), intent(out) :: values(:)
-    !> PETSc's code
-    integer, intent(out) :: ierr
-    real(wp), pointer :: inside(:)
-
-    call VecGetArrayReadF90(vector, inside, ierr)
-    if (ierr /= 0) return
-    values = inside
-    call VecRestoreArrayReadF90(vector, inside, ierr)
-  end subroutine take
 end module petsc_solvers

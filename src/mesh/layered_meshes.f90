@@ -6,7 +6,7 @@ module layered_meshes
   use gradings, only: graded_half_line, graded_line
   implicit none
   private
-  public :: layered_mesh_t, zone_t, create_mesh
+  public :: layered_mesh_t, zone_t, create_mesh, cell_edges
 
   !> A rectangle in which the plies above and below an interface have unknowns of their own.
   type :: zone_t
@@ -68,23 +68,35 @@ contains
     type(zone_t), intent(in) :: zones(:)
     !> The mesh
     type(layered_mesh_t) :: self
-    logical :: quarter
 
-    quarter = plate%symmetry == symmetry_quarter
-    self%multiplicity = merge(4, 1, quarter)
+    self%multiplicity = merge(4, 1, plate%symmetry == symmetry_quarter)
     self%cells = mesh%elements
-    if (quarter) then
-      self%x_edges = graded_half_line(plate%length(1)/2, mesh%elements(1), mesh%patch/2, mesh%grading)
-      self%y_edges = graded_half_line(plate%length(2)/2, mesh%elements(2), mesh%patch/2, mesh%grading)
-    else
-      self%x_edges = graded_line(plate%length(1), mesh%elements(1), mesh%patch, mesh%grading)
-      self%y_edges = graded_line(plate%length(2), mesh%elements(2), mesh%patch, mesh%grading)
-    end if
+    self%x_edges = cell_edges(plate, mesh, 1)
+    self%y_edges = cell_edges(plate, mesh, 2)
     self%zones = zones
-    call place_nodes(self, quarter)
+    call place_nodes(self, plate%symmetry == symmetry_quarter)
     call number_points(self)
     call build_elements(self, plies)
   end function create_mesh
+
+  !> Edges of the cells along x or y.
+  pure function cell_edges(plate, mesh, direction) result(edges)
+    !> Plate and symmetry
+    type(plate_t), intent(in) :: plate
+    !> Elements, grading and patch
+    type(mesh_t), intent(in) :: mesh
+    !> 1 for x, 2 for y
+    integer, intent(in) :: direction
+    !> Ascending coordinates, (0:cells)
+    real(wp), allocatable :: edges(:)
+
+    allocate (edges(0:mesh%elements(direction)))
+    if (plate%symmetry == symmetry_quarter) then
+      edges(:) = graded_half_line(plate%length(direction)/2, mesh%elements(direction), mesh%patch/2, mesh%grading)
+    else
+      edges(:) = graded_line(plate%length(direction), mesh%elements(direction), mesh%patch, mesh%grading)
+    end if
+  end function cell_edges
 
   !> Nodes at the edges and middles of the cells.
   pure subroutine place_nodes(self, quarter)

@@ -18,7 +18,13 @@ module numberings
     integer :: owned = 0
     !> Pattern of this rank's rows: start of each row (from 1) and columns (from 0, ascending)
     integer, allocatable :: row_start(:), columns(:)
+    !> Point and component of each row of this rank, (2, rows)
+    integer, allocatable, private :: places(:, :)
   contains
+    !> True if this rank has an equation.
+    procedure :: owns
+    !> Point and component of an equation of this rank.
+    procedure :: place_of
     !> Copies between fields over points and vectors of this rank's rows.
     procedure :: gather
     procedure :: scatter
@@ -44,8 +50,47 @@ contains
     self%rows = count(.not. held(:, distribution%points(:distribution%owned)))
     self%first_row = first_row_of(equation, distribution)
     self%equation = equation(:, distribution%points)
+    call find_places(self)
     call find_pattern(mesh, distribution, equation, self)
   end subroutine number_equations
+
+  !> Point and component of each row.
+  pure subroutine find_places(self)
+    !> The numbering
+    type(numbering_t), intent(inout) :: self
+    integer :: point, component
+
+    allocate (self%places(2, self%rows))
+    do point = 1, self%owned
+      do component = 1, 5
+        if (self%equation(component, point) < 0) cycle
+        self%places(:, self%equation(component, point) - self%first_row + 1) = [point, component]
+      end do
+    end do
+  end subroutine find_places
+
+  !> True if this rank has an equation.
+  pure logical function owns(self, equation)
+    !> The numbering
+    class(numbering_t), intent(in) :: self
+    !> Equation, from 0
+    integer, intent(in) :: equation
+
+    owns = equation >= self%first_row .and. equation < self%first_row + self%rows
+  end function owns
+
+  !> Point and component of an equation of this rank.
+  pure subroutine place_of(self, equation, point, component)
+    !> The numbering
+    class(numbering_t), intent(in) :: self
+    !> Equation, from 0
+    integer, intent(in) :: equation
+    !> Position of the point among this rank's, and component, 1 to 5
+    integer, intent(out) :: point, component
+
+    point = self%places(1, equation - self%first_row + 1)
+    component = self%places(2, equation - self%first_row + 1)
+  end subroutine place_of
 
   !> Equation numbers of every point of the mesh, in rank order.
   subroutine number_all(distribution, held, equation)

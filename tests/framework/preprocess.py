@@ -10,6 +10,7 @@ DIRECTIVE = re.compile(r"^\s*@(\w+)\s*(?:\((.*)\))?\s*$", re.I)
 SUBROUTINE = re.compile(r"^\s*(?:(?:recursive|impure|module)\s+)*subroutine\s+(\w+)\s*(?:\(\s*(\w*)\s*\))?", re.I)
 TYPE = re.compile(r"^\s*type\b[^!]*::\s*(\w+)", re.I)
 ARGUMENT = re.compile(r"^\s*(?:class|type)\s*\(\s*(\w+)\s*\)[^!]*::\s*(\w+)", re.I)
+OPTIONS = {"npes", "ifdef", "ifndef", "testparameters", "constructor"}
 MODULE = re.compile(r"^\s*module\s+(?!procedure\b|subroutine\b|function\b)(\w+)\s*(?:!.*)?$", re.I)
 
 
@@ -92,23 +93,26 @@ class Translator:
         """Replace a directive by Fortran, or note what it announces."""
         if keyword.startswith(("assert", "mpiassert")):
             name = spelling[3:] if keyword.startswith("mpi") else spelling
-            place = f"location=SourceLocation('{self.path}', {number})"
-            separator = ", &" if text and text.strip() else "&"
-            self.out += [f"call {name}({text or ''}{separator}", f"  {place})"]
+            arguments = f"{text}, " if text and text.strip() else ""
+            self.out.append(f"call {name}({arguments}location=SourceLocation('{self.path}', {number}))")
             self.out += [] if keyword.startswith("mpi") else ["if (anyExceptions()) return"]
             self.out.append(f'#line {number + 1} "{self.path}"')
             return
         self.out.append("")
+        options = split_options(text)
+        unknown = set(options) - OPTIONS
+        if keyword in ("test", "testcase") and unknown:
+            self.error(number, f"option {', '.join(sorted(unknown))} of @{spelling} isn't known here")
         if keyword == "test":
-            self.awaited = Test(split_options(text))
+            self.awaited = Test(options)
         elif keyword == "disable" and isinstance(self.awaited, Test):
             self.awaited.disabled = True
         elif keyword in ("before", "after", "testparameter"):
             self.awaited = keyword
         elif keyword == "testcase":
-            self.awaited, self.suite.case_options = keyword, split_options(text)
+            self.awaited, self.suite.case_options = keyword, options
         elif keyword == "suite":
-            self.suite.name = split_options(text).get("name", "''").strip("'\"")
+            self.suite.name = options.get("name", "").strip("'\"")
         else:
             self.error(number, f"@{spelling} isn't known here")
 
@@ -165,16 +169,12 @@ def run_module(suite):
 def run_test(suite, test, title):
     """The subroutine that runs one test once for each parameter and number of processes."""
     options = {**suite.case_options, **test.options} if test.type == suite.case else test.options
-    case, build, loop, label = test.type or options.get("type", ""), "", [], f"'{title}'"
+    case, build, loop, label = test.type, "", [], f"'{title}'"
     declarations = [f"    type({case}), allocatable :: ground"] if case else []
     if "testparameters" in options:
         declarations += [f"    type({suite.parameter}), allocatable :: parameters(:)", "    integer :: i"]
         loop = [f"    parameters = {listed(options['testparameters'])[0]}", "    do i = 1, size(parameters)"]
         build, label = "parameters(i)", label + "//'['//parameters(i)%toString()//']'"
-    elif "cases" in options:
-        declarations += ["    integer, allocatable :: parameters(:)", "    integer :: i"]
-        loop = [f"    parameters = {options['cases']}", "    do i = 1, size(parameters)"]
-        build = "parameters(i)"
     lines = [f"  subroutine run_{test.name}(run)", "    type(test_run), intent(inout) :: run", *declarations, *loop]
     constructor = options.get("constructor")
     for processes in listed(options.get("npes", "[1]")):

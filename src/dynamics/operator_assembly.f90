@@ -1,0 +1,144 @@
+!> Assembles the operator of a step: tangent stiffness and mass of the elements, what joins and presses
+!> the faces of stacked layers.
+module operator_assembly
+  use kinds, only: wp
+  use errors, only: error_t
+  use element_batches, only: lanes, first_element
+  use element_tangents, only: tangent
+  use linear_solvers, only: linear_solver_t
+  use numberings, only: numbering_t
+  use models, only: model_t
+  implicit none
+  private
+  public :: assemble_elements, assemble_diagonal
+
+contains
+
+  !> Adds the elements' matrices and a lumped mass to a cleared solver; ghosts' diagonals go to their owners.
+  subroutine assemble_elements(model, numbering, displacement, stiffness_factor, mass_factor, solver, diagonal)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Equations
+    type(numbering_t), intent(in) :: numbering
+    !> Unknowns at which the tangent is taken, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> Factors of stiffness and mass
+    real(wp), intent(in) :: stiffness_factor, mass_factor
+    !> Receives the matrices
+    class(linear_solver_t), intent(inout) :: solver
+    !> Receives the diagonal, (5, points)
+    real(wp), intent(inout) :: diagonal(:, :)
+    real(wp), allocatable :: matrices(:, :, :), motion(:, :)
+    real(wp) :: consistent_factor
+    integer :: b, lane, point
+
+    diagonal = 0
+    consistent_factor = mass_factor
+    if (allocated(model%lumped)) consistent_factor = 0
+    allocate (matrices(lanes, 45, 45))
+    motion = model%motion_of(displacement)
+    do b = 1, model%elements%batches
+      call tangent(model%elements, b, model%scene%kinematics, motion, stiffness_factor, consistent_factor, matrices)
+      do lane = 1, model%elements%lanes_used(b)
+        call add_block(model, numbering, model%distribution%connectivity(:, first_element(b) + lane - 1), &
+                       matrices(lane, :, :), solver, diagonal)
+      end do
+    end do
+    if (allocated(model%lumped)) then
+      do point = 1, model%distribution%owned
+        call add_block(model, numbering, [point], mass_factor*nodal_mass(model%lumped(:, point)), solver, diagonal)
+      end do
+    end if
+    call model%halo%accumulate(diagonal)
+  end subroutine assemble_elements
+
+  !> Adds a matrix on the motion of some points, turned into one on their unknowns.
+  subroutine add_block(model, numbering, points, matrix, solver, diagonal)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Equations
+    type(numbering_t), intent(in) :: numbering
+    !> The points
+    integer, intent(in) :: points(:)
+    !> Matrix, five rows a point
+    real(wp), intent(in) :: matrix(:, :)
+    !> Receives the matrix
+    class(linear_solver_t), intent(inout) :: solver
+    !> Receives its diagonal
+    real(wp), intent(inout) :: diagonal(:, :)
+    integer, allocatable :: unknown_points(:)
+    real(wp), allocatable :: expanded(:, :)
+
+    if (model%map%layered) then
+      if (any(model%map%above(points) > 0)) then
+        call model%map%expand(points, matrix, unknown_points, expanded)
+        call add_to(numbering, unknown_points, expanded, solver, diagonal)
+        return
+      end if
+    end if
+    call add_to(numbering, points, matrix, solver, diagonal)
+  end subroutine add_block
+
+  !> Adds a matrix on the unknowns of some points.
+  subroutine add_to(numbering, points, matrix, solver, diagonal)
+    !> Equations
+    type(numbering_t), intent(in) :: numbering
+    !> The points
+    integer, intent(in) :: points(:)
+    !> Matrix, five rows a point
+    real(wp), intent(in) :: matrix(:, :)
+    !> Receives the matrix
+    class(linear_solver_t), intent(inout) :: solver
+    !> Receives its diagonal
+    real(wp), intent(inout) :: diagonal(:, :)
+    integer :: a, component
+
+    call solver%add(reshape(numbering%equation(:, points), [5*size(points)]), matrix)
+    do a = 1, size(points)
+      do component = 1, 5
+        diagonal(component, points(a)) = diagonal(component, points(a)) &
+                                         + matrix(5*(a - 1) + component, 5*(a - 1) + component)
+      end do
+    end do
+  end subroutine add_to
+
+  !> Adds stiffness to the diagonals of the jumps.
+  subroutine assemble_diagonal(model, numbering, added, solver)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Equations
+    type(numbering_t), intent(in) :: numbering
+    !> Stiffness added to the three jumps, (3, points)
+    real(wp), intent(in) :: added(:, :)
+    !> Receives it
+    class(linear_solver_t), intent(inout) :: solver
+    integer :: i, component
+
+    do i = 1, model%distribution%owned
+      if (model%zone(i) == 0) cycle
+      do component = 1, 3
+        if (numbering%equation(component, i) >= 0) &
+          call solver%add([numbering%equation(component, i)], reshape([added(component, i)], [1, 1]))
+      end do
+    end do
+  end subroutine assemble_diagonal
+
+  !> Mass matrix of one point from its nodal I0, I1, I2.
+  pure function nodal_mass(lumped) result(mass)
+    !> I0, I1, I2
+    real(wp), intent(in) :: lumped(3)
+    !> Mass of u, v, w, theta_x, theta_y
+    real(wp) :: mass(5, 5)
+    integer :: i
+
+    mass = 0
+    do i = 1, 3
+      mass(i, i) = lumped(1)
+    end do
+    do i = 1, 2
+      mass(i, 3 + i) = lumped(2)
+      mass(3 + i, i) = lumped(2)
+      mass(3 + i, 3 + i) = lumped(3)
+    end do
+  end function nodal_mass
+end module operator_assembly

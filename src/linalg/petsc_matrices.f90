@@ -1,0 +1,213 @@
+!> A symmetric sparse matrix that PETSc knows, with vectors to go with it. On one rank PETSc works on our
+!> own rows in place, which are quicker to assemble.
+module petsc_matrices
+  use petscksp, only: tMat, tVec, PETSC_TRUE, PETSC_FALSE, ADD_VALUES, INSERT_VALUES, MAT_FINAL_ASSEMBLY, &
+                      MAT_IGNORE_LOWER_TRIANGULAR, MAT_NEW_NONZERO_LOCATION_ERR, MAT_SPD, MatSetValues, &
+                      VecGetArrayF90, VecRestoreArrayF90, VecGetArrayReadF90, VecRestoreArrayReadF90
+  use communicators, only: communicator_t
+  use errors, only: error_t, fail, exit_internal
+  use kinds, only: wp
+  use petsc_session, only: report_petsc
+  use symmetric_rows, only: symmetric_rows_t
+  implicit none
+  private
+  public :: petsc_matrix_t, put, take
+
+  !> The matrix; its rows are shared out among the ranks in contiguous blocks.
+  type :: petsc_matrix_t
+    !> The matrix as PETSc knows it
+    type(tMat) :: object
+    !> Vectors that the matrix multiplies, and that it gives
+    type(tVec) :: right, left
+    !> All ranks
+    type(communicator_t), private :: communicator
+    !> Rows of the matrix on one rank
+    type(symmetric_rows_t), private :: rows
+    !> First code that PETSc returned for an added matrix, 0 for success
+    integer, private :: trouble = 0
+  contains
+    !> Makes the matrix, with a place for every entry of the pattern.
+    procedure :: define
+    !> Zeroes the values.
+    procedure :: clear
+    !> Adds an element's matrix.
+    procedure :: add
+    !> Brings the matrix together.
+    procedure :: finish_assembly
+    !> Multiplies a vector.
+    procedure :: multiply
+    !> Frees the matrix and its vectors.
+    procedure :: release
+  end type petsc_matrix_t
+
+contains
+
+  !> Makes the matrix, with a place for every entry of the pattern.
+  subroutine define(self, communicator, first_row, total_rows, row_start, columns, positive_definite, error)
+    class(petsc_matrix_t), intent(inout) :: self
+    !> All ranks
+    type(communicator_t), intent(in) :: communicator
+    !> First row that this rank owns, and number of rows of all ranks
+    integer, intent(in) :: first_row, total_rows
+    !> Where the columns of each owned row begin, from 1, shape (owned rows + 1)
+    integer, intent(in) :: row_start(:)
+    !> Columns of the owned rows in both triangles, from 0, ascending within a row, diagonal included
+    integer, intent(in) :: columns(:)
+    !> A promise on which packages rely
+    logical, intent(in) :: positive_definite
+    !> Raised when PETSc fails
+    type(error_t), allocatable, intent(inout) :: error
+    integer :: rows, row, ierr(6), inner(size(row_start) - 1), outer(size(row_start) - 1)
+
+    ierr = 0
+    self%communicator = communicator
+    rows = size(row_start) - 1
+    if (communicator%size == 1) then
+      call self%rows%define(row_start, columns)
+      call MatCreateSeqSBAIJWithArrays(communicator%handle(), 1, rows, rows, self%rows%start, &
+                                       self%rows%columns, self%rows%values, self%object, ierr(1))
+    else
+      do row = 1, rows
+        associate (mine => columns(row_start(row):row_start(row + 1) - 1))
+          inner(row) = count(mine >= first_row + row - 1 .and. mine < first_row + rows)
+          outer(row) = count(mine >= first_row + rows)
+        end associate
+      end do
+      call MatCreateSBAIJ(communicator%handle(), 1, rows, rows, total_rows, total_rows, 0, inner, 0, outer, &
+                          self%object, ierr(1))
+      call MatSetOption(self%object, MAT_IGNORE_LOWER_TRIANGULAR, PETSC_TRUE, ierr(2))
+      call fill_pattern(self%object, first_row, row_start, columns, ierr(3))
+      call MatSetOption(self%object, MAT_NEW_NONZERO_LOCATION_ERR, PETSC_TRUE, ierr(4))
+    end if
+    call MatSetOption(self%object, MAT_SPD, merge(PETSC_TRUE, PETSC_FALSE, positive_definite), ierr(5))
+    call MatCreateVecs(self%object, self%left, self%right, ierr(6))
+    call report_petsc(ierr, error)
+  end subroutine define
+
+  !> Puts zeros at all places of the pattern, as PETSc forgets places that the first assembly leaves out.
+  subroutine fill_pattern(matrix, first_row, row_start, columns, ierr)
+    !> The matrix
+    type(tMat), intent(inout) :: matrix
+    !> First row that this rank owns
+    integer, intent(in) :: first_row
+    !> Pattern of the owned rows, as for `define`
+    integer, intent(in) :: row_start(:), columns(:)
+    !> First code of PETSc that is not zero
+    integer, intent(out) :: ierr
+    real(wp), allocatable :: zeros(:)
+    integer :: row, n
+
+    allocate (zeros(size(columns)), source=0.0_wp)
+    do row = 1, size(row_start) - 1
+      n = row_start(row + 1) - row_start(row)
+      call MatSetValues(matrix, 1, [first_row + row - 1], n, columns(row_start(row):row_start(row + 1) - 1), &
+                        zeros(:n), INSERT_VALUES, ierr)
+      if (ierr /= 0) return
+    end do
+    call MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY, ierr)
+    call MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY, ierr)
+  end subroutine fill_pattern
+
+  !> Zeroes the values of the matrix.
+  subroutine clear(self)
+    class(petsc_matrix_t), intent(inout) :: self
+
+    self%trouble = 0
+    if (self%communicator%size == 1) then
+      self%rows%values = 0
+      self%rows%complete = .true.
+    else
+      call MatZeroEntries(self%object, self%trouble)
+    end if
+  end subroutine clear
+
+  !> Adds an element's matrix; each element is added by one rank only.
+  subroutine add(self, equations, values)
+    class(petsc_matrix_t), intent(inout) :: self
+    !> Equation of each row of the element's matrix, owned by any rank; -1 for a row left out
+    integer, intent(in) :: equations(:)
+    !> The symmetric matrix, shape (equations, equations)
+    real(wp), intent(in) :: values(:, :)
+    integer :: ierr
+
+    if (self%communicator%size == 1) then
+      call self%rows%add(equations, values)
+    else
+      call MatSetValues(self%object, size(equations), equations, size(equations), equations, values, ADD_VALUES, ierr)
+      if (self%trouble == 0) self%trouble = ierr
+    end if
+  end subroutine add
+
+  !> Brings the matrix together.
+  subroutine finish_assembly(self, error)
+    class(petsc_matrix_t), intent(inout) :: self
+    !> Raised on all ranks when an entry falls outside the pattern
+    type(error_t), allocatable, intent(inout) :: error
+    integer :: ierr(3)
+
+    ierr(1) = self%trouble
+    call MatAssemblyBegin(self%object, MAT_FINAL_ASSEMBLY, ierr(2))
+    call MatAssemblyEnd(self%object, MAT_FINAL_ASSEMBLY, ierr(3))
+    if (any(ierr /= 0) .or. .not. self%rows%complete) then
+      call fail(error, exit_internal, 'An element couples unknowns that the pattern of the matrix does not couple.')
+    end if
+    call self%communicator%agree(error)
+  end subroutine finish_assembly
+
+  !> Multiplies the matrix as it was assembled last.
+  subroutine multiply(self, vector, product)
+    class(petsc_matrix_t), intent(inout) :: self
+    !> Owned part of the vector
+    real(wp), intent(in) :: vector(:)
+    !> Owned part of matrix times vector
+    real(wp), intent(out) :: product(:)
+    integer :: ierr
+
+    call put(self%right, vector, ierr)
+    call MatMult(self%object, self%right, self%left, ierr)
+    call take(self%left, product, ierr)
+  end subroutine multiply
+
+  !> Frees the matrix and its vectors.
+  subroutine release(self)
+    class(petsc_matrix_t), intent(inout) :: self
+    integer :: ierr
+
+    call VecDestroy(self%right, ierr)
+    call VecDestroy(self%left, ierr)
+    call MatDestroy(self%object, ierr)
+    call self%rows%release()
+  end subroutine release
+
+  !> Copies values into a vector.
+  subroutine put(vector, values, ierr)
+    !> The vector
+    type(tVec), intent(inout) :: vector
+    !> Its owned part
+    real(wp), intent(in) :: values(:)
+    !> PETSc's code
+    integer, intent(out) :: ierr
+    real(wp), pointer :: inside(:)
+
+    call VecGetArrayF90(vector, inside, ierr)
+    if (ierr /= 0) return
+    inside(:) = values
+    call VecRestoreArrayF90(vector, inside, ierr)
+  end subroutine put
+
+  !> Copies values out of a vector.
+  subroutine take(vector, values, ierr)
+    !> The vector
+    type(tVec), intent(inout) :: vector
+    !> Its owned part
+    real(wp), intent(out) :: values(:)
+    !> PETSc's code
+    integer, intent(out) :: ierr
+    real(wp), pointer :: inside(:)
+
+    call VecGetArrayReadF90(vector, inside, ierr)
+    if (ierr /= 0) return
+    values = inside
+    call VecRestoreArrayReadF90(vector, inside, ierr)
+  end subroutine take
+end module petsc_matrices

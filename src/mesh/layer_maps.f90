@@ -1,0 +1,172 @@
+!> Between the unknowns of stacked layers and their motion.
+!>
+!> The first layer of a node keeps u, v, w, theta_x, theta_y. A layer below has the jumps of the three
+!> face displacements across the interface above it, and its own rotations. Joined faces are then
+!> jumps held at zero, a gap is an unknown of its own, and with z measured from one mid-plane for all
+!> layers nothing is needed where layers meet at the border of a zone.
+module layer_maps
+  use kinds, only: wp
+  use layered_meshes, only: layered_mesh_t
+  use distributions, only: distribution_t
+  implicit none
+  private
+  public :: layer_map_t, create_layer_map
+
+  !> The map of this rank's points.
+  type :: layer_map_t
+    !> True if some node has more than one layer
+    logical :: layered = .false.
+    !> Point of the same node in the layer above; 0: first layer, (points)
+    integer, allocatable :: above(:)
+    !> Height z of the interface between a point and the one above it, (points)
+    real(wp), allocatable :: height(:)
+  contains
+    !> Motion of every layer from the unknowns.
+    procedure :: to_motion
+    !> Forces on the unknowns from forces on every layer.
+    procedure :: to_unknowns
+    !> An element's matrix on the unknowns of its points and the points above them.
+    procedure :: expand
+  end type layer_map_t
+
+contains
+
+  !> The map of a rank's points.
+  pure function create_layer_map(mesh, distribution, interface_heights) result(self)
+    !> The mesh
+    type(layered_mesh_t), intent(in) :: mesh
+    !> This rank's points
+    type(distribution_t), intent(in) :: distribution
+    !> Height of each zone's interface
+    real(wp), intent(in) :: interface_heights(:)
+    !> The map
+    type(layer_map_t) :: self
+    integer :: i, point
+
+    self%layered = size(mesh%zones) > 0
+    allocate (self%above(size(distribution%points)), source=0)
+    allocate (self%height(size(distribution%points)), source=0.0_wp)
+    do i = 1, size(distribution%points)
+      point = distribution%points(i)
+      if (mesh%point_zone(point) == 0) cycle
+      self%above(i) = distribution%local(point - 1)
+      self%height(i) = interface_heights(mesh%point_zone(point))
+    end do
+  end function create_layer_map
+
+  !> Motion of every layer from the unknowns, in place. Points of a node follow each other downwards.
+  pure subroutine to_motion(self, field)
+    !> The map
+    class(layer_map_t), intent(in) :: self
+    !> Unknowns on entry, motion on return, (5, points)
+    real(wp), intent(inout) :: field(:, :)
+    integer :: i
+
+    do i = 1, size(self%above)
+      if (self%above(i) == 0) cycle
+      associate (upper => field(:, self%above(i)), z => self%height(i))
+        field(1:2, i) = field(1:2, i) + upper(1:2) + z*(upper(4:5) - field(4:5, i))
+        field(3, i) = field(3, i) + upper(3)
+      end associate
+    end do
+  end subroutine to_motion
+
+  !> Forces on the unknowns from forces on every layer, in place: the transpose of `to_motion`.
+  pure subroutine to_unknowns(self, force)
+    !> The map
+    class(layer_map_t), intent(in) :: self
+    !> Forces on the layers on entry, on the unknowns on return, (5, points)
+    real(wp), intent(inout) :: force(:, :)
+    integer :: i
+
+    do i = size(self%above), 1, -1
+      if (self%above(i) == 0) cycle
+      associate (upper => force(:, self%above(i)), z => self%height(i))
+        upper(1:3) = upper(1:3) + force(1:3, i)
+        upper(4:5) = upper(4:5) + z*force(1:2, i)
+        force(4:5, i) = force(4:5, i) - z*force(1:2, i)
+      end associate
+    end do
+  end subroutine to_unknowns
+
+  !> An element's matrix on the unknowns of its points and of all points above them.
+  pure subroutine expand(self, points, matrix, unknown_points, expanded)
+    !> The map
+    class(layer_map_t), intent(in) :: self
+    !> Points of the element
+    integer, intent(in) :: points(:)
+    !> Matrix of the element, (5*points, 5*points)
+    real(wp), intent(in) :: matrix(:, :)
+    !> Points whose unknowns the expanded matrix acts on, five each
+    integer, allocatable, intent(out) :: unknown_points(:)
+    !> Expanded matrix
+    real(wp), allocatable, intent(out) :: expanded(:, :)
+    real(wp), allocatable :: transform(:, :)
+    integer :: a, p, columns
+
+    columns = 0
+    do a = 1, size(points)
+      p = points(a)
+      do while (p > 0)
+        columns = columns + 1
+        p = self%above(p)
+      end do
+    end do
+    allocate (unknown_points(columns), transform(5*size(points), 5*columns))
+    transform = 0
+    columns = 0
+    do a = 1, size(points)
+      call fill_node(self, points(a), transform(5*a - 4:5*a, :), columns, unknown_points)
+    end do
+    expanded = matmul(transpose(transform), matmul(matrix, transform))
+  end subroutine expand
+
+  !> Rows of the transform for one node: its motion from its own unknowns and those above.
+  pure subroutine fill_node(self, point, rows, columns, unknown_points)
+    !> The map
+    class(layer_map_t), intent(in) :: self
+    !> Point of the node
+    integer, intent(in) :: point
+    !> Rows of the transform, (5, 5*points)
+    real(wp), intent(inout) :: rows(:, :)
+    !> Points filled in so far
+    integer, intent(inout) :: columns
+    !> Points of the columns
+    integer, intent(inout) :: unknown_points(:)
+    real(wp) :: from_motion(5, 5), step(5, 5)
+    integer :: p, i
+
+    p = point
+    from_motion = identity()
+    do
+      columns = columns + 1
+      unknown_points(columns) = p
+      if (self%above(p) == 0) exit
+      step = identity()
+      step(1, 4) = -self%height(p)
+      step(2, 5) = -self%height(p)
+      rows(:, 5*columns - 4:5*columns) = matmul(from_motion, step)
+      step = 0
+      do i = 1, 3
+        step(i, i) = 1
+      end do
+      step(1, 4) = self%height(p)
+      step(2, 5) = self%height(p)
+      from_motion = matmul(from_motion, step)
+      p = self%above(p)
+    end do
+    rows(:, 5*columns - 4:5*columns) = from_motion
+  end subroutine fill_node
+
+  !> The identity of a point's five unknowns.
+  pure function identity()
+    !> 5 x 5
+    real(wp) :: identity(5, 5)
+    integer :: i
+
+    identity = 0
+    do i = 1, 5
+      identity(i, i) = 1
+    end do
+  end function identity
+end module layer_maps

@@ -1,0 +1,112 @@
+"""Runs of the solver for the tests: decks changed key by key, processes, histories. Standard library only."""
+
+import csv
+import math
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+DECKS = Path(__file__).resolve().parents[2] / "input" / "verify"
+LONGEST_RUN = 240  # seconds
+EXIT_DONE, EXIT_CONVERGENCE, EXIT_FILES, EXIT_STOPPED = 0, 3, 4, 75
+ENERGIES = ("energy_impactor", "energy_kinetic", "energy_strain", "energy_indentation", "energy_delamination",
+            "energy_ply_damage", "energy_contact", "energy_algorithmic")
+
+
+class Failure(Exception):
+    """What was found wrong, in one sentence."""
+
+
+def require(condition, sentence):
+    """Fail with a sentence unless the condition holds."""
+    if not condition:
+        raise Failure(sentence)
+
+
+def change_deck(text, settings):
+    """Return a deck with keys set anew; each setting reads group%key=value."""
+    for setting in settings:
+        target, value = setting.split("=", 1)
+        group, key = target.split("%")
+        found = re.search(rf"^&{group}\b(?:'[^']*'|[^'/])*/", text, re.MULTILINE | re.IGNORECASE)
+        if not found:
+            text += f"&{group} {key}={value} /\n"
+            continue
+        line = found[0]
+        changed, times = re.subn(rf"(?<=\s){key}=.*?(?=\s+[\w]+\s*=|\s*/$)", lambda _: f"{key}={value}", line,  # noqa: B023
+                                 flags=re.IGNORECASE | re.DOTALL)
+        if not times:
+            changed = f"{line[:-1].rstrip()}  {key}={value} /"
+        text = text.replace(line, changed)
+    return text
+
+
+def write_deck(folder, deck, settings=()):
+    """Make the folder anew and put the changed deck into it; return its path."""
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    path = folder / "deck.nml"
+    path.write_text(change_deck((DECKS / deck).read_text(encoding="utf-8"), settings), encoding="utf-8")
+    return path
+
+
+def run(command, expected=EXIT_DONE):
+    """Run a command to its end and return what it printed; any other exit code than the one expected fails."""
+    ended = subprocess.run([str(word) for word in command], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                           stderr=subprocess.STDOUT, text=True, timeout=LONGEST_RUN, check=False)
+    require(ended.returncode == expected,
+            f"{' '.join(map(str, command))} ended with {ended.returncode}, not {expected}:\n{ended.stdout}")
+    return ended.stdout
+
+
+def run_deck(implam, deck, launcher=()):
+    """Run a deck; its results go beside it. Return the path of the history."""
+    run([*launcher, implam, deck, "--output", deck.parent])
+    return history_of(deck.parent)
+
+
+def history_of(folder):
+    """Return the path of the only history in a folder."""
+    histories = sorted(folder.glob("*_history.csv"))
+    require(len(histories) == 1, f"{folder} holds {len(histories)} histories.")
+    return histories[0]
+
+
+def checkpoint_of(folder):
+    """Return the path that the checkpoint of the only history in a folder has or would have."""
+    history = history_of(folder)
+    return history.with_name(history.name.removesuffix("_history.csv") + "_restart.h5")
+
+
+def read_history(path):
+    """Return the columns of a history by name; a number that isn't finite fails."""
+    with path.open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    require(rows, f"{path} has no rows.")
+    history = {name: [float(row[name]) for row in rows] for name in rows[0]}
+    for name, values in history.items():
+        require(all(map(math.isfinite, values)), f"{path}: the column {name} isn't finite throughout.")
+    return history
+
+
+def largest_difference(history, reference, leave_out=()):
+    """Return the largest difference of two histories and its column.
+
+    Each column is relative to its largest value; what the ledger found missing and what the integrators took
+    is relative to the largest sum of the energies.
+    """
+    require(list(history) == list(reference), "The columns of the histories differ.")
+    require(len(history["time"]) == len(reference["time"]),
+            f"The histories have {len(history['time'])} and {len(reference['time'])} rows.")
+    total = max(sum(row) for row in zip(*(reference[name] for name in ENERGIES), strict=True))
+    worst = 0.0, "none"
+    for name in reference:
+        if name in leave_out:
+            continue
+        scale = max(map(abs, reference[name]))
+        if name in ("energy_error", "energy_algorithmic"):
+            scale = max(scale, total)
+        difference = max(abs(a - b) for a, b in zip(history[name], reference[name], strict=True))
+        worst = max(worst, (difference / scale if scale > 0 else difference, name))
+    return worst

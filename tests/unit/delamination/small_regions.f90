@@ -1,0 +1,42 @@
+!> Small meshes and regions drawn as pictures, for the tests of the front.
+module small_regions
+  use delaminated_regions, only: delaminated_region_t, create_region
+  use kinds, only: wp
+  use layered_meshes, only: layered_mesh_t, zone_t
+  implicit none
+  private
+  public :: mesh_with_zone, drawn_region
+
+contains
+
+  !> A mesh of given edges with one zone; only what regions and fronts look at.
+  pure function mesh_with_zone(x_edges, y_edges, columns, rows) result(mesh)
+    real(wp), intent(in) :: x_edges(:), y_edges(:)
+    integer, intent(in) :: columns(2), rows(2)
+    type(layered_mesh_t) :: mesh
+
+    mesh%x_edges = x_edges
+    mesh%y_edges = y_edges
+    mesh%cells = [size(x_edges) - 1, size(y_edges) - 1]
+    mesh%zones = [zone_t(below_ply=1, columns=columns, rows=rows)]
+  end function mesh_with_zone
+
+  !> A region whose zone is the whole of a mesh of unit cells; `picture` shows the rows from the top down,
+  !> `#` is delaminated.
+  subroutine drawn_region(picture, mesh, region)
+    character(len=*), intent(in) :: picture(:)
+    type(layered_mesh_t), intent(out) :: mesh
+    type(delaminated_region_t), intent(out) :: region
+    integer, allocatable :: nodes(:)
+    integer :: column, row, i
+
+    mesh = mesh_with_zone([(real(i, wp), i=0, len(picture))], [(real(i, wp), i=0, size(picture))], &
+                          [1, len(picture)], [1, size(picture)])
+    region = create_region(mesh, 1, 0.0_wp)
+    do row = 1, size(picture)
+      do column = 1, len(picture)
+        if (picture(size(picture) + 1 - row)(column:column) == '#') call region%release([column, row], nodes)
+      end do
+    end do
+  end subroutine drawn_region
+end module small_regions
