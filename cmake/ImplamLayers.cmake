@@ -3,6 +3,7 @@
 # implam_add_layers(<layer>...): layers in order; a layer sees the modules of those before it.
 function(implam_add_layers)
   set(lower "")
+  set(stamps "")
   foreach(layer IN LISTS ARGN)
     file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/src/${layer}/*.f90
                                         ${CMAKE_CURRENT_SOURCE_DIR}/src/${layer}/*.c
@@ -13,9 +14,14 @@ function(implam_add_layers)
         Fortran_MODULE_DIRECTORY ${CMAKE_BINARY_DIR}/modules/${layer})
       foreach(name IN LISTS lower)
         target_include_directories(implam_${layer} PRIVATE ${CMAKE_BINARY_DIR}/modules/${name})
-        target_link_libraries(implam_${layer} PRIVATE implam_${name})  # so that a changed module is seen
+        add_dependencies(implam_${layer} implam_${name})
       endforeach()
       target_link_libraries(implam_${layer} PRIVATE implam_flags)
+      # CMake follows modules within a target only: a stamp renews the layers after a changed one.
+      set_property(SOURCE ${sources} APPEND PROPERTY OBJECT_DEPENDS ${stamps})
+      add_custom_command(OUTPUT ${CMAKE_BINARY_DIR}/${layer}.stamp DEPENDS $<TARGET_OBJECTS:implam_${layer}>
+        COMMAND ${CMAKE_COMMAND} -E touch ${CMAKE_BINARY_DIR}/${layer}.stamp VERBATIM)
+      list(APPEND stamps ${CMAKE_BINARY_DIR}/${layer}.stamp)
       list(APPEND lower ${layer})
     endif()
   endforeach()

@@ -243,7 +243,7 @@ contains
 
     row_due = self%history_clock%interval <= 0 .or. self%march%now%time >= end_of(self)
     if (self%history_clock%strikes_at(self%march%now%time)) row_due = .true.
-    if (row_due) call self%history%write_row(row_of(self%march), error)
+    if (row_due) call self%history%write_row(row_of(self%model, self%march), error)
     if (allocated(error)) return
     if (self%fields_clock%strikes_at(self%march%now%time)) call write_fields(self%model, self%march, self%fields, error)
     if (allocated(error)) return

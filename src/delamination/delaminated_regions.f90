@@ -71,7 +71,7 @@ contains
     real(wp), intent(in) :: extent
     !> First and last cell
     integer :: range(2)
-    logical, allocatable :: taken(:)
+    logical :: taken(size(edges) - 1)
     real(wp) :: rounding
     integer :: cells, cell
 
@@ -227,7 +227,7 @@ contains
     character(len=*), intent(in) :: name
     integer, allocatable :: places(:), flags(:)
 
-    places = [self%cells, self%columns, self%rows]
+    allocate (places, source=[self%cells, self%columns, self%rows])
     allocate (flags(0))
     if (.not. archive%loading) flags = merge(1, 0, reshape(self%delaminated, [size(self%delaminated)]))
     call archive%item(name//'/zone', places)

@@ -88,7 +88,7 @@ contains
       if (s == 0 .or. s == first) exit
     end do
     outline%closed = s == first
-    outline%segments = members(:length)
+    allocate (outline%segments, source=members(:length))
     allocate (outline%nodes(length + 1))
     do s = 1, length
       outline%nodes(s) = start_node(segments(members(s)))

@@ -17,9 +17,9 @@ module equilibria
   private
   public :: attempt_step
 
-  !> Residual below which contact pressures are taken as the next estimates, and the change of these over
-  !> the largest pressure so far at which they have settled.
-  real(wp), parameter :: multiplier_norm = 1.0e-2_wp, contact_tolerance = 1.0e-7_wp
+  !> Change of the contact pressures over
+  !> the largest so far at which they have settled.
+  real(wp), parameter :: contact_tolerance = 1.0e-7_wp
 
   !> The impactor's side of a step: its motion and the indentation are affine in one unknown force.
   type :: strike_t
@@ -82,7 +82,7 @@ contains
                                new%largest_forces)
       ! The force answers to the motion only within an iteration, so an impact needs one.
       converged = norm <= model%scene%solver%tolerance .and. (new%iterations > 0 .or. .not. model%scene%has_impactor)
-      if (norm < multiplier_norm) call settle_contact(model, new, converged)
+      if (converged) call settle_contact(model, new, converged)
       if (converged .or. .not. norm <= huge(norm) .or. new%iterations >= model%scene%solver%max_iterations) exit
       call prepare_operator(model, integrator, operator, step, new, norm, previous, error)
       if (unsolvable(error)) return

@@ -14,6 +14,9 @@ module marches
   use equilibria, only: attempt_step
   use static_steps, only: attempt_load
   use struck_stresses, only: struck_stress
+  use front_growth, only: grow_fronts
+  use ply_failures, only: ply_failure_t, new_ply_failure
+  use delamination_parameters, only: growth_equilibrium
   implicit none
   private
   public :: march_t
@@ -28,6 +31,10 @@ module marches
     type(step_controller_t) :: controller
     !> Integrator of the plate
     type(plate_integrator_t) :: integrator
+    !> Failed plies
+    type(ply_failure_t) :: failures
+    !> Factorisations when the failures were last noted
+    integer, private :: factorizations_noted = 0
     !> Steps that were tried in vain
     integer :: rejected = 0
     !> Room for the state that is being tried
@@ -55,6 +62,7 @@ contains
     self%now = new_state(model)
     self%trial = self%now
     self%controller%wanted = 1.0_wp/model%scene%static_steps
+    self%failures = new_ply_failure(model)
     call self%operator%create(model, error)
     if (allocated(error) .or. model%scene%has_static) return
     self%integrator = plate_integrator(model%scene%time)
@@ -86,8 +94,8 @@ contains
   subroutine advance(self, model, event, error)
     !> The march
     class(march_t), intent(inout) :: self
-    !> The model
-    type(model_t), intent(in) :: model
+    !> The model; elements whose plies fail lose stiffness
+    type(model_t), intent(inout) :: model
     !> Time, or load factor, not to be passed
     real(wp), intent(in) :: event
     !> Set if the smallest step failed
@@ -153,7 +161,38 @@ contains
       call self%controller%renewed()
     end if
     call attempt_step(model, self%integrator, self%operator, self%now, step, self%trial, converged, error)
+    if (converged .and. model%map%layered) call let_grow(self, model, step, converged, error)
   end subroutine try_step
+
+  !> Lets delaminations grow in a step that has converged: with equilibrium growth the step is computed again
+  !> from its start until no front is above its critical value, else what grew acts from the next step on.
+  subroutine let_grow(self, model, step, converged, error)
+    !> The march
+    type(march_t), intent(inout) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Step tried
+    real(wp), intent(in) :: step
+    !> False on return if equilibrium was lost
+    logical, intent(inout) :: converged
+    !> Set if the solver fails for good
+    type(error_t), allocatable, intent(inout) :: error
+    type(state_t) :: start
+    logical :: grown
+
+    do
+      call grow_fronts(model, self%trial, grown)
+      if (.not. grown .or. all(model%scene%delaminations%growth /= growth_equilibrium)) return
+      start = self%now
+      start%separation = self%trial%separation
+      start%ledger%delamination = start%ledger%delamination &
+                                  + (self%trial%ledger%delamination - self%now%ledger%delamination)
+      start%ledger%algorithmic = start%ledger%algorithmic &
+                                 - (self%trial%ledger%delamination - self%now%ledger%delamination)
+      call attempt_step(model, self%integrator, self%operator, start, step, self%trial, converged, error)
+      if (.not. converged .or. allocated(error)) return
+    end do
+  end subroutine let_grow
 
   !> Longest step that the impactor's integrator bears now, as a binary fraction of the step wanted so that
   !> the factored operator need not follow every small change.
@@ -195,7 +234,7 @@ contains
     !> The march
     class(march_t), intent(inout) :: self
     !> The model
-    type(model_t), intent(in) :: model
+    type(model_t), intent(inout) :: model
     !> Step taken
     real(wp), intent(in) :: step
     real(wp) :: change
@@ -204,6 +243,12 @@ contains
     self%trial%largest_stress = max(self%now%largest_stress, self%trial%stress)
     change = 0
     if (self%trial%largest_stress > 0) change = abs(self%trial%stress - self%now%stress)/self%trial%largest_stress
+    if (self%operator%factorizations /= self%factorizations_noted .and. model%scene%has_ply_damage) &
+      self%failures%failed_when_factored = self%failures%failed
+    self%factorizations_noted = self%operator%factorizations
+    call self%failures%grow(model, self%trial)
+    self%trial%separation%glued = self%trial%separation%glued .or. model%scene%has_impactor .and. &
+                                  self%trial%impactor%velocity <= 0 .and. self%trial%force < self%now%force
     self%now = self%trial
     if (model%scene%has_static) then
       self%controller%wanted = 1.0_wp/model%scene%static_steps
@@ -219,13 +264,33 @@ contains
     !> Where to or where from
     class(archive_t), intent(inout) :: archive
     !> The model
-    type(model_t), intent(in) :: model
+    type(model_t), intent(inout) :: model
     !> Set if the operator cannot be made again
     type(error_t), allocatable, intent(out) :: error
 
     call self%now%visit(archive, model)
     call self%controller%visit(archive)
     call archive%item('march/rejected', self%rejected)
+    call self%failures%visit(archive, model)
+    if (archive%loading .and. model%scene%has_ply_damage) call swap(self%failures)
+    if (archive%loading) call self%failures%apply(model)
     call self%operator%visit(archive, model, error)
+    self%factorizations_noted = self%operator%factorizations
+    if (.not. archive%loading .or. .not. model%scene%has_ply_damage) return
+    call swap(self%failures)
+    call self%failures%apply(model)
+
+  contains
+
+    !> The lagged factor is made again with the stiffness of its time.
+    pure subroutine swap(failures)
+      !> The failures
+      type(ply_failure_t), intent(inout) :: failures
+      logical, allocatable :: kept(:, :, :)
+
+      kept = failures%failed
+      failures%failed = failures%failed_when_factored
+      failures%failed_when_factored = kept
+    end subroutine swap
   end subroutine visit
 end module marches

@@ -43,6 +43,8 @@ module separations
     procedure :: added_stiffness
     !> Largest penetration.
     procedure :: penetration
+    !> Delaminated area of the whole plate.
+    procedure :: area
     !> Saves or loads.
     procedure :: visit
   end type separation_t
@@ -276,6 +278,25 @@ contains
     end do
     call model%communicator%maximum(penetration)
   end function penetration
+
+  !> Delaminated area of all interfaces of the whole plate.
+  pure real(wp) function area(self, model)
+    !> The state
+    class(separation_t), intent(in) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    integer :: zone, i, j
+
+    area = 0
+    do zone = 1, size(self%regions)
+      do j = self%regions(zone)%rows(1), self%regions(zone)%rows(2)
+        do i = self%regions(zone)%columns(1), self%regions(zone)%columns(2)
+          if (self%regions(zone)%is_delaminated(i, j)) area = area + model%mesh%cell_area([i, j])
+        end do
+      end do
+    end do
+    area = area*model%mesh%multiplicity
+  end function area
 
   !> Saves or loads.
   subroutine visit(self, archive, model)

@@ -27,6 +27,10 @@ module states
     type(indentation_t) :: indentation
     !> Ties and contacts of the interfaces
     type(separation_t) :: separation
+    !> Largest energy release rate on the fronts over its critical value
+    real(wp) :: release_ratio = 0
+    !> True once a delamination wanted to grow beyond its zone
+    logical :: border_reached = .false.
     !> Impact force at this time
     real(wp) :: force = 0
     !> Mean deflection of the patch, and deflection of the struck point
@@ -81,6 +85,8 @@ contains
     call visit_motion(self%motion, archive, model)
     call self%impactor%visit(archive)
     call self%indentation%visit(archive)
+    call archive%item('release_ratio', self%release_ratio)
+    call archive%item('border_reached', self%border_reached)
     call archive%item('force', self%force)
     call archive%item('patch_mean', self%patch_mean)
     call archive%item('deflection', self%deflection)

@@ -62,9 +62,10 @@ contains
       call fail(error, exit_files, "Can't read the checkpoint "//path//'.')
     else if (found(:len(title)) /= title) then
       call fail(error, exit_files, path//' is not a checkpoint of Implam.')
-    else if (index(found, end_of_line//'format ') > 0 .and. index(found, end_of_line//format_line//end_of_line) == 0) then
-      call fail(error, exit_files, 'The checkpoint '//path//' was written by another version of Implam; this one reads ' &
-                //format_line//' only.')
+    else if (index(found, end_of_line//'format ') > 0 .and. &
+             index(found, end_of_line//format_line//end_of_line) == 0) then
+      call fail(error, exit_files, 'The checkpoint '//path//' was written by another version of Implam; ' &
+                //'this one reads '//format_line//' only.')
     else if (found /= head(bytes, crc)) then
       call fail(error, exit_files, 'The checkpoint '//path//' is damaged: it was cut short or altered.')
     end if

@@ -122,9 +122,7 @@ contains
 
     if (vocabulary%group_index(name) > 0) return
     nearest = nearest_name(name, vocabulary%group_names())
-    if (vocabulary%is_announced(name)) then
-      call fail(error, exit_usage, '&'//lower_case(name)//' is not modelled by this version.')
-    else if (nearest /= '') then
+    if (nearest /= '') then
       call fail(error, exit_usage, 'There is no group or key '//name//'; did you mean &'//nearest//'?')
     else
       call fail(error, exit_usage, 'There is no group or key '//name//'; the groups are '// &
@@ -156,6 +154,8 @@ contains
     select case (group%presence)
     case ('repeatable')
       words = 'required, repeatable'
+    case ('several')
+      words = 'optional, repeatable'
     case ('settings')
       words = 'optional, has defaults'
     case default

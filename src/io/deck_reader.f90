@@ -3,6 +3,7 @@ module deck_reader
   use deck_checks, only: check_deck
   use deck_contents, only: deck_t
   use deck_filling, only: fill_case, fill_plate, fill_loads, fill_control
+  use deck_damage, only: fill_damage
   use deck_laminate, only: fill_materials, fill_laminate
   use deck_problems, only: problems_t
   use deck_rules, only: settle
@@ -65,6 +66,7 @@ contains
     call fill_laminate(deck, problems)
     call fill_loads(deck)
     call fill_control(deck)
+    call fill_damage(deck, problems)
     call check_deck(deck, problems)
   end subroutine read_deck_text
 end module deck_reader

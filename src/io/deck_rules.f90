@@ -66,7 +66,7 @@ contains
       earlier = settings%groups_named(group%name)
       if (index == 0) then
         call tell_unknown_group(group%name, group%line, vocabulary, problems)
-      else if (earlier > 0 .and. vocabulary%groups(index)%presence /= 'repeatable') then
+      else if (earlier > 0 .and. all(vocabulary%groups(index)%presence /= [character(len=10) :: 'repeatable', 'several'])) then
         call problems%error(group%line, '', '', '&'//group%name//': the group was already given in line '// &
                             to_text(settings%line_of_group(group%name))//'; give it once.')
       else if (earlier >= most_repetitions) then
@@ -94,9 +94,7 @@ contains
     character(len=:), allocatable :: nearest
 
     nearest = nearest_name(name, vocabulary%group_names())
-    if (vocabulary%is_announced(name)) then
-      call problems%error(line, '', '', '&'//lower_case(name)//' is not modelled by this version; leave the group out.')
-    else if (nearest /= '') then
+    if (nearest /= '') then
       call problems%error(line, nearest, '', '&'//shown(name)//': there is no such group; did you mean &'//nearest//'?')
     else
       call problems%error(line, '', '', '&'//shown(name)//': there is no such group; allowed: '// &
@@ -181,7 +179,7 @@ contains
       if (place > 0) return
       if (entry%presence == 'settings') then
         call settle_keys(scan, 0, 1, vocabulary, entry%name, settings, problems)
-      else if (entry%presence /= 'optional' .and. .not. problems%concern(entry%name)) then
+      else if (all(entry%presence /= [character(len=8) :: 'optional', 'several']) .and. .not. problems%concern(entry%name)) then
         ! Without any group the deck was already told to have none.
         if (size(scan%blocks) > 0) call problems%error(0, entry%name, '', &
           '&'//entry%name//' is missing; `implam explain '//entry%name//'` shows what it takes.')

@@ -224,41 +224,47 @@ contains
   end function real_of
 
   !> Numbers of a key.
-  pure function reals_of(self, group, key) result(numbers)
+  pure function reals_of(self, group, key, place) result(numbers)
     class(settings_t), intent(in) :: self
     !> Names of group and key
     character(len=*), intent(in) :: group, key
+    !> Which group of this name
+    integer, intent(in), optional :: place
     !> The numbers
     real(wp), allocatable :: numbers(:)
     type(value_t), allocatable :: values(:)
     integer :: i
 
-    call self%take_values(group, key, values)
+    call self%take_values(group, key, values, place)
     numbers = [(real_value(values(i)), i=1, size(values))]
   end function reals_of
 
   !> Whole numbers of a key.
-  pure function integers_of(self, group, key) result(numbers)
+  pure function integers_of(self, group, key, place) result(numbers)
     class(settings_t), intent(in) :: self
     !> Names of group and key
     character(len=*), intent(in) :: group, key
+    !> Which group of this name
+    integer, intent(in), optional :: place
     !> The numbers
     integer, allocatable :: numbers(:)
     type(value_t), allocatable :: values(:)
     integer :: i
 
-    call self%take_values(group, key, values)
+    call self%take_values(group, key, values, place)
     numbers = [(integer_value(values(i)), i=1, size(values))]
   end function integers_of
 
   !> Whole number of a key with one value; 0 if there is none.
-  pure integer function integer_of(self, group, key)
+  pure integer function integer_of(self, group, key, place)
     class(settings_t), intent(in) :: self
     !> Names of group and key
     character(len=*), intent(in) :: group, key
+    !> Which group of this name
+    integer, intent(in), optional :: place
     integer, allocatable :: numbers(:)
 
-    numbers = self%integers_of(group, key)
+    numbers = self%integers_of(group, key, place)
     integer_of = 0
     if (size(numbers) > 0) integer_of = numbers(1)
   end function integer_of

@@ -5,7 +5,8 @@ module deck_table
   private
 
   !> A column ends with a bar. Groups: name, presence (required, repeatable = required and may come again,
-  !> settings = in effect even if left out, optional = physics that is only modelled if the group is there), meaning.
+  !> settings = in effect even if left out, optional = physics that is only modelled if the group is there, several =
+  !> optional and may come again), meaning.
   character(len=*), parameter, public :: group_rows(*) = [character(len=220) :: &
     'case | settings | The case: its name, its title and the strains used.', &
     'plate | required | The plate: size, supports and the part of it that is modelled.', &
@@ -16,13 +17,12 @@ module deck_table
     'indentation | optional | Contact force against indentation; left out: elastic Hertz, k by Sun''s formula.', &
     'pressure | optional | Pressure on the struck face.', &
     'static | optional | Load steps in equilibrium instead of time; takes the pressure as load.', &
+    'ply_damage | optional | Failure of plies: matrix cracking, matrix crushing, fibre failure.', &
+    'delamination | several | An interface that may delaminate; one group an interface.', &
     'time | optional | Time integration of the plate; needed unless the analysis is static.', &
     'adapt | settings | Adaptive time step and the rule for renewing the factored stiffness.', &
     'solver | settings | Convergence of equilibrium and linear algebra.', &
     'output | settings | What is written, how often and where.']
-
-  !> Groups of the interface whose physics this version doesn't have.
-  character(len=*), parameter, public :: announced_groups(*) = [character(len=12) :: 'ply_damage', 'delamination']
 
   !> Columns: group, key, type, number of values, unit, default, allowed, meaning. A default that begins
   !> with = is worked out from other values; `none` means that the key may be left out.
@@ -131,6 +131,42 @@ module deck_table
       &Uniform, or one half-sine along each side.', &
     'static | steps | integer | 1 | - | 1 | >= 1, <= 100000 | &
       &Equal steps in which the load is put on.', &
+    'ply_damage | d | real | 1 | - | 100 | >= 1 | &
+      &Divisor of the elastic constants that a mode of failure takes away (Table 2).', &
+    'ply_damage | e | real | 1 | - | 0.001 | > 0, <= 1 | &
+      &Least value left of an elastic constant, as a fraction of the undamaged one.', &
+    'ply_damage | criteria | choice | 1 | - | ''hou'' | hou | &
+      &Set of failure criteria: those of Hou et al. (Table 1).', &
+    'ply_damage | stress | choice | 1 | - | ''middle'' | middle faces | &
+      &Where in a ply the stresses are taken: its mid-plane, or the worse of its faces.', &
+    'delamination | below_ply | integer | 1 | - | required | >= 1, <= 1000 | &
+      &The interface lies below this ply, counted from the struck face.', &
+    'delamination | G_c | real | 1 | energy/area | none | > 0 | &
+      &Critical energy release rate of every mode; given instead of G_Ic and G_IIc.', &
+    'delamination | G_Ic | real | 1 | energy/area | none | > 0 | &
+      &Critical energy release rate of pure opening.', &
+    'delamination | G_IIc | real | 1 | energy/area | none | > 0 | &
+      &Critical energy release rate of pure shear.', &
+    'delamination | eta | real | 1 | - | 1.75 | > 0, <= 10 | &
+      &Exponent of Benzeggagh and Kenane between opening and shear.', &
+    'delamination | zone | real | 2 | length | required | > 0 | &
+      &Full extents of the layered rectangle along x and y, centred on the struck point.', &
+    'delamination | starter | real | 1 | length | = 0.05 % of the plate | > 0 | &
+      &Side of the square starter delamination, centred on the struck point.', &
+    'delamination | energy_release | choice | 1 | - | ''vcct'' | two_state vcct | &
+      &Energy release rate: Eq. 11 with its sign put right, or virtual crack closure.', &
+    'delamination | growth | choice | 1 | - | ''equilibrium'' | equilibrium one_per_step | &
+      &Release at a frozen time until no front is above G_c, or one cell a step.', &
+    'delamination | tie | choice | 1 | - | ''eliminate'' | eliminate penalty | &
+      &Intact faces: exactly joined, or by penalty springs as in the paper.', &
+    'delamination | penalty | real | 1 | pressure/length | = from E2 | > 0 | &
+      &Stiffness of penalty ties; left out: 1000 times the stiffness of the contact.', &
+    'delamination | contact | choice | 1 | - | ''augmented_lagrangian'' | augmented_lagrangian continuous_penalty none | &
+      &Contact of separated faces.', &
+    'delamination | contact_exponent | real | 1 | - | 1 | >= 1, <= 2 | &
+      &Exponent q of the continuous penalty (Eq. 12).', &
+    'delamination | unloading | choice | 1 | - | ''contact'' | contact glued | &
+      &While the impactor rebounds: real contact, or separated faces move together (Eq. 13b).', &
     'time | end | real | 1 | time | required | > 0 | &
       &End of the run.', &
     'time | step | real | 1 | time | required | > 0 | &
@@ -145,7 +181,7 @@ module deck_table
       &Newmark''s beta; 2 beta >= gamma keeps every step stable.', &
     'time | gamma | real | 1 | - | 0.5 | >= 0.5, <= 1 | &
       &Newmark''s gamma; above 0.5 it damps.', &
-    'time | rho_inf | real | 1 | - | 1 | >= 0, <= 1 | &
+    'time | rho_inf | real | 1 | - | = 1, with &delamination 0 | >= 0, <= 1 | &
       &Generalised-alpha''s spectral radius at high frequency: 1 damps nothing, 0 most.', &
     'adapt | on | logical | 1 | - | .true. | .true. .false. | &
       &Whether the time step follows the stress rate at the struck point; left-out group: .false.', &

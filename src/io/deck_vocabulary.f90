@@ -1,6 +1,6 @@
 !> The table of the deck as data that can be asked: which groups and keys there are, and what a key takes.
 module deck_vocabulary
-  use deck_table, only: group_rows, key_rows, announced_groups
+  use deck_table, only: group_rows, key_rows
   use text, only: line_t, append, lower_case, words_of
   implicit none
   private
@@ -48,7 +48,6 @@ module deck_vocabulary
     procedure :: group_names
     procedure :: key_names
     procedure :: groups_with
-    procedure, nopass :: is_announced
   end type vocabulary_t
 
 contains
@@ -162,12 +161,4 @@ contains
       if (lower_case(self%keys(i)%name) == lower_case(key)) call append(names, self%keys(i)%group)
     end do
   end function groups_with
-
-  !> True: the group belongs to the interface, but this version doesn't have its physics.
-  pure logical function is_announced(group)
-    !> Name in any case
-    character(len=*), intent(in) :: group
-
-    is_announced = any(announced_groups == lower_case(group))
-  end function is_announced
 end module deck_vocabulary

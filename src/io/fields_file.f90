@@ -1,6 +1,6 @@
 !> NAME.h5 and NAME.xdmf: fields over the plate at chosen times, for ParaView and for scripts. The file is open only
-!> while a time is written. Every routine is collective; given an error already raised they do nothing, but `finish` still
-!> closes what is open.
+!> while a time is written. Every routine is collective; given an error already raised they do nothing, but `finish`
+!> still closes what is open.
 !>
 !> In NAME.h5: `provenance`, `part`, `restarts/N` (provenance of the runs that went on), `meshes/N` (coordinates,
 !> connectivity, cells/...), `times/N` (time, step, mesh, points/..., cells/...).
@@ -14,7 +14,7 @@ module fields_file
   use kinds, only: wp
   use run_provenance, only: provenance_t
   use stored_provenance, only: write_provenance
-  use text, only: line_t, to_text
+  use text, only: append, line_t, to_text
   implicit none
   private
   public :: fields_file_t
@@ -128,7 +128,8 @@ contains
   end subroutine resume
 
   !> Writes the mesh that the fields to come are on. Called at the start and whenever the mesh has changed.
-  subroutine write_mesh(self, points, global_points, coordinates, cells, global_cells, connectivity, names, values, error)
+  subroutine write_mesh(self, points, global_points, coordinates, cells, global_cells, connectivity, names, &
+                        values, error)
     !> The fields
     class(fields_file_t), intent(inout) :: self
     !> Global numbers (from 1) of the points this rank owns
@@ -189,8 +190,8 @@ contains
     call write_integers(self%file, self%time_group//'/mesh', [self%mesh], [integer ::])
   end subroutine begin
 
-  !> Writes a field over the points: a scalar, a vector of three components, or any other number of components, which then
-  !> become scalars NAME_1, NAME_2, ... because readers of XDMF do not agree on anything else.
+  !> Writes a field over the points: a scalar, a vector of three components, or any other number of components, which
+  !> then become scalars NAME_1, NAME_2, ... because readers of XDMF do not agree on anything else.
   subroutine write_point_field(self, name, values, error)
     !> The fields
     class(fields_file_t), intent(inout) :: self
@@ -258,7 +259,7 @@ contains
     call grid_of_time(self%file, file_name(self), self%time_group, grid)
     call self%close_file(error, self%time_group)
     if (allocated(error)) return
-    self%grids = [self%grids, line_t(grid)]
+    call append(self%grids, grid)
     if (self%communicator%is_root()) call write_xdmf(self%base//'.xdmf', self%part, self%grids, error)
     call self%communicator%agree(error)
   end subroutine finish
@@ -293,8 +294,8 @@ contains
     if (allocated(self%file%trouble)) call self%close_file(error)
   end subroutine open_file
 
-  !> Closes NAME.h5. If what was added can't be written, as when the disk is full, it is taken out again, so that what was
-  !> there before stays readable.
+  !> Closes NAME.h5. If what was added can't be written, as when the disk is full, it is taken out again, so that what
+  !> was there before stays readable.
   subroutine close_file(self, error, added)
     !> The fields
     class(fields_file_t), intent(inout) :: self
@@ -337,7 +338,7 @@ contains
         call self%file%remove('times/'//names(i)%text)
       else
         call grid_of_time(self%file, file_name(self), 'times/'//names(i)%text, grid)
-        self%grids = [self%grids, line_t(grid)]
+        call append(self%grids, grid)
       end if
     end do
   end subroutine drop_times_after

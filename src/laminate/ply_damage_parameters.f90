@@ -10,6 +10,9 @@ module ply_damage_parameters
   !> Sets of failure criteria: those of Hou et al. (Table 1).
   integer, parameter, public :: criteria_hou = 1
 
+  !> Where in a ply the stresses are taken: in its mid-plane, or on the worse of its faces.
+  integer, parameter, public :: stress_at_middle = 1, stress_at_faces = 2
+
   !> How a failed ply loses its stiffness (Table 2 of the paper).
   type :: ply_damage_t
     !> Divisor of the elastic constants that a mode of failure takes away
@@ -18,6 +21,8 @@ module ply_damage_parameters
     real(wp) :: e = 1.0e-3_wp
     !> criteria_hou
     integer :: criteria = criteria_hou
+    !> stress_at_middle or stress_at_faces
+    integer :: stress = stress_at_middle
   end type ply_damage_t
 
 contains

@@ -2,7 +2,6 @@
 module petsc_session
   use, intrinsic :: iso_c_binding, only: c_int, c_ptr, c_null_ptr, c_char, c_null_char, c_funptr, c_funloc, &
                                          c_associated, c_f_pointer
-  use petscsys, only: PETSC_COMM_WORLD, PETSC_NULL_OPTIONS, PetscInitializeNoArguments
   use communicators, only: communicator_t
   use errors, only: error_t, fail, exit_usage, exit_internal
   implicit none
@@ -10,6 +9,16 @@ module petsc_session
   public :: start_petsc, finish_petsc, report_petsc
 
   interface
+    !> Starts PETSc. This is the C entry, as the Fortran one reads the command line in any case.
+    integer(c_int) function initialize() bind(c, name='PetscInitializeNoArguments')
+      import :: c_int
+    end function initialize
+
+    !> Makes PETSc's constants known to its Fortran interface.
+    integer(c_int) function initialize_fortran() bind(c, name='PetscInitializeFortran')
+      import :: c_int
+    end function initialize_fortran
+
     !> Pushes what PETSc does when it finds an error.
     integer(c_int) function push_error_handler(handler, context) bind(c, name='PetscPushErrorHandler')
       import :: c_int, c_funptr, c_ptr
@@ -25,6 +34,17 @@ module petsc_session
       import :: c_int
     end function quiet_handler
 
+    !> Sets a variable of the environment.
+    integer(c_int) function set_environment_variable(name, value, overwrite) bind(c, name='setenv')
+      import :: c_int, c_char
+      !> Name, ended by a null character
+      character(kind=c_char), intent(in) :: name(*)
+      !> Value, ended by a null character
+      character(kind=c_char), intent(in) :: value(*)
+      !> 1 to replace a value that is there
+      integer(c_int), value :: overwrite
+    end function set_environment_variable
+
     !> Meaning of an error code, in general and for the latest error.
     integer(c_int) function error_message(code, general, particular) bind(c, name='PetscErrorMessage')
       import :: c_int, c_ptr
@@ -39,31 +59,29 @@ contains
 
   !> Starts PETSc, unless it runs already. The command line stays ours.
   subroutine start_petsc(communicator, options, error)
-    !> Ranks that PETSc works on
+    !> All ranks of the run
     type(communicator_t), intent(in) :: communicator
     !> Options for PETSc's database, such as `-log_view -mat_mumps_icntl_14 50`; may be blank
     character(len=*), intent(in) :: options
-    !> Raised when PETSc does not understand the options or does not start
+    !> Raised when PETSc does not start
     type(error_t), allocatable, intent(inout) :: error
     logical :: running
-    integer :: ierr
+    integer :: ierr, length
+    character(len=:), allocatable :: all_options
 
     call PetscInitialized(running, ierr)
     if (running) return
-    PETSC_COMM_WORLD = communicator%handle()
-    ! Options such as -log_view take effect only when they are there before the start. So early, PETSc
-    ! forgets the value of the first option; ours has none. It keeps PETSc's hands off signals.
-    call PetscOptionsInsertString(PETSC_NULL_OPTIONS, '-no_signal_handler '//trim(options), ierr)
-    if (ierr /= 0) then
-      call fail(error, exit_usage, 'PETSc does not understand the options "'//trim(options)//'".')
-      return
-    end if
-    call PetscInitializeNoArguments(ierr)
-    if (ierr /= 0) then
-      call fail(error, exit_internal, 'PETSc does not start.')
-      return
-    end if
+    ! Options such as -log_view must be there when PETSc starts, and it looks for them in the environment.
+    call get_environment_variable('PETSC_OPTIONS', length=length)
+    allocate (character(len=length) :: all_options)
+    if (length > 0) call get_environment_variable('PETSC_OPTIONS', all_options)
+    all_options = all_options//' -no_signal_handler true '//trim(options)
+    ierr = set_environment_variable('PETSC_OPTIONS'//c_null_char, all_options//c_null_char, 1_c_int)
     ierr = push_error_handler(c_funloc(quiet_handler), c_null_ptr)
+    if (ierr == 0) ierr = initialize()
+    if (ierr == 0) ierr = initialize_fortran()
+    if (ierr /= 0) call fail(error, exit_usage, 'PETSc does not start with the options "'//trim(options)//'".')
+    call communicator%agree(error)
   end subroutine start_petsc
 
   !> Ends PETSc; its objects must have been freed before.

@@ -23,6 +23,8 @@ module distributions
     integer, allocatable :: number(:)
     !> Position of every point of the mesh among this rank's; 0: not here
     integer, allocatable :: local(:)
+    !> Position of every element of the mesh among this rank's; 0: not here
+    integer, allocatable :: local_element(:)
     !> Points of this rank's elements as positions, (9, elements)
     integer, allocatable :: connectivity(:, :)
   end type distribution_t
@@ -49,6 +51,8 @@ contains
     call own_points(mesh, part, owner)
     call number_points(owner, communicator%size, self)
     self%elements = pack([(element, element=1, mesh%elements())], part(mesh%element_cell) == communicator%rank)
+    allocate (self%local_element(mesh%elements()), source=0)
+    self%local_element(self%elements) = [(element, element=1, size(self%elements))]
     call gather_points(mesh, communicator%rank, owner, self)
     allocate (self%connectivity(9, size(self%elements)))
     do element = 1, size(self%elements)

@@ -36,6 +36,8 @@ module layered_meshes
     integer, allocatable :: connectivity(:, :)
     !> Cell under each element
     integer, allocatable :: element_cell(:)
+    !> First element of each cell, elements of a cell following each other downwards, (cells + 1)
+    integer, allocatable :: first_element(:)
     !> First and last ply of each element, (2, elements)
     integer, allocatable :: element_plies(:, :)
     !> Node at the struck point
@@ -50,6 +52,11 @@ module layered_meshes
     !> Cells of a column and row, and the nine nodes of a cell.
     procedure :: cell_at
     procedure :: cell_nodes
+    !> Area of a cell.
+    procedure :: cell_area
+    !> Element of a cell that contains a ply, and point of a node below an interface.
+    procedure :: element_at
+    procedure :: lower_point
     !> True where a cell lies under the loaded patch.
     procedure :: in_patch
   end type layered_mesh_t
@@ -203,6 +210,7 @@ contains
       elements = 0
       do cell = 1, product(self%cells)
         first = 1
+        if (pass == 2) self%first_element(cell) = elements + 1
         do zone = 1, size(self%zones) + 1
           if (zone <= size(self%zones)) then
             if (.not. covers(self%zones(zone), cell, self%cells(1))) cycle
@@ -218,9 +226,40 @@ contains
         end do
       end do
       if (pass == 1) allocate (self%connectivity(9, elements), self%element_cell(elements), &
-                               self%element_plies(2, elements))
+                               self%element_plies(2, elements), self%first_element(product(self%cells) + 1))
     end do
+    self%first_element(product(self%cells) + 1) = elements + 1
   end subroutine build_elements
+
+  !> Element of a cell whose layer contains a ply.
+  pure integer function element_at(self, cell, ply) result(element)
+    !> The mesh
+    class(layered_mesh_t), intent(in) :: self
+    !> Cell
+    integer, intent(in) :: cell
+    !> Ply
+    integer, intent(in) :: ply
+
+    element = self%first_element(cell)
+    do while (self%element_plies(2, element) < ply)
+      element = element + 1
+    end do
+  end function element_at
+
+  !> Point of a node in the layer below a zone's interface; 0: the node has none.
+  pure integer function lower_point(self, node, zone) result(point)
+    !> The mesh
+    class(layered_mesh_t), intent(in) :: self
+    !> Node
+    integer, intent(in) :: node
+    !> Index of the zone
+    integer, intent(in) :: zone
+
+    do point = self%first_point(node) + 1, self%first_point(node + 1) - 1
+      if (self%point_zone(point) == zone) return
+    end do
+    point = 0
+  end function lower_point
 
   !> True if a zone covers a cell.
   pure logical function covers(zone, cell, columns)
@@ -301,6 +340,16 @@ contains
     corner = 1 + 2*modulo(cell - 1, self%cells(1)) + along*2*((cell - 1)/self%cells(1))
     nodes = [((corner + i + along*j, i=0, 2), j=0, 2)]
   end function cell_nodes
+
+  !> Area of a cell.
+  pure real(wp) function cell_area(self, place) result(area)
+    !> The mesh
+    class(layered_mesh_t), intent(in) :: self
+    !> Column and row, from 1
+    integer, intent(in) :: place(2)
+
+    area = (self%x_edges(place(1)) - self%x_edges(place(1) - 1))*(self%y_edges(place(2)) - self%y_edges(place(2) - 1))
+  end function cell_area
 
   !> True where a cell lies under the loaded patch.
   pure logical function in_patch(self, cell, patch)

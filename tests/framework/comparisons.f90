@@ -87,9 +87,12 @@ contains
       holds(i) = real_holds(relation, expected(min(i, size(expected))), found(i), allowed)
     end do
     i = findloc(holds, .false., dim=1)
-    if (i > 0) call add_failure(statement(relation, text_of_real(expected(min(i, size(expected)))), &
-      text_of_real(found(i)), position(i, shape_found)//difference_of(expected(min(i, size(expected))), found(i)) &
-      //', tolerance '//text_of_real(allowed)), remark(tolerance, message), location)
+    if (i == 0) return
+    associate (e => expected(min(i, size(expected))), f => found(i))
+      call add_failure(statement(relation, text_of_real(e), text_of_real(f), &
+                                 position(i, shape_found)//apart(relation, e, f, allowed)), &
+                       remark(tolerance, message), location)
+    end associate
   end subroutine compare_reals
 
   !> Does the relation hold between two reals? No arithmetic is done on a NaN, which a debug build would trap.
@@ -233,16 +236,21 @@ contains
     text = ' at element ('//text(2:)//')'
   end function position
 
-  !> The difference of two numbers, where there is one.
-  pure function difference_of(a, b) result(text)
-    !> The two numbers
-    real(real64), intent(in) :: a, b
+  !> How far two numbers are apart and may be; empty where order is in question.
+  pure function apart(relation, a, b, allowed) result(text)
+    !> Name of the relation
+    character(len=*), intent(in) :: relation
+    !> The two numbers and the tolerance
+    real(real64), intent(in) :: a, b, allowed
     character(len=:), allocatable :: text
 
     text = ''
-    if (ieee_is_nan(a) .or. ieee_is_nan(b)) return
-    if (max(abs(a), abs(b)) < huge(a)/2) text = ', difference '//text_of_real(b - a)
-  end function difference_of
+    if (index('<>=', relation(1:1)) > 0) return
+    if (.not. (ieee_is_nan(a) .or. ieee_is_nan(b))) then
+      if (max(abs(a), abs(b)) < huge(a)/2) text = ', difference '//text_of_real(b - a)
+    end if
+    text = text//', tolerance '//text_of_real(allowed)
+  end function apart
 
   !> The tolerance as a number.
   pure real(real64) function real_of(tolerance)

@@ -90,6 +90,30 @@ def check_checkpoint(path):
     return number
 
 
+def processes_of(session):
+    """Running processes of a session: the launcher and its ranks."""
+    found = []
+    for status in Path("/proc").glob("[0-9]*/stat"):
+        try:
+            state, _, _, its_session = status.read_text().rpartition(")")[2].split()[:4]
+        except OSError:  # ended meanwhile
+            continue
+        if int(its_session) == session and state != "Z":
+            found.append(int(status.parent.name))
+    return found
+
+
+def kill_session(run):
+    while running := processes_of(run.pid):
+        for process in running:
+            try:
+                os.kill(process, signal.SIGKILL)
+            except ProcessLookupError:
+                pass
+        time.sleep(0.01)
+    run.wait()
+
+
 def check_kills(command, folder):
     """Whenever the run is killed, the checkpoint is whole."""
     path = folder / "sample_restart.h5"
@@ -100,11 +124,10 @@ def check_kills(command, folder):
         deadline = time.monotonic() + 60
         while not path.exists() and run.poll() is None and time.monotonic() < deadline:
             time.sleep(0.005)
-        assert path.exists(), "no checkpoint was written"
+        written = path.exists()
         time.sleep(0.05 + 0.0137 * k)
-        os.killpg(run.pid, signal.SIGKILL)
-        run.wait()
-        time.sleep(0.2 if len(command) > 1 else 0)  # the ranks end when they find their launcher gone
+        kill_session(run)
+        assert written, "no checkpoint was written"
         check_checkpoint(path)
 
 

@@ -1,6 +1,7 @@
 !> Writes sample files for check_outputs.py, on any number of ranks: `write_samples fields|checkpoints FOLDER`.
-!> Fields: a quarter plate of two layers, with values that follow from the places of the points, at times 0, 1 and 2; then
-!> a restart from time 1 and a last output at 1.5. Checkpoints: one after the other, number n filled with n, until killed.
+!> Fields: a quarter plate of two layers, with values that follow from the places of the points, at times 0, 1 and 2;
+!> then a restart from time 1 and a last output at 1.5. Checkpoints: one after the other, number n filled with n, until
+!> killed.
 program write_samples
   use checkpoints, only: checkpoint_archive_t
   use communicators, only: communicator_t, finish_mpi, start_mpi
@@ -99,7 +100,8 @@ contains
     do c = 1, size(cells)
       layer(1, c) = 1 + (cells(c) - 1)/(across*along)
       of_layer = mod(cells(c) - 1, across*along)
-      first = (layer(1, c) - 1)*points_across*points_along + 1 + 2*mod(of_layer, across) + 2*(of_layer/across)*points_across
+      first = (layer(1, c) - 1)*points_across*points_along + 1 + 2*mod(of_layer, across) &
+              + 2*(of_layer/across)*points_across
       connectivity(:, c) = [((first + i + points_across*j, i=0, 2), j=0, 2)]
     end do
     call fields%write_mesh(points, points_across*points_along*layers, coordinates, cells, across*along*layers, &

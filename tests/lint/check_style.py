@@ -1,6 +1,8 @@
-"""Checks that the Fortran sources keep the rules of the project. Usage: check_style.py FILE_OR_FOLDER...
+"""Checks that the Fortran sources keep the rules of the project. Usage:
+check_style.py FOLDER... [--layout FOLDER...]
 
-Prints one line a breach, as file:line: sentence, and ends with code 1 if there is any.
+Folders after --layout, those of tests, need only be laid out well. Prints one line a breach, as
+file:line: sentence, and ends with code 1 if there is any.
 """
 
 import re
@@ -12,6 +14,7 @@ MAX_COLUMNS = 120
 MAX_PROCEDURE = 100
 MAX_FILE = 600
 INDENT = 2
+SUFFIXES = (".f90", ".F90", ".pf")
 # Libraries whose modules are made to be used whole.
 WHOLE_MODULES = {"mpi", "mpi_f08", "hdf5"}
 
@@ -133,10 +136,10 @@ class Checker:
         """Note a breach."""
         self.breaches.append((line, f"{self.path}:{line}: {sentence}"))
 
-    def check(self):
-        """Return the breaches in the order of lines."""
+    def check(self, whole):
+        """Return the breaches of the layout, or of the whole set of rules, in the order of lines."""
         self.check_layout()
-        for statement in statements(self.lines):
+        for statement in statements(self.lines) if whole else ():
             self.check_indent(statement)
             self.check_words(statement)
             self.walk(statement)
@@ -264,13 +267,17 @@ class Checker:
 
 
 def main(arguments):
-    """Check files and folders; return the exit code."""
-    files = []
-    for argument in map(Path, arguments):
-        files += sorted(argument.rglob("*.[fF]90")) if argument.is_dir() else [argument]
-    breaches = [breach for path in files for breach in Checker(path).check()]
-    print("\n".join(breaches) if breaches else f"{len(files)} files keep the rules")
-    return 1 if breaches or not files else 0
+    """Check folders; return the exit code."""
+    count, breaches, whole = 0, [], True
+    for argument in arguments:
+        if argument == "--layout":
+            whole = False
+            continue
+        files = sorted(p for p in Path(argument).rglob("*") if p.suffix in SUFFIXES)
+        count += len(files)
+        breaches += [breach for path in files for breach in Checker(path).check(whole)]
+    print("\n".join(breaches) if breaches else f"{count} files keep the rules")
+    return 1 if breaches or not count else 0
 
 
 if __name__ == "__main__":

@@ -131,6 +131,15 @@ class StyleTest(unittest.TestCase):
                 self.assertEqual(code, 1)
                 self.assertIn(words, report)
 
+    def test_test_files_are_laid_out_well(self):
+        """Of a test file only the layout counts."""
+        with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
+            path = Path(folder, "test_good.pf")
+            path.write_text("module test_good\n@test\n", encoding="utf-8")
+            self.assertEqual(check_style.main(["--layout", folder]), 0)
+            path.write_text("module test_good \n", encoding="utf-8")
+            self.assertEqual(check_style.main(["--layout", folder]), 1)
+
     def test_an_empty_folder_fails(self):
         """A check of nothing is no check."""
         with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):

@@ -1,0 +1,93 @@
+!> Growth of delaminations: which cells come apart in a state, and what that costs.
+module front_growth
+  use kinds, only: wp
+  use delamination_parameters, only: growth_one_per_step
+  use fracture_criteria, only: critical_release_rate
+  use front_releases, only: front_release_t, release_along_front
+  use states, only: state_t
+  use models, only: model_t
+  implicit none
+  private
+  public :: grow_fronts
+
+  !> Segments within this part of the largest ratio come apart together, so that a symmetric front stays so.
+  real(wp), parameter :: together = 0.95_wp
+
+contains
+
+  !> Takes cells apart where the energy release rate of a state is above its critical value.
+  subroutine grow_fronts(model, state, grown)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> The state; receives new delaminated cells, their energy and the largest ratio
+    type(state_t), intent(inout) :: state
+    !> True if cells came apart
+    logical, intent(out) :: grown
+    type(front_release_t) :: front
+    integer :: zone
+
+    grown = .false.
+    state%release_ratio = 0
+    do zone = 1, size(model%mesh%zones)
+      front = release_along_front(model, state%separation, state%motion, zone, &
+                                  model%scene%delaminations(zone)%energy_release)
+      if (size(front%segments) == 0) cycle
+      state%release_ratio = max(state%release_ratio, maxval(front%ratio))
+      call release_cells(model, state, zone, front, grown)
+    end do
+    if (grown) call open_faces(model, state)
+  end subroutine grow_fronts
+
+  !> Takes the cells ahead of the most loaded segments of one front apart.
+  subroutine release_cells(model, state, zone, front, grown)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> The state
+    type(state_t), intent(inout) :: state
+    !> Index of the zone
+    integer, intent(in) :: zone
+    !> The front
+    type(front_release_t), intent(in) :: front
+    !> Set true if cells came apart
+    logical, intent(inout) :: grown
+    real(wp) :: largest, energy
+    integer, allocatable :: nodes(:)
+    integer :: s
+
+    state%border_reached = state%border_reached .or. any(front%ratio > 1 .and. front%segments%at_border)
+    largest = maxval(front%ratio, mask=.not. front%segments%at_border)
+    if (.not. largest > 1) return
+    do s = 1, size(front%segments)
+      associate (segment => front%segments(s), region => state%separation%regions(zone))
+        if (segment%at_border .or. front%ratio(s) < max(1.0_wp, together*largest)) cycle
+        if (region%is_delaminated(segment%outside(1), segment%outside(2))) cycle
+        call region%release(segment%outside, nodes)
+        energy = critical_release_rate(model%scene%delaminations(zone), front%modes(:, s)) &
+                 *model%mesh%cell_area(segment%outside)*model%mesh%multiplicity
+        ! The integrators cannot tell the energy that fracture takes from their own losses.
+        state%ledger%delamination = state%ledger%delamination + energy
+        state%ledger%algorithmic = state%ledger%algorithmic - energy
+        grown = .true.
+        if (model%scene%delaminations(zone)%growth == growth_one_per_step) return
+      end associate
+    end do
+  end subroutine release_cells
+
+  !> Frees the jumps of the new delamination; faces that were pressed together start in contact.
+  subroutine open_faces(model, state)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> The state
+    type(state_t), intent(inout) :: state
+    logical, allocatable :: before(:)
+    integer :: i
+
+    before = state%separation%free
+    call state%separation%free_jumps(model)
+    do i = 1, model%distribution%owned
+      if (before(i) .or. .not. state%separation%free(i)) cycle
+      state%separation%multiplier(i) = max(0.0_wp, (state%motion%internal(3, i) + state%motion%inertia(3, i)) &
+                                           /model%contact_area(i))
+    end do
+  end subroutine open_faces
+end module front_growth

@@ -1,0 +1,246 @@
+!> Energy release rates along the fronts of a state.
+module front_releases
+  use kinds, only: wp
+  use element_batches, only: lanes
+  use strain_recovery, only: nodal_strains
+  use delamination_parameters, only: release_two_state
+  use delamination_fronts, only: front_segment_t, find_front
+  use energy_release, only: two_state_release, segment_mean, vcct_release, over_outside_cells
+  use fracture_criteria, only: release_ratio
+  use plate_integrators, only: motion_t
+  use separations, only: separation_t
+  use models, only: model_t
+  implicit none
+  private
+  public :: front_release_t, release_along_front
+
+  !> The front of one zone and what it would release, the same on every rank.
+  type :: front_release_t
+    !> The segments
+    type(front_segment_t), allocatable :: segments(:)
+    !> G_I, G_II, G_III of each segment; Eq. 11 gives no modes and stands in the second row, (3, segments)
+    real(wp), allocatable :: modes(:, :)
+    !> G over its critical value, of each segment
+    real(wp), allocatable :: ratio(:)
+  end type front_release_t
+
+contains
+
+  !> Energy release rates along the front of a zone.
+  function release_along_front(model, separation, motion, zone, method) result(front)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Delaminated cells
+    type(separation_t), intent(in) :: separation
+    !> Motion with its forces
+    type(motion_t), intent(in) :: motion
+    !> Index of the zone
+    integer, intent(in) :: zone
+    !> release_two_state or release_vcct
+    integer, intent(in) :: method
+    !> The front
+    type(front_release_t) :: front
+    integer :: s
+
+    front%segments = find_front(separation%regions(zone), model%mesh)
+    if (method == release_two_state) then
+      front%modes = two_state_rates(model, motion, zone, front%segments)
+    else
+      front%modes = vcct_rates(model, motion, zone, front%segments)
+    end if
+    front%ratio = [(release_ratio(model%scene%delaminations(zone), front%modes(:, s)), s=1, size(front%segments))]
+  end function release_along_front
+
+  !> Rates by virtual crack closure, summed over the edges into the same cell.
+  function vcct_rates(model, motion, zone, segments) result(modes)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Motion with its forces
+    type(motion_t), intent(in) :: motion
+    !> Index of the zone
+    integer, intent(in) :: zone
+    !> The front
+    type(front_segment_t), intent(in) :: segments(:)
+    !> G_I, G_II, G_III, (3, segments)
+    real(wp), allocatable :: modes(:, :)
+    real(wp), allocatable :: values(:)
+    real(wp) :: forces(3, 2, 3), jumps(3, 2, 3)
+    integer :: s, line, k
+
+    allocate (modes(3, size(segments)), values(36*size(segments)))
+    values = 0
+    do s = 1, size(segments)
+      do line = 1, 3
+        do k = 1, 2
+          forces(:, k, line) = tie_force(model, motion, zone, &
+                                         merge(segments(s)%edge(line), segments(s)%ahead(1, line), k == 1))
+          jumps(:, k, line) = jump(model, motion, zone, segments(s)%behind(k, line))
+        end do
+      end do
+      values(36*s - 35:36*s) = [reshape(forces, [18]), reshape(jumps, [18])]
+    end do
+    call model%communicator%sum(values)
+    do s = 1, size(segments)
+      modes(:, s) = vcct_release(segments(s), reshape(values(36*s - 35:36*s - 18), [3, 2, 3]), &
+                                 reshape(values(36*s - 17:36*s), [3, 2, 3]))
+    end do
+    modes = over_outside_cells(segments, modes)
+  end function vcct_rates
+
+  !> Force that holds the jump at a node, on the rank that owns it: external less internal and inertia forces.
+  pure function tie_force(model, motion, zone, node) result(force)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Motion with its forces
+    type(motion_t), intent(in) :: motion
+    !> Index of the zone
+    integer, intent(in) :: zone
+    !> Node
+    integer, intent(in) :: node
+    !> Force, x, y, z; zero on other ranks and where there is no jump
+    real(wp) :: force(3)
+    integer :: i
+
+    force = 0
+    i = owned_lower_point(model, zone, node)
+    if (i > 0) force = -motion%internal(1:3, i) - motion%inertia(1:3, i)
+  end function tie_force
+
+  !> Jump at a node, on the rank that owns it.
+  pure function jump(model, motion, zone, node)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Motion
+    type(motion_t), intent(in) :: motion
+    !> Index of the zone
+    integer, intent(in) :: zone
+    !> Node
+    integer, intent(in) :: node
+    !> Jump, x, y, z; zero on other ranks and where there is none
+    real(wp) :: jump(3)
+    integer :: i
+
+    jump = 0
+    i = owned_lower_point(model, zone, node)
+    if (i > 0) jump = motion%displacement(1:3, i)
+  end function jump
+
+  !> Position of a node's point below an interface on the rank that owns it; 0: elsewhere or none.
+  pure integer function owned_lower_point(model, zone, node) result(i)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Index of the zone
+    integer, intent(in) :: zone
+    !> Node
+    integer, intent(in) :: node
+
+    i = model%mesh%lower_point(node, zone)
+    if (i > 0) i = model%distribution%local(i)
+    if (i > model%distribution%owned) i = 0
+  end function owned_lower_point
+
+  !> Rates by Eq. 11 with its sign put right: node by node, the nodes shared by neighbouring segments
+  !> averaged along the front, never across it; then the mean of each segment's three nodes.
+  function two_state_rates(model, motion, zone, segments) result(modes)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Motion
+    type(motion_t), intent(in) :: motion
+    !> Index of the zone
+    integer, intent(in) :: zone
+    !> The front
+    type(front_segment_t), intent(in) :: segments(:)
+    !> Zero, G, zero, (3, segments)
+    real(wp), allocatable :: modes(:, :)
+    real(wp), allocatable :: strains(:), stiffness(:), rates(:, :), field(:, :)
+    integer :: s, line
+
+    allocate (strains(96*size(segments)), stiffness(42*size(segments)))
+    allocate (modes(3, size(segments)), rates(3, size(segments)), source=0.0_wp)
+    field = model%motion_of(motion%displacement)
+    strains = 0
+    stiffness = 0
+    do s = 1, size(segments)
+      call segment_states(model, field, zone, segments(s), strains(96*s - 95:96*s), stiffness(42*s - 41:42*s))
+    end do
+    call model%communicator%sum(strains)
+    call model%communicator%sum(stiffness)
+    do s = 1, size(segments)
+      associate (e => reshape(strains(96*s - 95:96*s), [8, 2, 2, 3]), c => reshape(stiffness(42*s - 41:42*s), [21, 2]))
+        do line = 1, 3
+          rates(line, s) = two_state_release(c, e(:, :, 1, line), e(:, :, 2, line))
+        end do
+      end associate
+    end do
+    call average_shared(segments, rates)
+    do s = 1, size(segments)
+      modes(2, s) = segment_mean(rates(:, s))
+    end do
+  end function two_state_rates
+
+  !> Strains on both sides of a segment at its three nodes, of the layers above and below the interface, and
+  !> the stiffness of the intact side; zero where another rank has the element.
+  subroutine segment_states(model, field, zone, segment, strains, stiffness)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Motion of every layer, (5, points)
+    real(wp), intent(in) :: field(:, :)
+    !> Index of the zone
+    integer, intent(in) :: zone
+    !> The segment
+    type(front_segment_t), intent(in) :: segment
+    !> (8 strains, 2 layers, delaminated and intact side, 3 nodes) in one list
+    real(wp), intent(inout) :: strains(:)
+    !> (21, 2 layers) in one list
+    real(wp), intent(inout) :: stiffness(:)
+    real(wp) :: at_nodes(lanes, 9, 8)
+    integer :: side, layer, cell, element, lane, nodes(9), line, start
+
+    do side = 1, 2
+      cell = model%mesh%cell_at(merge(segment%inside(1), segment%outside(1), side == 1), &
+                                merge(segment%inside(2), segment%outside(2), side == 1))
+      nodes = model%mesh%cell_nodes(cell)
+      do layer = 1, 2
+        element = model%distribution%local_element( &
+                  model%mesh%element_at(cell, model%mesh%zones(zone)%below_ply + layer - 1))
+        if (element == 0) cycle
+        lane = 1 + modulo(element - 1, lanes)
+        associate (batch => 1 + (element - 1)/lanes)
+          call nodal_strains(model%elements, batch, model%scene%kinematics, field, at_nodes)
+          if (side == 2) stiffness(21*layer - 20:21*layer) = model%elements%stiffness(lane, :, batch)
+        end associate
+        do line = 1, 3
+          start = 8*(layer - 1 + 2*(side - 1 + 2*(line - 1)))
+          strains(start + 1:start + 8) = at_nodes(lane, findloc(nodes, segment%edge(line), dim=1), :)
+        end do
+      end do
+    end do
+  end subroutine segment_states
+
+  !> Replaces the rates at nodes that segments share by their mean.
+  pure subroutine average_shared(segments, rates)
+    !> The front
+    type(front_segment_t), intent(in) :: segments(:)
+    !> Rate at each segment's three nodes, (3, segments)
+    real(wp), intent(inout) :: rates(:, :)
+    real(wp) :: smooth(3, size(segments)), total
+    integer :: s, t, line, found, k
+
+    smooth = rates
+    do s = 1, size(segments)
+      do line = 1, 3, 2
+        total = 0
+        found = 0
+        do t = 1, size(segments)
+          do k = 1, 3, 2
+            if (segments(t)%edge(k) /= segments(s)%edge(line)) cycle
+            total = total + rates(k, t)
+            found = found + 1
+          end do
+        end do
+        smooth(line, s) = total/found
+      end do
+    end do
+    rates = smooth
+  end subroutine average_shared
+end module front_releases

@@ -1,0 +1,155 @@
+!> Ply damage and delamination, from the deck into their parameters.
+module deck_damage
+  use kinds, only: wp
+  use text, only: to_text
+  use deck_contents, only: deck_t
+  use deck_filling, only: code_of
+  use deck_problems, only: problems_t
+  use deck_remarks, only: tell, remark
+  use ply_damage_parameters, only: criteria_hou, stress_at_middle, stress_at_faces
+  use delamination_parameters, only: delamination_t, delamination_objection, default_starter, release_two_state, &
+                                     release_vcct, growth_equilibrium, growth_one_per_step, tie_eliminate, tie_penalty, &
+                                     contact_augmented_lagrangian, contact_continuous_penalty, contact_none, &
+                                     unloading_contact, unloading_glued
+  use failure_criteria, only: missing_strengths
+  implicit none
+  private
+  public :: fill_damage
+
+contains
+
+  !> Ply damage and delaminations, as far as the deck has them.
+  subroutine fill_damage(deck, problems)
+    !> Receives them
+    type(deck_t), intent(inout) :: deck
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    integer :: place
+
+    associate (s => deck%settings, damage => deck%ply_damage)
+      deck%has_ply_damage = s%has_group('ply_damage')
+      damage%d = s%real_of('ply_damage', 'd')
+      damage%e = s%real_of('ply_damage', 'e')
+      damage%criteria = code_of(s%text_of('ply_damage', 'criteria'), 'hou', [criteria_hou])
+      damage%stress = code_of(s%text_of('ply_damage', 'stress'), 'middle faces', [stress_at_middle, stress_at_faces])
+      if (deck%has_ply_damage) call check_strengths(deck, problems)
+      allocate (deck%delaminations(s%groups_named('delamination')))
+    end associate
+    do place = 1, size(deck%delaminations)
+      call fill_delamination(deck, place, problems)
+    end do
+    if (size(deck%delaminations) > 0) call check_together(deck, problems)
+  end subroutine fill_damage
+
+  !> Strengths that the criteria need must be there.
+  subroutine check_strengths(deck, problems)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    integer :: i
+
+    do i = 1, size(deck%materials)
+      if (missing_strengths(deck%materials(i)) == '') cycle
+      call tell(deck, problems, 'material', '', 'ply damage needs the strengths '// &
+                missing_strengths(deck%materials(i))//'; give them or leave &ply_damage out.', i)
+    end do
+  end subroutine check_strengths
+
+  !> One interface.
+  subroutine fill_delamination(deck, place, problems)
+    !> Receives it
+    type(deck_t), intent(inout) :: deck
+    !> Which of the groups
+    integer, intent(in) :: place
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    character(len=*), parameter :: group = 'delamination'
+    real(wp) :: starter
+
+    starter = default_starter(deck%plate%length)
+    if (.not. deck%settings%is_given(group, 'starter', place)) &
+      call deck%settings%derive(group, 'starter', to_text(starter), .false.)
+    associate (s => deck%settings, d => deck%delaminations(place))
+      d%below_ply = s%integer_of(group, 'below_ply', place)
+      d%toughness = s%real_of(group, 'G_c', place)
+      d%toughness_opening = s%real_of(group, 'G_Ic', place)
+      d%toughness_shear = s%real_of(group, 'G_IIc', place)
+      d%mixing_exponent = s%real_of(group, 'eta', place)
+      if (s%is_known(group, 'zone', place)) d%zone = s%reals_of(group, 'zone', place)
+      d%starter = starter
+      if (s%is_given(group, 'starter', place)) d%starter = s%real_of(group, 'starter', place)
+      d%penalty_stiffness = s%real_of(group, 'penalty', place)
+      d%contact_exponent = s%real_of(group, 'contact_exponent', place)
+      call fill_choices(deck, place, d)
+    end associate
+    call check_delamination(deck, place, problems)
+  end subroutine fill_delamination
+
+  !> The choices of one interface.
+  subroutine fill_choices(deck, place, delamination)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Which of the groups
+    integer, intent(in) :: place
+    !> Receives them
+    type(delamination_t), intent(inout) :: delamination
+    character(len=*), parameter :: group = 'delamination'
+
+    associate (s => deck%settings, d => delamination)
+      d%energy_release = code_of(s%text_of(group, 'energy_release', place), 'two_state vcct', &
+                                 [release_two_state, release_vcct])
+      d%growth = code_of(s%text_of(group, 'growth', place), 'equilibrium one_per_step', &
+                         [growth_equilibrium, growth_one_per_step])
+      d%tie = code_of(s%text_of(group, 'tie', place), 'eliminate penalty', [tie_eliminate, tie_penalty])
+      d%contact = code_of(s%text_of(group, 'contact', place), 'augmented_lagrangian continuous_penalty none', &
+                          [contact_augmented_lagrangian, contact_continuous_penalty, contact_none])
+      d%unloading = code_of(s%text_of(group, 'unloading', place), 'contact glued', [unloading_contact, unloading_glued])
+    end associate
+  end subroutine fill_choices
+
+  !> Checks one interface.
+  subroutine check_delamination(deck, place, problems)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Which of the groups
+    integer, intent(in) :: place
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    character(len=:), allocatable :: objection
+
+    if (problems%concern('delamination') .or. .not. allocated(deck%laminate%angle)) return
+    associate (d => deck%delaminations(place))
+      objection = delamination_objection(d, size(deck%laminate%angle))
+      if (objection /= '') then
+        call tell(deck, problems, 'delamination', '', objection//'.', place)
+      else if (any(d%zone > deck%plate%length)) then
+        call tell(deck, problems, 'delamination', 'zone', 'the zone must not be larger than the plate.', place)
+      else if (d%energy_release == release_two_state .and. d%toughness <= 0) then
+        call tell(deck, problems, 'delamination', 'energy_release', &
+                  'Eq. 11 does not part the modes; give G_c, or take vcct.', place)
+      else if (deck%has_impactor .and. d%starter < 1.5_wp*deck%mesh%patch) then
+        call remark(deck, problems, 'delamination', 'starter', 'the starter is hardly larger than the loaded patch: '// &
+                    'most of the shear then passes inside it, and growth may never start.')
+      end if
+    end associate
+  end subroutine check_delamination
+
+  !> Checks the interfaces together.
+  subroutine check_together(deck, problems)
+    !> The deck
+    type(deck_t), intent(inout) :: deck
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    integer :: i
+
+    do i = 2, size(deck%delaminations)
+      if (deck%delaminations(i)%below_ply > deck%delaminations(i - 1)%below_ply) cycle
+      call tell(deck, problems, 'delamination', 'below_ply', 'give the interfaces in order from the struck face.', i)
+      return
+    end do
+    if (.not. deck%has_time .or. deck%settings%is_given('time', 'rho_inf')) return
+    deck%time%rho_infinity = 0
+    call deck%settings%derive('time', 'rho_inf', '0', .false.)
+  end subroutine check_together
+end module deck_damage

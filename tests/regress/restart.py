@@ -1,0 +1,215 @@
+"""Runs that are interrupted and go on must give the history of the run that was not.
+Usage: restart.py TRIAL IMPLAM FOLDER [LAUNCHER...]     (LAUNCHER takes the number of ranks as its last word)
+
+integrators  every pair of integrators, linear and von Karman, one with adaptive steps: bitwise on one rank
+ranks        on 2 ranks, and from 1 rank to 2 and back: to 1e-9
+rejected     from checkpoints on either side of rejected steps: bitwise
+signal       SIGTERM ends a run with a checkpoint and its own exit code: bitwise
+kill         SIGKILL at any moment leaves a checkpoint that can be used: bitwise
+damaged      a checkpoint that isn't one, or not whole, ends with the exit code for files and a sentence"""
+
+import filecmp
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+sys.dont_write_bytecode = True
+
+from solver_runs import (
+    EXIT_DONE, EXIT_FILES, EXIT_STOPPED, Failure, checkpoint_of, history_of, largest_difference, read_history, require,
+    run, run_deck, write_deck,
+)
+
+TOLERANCE = 1e-9
+IMPACT = "sun_chen_tan_sun.nml"
+# A strong blow on a coarse mesh: von Karman strains of several thicknesses where asked for.
+SHORT = ["mesh%elements=6,6", "impactor%velocity=30", "time%step=2e-6", "time%end=120e-6"]
+# So few iterations that the longer steps are rejected.
+REJECTED = [*SHORT, "case%kinematics='von_karman'", "impactor%integrator='trapezoidal'", "time%step=8e-6",
+            "solver%max_iterations=6", "adapt%on=.false.", "adapt%iterations=20"]
+
+
+def copy_run(source, target):
+    """Copy the folder of a run, so that the original stays to compare with."""
+    shutil.rmtree(target, ignore_errors=True)
+    shutil.copytree(source, target)
+    return target
+
+
+def go_on(implam, folder, launcher=()):
+    """Restart from the checkpoint in a folder and return the path of the history."""
+    run([*launcher, implam, "restart", checkpoint_of(folder)])
+    return history_of(folder)
+
+
+def require_same(path, reference, what):
+    """Fail unless two histories are the same to the last bit."""
+    if filecmp.cmp(path, reference, shallow=False):
+        return
+    difference, column = largest_difference(read_history(path), read_history(reference))
+    raise Failure(f"{what}: the history differs from the uninterrupted one by {difference:.2e} ({column}).")
+
+
+def require_close(path, reference, what):
+    """Fail unless two histories agree to the tolerance; iterations may differ."""
+    counts = [name for name in read_history(reference) if "iterations" in name or name in ("refactorisations", "solves")]
+    difference, column = largest_difference(read_history(path), read_history(reference), counts)
+    print(f"{what}: largest difference {difference:.2e} ({column})")
+    require(difference <= TOLERANCE, f"{what}: the history differs from the uninterrupted one.")
+
+
+def split_at(fraction, settings):
+    """Add a single checkpoint at a fraction of the run, above one half, to the settings of a deck."""
+    end = next(float(setting.split("=")[1]) for setting in settings if setting.startswith("time%end"))
+    return [*settings, f"output%checkpoint_every={fraction * end!r}"]
+
+
+def check_integrators(implam, folder, _):
+    """Every pair of integrators, kinematics, and an adaptive step."""
+    cases = {}
+    for impactor in ("gear4", "trapezoidal", "central", "conserving"):
+        for plate in ("newmark", "generalized_alpha"):
+            for kinematics in ("linear", "von_karman"):
+                cases[f"{impactor}_{plate}_{kinematics}"] = [f"impactor%integrator='{impactor}'",
+                    f"time%integrator='{plate}'", f"case%kinematics='{kinematics}'", "time%rho_inf=0.8"]
+    for impactor in ("gear4", "conserving"):
+        cases[f"{impactor}_adaptive"] = [f"impactor%integrator='{impactor}'", "case%kinematics='von_karman'",
+            "adapt%on=.true.", "time%step=0.1e-6", "time%step_max=4e-6", "adapt%refactor='deflection'"]
+    for name, settings in cases.items():
+        deck = write_deck(folder / name, IMPACT, split_at(0.53, SHORT + settings))
+        reference = run_deck(implam, deck)
+        again = go_on(implam, copy_run(deck.parent, folder / f"{name}_again"))
+        require_same(again, reference, name)
+        print(f"{name}: {len(read_history(reference)['time'])} rows, the same to the last bit")
+
+
+def check_ranks(implam, folder, launcher):
+    """2 ranks throughout, then changes of the number of ranks."""
+    settings = split_at(0.53, [*SHORT, "case%kinematics='von_karman'"])
+    for first, second in ((2, 2), (1, 2), (2, 1), (4, 2)):
+        deck = write_deck(folder / f"ranks_{first}_{second}", IMPACT, settings)
+        reference = run_deck(implam, deck, [*launcher, str(first)])
+        again = go_on(implam, copy_run(deck.parent, folder / "again"), [*launcher, str(second)])
+        require_close(again, reference, f"from {first} to {second} ranks")
+
+
+def check_rejected(implam, folder, _):
+    """Checkpoints at several moments; some must lie just before and some just after a rejected step."""
+    before = after = 0
+    for tenths in range(51, 100, 4):
+        deck = write_deck(folder / f"split_{tenths}", IMPACT, split_at(tenths / 100, REJECTED))
+        reference = run_deck(implam, deck)
+        require_same(go_on(implam, copy_run(deck.parent, folder / "again")), reference, f"split at {tenths} %")
+        history = read_history(reference)
+        split = min(range(len(history["time"])), key=lambda i: abs(history["time"][i] - tenths / 100 * 120e-6))
+        rejected = history["rejected"]
+        before += split + 1 < len(rejected) and rejected[split + 1] > rejected[split]
+        after += rejected[split] > rejected[split - 1]
+    print(f"Splits just before a rejected step: {before}, just after: {after}; the same to the last bit")
+    require(before > 0 and after > 0, "No checkpoint was next to a rejected step: the trial proves nothing.")
+
+
+def start(implam, deck):
+    """Start a run and return its process, once its history has begun."""
+    process = subprocess.Popen([str(implam), str(deck), "--output", str(deck.parent)], stdin=subprocess.DEVNULL,
+                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    latest = time.monotonic() + 60
+    while not list(deck.parent.glob("*_history.csv")) and process.poll() is None and time.monotonic() < latest:
+        time.sleep(0.01)
+    return process
+
+
+LONG = ["mesh%elements=10,10", "case%kinematics='von_karman'", "impactor%velocity=10", "time%end=400e-6"]
+
+
+def check_signal(implam, folder, _):
+    """Stopped by the queue, once and again."""
+    reference = run_deck(implam, write_deck(folder / "uninterrupted", IMPACT, LONG))
+    deck = write_deck(folder / "stopped", IMPACT, LONG)
+    process = start(implam, deck)
+    for stop in (signal.SIGTERM, signal.SIGUSR1, signal.SIGINT):
+        time.sleep(0.3)
+        process.send_signal(stop)
+        code = process.wait(60)
+        require(code == EXIT_STOPPED, f"After {stop.name} the exit code is {code}, not {EXIT_STOPPED}.")
+        rows = len(read_history(history_of(deck.parent))["time"])
+        print(f"{stop.name} after {rows} rows")
+        process = subprocess.Popen([str(implam), "restart", str(checkpoint_of(deck.parent))], stdin=subprocess.DEVNULL,
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        time.sleep(0.3)
+    require(process.wait(60) == EXIT_DONE, "The last restart failed.")
+    require_same(history_of(deck.parent), reference, "signals")
+
+
+def check_kill(implam, folder, _):
+    """Killed at random moments, on and on, until the end is reached."""
+    settings = [*LONG, "output%checkpoint_every=5e-6"]
+    reference = run_deck(implam, write_deck(folder / "uninterrupted", IMPACT, settings))
+    deck = write_deck(folder / "killed", IMPACT, settings)
+    moments = random.Random(1)
+    process, used = start(implam, deck), 0
+    for _ in range(8):
+        time.sleep(moments.uniform(0.1, 0.6))
+        process.kill()
+        process.wait()
+        used += checkpoint_of(deck.parent).exists()
+        word = ["restart", checkpoint_of(deck.parent)] if checkpoint_of(deck.parent).exists() else \
+            [deck, "--output", deck.parent]
+        process = subprocess.Popen([str(implam), *map(str, word)], stdin=subprocess.DEVNULL,
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    require(process.wait(120) == EXIT_DONE, f"The last run ended with {process.returncode}.")
+    require(used > 0, "No checkpoint was there at any kill: the trial proves nothing.")
+    require_same(history_of(deck.parent), reference, "kills")
+    print(f"8 kills, {used} restarts from a checkpoint; the same to the last bit")
+
+
+def check_damaged(implam, folder, _):
+    """Files that aren't checkpoints, or not whole ones."""
+    deck = write_deck(folder / "sound", IMPACT, split_at(0.53, SHORT))
+    run_deck(implam, deck)
+    sound = checkpoint_of(deck.parent).read_bytes()
+    moments = random.Random(2)
+    damaged = {"empty": b"", "text": b"&case /\n", "noise": moments.randbytes(len(sound)),
+               "fields": history_of(deck.parent).with_name("sun_chen_tan_sun.h5").read_bytes(),
+               "longer": sound + b"\0" * 512}
+    for share in (0.001, 0.1, 0.5, 0.9, 0.999):
+        damaged[f"cut at {share}"] = sound[:int(share * len(sound))]
+    for _ in range(10):
+        place = moments.randrange(len(sound))
+        damaged[f"byte {place}"] = sound[:place] + bytes([sound[place] ^ 0x41]) + sound[place + 1:]
+    for name, content in damaged.items():
+        path = folder / "damaged_restart.h5"
+        path.write_bytes(content)
+        said = run([implam, "restart", path], EXIT_FILES)
+        lines = [line for line in said.splitlines() if line.strip()]
+        require(len(lines) == 1 and lines[0].startswith("implam: ") and lines[0].endswith("."),
+                f"{name}: not one sentence is said but\n{said}")
+        require(path.read_bytes() == content, f"{name}: the file was changed.")
+        print(f"{name}: {lines[0]}")
+    said = run([implam, "restart", folder / "nowhere.h5"], EXIT_FILES)
+    print(f"absent: {said.strip()}")
+
+
+TRIALS = {"integrators": check_integrators, "ranks": check_ranks, "rejected": check_rejected, "signal": check_signal,
+          "kill": check_kill, "damaged": check_damaged}
+
+
+def main(trial, implam, folder, *launcher):
+    """Run one trial; the exit code is 1 if it fails."""
+    folder = Path(folder)
+    shutil.rmtree(folder, ignore_errors=True)
+    try:
+        TRIALS[trial](os.path.abspath(implam), folder, launcher)
+    except (Failure, subprocess.TimeoutExpired) as failure:
+        print(failure)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main(*sys.argv[1:]))

@@ -1,0 +1,210 @@
+!> Small plates for the tests of dynamics: scenes, vibration modes, and plates let go from a shape.
+module small_scenes
+  use kinds, only: wp
+  use errors, only: error_t
+  use communicators, only: communicator_t
+  use plate_options, only: kinematics_linear
+  use mesh_parameters, only: edge_simple, symmetry_none, symmetry_quarter
+  use material_parameters, only: material_t
+  use impact_parameters, only: law_hertz, integrator_conserving
+  use dynamics_parameters, only: distribution_sine
+  use scenes, only: scene_t
+  use models, only: model_t
+  use separations, only: new_separation
+  use tangent_operators, only: tangent_operator_t
+  use marches, only: march_t
+  implicit none
+  private
+  public :: isotropic, cross_ply_material, unit_plate, press, strike, factor, find_mode, shaped_like, let_go
+
+  real(wp), parameter, public :: pi = acos(-1.0_wp)
+
+contains
+
+  !> A material of unit stiffness and density.
+  pure function isotropic(nu) result(material)
+    !> Poisson's ratio
+    real(wp), intent(in) :: nu
+    !> The material
+    type(material_t) :: material
+
+    material%name = 'isotropic'
+    material%density = 1
+    material%e1 = 1
+    material%e2 = 1
+    material%g12 = 0.5_wp/(1 + nu)
+    material%g13 = material%g12
+    material%g23 = material%g12
+    material%nu12 = nu
+  end function isotropic
+
+  !> The material of published frequencies of laminates: E1/E2 = 40.
+  pure function cross_ply_material() result(material)
+    !> The material
+    type(material_t) :: material
+
+    material%name = 'ply'
+    material%density = 1
+    material%e1 = 40
+    material%e2 = 1
+    material%g12 = 0.6_wp
+    material%g13 = 0.6_wp
+    material%g23 = 0.5_wp
+    material%nu12 = 0.25_wp
+  end function cross_ply_material
+
+  !> A simply supported unit square with linear strains and no load.
+  pure function unit_plate(material, angles, thickness, elements, quarter) result(scene)
+    !> The material of all plies
+    type(material_t), intent(in) :: material
+    !> Angles of the plies, degrees, and thickness of them all
+    real(wp), intent(in) :: angles(:), thickness
+    !> Elements along each side of what is modelled
+    integer, intent(in) :: elements
+    !> True: a quarter is modelled
+    logical, intent(in) :: quarter
+    !> The scene
+    type(scene_t) :: scene
+    integer :: plies
+
+    plies = size(angles)
+    scene%kinematics = kinematics_linear
+    scene%plate%length = 1
+    scene%plate%edges = edge_simple
+    scene%plate%symmetry = merge(symmetry_quarter, symmetry_none, quarter)
+    scene%mesh%elements = elements
+    scene%materials = [material]
+    allocate (scene%laminate%material(plies), source=1)
+    scene%laminate%angle = angles
+    allocate (scene%laminate%thickness(plies), source=thickness/plies)
+    scene%has_time = .true.
+    scene%solver%tolerance = 1.0e-12_wp
+  end function unit_plate
+
+  !> Adds a pressure of one half-sine along each side.
+  pure subroutine press(scene, value)
+    !> The scene
+    type(scene_t), intent(inout) :: scene
+    !> Largest pressure
+    real(wp), intent(in) :: value
+
+    scene%has_pressure = .true.
+    scene%pressure%value = value
+    scene%pressure%distribution = distribution_sine
+  end subroutine press
+
+  !> Adds an impactor that falls on a patch a fifth of the side wide.
+  pure subroutine strike(scene, mass, velocity, k)
+    !> The scene
+    type(scene_t), intent(inout) :: scene
+    !> Mass and velocity of the impactor, contact stiffness
+    real(wp), intent(in) :: mass, velocity, k
+
+    scene%has_impactor = .true.
+    scene%mesh%patch = 0.2_wp
+    scene%impactor%mass = mass
+    scene%impactor%velocity = velocity
+    scene%impactor%integrator = integrator_conserving
+    scene%indentation%law = law_hertz
+    scene%indentation%k = k
+  end subroutine strike
+
+  !> Factors an operator of a model without separated layers.
+  subroutine factor(model, displacement, stiffness_factor, mass_factor, operator, error)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Displacement at which the tangent is taken, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> Factors of stiffness and mass
+    real(wp), intent(in) :: stiffness_factor, mass_factor
+    !> The operator
+    type(tangent_operator_t), intent(out) :: operator
+    !> Set if there is no factor
+    type(error_t), allocatable, intent(out) :: error
+
+    call operator%create(model, error)
+    if (allocated(error)) return
+    call operator%renew(model, new_separation(model), displacement, stiffness_factor, mass_factor, error)
+  end subroutine factor
+
+  !> Deflection of m half-waves along x and n along y of a simply supported plate.
+  function shaped_like(model, m, n) result(shape)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Half-waves
+    integer, intent(in) :: m, n
+    !> The field, (5, points); rotations are zero
+    real(wp), allocatable :: shape(:, :)
+    integer :: i
+
+    allocate (shape(5, size(model%distribution%points)), source=0.0_wp)
+    do i = 1, size(shape, 2)
+      associate (x => model%mesh%node_coordinates(:, model%mesh%point_node(model%distribution%points(i))))
+        shape(3, i) = sin(m*pi*(x(1) + 0.5_wp))*sin(n*pi*(x(2) + 0.5_wp))
+      end associate
+    end do
+    where (model%held(:, model%distribution%points)) shape = 0
+  end function shaped_like
+
+  !> Vibration mode of lowest frequency among those of the symmetry of a starting shape, by inverse iteration.
+  subroutine find_mode(model, mode, frequency, error)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Starting shape on entry, mode of unit deflection on return, (5, points)
+    real(wp), intent(inout) :: mode(:, :)
+    !> Frequency, radians a unit of time
+    real(wp), intent(out) :: frequency
+    !> Set if there is no factor
+    type(error_t), allocatable, intent(out) :: error
+    type(tangent_operator_t) :: operator
+    real(wp), allocatable :: force(:, :), rest(:, :)
+    real(wp) :: products(2), energy
+    integer :: i
+    ! More would let rounding errors of other symmetries grow.
+    integer, parameter :: iterations = 8
+
+    allocate (force, rest, mold=mode)
+    rest = 0
+    call factor(model, rest, 1.0_wp, 0.0_wp, operator, error)
+    if (allocated(error)) return
+    do i = 1, iterations
+      call model%inertia(mode, force)
+      call operator%correct(model, force, mode, error)
+      if (allocated(error)) return
+      mode = mode/maxval(abs(mode(3, :)))
+    end do
+    call model%internal(mode, force, energy)
+    products(1) = model%product(mode, force)
+    call model%inertia(mode, force)
+    products(2) = model%product(mode, force)
+    call model%communicator%sum(products)
+    frequency = sqrt(products(1)/products(2))
+    call operator%solver%release()
+  end subroutine find_mode
+
+  !> Puts a plate that has been started into a shape from which it is let go.
+  subroutine let_go(march, model, displacement, error)
+    !> The march, started
+    type(march_t), intent(inout) :: march
+    !> The model
+    type(model_t), intent(in) :: model
+    !> The shape, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> Set if the mass cannot be factored
+    type(error_t), allocatable, intent(out) :: error
+    type(tangent_operator_t) :: mass
+    real(wp) :: energy
+
+    associate (motion => march%now%motion)
+      motion%displacement = displacement
+      call model%internal(displacement, motion%internal, energy)
+      call factor(model, 0*displacement, 0.0_wp, 1.0_wp, mass, error)
+      if (allocated(error)) return
+      call mass%correct(model, -motion%internal, motion%acceleration, error)
+      call mass%solver%release()
+      call model%inertia(motion%acceleration, motion%inertia)
+    end associate
+    march%now%ledger%strain = energy*model%mesh%multiplicity
+    march%now%ledger%initial = march%now%ledger%strain
+  end subroutine let_go
+end module small_scenes
