@@ -20,7 +20,7 @@ module layered_meshes
   type :: layered_mesh_t
     !> Cells along x and y
     integer :: cells(2) = 0
-    !> Edges of the cells along x and y, (0:cells)
+    !> Edges of the cells along x and y, (cells + 1)
     real(wp), allocatable :: x_edges(:), y_edges(:)
     !> Coordinates of the nodes, (2, nodes), x fastest
     real(wp), allocatable :: node_coordinates(:, :)
@@ -348,7 +348,7 @@ contains
     !> Column and row, from 1
     integer, intent(in) :: place(2)
 
-    area = (self%x_edges(place(1)) - self%x_edges(place(1) - 1))*(self%y_edges(place(2)) - self%y_edges(place(2) - 1))
+    area = (self%x_edges(place(1) + 1) - self%x_edges(place(1)))*(self%y_edges(place(2) + 1) - self%y_edges(place(2)))
   end function cell_area
 
   !> True where a cell lies under the loaded patch.
