@@ -290,12 +290,13 @@ contains
     !> The run
     class(simulation_t), intent(inout) :: self
     real(wp) :: factor_entries, megabytes
-    integer :: i
+    integer :: matrix_entries, i
 
     associate (operator => self%march%operator)
       call operator%solver%statistics(factor_entries, megabytes)
+      matrix_entries = operator%numbering%row_start(operator%numbering%rows + 1) - 1
       call self%log%detail('Factor: '//to_text(factor_entries)//' numbers, '//to_text(megabytes)//' MB; matrix: '// &
-                           to_text(size(operator%numbering%columns))//' numbers on this rank.')
+                           to_text(matrix_entries)//' numbers on this rank.')
       associate (lines => [self%timers%lines(), operator%timers%lines()])
         call self%log%detail(repeat(' ', 37)//'times    on the wall      processor')
         do i = 1, size(lines)

@@ -53,7 +53,7 @@ module dynamics_parameters
     !> Change of the stress at the struck point wanted in one step, fraction of its largest value so far
     real(wp) :: stress_change = 0.05_wp
     !> Iterations of a step above which the operator is renewed (refactor_iterations)
-    integer :: iterations = 8
+    integer :: iterations = 16
   end type adapt_t
 
   !> Convergence and linear algebra.

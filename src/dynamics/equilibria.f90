@@ -167,7 +167,7 @@ contains
     !> Residual now and one iteration before
     real(wp), intent(in) :: norm, previous
 
-    too_slow = iterations >= model%scene%adapt%iterations .or. norm > 0.5_wp*previous
+    too_slow = modulo(iterations + 1, model%scene%adapt%iterations) == 0 .or. norm > 0.5_wp*previous
   end function too_slow
 
   !> The impactor's part in a step.

@@ -87,6 +87,8 @@ contains
     call self%solver%define(model%communicator, self%numbering%first_row, self%numbering%total, &
                             self%numbering%row_start, self%numbering%columns, .not. model%scene%has_static .or. &
                             model%scene%kinematics == kinematics_linear, error)
+    ! The solver has its own copy of this large list.
+    deallocate (self%numbering%columns)
   end subroutine create
 
   !> Assembles and factors the operator at a displacement, and finds the response to a unit force.

@@ -191,7 +191,7 @@ module deck_table
       &Growth of the struck point''s deflection that renews it, as a fraction of the thickness.', &
     'adapt | stress_change | real | 1 | - | 0.05 | > 0, <= 1 | &
       &Change of the struck point''s stress wanted in a step, as a fraction of its largest so far.', &
-    'adapt | iterations | integer | 1 | - | 8 | >= 1, <= 1000 | &
+    'adapt | iterations | integer | 1 | - | 16 | >= 1, <= 1000 | &
       &Iterations of a step above which the factored stiffness is renewed.', &
     'solver | tolerance | real | 1 | - | 1e-8 | >= 1e-13, <= 0.01 | &
       &Residual of equilibrium accepted, relative to the forces in play.', &

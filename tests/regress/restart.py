@@ -29,9 +29,11 @@ TOLERANCE = 1e-9
 IMPACT = "sun_chen_tan_sun.nml"
 # A strong blow on a coarse mesh: von Karman strains of several thicknesses where asked for.
 SHORT = ["mesh%elements=6,6", "impactor%velocity=30", "time%step=2e-6", "time%end=120e-6"]
-# So few iterations that the longer steps are rejected.
-REJECTED = [*SHORT, "case%kinematics='von_karman'", "impactor%integrator='trapezoidal'", "time%step=8e-6",
-            "solver%max_iterations=6", "adapt%on=.false.", "adapt%iterations=20"]
+# Steps so long that equilibrium isn't found in some.
+PERIOD = 60e-6
+REJECTED = ["mesh%elements=6,6", "impactor%velocity=300", "case%kinematics='von_karman'", f"time%step={PERIOD!r}",
+            "impactor%integrator='conserving'", "solver%max_iterations=10", "adapt%on=.false.", "adapt%iterations=1",
+            f"output%checkpoint_every={PERIOD!r}"]
 
 
 def copy_run(source, target):
@@ -98,19 +100,27 @@ def check_ranks(implam, folder, launcher):
         require_close(again, reference, f"from {first} to {second} ranks")
 
 
+def rejections(path):
+    """Return the numbers of checkpoint periods in which a step was rejected, and the last checkpoint's period."""
+    history = read_history(path)
+    rejected = [0.0, *history["rejected"]]
+    found = {int(time / PERIOD * (1 - 1e-9)) for i, time in enumerate(history["time"]) if rejected[i + 1] > rejected[i]}
+    return found, int(history["time"][-1] / PERIOD)
+
+
 def check_rejected(implam, folder, _):
-    """Checkpoints at several moments; some must lie just before and some just after a rejected step."""
+    """The last checkpoint just before and just after the steps that are rejected."""
+    deck = write_deck(folder / "scout", IMPACT, [*REJECTED, "time%end=500e-6"])
+    found, _ = rejections(run_deck(implam, deck))
     before = after = 0
-    for tenths in range(51, 100, 4):
-        deck = write_deck(folder / f"split_{tenths}", IMPACT, split_at(tenths / 100, REJECTED))
+    for end in sorted({period + share for period in found for share in (0.99, 1.5) if period + share > 1}):
+        deck = write_deck(folder / f"end_{end}", IMPACT, [*REJECTED, f"time%end={end * PERIOD!r}"])
         reference = run_deck(implam, deck)
-        require_same(go_on(implam, copy_run(deck.parent, folder / "again")), reference, f"split at {tenths} %")
-        history = read_history(reference)
-        split = min(range(len(history["time"])), key=lambda i: abs(history["time"][i] - tenths / 100 * 120e-6))
-        rejected = history["rejected"]
-        before += split + 1 < len(rejected) and rejected[split + 1] > rejected[split]
-        after += rejected[split] > rejected[split - 1]
-    print(f"Splits just before a rejected step: {before}, just after: {after}; the same to the last bit")
+        require_same(go_on(implam, copy_run(deck.parent, folder / "again")), reference, f"end after {end} periods")
+        now, last = rejections(reference)
+        before += last in now
+        after += last - 1 in now
+    print(f"Checkpoints just before a rejected step: {before}, just after: {after}; the same to the last bit")
     require(before > 0 and after > 0, "No checkpoint was next to a rejected step: the trial proves nothing.")
 
 

@@ -1,0 +1,131 @@
+#!/usr/bin/env python3
+"""Measures what a run costs. See README.md beside this file."""
+import argparse
+import csv
+import os
+import pathlib
+import re
+import statistics
+import subprocess
+import sys
+import tempfile
+
+# Sun and Chen's case with Tan and Sun's indentation, patch of 5 mm. Linear: semi-analytic answer.
+# With von Karman's strains: 32 x 32 elements on the quarter and steps of 0.5 us.
+REFERENCE = {'linear': (298.87, 0.4312e-3), 'von_karman': (298.90, 0.42804e-3)}
+
+DECK = """&case        name='bench'  kinematics='{kinematics}' /
+&plate       length=0.2, 0.2  edges='simple'  symmetry='quarter' /
+&mesh        elements={elements}, {elements}  patch=5e-3 /
+&material    name='T300/934'  density=1580  E1=120e9  E2=7.9e9  G12=5.5e9  G13=5.5e9  G23=5.5e9  nu12=0.30 /
+&laminate    materials='T300/934'  angles=0,90,0,90,0,0,90,0,90,0  thicknesses=0.269e-3 /
+&impactor    mass=8.537e-3  velocity=3  radius=6.35e-3  integrator='trapezoidal' /
+&indentation law='tan_sun'  k=8.112e8  q=2.5  alpha_cr=80.3e-6  beta=0.094 /
+&time        end={end}  step={step}  rho_inf=1 /
+{more}
+"""
+
+# One thread, so that processor time is comparable; Open MPI refuses root unless told twice.
+ENVIRONMENT = dict(os.environ, OMP_NUM_THREADS='1', OPENBLAS_NUM_THREADS='1',
+                   OMPI_ALLOW_RUN_AS_ROOT='1', OMPI_ALLOW_RUN_AS_ROOT_CONFIRM='1')
+
+
+class Run:
+    """One run of the program: processor time, peak memory, and what its log and history say."""
+
+    def __init__(self, program, kinematics, elements, step, end, more=''):
+        with tempfile.TemporaryDirectory() as folder:
+            deck = pathlib.Path(folder, 'bench.nml')
+            deck.write_text(DECK.format(kinematics=kinematics, elements=elements, step=step, end=end, more=more))
+            process = subprocess.Popen([program, deck, '--output', folder], stdout=subprocess.DEVNULL, env=ENVIRONMENT)
+            _, status, usage = os.wait4(process.pid, 0)
+            process.returncode = os.waitstatus_to_exitcode(status)
+            if process.returncode:
+                sys.exit(f'The run failed with exit code {process.returncode}.')
+            self.seconds = usage.ru_utime + usage.ru_stime
+            self.peak_megabytes = usage.ru_maxrss/1024
+            log = pathlib.Path(folder, 'bench.log').read_text()
+            with open(pathlib.Path(folder, 'bench_history.csv')) as lines:
+                self.history = list(csv.DictReader(line for line in lines if not line.startswith('#')))
+        # Name, times, seconds on the wall, seconds of the processor.
+        self.phases = {name.strip(): (int(times), float(processor)) for name, times, processor in
+                       re.findall(r'^(\S.*?) +(\d+) +[\d.]+ s +([\d.]+) s$', log, re.M)}
+        self.unknowns = int(re.search(r'(\d+) unknowns', log)[1])
+        self.factor_megabytes, self.matrix_numbers = (
+            float(n) for n in re.search(r'Factor: \S+ numbers, (\S+) MB; matrix: (\d+) numbers', log).groups())
+
+    def mean(self, phase):
+        """Seconds of the processor of one run of a phase."""
+        times, seconds = self.phases[phase]
+        return seconds/max(times, 1)
+
+    def largest(self, column):
+        """Largest value of a column of the history."""
+        return max(float(row[column]) for row in self.history)
+
+
+def step_cost(program, arguments):
+    """Cost of a step against that of a solve, share of set-up, and memory, on about 60 000 unknowns."""
+    bare = Run(program, 'linear', 2, 1e-6, 1e-6).peak_megabytes
+    for kinematics, elements, target in (('linear', 71, 2.5), ('von_karman', 55, 6.0)):
+        run = Run(program, kinematics, round(elements*arguments.finer), 1e-6, arguments.steps*1e-6)
+        steps, seconds = run.phases['steps']
+        solve = run.mean('solve')
+        factors, factoring = run.phases['factorisation']
+        factoring += run.phases['assembly'][1]
+        print(f'{kinematics}: {run.unknowns} unknowns, {steps} steps, {run.phases["solve"][0]} solves of '
+              f'{1e3*solve:.1f} ms, {factors} factorisations of {1e3*factoring/factors:.0f} ms')
+        print(f'  a step over a solve: {seconds/steps/solve:.2f} (at most {target}); without factorisations '
+              f'{(seconds - factoring)/steps/solve:.2f}')
+        for phase in ('solve', 'factorisation', 'assembly', 'element forces'):
+            print(f'    {phase}: {100*run.phases[phase][1]/seconds:.1f} % of the steps')
+        rest = seconds - sum(run.phases[p][1] for p in ('solve', 'factorisation', 'assembly', 'element forces'))
+        print(f'    all else: {100*rest/seconds:.1f} % of the steps')
+        before = run.seconds - seconds - run.phases['results'][1]
+        print(f'  before the first step: {before:.2f} s of {run.seconds:.2f} s, {100*before/run.seconds:.1f} %; with '
+              f'the first factor {100*(before + factoring/factors)/run.seconds:.1f} % (at most 10 % of 500 steps)')
+        # The upper triangle: a number of eight bytes and a column of four each.
+        matrix = 12*(run.matrix_numbers + run.unknowns)/2/2**20
+        both = matrix + run.factor_megabytes
+        print(f'  peak memory {run.peak_megabytes:.0f} MB, {bare:.0f} MB of it with four elements; matrix '
+              f'{matrix:.0f} MB, factor {run.factor_megabytes:.0f} MB: ratio {run.peak_megabytes/both:.2f}, '
+              f'{(run.peak_megabytes - bare)/both:.2f} without those (at most 1.5)')
+
+
+def speed(program, arguments):
+    """Accuracy and processor time of Sun and Chen's case, 1000 us, for several meshes and steps."""
+    print('| strains | elements | step, us | processor, s | peak force | deflection |')
+    print('|---|---|---|---|---|---|')
+    for kinematics in ('linear', 'von_karman'):
+        for elements in arguments.elements:
+            for step in arguments.step:
+                runs = [Run(program, kinematics, elements, step*1e-6, 1e-3, arguments.more)
+                        for _ in range(arguments.repeat)]
+                errors = [100*(runs[0].largest(column)/value - 1) for column, value
+                          in zip(('force', 'deflection'), REFERENCE[kinematics])]
+                seconds = statistics.median(run.seconds for run in runs)
+                print(f'| {kinematics} | {elements} x {elements} | {step:g} | {seconds:.2f} | {errors[0]:+.2f} % | '
+                      f'{errors[1]:+.2f} % |', flush=True)
+
+
+def main():
+    """Reads the command line."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument('program', help='path of implam')
+    parts = parser.add_subparsers(required=True)
+    part = parts.add_parser('step-cost', help=step_cost.__doc__)
+    part.add_argument('--steps', type=int, default=500)
+    part.add_argument('--finer', type=float, default=1, help='factor of the number of elements along a side')
+    part.set_defaults(act=step_cost)
+    part = parts.add_parser('speed', help=speed.__doc__)
+    part.add_argument('--elements', type=int, nargs='+', default=[8, 12, 16, 24])
+    part.add_argument('--step', type=float, nargs='+', default=[8, 4, 2, 1], help='us')
+    part.add_argument('--repeat', type=int, default=3)
+    part.add_argument('--more', default='', help='groups added to the deck')
+    part.set_defaults(act=speed)
+    arguments = parser.parse_args()
+    arguments.act(os.path.abspath(arguments.program), arguments)
+
+
+if __name__ == '__main__':
+    main()
