@@ -139,7 +139,8 @@ contains
     word = argument(i)
     takes_value = index(word, '-') /= 1 .and. index(word, '.nml') == 0 .and. index(word, '.h5') == 0 &
                   .and. verb_of(word) == 0
-    if (len(word) > 1) takes_value = takes_value .or. scan(word(1:1), '-') == 1 .and. scan(word(2:2), '0123456789.') == 1
+    if (len(word) > 1) takes_value = takes_value .or. &
+                                     scan(word(1:1), '-') == 1 .and. scan(word(2:2), '0123456789.') == 1
   end function takes_value
 
   !> One argument of the command line, whole.

@@ -111,7 +111,8 @@ contains
       do i = 1, size(mine)
         element = mine(i)
         cell = model%mesh%element_cell(element) - 1
-        delaminated(1, i) = merge(1, 0, delaminated_above(model, march, element, 1 + modulo(cell, model%mesh%cells(1)), &
+        delaminated(1, i) = merge(1, 0, delaminated_above(model, march, element, &
+                                                          1 + modulo(cell, model%mesh%cells(1)), &
                                                           1 + cell/model%mesh%cells(1)))
       end do
     end associate

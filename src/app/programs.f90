@@ -5,9 +5,11 @@ module programs
   use text, only: line_t
   use communicators, only: communicator_t, start_mpi, finish_mpi
   use petsc_session, only: start_petsc, finish_petsc
+  use dynamics_parameters, only: factorization_cholmod
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
   use deck_reader, only: read_deck, read_deck_text
+  use deck_remarks, only: tell
   use deck_explain, only: explain, explain_table
   use checkpoints, only: checkpoint_archive_t
   use build_information, only: version, commit, compiler, petsc_version
@@ -35,7 +37,8 @@ contains
     if (.not. allocated(error)) then
       select case (command%verb)
       case (verb_version)
-        call print_lines(communicator, [line_t('Implam '//version//' ('//commit//'), '//compiler//', PETSc '//petsc_version)])
+        call print_lines(communicator, &
+                         [line_t('Implam '//version//' ('//commit//'), '//compiler//', PETSc '//petsc_version)])
       case (verb_help)
         call print_usage(communicator)
       case (verb_explain)
@@ -122,18 +125,10 @@ contains
     !> What is wrong with it
     type(problems_t), intent(out) :: problems
     character(len=:), allocatable :: text
-    logical :: whole
 
-    whole = .true.
     if (communicator%is_root()) then
       call read_deck(path, deck, problems)
-      whole = allocated(deck%text)
-      if (whole) text = deck%text
-    end if
-    call communicator%broadcast(whole)
-    if (.not. whole) then
-      if (.not. communicator%is_root()) call read_deck(path, deck, problems)
-      return
+      text = deck%text
     end if
     call communicator%broadcast_text(text)
     if (.not. communicator%is_root()) call read_deck_text(text, path, deck, problems)
@@ -159,6 +154,8 @@ contains
     else
       call read_deck_everywhere(command%target, communicator, deck, problems)
     end if
+    if (deck%solver%factorization == factorization_cholmod .and. communicator%size > 1) call tell(deck, problems, &
+      'solver', 'factorization', 'works on one rank only; run on one rank, or take ''mumps''.')
     code = problems%exit_code()
     call print_lines(communicator, problems%lines())
     if (code /= exit_done) return

@@ -169,7 +169,8 @@ contains
     if (allocated(error)) return
     call self%history%resume(communicator, self%base//'_history.csv', column_names, column_whole, rows, error)
     if (allocated(error)) return
-    if (self%history%rows /= rows) call self%log%warning('The history before the checkpoint is not there; it goes on from here.')
+    if (self%history%rows /= rows) &
+      call self%log%warning('The history before the checkpoint is not there; it goes on from here.')
     call self%fields%resume(communicator, self%base, self%provenance, part_of(self), self%march%now%time, error)
     if (allocated(error)) return
     call write_mesh(self%model, self%fields, error)
@@ -316,7 +317,8 @@ contains
     associate (now => self%march%now, operator => self%march%operator)
       line = to_text(now%step)//' steps ('//to_text(self%march%rejected)//' rejected), '// &
              to_text(now%all_iterations)//' iterations of equilibrium, '//to_text(now%all_force_iterations)// &
-             ' of the force, '//to_text(operator%factorizations)//' factorisations, '//to_text(operator%solves)//' solves.'
+             ' of the force, '//to_text(operator%factorizations)//' factorisations, '// &
+             to_text(operator%solves)//' solves.'
     end associate
   end function summary
 end module simulations

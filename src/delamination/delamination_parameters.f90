@@ -46,8 +46,6 @@ module delamination_parameters
     real(wp) :: contact_exponent = 1
     !> unloading_contact or unloading_glued
     integer :: unloading = unloading_contact
-    !> True: the layered rectangle grows when the delamination reaches its border
-    logical :: enlarge_zone = .false.
   end type delamination_t
 
 contains
@@ -71,7 +69,7 @@ contains
     objection = toughness_objection(delamination)
     if (len(objection) > 0) return
     if (delamination%below_ply < 1 .or. delamination%below_ply >= plies) then
-      objection = 'below_ply must name a ply with another one below it'
+      objection = 'below_ply must name a ply that has another one below it'
     else if (.not. all(positive(delamination%zone))) then
       objection = 'both extents of the zone must be positive'
     else if (.not. positive(delamination%starter)) then

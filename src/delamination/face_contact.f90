@@ -5,12 +5,11 @@
 !> multiplier until the gap closes exactly where there is pressure. (Eq. 13a of the paper taken as a fixed
 !> point diverges for most stiffnesses.) A converged state is the same for any stiffness and method.
 module face_contact
-  use delamination_parameters, only: contact_augmented_lagrangian, contact_continuous_penalty
+  use delamination_parameters, only: contact_augmented_lagrangian, contact_continuous_penalty, contact_none
   use kinds, only: wp
   implicit none
   private
-  public :: contact_law_t, create_contact_law, contact_pressure, updated_multiplier, &
-            contact_residual, pressure_decay
+  public :: contact_law_t, create_contact_law, contact_pressure, updated_multiplier, pressure_decay
 
   !> Stiffness of the contact over the transverse stiffness of the layers. On random and plate-like
   !> compliances of 40 nodes a factor of 1 left 40 to over 80 factorisations, 100 about 5 multiplier updates
@@ -24,7 +23,7 @@ module face_contact
 
   !> Pressure against gap.
   type :: contact_law_t
-    !> contact_augmented_lagrangian or contact_continuous_penalty
+    !> contact_augmented_lagrangian, contact_continuous_penalty or contact_none
     integer :: method = contact_augmented_lagrangian
     !> Pressure per length of penetration
     real(wp) :: stiffness = 0
@@ -40,7 +39,7 @@ contains
 
   !> A law for an interface.
   pure function create_contact_law(method, exponent, transverse_stiffness, thickness) result(law)
-    !> contact_augmented_lagrangian or contact_continuous_penalty
+    !> contact_augmented_lagrangian, contact_continuous_penalty or contact_none
     integer, intent(in) :: method
     !> Exponent q of Eq. 12
     real(wp), intent(in) :: exponent
@@ -82,6 +81,9 @@ contains
 
     if (law%method == contact_continuous_penalty) then
       call continuous_pressure(law, gap, multiplier, pressure, slope)
+    else if (law%method == contact_none) then
+      pressure = 0
+      slope = 0
     else
       pressure = max(0.0_wp, multiplier - law%stiffness*gap)
       slope = merge(-law%stiffness, 0.0_wp, pressure > 0)
@@ -133,16 +135,4 @@ contains
     call contact_pressure(law, gap, multiplier, updated, slope)
     if (updated < open_fraction*law%stiffness*gap) updated = 0
   end function updated_multiplier
-
-  !> By how much gap and pressure miss complementarity, as a length: 0 when the gap is closed and there
-  !> is pressure, or there is none and the gap is open; minus the penetration where faces overlap.
-  elemental real(wp) function contact_residual(law, gap, pressure) result(residual)
-    !> The law
-    type(contact_law_t), intent(in) :: law
-    !> Gap, positive when open
-    real(wp), intent(in) :: gap
-    !> Pressure that is in balance
-    real(wp), intent(in) :: pressure
-    residual = min(gap, pressure/law%stiffness)
-  end function contact_residual
 end module face_contact

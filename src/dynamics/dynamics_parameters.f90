@@ -59,7 +59,7 @@ module dynamics_parameters
   !> Convergence and linear algebra.
   type :: solver_t
     !> Residual of equilibrium accepted, relative to the forces in play
-    real(wp) :: tolerance = 1.0e-8_wp
+    real(wp) :: tolerance = 1.0e-6_wp
     !> Iterations of equilibrium before a step is tried again with half its length
     integer :: max_iterations = 30
     !> factorization_mumps or factorization_cholmod (one rank only)

@@ -155,8 +155,8 @@ contains
     if (.not. due) due = self%controller%renewal_due(model%scene, mass_factor/self%operator%mass_factor, &
                                                      self%now%deflection - self%operator%deflection, model%thickness)
     if (due) then
-      call self%operator%renew(model, self%now%separation, self%now%motion%displacement, self%integrator%stiffness_factor(), &
-                               mass_factor, error)
+      call self%operator%renew(model, self%now%separation, self%now%motion%displacement, &
+                               self%integrator%stiffness_factor(), mass_factor, error)
       if (allocated(error)) return
       call self%controller%renewed()
     end if

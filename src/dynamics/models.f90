@@ -230,7 +230,8 @@ contains
 
     first = self%mesh%first_point(self%mesh%struck_node)
     associate (mesh => self%mesh, mine => self%distribution%elements)
-      self%struck_elements = pack([(i, i=1, size(mine))], [(any(mesh%connectivity(:, mine(i)) == first), i=1, size(mine))])
+      self%struck_elements = pack([(i, i=1, size(mine))], &
+                                  [(any(mesh%connectivity(:, mine(i)) == first), i=1, size(mine))])
     end associate
     self%struck_count = size(self%struck_elements)
     call self%communicator%sum(self%struck_count)

@@ -1,4 +1,4 @@
-!> Load steps of a static analysis: Newton's iteration with a fresh tangent.
+!> Load steps of a static analysis: Newton's iteration with a fresh tangent, around it that of the contact pressures.
 module static_steps
   use kinds, only: wp
   use errors, only: error_t, exit_convergence
@@ -10,6 +10,9 @@ module static_steps
   implicit none
   private
   public :: attempt_load
+
+  !> Change of the contact pressures over the largest so far at which they have settled.
+  real(wp), parameter :: contact_tolerance = 5.0e-7_wp
 
 contains
 
@@ -35,29 +38,53 @@ contains
     new = old
     new%time = load_factor
     new%iterations = 0
+    new%contact_iterations = 0
     allocate (residual, correction, mold=old%motion%displacement)
     correction = 0
     do
       call model%internal(new%motion%displacement, new%motion%internal, energy)
       residual = load_factor*model%pressure - new%motion%internal
+      call new%separation%act(model, new%motion%displacement, residual)
       norm = relative_residual(model%communicator, operator%numbering, residual, new%motion%internal, &
                                load_factor*model%pressure, 0.0_wp, &
                                operator%diagonal*new%motion%displacement, model%scene%solver%tolerance, &
                                new%largest_forces)
       converged = norm <= model%scene%solver%tolerance
-      if (converged .or. .not. norm <= huge(norm) .or. new%iterations >= model%scene%solver%max_iterations) exit
-      if (.not. operator%ready .or. model%scene%kinematics /= kinematics_linear) &
+      if (converged) then
+        call settle_contact(model, new, converged)
+        if (converged) exit
+        if (new%contact_iterations < model%scene%solver%max_iterations) cycle
+      end if
+      if (.not. norm <= huge(norm) .or. new%iterations >= model%scene%solver%max_iterations) exit
+      ! Ties and contacts may have changed since the last factor.
+      if (.not. operator%ready .or. model%scene%kinematics /= kinematics_linear .or. model%map%layered) &
         call operator%renew(model, new%separation, new%motion%displacement, 1.0_wp, 0.0_wp, error)
       if (.not. allocated(error)) call operator%correct(model, residual, correction, error)
       if (allocated(error)) then
         if (error%code == exit_convergence .and. model%scene%kinematics /= kinematics_linear) deallocate (error)
         return
       end if
+      call new%separation%hold(model, correction)
       new%motion%displacement = new%motion%displacement + correction
       new%iterations = new%iterations + 1
     end do
     if (converged) call finish(model, old, energy, new)
   end subroutine attempt_load
+
+  !> Takes the contact pressures found as the next estimates; they must repeat themselves for a step to be done.
+  subroutine settle_contact(model, new, converged)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> State at this load
+    type(state_t), intent(inout) :: new
+    !> False on return where the pressures have not settled
+    logical, intent(inout) :: converged
+    real(wp) :: change
+
+    call new%separation%update_multipliers(model, new%motion%displacement, change)
+    new%contact_iterations = new%contact_iterations + merge(1, 0, change > 0)
+    converged = change <= contact_tolerance
+  end subroutine settle_contact
 
   !> Completes an accepted load step.
   subroutine finish(model, old, energy, new)
@@ -69,21 +96,26 @@ contains
     real(wp), intent(in) :: energy
     !> State at this load
     type(state_t), intent(inout) :: new
-    real(wp) :: sums(3)
+    real(wp) :: sums(4)
     real(wp), allocatable :: change(:, :)
 
     change = new%motion%displacement - old%motion%displacement
     sums(1) = energy
     sums(2) = model%product(change, new%motion%internal + old%motion%internal)/2
     sums(3) = (new%time + old%time)/2*model%product(change, model%pressure)
+    sums(4) = 0
+    if (model%map%layered) sums(4) = (old%separation%work(model, old%motion%displacement, change) &
+                                      + new%separation%work(model, new%motion%displacement, change))/2
     call model%communicator%sum(sums)
     sums = sums*model%mesh%multiplicity
     new%step = old%step + 1
     new%all_iterations = old%all_iterations + new%iterations
+    new%all_contact_iterations = old%all_contact_iterations + new%contact_iterations
     new%deflection = model%deflection(new%motion%displacement)
     new%patch_mean = model%patch_mean(new%motion%displacement)
     new%ledger%strain = sums(1)
     new%ledger%external_work = old%ledger%external_work + sums(3)
+    new%ledger%contact = old%ledger%contact - sums(4)
     new%ledger%algorithmic = old%ledger%algorithmic - (sums(1) - old%ledger%strain - sums(2))
   end subroutine finish
 end module static_steps

@@ -112,7 +112,8 @@ contains
     self%mass_factor = mass_factor
     call self%timers%start('assembly')
     call self%solver%clear()
-    call assemble_elements(model, self%numbering, displacement, stiffness_factor, mass_factor, self%solver, self%diagonal)
+    call assemble_elements(model, self%numbering, displacement, stiffness_factor, mass_factor, self%solver, &
+                           self%diagonal)
     call separation%added_stiffness(model, self%diagonal, self%added)
     call self%timers%stop('assembly')
     call factorize(self, model, error)

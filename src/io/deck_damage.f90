@@ -8,9 +8,9 @@ module deck_damage
   use deck_remarks, only: tell, remark
   use ply_damage_parameters, only: criteria_hou, stress_at_middle, stress_at_faces
   use delamination_parameters, only: delamination_t, delamination_objection, default_starter, release_two_state, &
-                                     release_vcct, growth_equilibrium, growth_one_per_step, tie_eliminate, tie_penalty, &
-                                     contact_augmented_lagrangian, contact_continuous_penalty, contact_none, &
-                                     unloading_contact, unloading_glued
+                                     release_vcct, growth_equilibrium, growth_one_per_step, tie_eliminate, &
+                                     tie_penalty, contact_augmented_lagrangian, contact_continuous_penalty, &
+                                     contact_none, unloading_contact, unloading_glued
   use failure_criteria, only: missing_strengths
   implicit none
   private
@@ -36,9 +36,13 @@ contains
       allocate (deck%delaminations(s%groups_named('delamination')))
     end associate
     do place = 1, size(deck%delaminations)
-      call fill_delamination(deck, place, problems)
+      call fill_delamination(deck, place)
     end do
-    if (size(deck%delaminations) > 0) call check_together(deck, problems)
+    if (size(deck%delaminations) == 0) return
+    call check_delaminations(deck, problems)
+    if (.not. deck%has_time .or. deck%settings%is_given('time', 'rho_inf')) return
+    deck%time%rho_infinity = 0
+    call deck%settings%derive('time', 'rho_inf', '0', .false.)
   end subroutine fill_damage
 
   !> Strengths that the criteria need must be there.
@@ -57,13 +61,11 @@ contains
   end subroutine check_strengths
 
   !> One interface.
-  subroutine fill_delamination(deck, place, problems)
+  subroutine fill_delamination(deck, place)
     !> Receives it
     type(deck_t), intent(inout) :: deck
     !> Which of the groups
     integer, intent(in) :: place
-    !> Faults found are added
-    type(problems_t), intent(inout) :: problems
     character(len=*), parameter :: group = 'delamination'
     real(wp) :: starter
 
@@ -83,7 +85,6 @@ contains
       d%contact_exponent = s%real_of(group, 'contact_exponent', place)
       call fill_choices(deck, place, d)
     end associate
-    call check_delamination(deck, place, problems)
   end subroutine fill_delamination
 
   !> The choices of one interface.
@@ -108,6 +109,26 @@ contains
     end associate
   end subroutine fill_choices
 
+  !> Checks all interfaces, unless faults of their keys would bring others along.
+  subroutine check_delaminations(deck, problems)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    integer :: i
+
+    if (problems%concern('delamination') .or. problems%concern('plate', 'length') .or. &
+        .not. allocated(deck%laminate%angle)) return
+    do i = 1, size(deck%delaminations)
+      call check_delamination(deck, i, problems)
+    end do
+    do i = 2, size(deck%delaminations)
+      if (deck%delaminations(i)%below_ply > deck%delaminations(i - 1)%below_ply) cycle
+      call tell(deck, problems, 'delamination', 'below_ply', 'is not below the interface of the group before; give '// &
+                'each interface once, in order from the struck face.', i)
+    end do
+  end subroutine check_delaminations
+
   !> Checks one interface.
   subroutine check_delamination(deck, place, problems)
     !> The deck
@@ -116,40 +137,53 @@ contains
     integer, intent(in) :: place
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
+    character(len=*), parameter :: group = 'delamination'
     character(len=:), allocatable :: objection
 
-    if (problems%concern('delamination') .or. .not. allocated(deck%laminate%angle)) return
     associate (d => deck%delaminations(place))
       objection = delamination_objection(d, size(deck%laminate%angle))
       if (objection /= '') then
-        call tell(deck, problems, 'delamination', '', objection//'.', place)
+        call tell(deck, problems, group, '', objection//'.', place)
       else if (any(d%zone > deck%plate%length)) then
-        call tell(deck, problems, 'delamination', 'zone', 'the zone must not be larger than the plate.', place)
+        call tell(deck, problems, group, 'zone', 'the zone must not be larger than the plate.', place)
       else if (d%energy_release == release_two_state .and. d%toughness <= 0) then
-        call tell(deck, problems, 'delamination', 'energy_release', &
-                  'Eq. 11 does not part the modes; give G_c, or take vcct.', place)
+        call tell(deck, problems, group, 'energy_release', 'Eq. 11 does not part the modes; give G_c, or take '// &
+                  '''vcct''.', place)
       else if (deck%has_impactor .and. d%starter < 1.5_wp*deck%mesh%patch) then
-        call remark(deck, problems, 'delamination', 'starter', 'the starter is hardly larger than the loaded patch: '// &
-                    'most of the shear then passes inside it, and growth may never start.')
+        call remark(deck, problems, group, 'starter', 'the starter is hardly larger than the loaded patch: most of '// &
+                    'the shear then passes inside it, and growth may never start.', place)
       end if
+      call remark_idle_keys(deck, place, problems)
     end associate
   end subroutine check_delamination
 
-  !> Checks the interfaces together.
-  subroutine check_together(deck, problems)
+  !> Keys of an interface that are given but change nothing.
+  subroutine remark_idle_keys(deck, place, problems)
     !> The deck
-    type(deck_t), intent(inout) :: deck
-    !> Faults found are added
+    type(deck_t), intent(in) :: deck
+    !> Which of the groups
+    integer, intent(in) :: place
+    !> Remarks are added
     type(problems_t), intent(inout) :: problems
-    integer :: i
 
-    do i = 2, size(deck%delaminations)
-      if (deck%delaminations(i)%below_ply > deck%delaminations(i - 1)%below_ply) cycle
-      call tell(deck, problems, 'delamination', 'below_ply', 'give the interfaces in order from the struck face.', i)
-      return
-    end do
-    if (.not. deck%has_time .or. deck%settings%is_given('time', 'rho_inf')) return
-    deck%time%rho_infinity = 0
-    call deck%settings%derive('time', 'rho_inf', '0', .false.)
-  end subroutine check_together
+    associate (d => deck%delaminations(place))
+      if (d%toughness > 0) call idle('eta', 'as G_c is given')
+      if (d%tie /= tie_penalty) call idle('penalty', 'without tie = ''penalty''')
+      if (d%contact /= contact_continuous_penalty) &
+        call idle('contact_exponent', 'without contact = ''continuous_penalty''')
+    end associate
+
+  contains
+
+    !> Remarks on one key.
+    subroutine idle(key, reason)
+      !> The key
+      character(len=*), intent(in) :: key
+      !> Why it changes nothing
+      character(len=*), intent(in) :: reason
+
+      if (deck%settings%is_given('delamination', key, place)) &
+        call remark(deck, problems, 'delamination', key, 'has no effect '//reason//'.', place)
+    end subroutine idle
+  end subroutine remark_idle_keys
 end module deck_damage

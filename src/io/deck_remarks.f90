@@ -26,7 +26,7 @@ contains
   end subroutine tell
 
   !> Adds a warning that belongs to a key, or to a group if the key is empty.
-  subroutine remark(deck, problems, group, key, message)
+  subroutine remark(deck, problems, group, key, message, place)
     !> The deck
     type(deck_t), intent(in) :: deck
     !> Receives the warning
@@ -35,8 +35,10 @@ contains
     character(len=*), intent(in) :: group, key
     !> One clause
     character(len=*), intent(in) :: message
+    !> Which of the groups of this name
+    integer, intent(in), optional :: place
 
-    call problems%warning(line_of(deck, group, key), group, key, head(deck, group, key)//message)
+    call problems%warning(line_of(deck, group, key, place), group, key, head(deck, group, key, place)//message)
   end subroutine remark
 
   !> Line to name.

@@ -66,7 +66,8 @@ contains
       earlier = settings%groups_named(group%name)
       if (index == 0) then
         call tell_unknown_group(group%name, group%line, vocabulary, problems)
-      else if (earlier > 0 .and. all(vocabulary%groups(index)%presence /= [character(len=10) :: 'repeatable', 'several'])) then
+      else if (earlier > 0 .and. all(vocabulary%groups(index)%presence /= &
+                                     [character(len=10) :: 'repeatable', 'several'])) then
         call problems%error(group%line, '', '', '&'//group%name//': the group was already given in line '// &
                             to_text(settings%line_of_group(group%name))//'; give it once.')
       else if (earlier >= most_repetitions) then
@@ -179,7 +180,8 @@ contains
       if (place > 0) return
       if (entry%presence == 'settings') then
         call settle_keys(scan, 0, 1, vocabulary, entry%name, settings, problems)
-      else if (all(entry%presence /= [character(len=8) :: 'optional', 'several']) .and. .not. problems%concern(entry%name)) then
+      else if (all(entry%presence /= [character(len=8) :: 'optional', 'several']) .and. &
+               .not. problems%concern(entry%name)) then
         ! Without any group the deck was already told to have none.
         if (size(scan%blocks) > 0) call problems%error(0, entry%name, '', &
           '&'//entry%name//' is missing; `implam explain '//entry%name//'` shows what it takes.')

@@ -161,8 +161,8 @@ module deck_table
       &Intact faces: exactly joined, or by penalty springs as in the paper.', &
     'delamination | penalty | real | 1 | pressure/length | = from E2 | > 0 | &
       &Stiffness of penalty ties; left out: 1000 times the stiffness of the contact.', &
-    'delamination | contact | choice | 1 | - | ''augmented_lagrangian'' | augmented_lagrangian continuous_penalty none | &
-      &Contact of separated faces.', &
+    'delamination | contact | choice | 1 | - | ''augmented_lagrangian'' | &
+      &augmented_lagrangian continuous_penalty none | Contact of separated faces.', &
     'delamination | contact_exponent | real | 1 | - | 1 | >= 1, <= 2 | &
       &Exponent q of the continuous penalty (Eq. 12).', &
     'delamination | unloading | choice | 1 | - | ''contact'' | contact glued | &
@@ -192,8 +192,8 @@ module deck_table
     'adapt | stress_change | real | 1 | - | 0.05 | > 0, <= 1 | &
       &Change of the struck point''s stress wanted in a step, as a fraction of its largest so far.', &
     'adapt | iterations | integer | 1 | - | 16 | >= 1, <= 1000 | &
-      &Iterations of a step above which the factored stiffness is renewed.', &
-    'solver | tolerance | real | 1 | - | 1e-8 | >= 1e-13, <= 0.01 | &
+      &Iterations lost to an old factored stiffness that pay for a new one.', &
+    'solver | tolerance | real | 1 | - | 1e-6 | >= 1e-13, <= 0.01 | &
       &Residual of equilibrium accepted, relative to the forces in play.', &
     'solver | max_iterations | integer | 1 | - | 30 | >= 1, <= 10000 | &
       &Iterations before a step is tried again with half its length.', &

@@ -124,34 +124,47 @@ def check_rejected(implam, folder, _):
     require(before > 0 and after > 0, "No checkpoint was next to a rejected step: the trial proves nothing.")
 
 
-def start(implam, deck):
-    """Start a run and return its process, once its history has begun."""
-    process = subprocess.Popen([str(implam), str(deck), "--output", str(deck.parent)], stdin=subprocess.DEVNULL,
-                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+def start(implam, *words):
+    """Start the program and return its process."""
+    return subprocess.Popen([str(word) for word in (implam, *words)], stdin=subprocess.DEVNULL,
+                            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+
+def wait_until(condition, process):
+    """Wait until the condition holds; the process must still run then."""
     latest = time.monotonic() + 60
-    while not list(deck.parent.glob("*_history.csv")) and process.poll() is None and time.monotonic() < latest:
+    while not condition() and process.poll() is None and time.monotonic() < latest:
         time.sleep(0.01)
-    return process
+    require(process.poll() is None, f"The run was over too early, with {process.returncode}.")
 
 
-LONG = ["mesh%elements=10,10", "case%kinematics='von_karman'", "impactor%velocity=10", "time%end=400e-6"]
+def model_lines(folder):
+    """Return how many runs in a folder have set up their model, by the log that they share."""
+    return sum(log.read_text(encoding="utf-8").count("Model:") for log in folder.glob("*.log"))
+
+
+def stamp(folder):
+    """Return the moment the checkpoint in a folder was written; 0 if there is none."""
+    return max((path.stat().st_mtime_ns for path in folder.glob("*_restart.h5")), default=0)
+
+
+LONG = ["mesh%elements=10,10", "case%kinematics='von_karman'", "impactor%velocity=10", "time%end=600e-6"]
 
 
 def check_signal(implam, folder, _):
     """Stopped by the queue, once and again."""
     reference = run_deck(implam, write_deck(folder / "uninterrupted", IMPACT, LONG))
     deck = write_deck(folder / "stopped", IMPACT, LONG)
-    process = start(implam, deck)
-    for stop in (signal.SIGTERM, signal.SIGUSR1, signal.SIGINT):
-        time.sleep(0.3)
+    process = start(implam, deck, "--output", deck.parent)
+    for runs, stop in enumerate((signal.SIGTERM, signal.SIGUSR1, signal.SIGINT), start=1):
+        wait_until(lambda runs=runs: model_lines(deck.parent) >= runs, process)
+        time.sleep(0.1)
         process.send_signal(stop)
         code = process.wait(60)
         require(code == EXIT_STOPPED, f"After {stop.name} the exit code is {code}, not {EXIT_STOPPED}.")
         rows = len(read_history(history_of(deck.parent))["time"])
-        print(f"{stop.name} after {rows} rows")
-        process = subprocess.Popen([str(implam), "restart", str(checkpoint_of(deck.parent))], stdin=subprocess.DEVNULL,
-                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        time.sleep(0.3)
+        print(f"{stop.name} after {rows} rows", flush=True)
+        process = start(implam, "restart", checkpoint_of(deck.parent))
     require(process.wait(60) == EXIT_DONE, "The last restart failed.")
     require_same(history_of(deck.parent), reference, "signals")
 
@@ -162,20 +175,17 @@ def check_kill(implam, folder, _):
     reference = run_deck(implam, write_deck(folder / "uninterrupted", IMPACT, settings))
     deck = write_deck(folder / "killed", IMPACT, settings)
     moments = random.Random(1)
-    process, used = start(implam, deck), 0
+    process = start(implam, deck, "--output", deck.parent)
     for _ in range(8):
-        time.sleep(moments.uniform(0.1, 0.6))
+        before = stamp(deck.parent)
+        wait_until(lambda before=before: stamp(deck.parent) != before, process)
+        time.sleep(moments.uniform(0, 0.05))
         process.kill()
         process.wait()
-        used += checkpoint_of(deck.parent).exists()
-        word = ["restart", checkpoint_of(deck.parent)] if checkpoint_of(deck.parent).exists() else \
-            [deck, "--output", deck.parent]
-        process = subprocess.Popen([str(implam), *map(str, word)], stdin=subprocess.DEVNULL,
-                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        process = start(implam, "restart", checkpoint_of(deck.parent))
     require(process.wait(120) == EXIT_DONE, f"The last run ended with {process.returncode}.")
-    require(used > 0, "No checkpoint was there at any kill: the trial proves nothing.")
     require_same(history_of(deck.parent), reference, "kills")
-    print(f"8 kills, {used} restarts from a checkpoint; the same to the last bit")
+    print("8 kills; the same to the last bit")
 
 
 def check_damaged(implam, folder, _):

@@ -1,0 +1,231 @@
+!> Plates with an interface partly come apart, at rest under given forces, for the tests of energy release rates.
+module cracked_plates
+  use kinds, only: wp
+  use errors, only: error_t
+  use communicators, only: communicator_t, start_mpi
+  use plate_options, only: kinematics_linear
+  use mesh_parameters, only: edge_free, edge_clamped, symmetry_none, symmetry_quarter
+  use material_parameters, only: material_t
+  use delamination_parameters, only: contact_none
+  use delamination_fronts, only: front_segment_t, find_front
+  use energy_release, only: vcct_release
+  use front_releases, only: front_release_t, release_along_front
+  use scenes, only: scene_t
+  use models, only: model_t, create_model
+  use states, only: state_t, new_state
+  use tangent_operators, only: tangent_operator_t
+  use static_steps, only: attempt_load
+  implicit none
+  private
+  public :: cracked_plate_t, strip, disc, outside_mean
+
+  !> Pressure on nothing: forces are set node by node.
+  real(wp), parameter, public :: pi = acos(-1.0_wp)
+
+  !> A plate and its state under the forces in model%pressure.
+  type :: cracked_plate_t
+    !> The model
+    type(model_t) :: model
+    !> Its state
+    type(state_t) :: state
+    !> The operator
+    type(tangent_operator_t) :: operator
+  contains
+    !> Builds the model of a scene, without forces and delaminated cells.
+    procedure :: create
+    !> Takes cells apart.
+    procedure :: release
+    !> Adds a force along a line of nodes across the strip.
+    procedure :: pull
+    !> Finds equilibrium.
+    procedure :: settle
+    !> Strain energy of the modelled part.
+    procedure :: energy
+    !> Energy release rates along the front.
+    procedure :: rates
+  end type cracked_plate_t
+
+contains
+
+  !> A strip along x, clamped at its far end, with linear strains; its first ply is the upper arm.
+  pure function strip(materials, angles, thickness, below_ply, length, width, elements) result(scene)
+    !> Materials, of which all plies have the first
+    type(material_t), intent(in) :: materials(:)
+    !> Angle and thickness of each ply
+    real(wp), intent(in) :: angles(:), thickness(:)
+    !> Plies of the upper arm
+    integer, intent(in) :: below_ply
+    !> Length and width
+    real(wp), intent(in) :: length, width
+    !> Cells along the strip, an even number
+    integer, intent(in) :: elements
+    !> The scene
+    type(scene_t) :: scene
+
+    scene = layered(materials, angles, thickness, below_ply)
+    scene%plate%length = [length, width]
+    scene%plate%edges = [edge_free, edge_clamped, edge_free, edge_free]
+    scene%plate%symmetry = symmetry_none
+    scene%mesh%elements = [elements, 1]
+    scene%delaminations%zone(1) = 2*length
+    scene%delaminations%zone(2) = 2*width
+  end function strip
+
+  !> A quarter of a clamped square of two equal plies, loaded on a square patch in its middle.
+  pure function disc(material, thickness, side, patch, elements) result(scene)
+    !> The material
+    type(material_t), intent(in) :: material
+    !> Thickness, side, and side of the patch
+    real(wp), intent(in) :: thickness, side, patch
+    !> Cells along half a side
+    integer, intent(in) :: elements
+    !> The scene
+    type(scene_t) :: scene
+
+    scene = layered([material], [0.0_wp, 0.0_wp], [thickness, thickness]/2, 1)
+    scene%plate%length = side
+    scene%plate%edges = edge_clamped
+    scene%plate%symmetry = symmetry_quarter
+    scene%mesh%elements = elements
+    scene%mesh%patch = patch
+    scene%mesh%grading = 1
+    scene%delaminations%zone(1) = 0.9_wp*side
+    scene%delaminations%zone(2) = 0.9_wp*side
+  end function disc
+
+  !> A laminate with one interface, all intact.
+  pure function layered(materials, angles, thickness, below_ply) result(scene)
+    !> Materials, of which all plies have the first
+    type(material_t), intent(in) :: materials(:)
+    !> Angle and thickness of each ply
+    real(wp), intent(in) :: angles(:), thickness(:)
+    !> Plies above the interface
+    integer, intent(in) :: below_ply
+    !> The scene, without plate and mesh
+    type(scene_t) :: scene
+
+    scene%kinematics = kinematics_linear
+    allocate (scene%materials, source=materials)
+    allocate (scene%laminate%material(size(angles)), source=1)
+    allocate (scene%laminate%angle, source=angles)
+    allocate (scene%laminate%thickness, source=thickness)
+    scene%has_static = .true.
+    scene%has_pressure = .true.
+    scene%solver%tolerance = 1.0e-9_wp
+    allocate (scene%delaminations(1))
+    scene%delaminations%below_ply = below_ply
+    scene%delaminations%toughness = 1
+    scene%delaminations%contact = contact_none
+  end function layered
+
+  !> Builds the model of a scene, without forces and delaminated cells.
+  subroutine create(self, scene)
+    class(cracked_plate_t), intent(out) :: self
+    type(scene_t), intent(in) :: scene
+    type(communicator_t) :: world
+    type(error_t), allocatable :: error
+
+    call start_mpi(world)
+    call create_model(scene, world, self%model, error)
+    if (allocated(error)) error stop 'no model'
+    self%model%pressure = 0
+    self%state = new_state(self%model)
+    call self%operator%create(self%model, error)
+    if (allocated(error)) error stop 'no operator'
+  end subroutine create
+
+  !> Takes all cells of a range of columns and rows apart whose middle is within a radius of the origin.
+  subroutine release(self, columns, rows, radius)
+    class(cracked_plate_t), intent(inout) :: self
+    integer, intent(in) :: columns(2), rows(2)
+    real(wp), intent(in) :: radius
+    integer, allocatable :: nodes(:)
+    integer :: i, j
+
+    associate (mesh => self%model%mesh, region => self%state%separation%regions(1))
+      do j = rows(1), rows(2)
+        do i = columns(1), columns(2)
+          nodes = mesh%cell_nodes(mesh%cell_at(i, j))
+          if (norm2(mesh%node_coordinates(:, nodes(5))) < radius) call region%release([i, j], nodes)
+        end do
+      end do
+    end associate
+    call self%state%separation%free_jumps(self%model)
+  end subroutine release
+
+  !> Adds a force along a line of nodes across the strip.
+  subroutine pull(self, line, component, force, lower)
+    class(cracked_plate_t), intent(inout) :: self
+    !> Line of nodes, from 0
+    integer, intent(in) :: line
+    !> Unknown it acts on
+    integer, intent(in) :: component
+    !> Force
+    real(wp), intent(in) :: force
+    !> True: acts on the unknowns of the lower layer, for u, v, w its jumps
+    logical, intent(in) :: lower
+    integer :: j, point
+
+    associate (mesh => self%model%mesh, share => self%model%distribution)
+      do j = 0, 2
+        associate (node => 1 + line + (2*mesh%cells(1) + 1)*j)
+          point = mesh%first_point(node)
+          if (lower) point = mesh%lower_point(node, 1)
+        end associate
+        associate (load => self%model%pressure(component, share%local(point)))
+          load = load + force*merge(4, 1, j == 1)/6
+        end associate
+      end do
+    end associate
+  end subroutine pull
+
+  !> Finds equilibrium from rest.
+  subroutine settle(self)
+    class(cracked_plate_t), intent(inout) :: self
+    type(state_t) :: rest
+    type(error_t), allocatable :: error
+    logical :: converged
+
+    rest = new_state(self%model)
+    rest%separation = self%state%separation
+    call attempt_load(self%model, self%operator, rest, 1.0_wp, self%state, converged, error)
+    if (allocated(error) .or. .not. converged) error stop 'no equilibrium'
+  end subroutine settle
+
+  !> Strain energy of the modelled part.
+  real(wp) function energy(self)
+    class(cracked_plate_t), intent(in) :: self
+
+    energy = self%state%ledger%strain/self%model%mesh%multiplicity
+  end function energy
+
+  !> Energy release rates along the front.
+  function rates(self, method) result(front)
+    class(cracked_plate_t), intent(in) :: self
+    integer, intent(in) :: method
+    type(front_release_t) :: front
+
+    front = release_along_front(self%model, self%state%separation, self%state%motion, 1, method)
+  end function rates
+
+  !> Mean over the area of the cells outside a front.
+  pure real(wp) function outside_mean(plate, front) result(mean)
+    type(cracked_plate_t), intent(in) :: plate
+    type(front_release_t), intent(in) :: front
+    real(wp) :: area
+    integer :: s
+
+    mean = 0
+    area = 0
+    do s = 1, size(front%segments)
+      associate (segment => front%segments(s))
+        if (s > 1) then
+          if (all(segment%outside == front%segments(s - 1)%outside)) cycle
+        end if
+        mean = mean + sum(front%modes(:, s))*plate%model%mesh%cell_area(segment%outside)
+        area = area + plate%model%mesh%cell_area(segment%outside)
+      end associate
+    end do
+    mean = mean/area
+  end function outside_mean
+end module cracked_plates
