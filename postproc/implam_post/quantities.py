@@ -95,6 +95,12 @@ def energy_error(history: History) -> float:
         return float(np.max(np.abs(history["energy_error"])) / np.abs(initial))
 
 
+def growth_rows(history: History) -> np.ndarray:
+    """Return the rows at which delaminations have grown; none if the history tells no area."""
+    area = history.columns.get("delaminated_area", np.zeros(len(history.time)))
+    return 1 + np.flatnonzero(np.diff(area) > 1e-9 * np.max(area, initial=0))
+
+
 def rms_force_difference(history: History, reference: History) -> float:
     """Return the rms difference of force over the reference's first contact, as a fraction of its peak.
 

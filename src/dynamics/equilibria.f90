@@ -94,9 +94,9 @@ contains
       if (unsolvable(error)) return
       call operator%correct(model, residual, correction, error)
       if (unsolvable(error)) return
-      call new%separation%hold(model, correction)
       if (model%scene%has_impactor) call solve_strike(model, operator, old, new, strike, correction, error)
       if (allocated(error)) return
+      call new%separation%hold(model, correction)
       new%motion%displacement = new%motion%displacement + correction
       call integrator%complete(step, old%motion, new%motion%displacement, new%motion%velocity, new%motion%acceleration)
       new%iterations = new%iterations + 1

@@ -1,4 +1,5 @@
-!> Load steps of a static analysis: Newton's iteration with a fresh tangent, around it that of the contact pressures.
+!> Load steps of a static analysis: Newton's iteration, with a fresh tangent unless the plate is linear, around it
+!> that of the contact pressures.
 module static_steps
   use kinds, only: wp
   use errors, only: error_t, exit_convergence
@@ -34,6 +35,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     real(wp), allocatable :: residual(:, :), correction(:, :)
     real(wp) :: energy, norm
+    logical :: follows
 
     new = old
     new%time = load_factor
@@ -56,9 +58,9 @@ contains
         if (new%contact_iterations < model%scene%solver%max_iterations) cycle
       end if
       if (.not. norm <= huge(norm) .or. new%iterations >= model%scene%solver%max_iterations) exit
-      ! Ties and contacts may have changed since the last factor.
-      if (.not. operator%ready .or. model%scene%kinematics /= kinematics_linear .or. model%map%layered) &
-        call operator%renew(model, new%separation, new%motion%displacement, 1.0_wp, 0.0_wp, error)
+      follows = operator%ready .and. model%scene%kinematics == kinematics_linear
+      if (follows) call operator%follow(model, new%separation, follows, error)
+      if (.not. follows) call operator%renew(model, new%separation, new%motion%displacement, 1.0_wp, 0.0_wp, error)
       if (.not. allocated(error)) call operator%correct(model, residual, correction, error)
       if (allocated(error)) then
         if (error%code == exit_convergence .and. model%scene%kinematics /= kinematics_linear) deallocate (error)

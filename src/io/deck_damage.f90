@@ -157,7 +157,7 @@ contains
     end associate
   end subroutine check_delamination
 
-  !> Keys of an interface that are given but change nothing.
+  !> What an interface asks for but has no effect.
   subroutine remark_idle_keys(deck, place, problems)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -166,6 +166,8 @@ contains
     !> Remarks are added
     type(problems_t), intent(inout) :: problems
 
+    if (deck%has_static .and. place == 1) call remark(deck, problems, 'delamination', '', &
+                                                      'in a static analysis the starter does not grow.')
     associate (d => deck%delaminations(place))
       if (d%toughness > 0) call idle('eta', 'as G_c is given')
       if (d%tie /= tie_penalty) call idle('penalty', 'without tie = ''penalty''')

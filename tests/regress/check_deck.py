@@ -1,5 +1,5 @@
 """Runs a deck and its variants and compares the histories with what is expected.
-Usage: check_deck.py IMPLAM EXPECT.toml FOLDER
+Usage: check_deck.py IMPLAM EXPECT.toml FOLDER        (implam_post on the PYTHONPATH)
 
 The file of expectations is that of implam-compare with, if wanted, `deck` (default: the name of the file) and
 [[variant]] tables: `name`, `set` (keys of the deck set anew, "group%key=value") and [[variant.expect]]. The
@@ -9,13 +9,10 @@ import sys
 import tomllib
 from pathlib import Path
 
-sys.dont_write_bytecode = True
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "postproc"))
+from solver_runs import TrialError, read_history, require, run_deck, write_deck
 
 from implam_post.compare import Expectation, compare, table
 from implam_post.history import read_history as read_columns
-
-from solver_runs import Failure, read_history, require, run_deck, write_deck
 
 
 def check_variant(implam, deck, settings, entries, folder):
@@ -43,7 +40,7 @@ def main(implam, expect, folder):
         try:
             passed &= check_variant(implam, deck, variant.get("set", []), common + variant.get("expect", []),
                                     Path(folder) / expect.stem / variant["name"])
-        except Failure as failure:
+        except TrialError as failure:
             print(f"{variant['name']}: FAIL: {failure}\n", flush=True)
             passed = False
     return 0 if passed else 1

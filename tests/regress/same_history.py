@@ -9,9 +9,7 @@ import re
 import sys
 from pathlib import Path
 
-sys.dont_write_bytecode = True
-
-from solver_runs import Failure, largest_difference, read_history, require, run_deck, write_deck
+from solver_runs import TrialError, largest_difference, read_history, require, run_deck, write_deck
 
 # How the solution was found, not what it is; the stress is a measure for the step only.
 COUNTS = ("iterations", "force_iterations", "total_iterations", "total_force_iterations", "refactorisations", "solves")
@@ -54,7 +52,7 @@ def main(kind, implam, deck, folder, tolerance, *words):
                   f"{'pass' if within else 'FAIL'}", flush=True)
             passed &= within
         require(passed, "The histories differ.")
-    except Failure as failure:
+    except TrialError as failure:
         print(failure)
         return 1
     return 0

@@ -14,14 +14,14 @@ ENERGIES = ("energy_impactor", "energy_kinetic", "energy_strain", "energy_indent
             "energy_ply_damage", "energy_contact", "energy_algorithmic")
 
 
-class Failure(Exception):
+class TrialError(Exception):
     """What was found wrong, in one sentence."""
 
 
 def require(condition, sentence):
     """Fail with a sentence unless the condition holds."""
     if not condition:
-        raise Failure(sentence)
+        raise TrialError(sentence)
 
 
 def change_deck(text, settings):
@@ -33,11 +33,11 @@ def change_deck(text, settings):
         if not found:
             text += f"&{group} {key}={value} /\n"
             continue
-        line = found[0]
-        changed, times = re.subn(rf"(?<=\s){key}=.*?(?=\s+[\w]+\s*=|\s*/$)", lambda _: f"{key}={value}", line,  # noqa: B023
+        line, assignment = found[0], f"{key}={value}"
+        changed, times = re.subn(rf"(?<=\s){key}=.*?(?=\s+\w+\s*=|\s*/$)", assignment.replace("\\", r"\\"), line,
                                  flags=re.IGNORECASE | re.DOTALL)
         if not times:
-            changed = f"{line[:-1].rstrip()}  {key}={value} /"
+            changed = f"{line[:-1].rstrip()}  {assignment} /"
         text = text.replace(line, changed)
     return text
 
