@@ -40,9 +40,24 @@ function(implam_add_unit_tests)
     implam_link_layers(tested_${layer} ${lower})
     add_pfunit_ctest(unit_${layer} TEST_SOURCES ${tests} OTHER_SOURCES ${helpers}
                      LINK_LIBRARIES tested_${layer} ${arguments})
+    implam_follow_layers(unit_${layer} ${lower})
     implam_settle_test(unit_${layer} unit)
     if(processes) # on two cores one such program at a time
       set_tests_properties(unit_${layer} PROPERTIES PROCESSORS 2)
+    endif()
+  endforeach()
+endfunction()
+
+# implam_follow_layers(<target> <layer>...): compiles the target's sources again when modules of the layers
+# change, which CMake follows within a target only. A source of several targets keeps the first one's layers.
+function(implam_follow_layers target)
+  list(TRANSFORM ARGN PREPEND ${CMAKE_BINARY_DIR}/ OUTPUT_VARIABLE stamps)
+  list(TRANSFORM stamps APPEND .stamp)
+  get_target_property(sources ${target} SOURCES)
+  foreach(source IN LISTS sources)
+    get_source_file_property(known ${source} OBJECT_DEPENDS)
+    if(NOT known)
+      set_property(SOURCE ${source} PROPERTY OBJECT_DEPENDS ${stamps})
     endif()
   endforeach()
 endfunction()

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from implam_post.errors import EXIT_DONE, CommandParser, FileError, ImplamError, run
 from implam_post.fields import Fields, read_fields
 from implam_post.history import ENERGIES, History, read_history
-from implam_post.plan import delamination_figure, draw_delamination, failures_figure
+from implam_post.plan import delamination_figure, draw_cracks, draw_delamination, failures_figure
 from implam_post.quantities import growth_rows
 
 _RESPONSES = {"force": "contact force", "indentation": "indentation", "deflection": "deflection of struck point"}
@@ -40,15 +40,19 @@ def plot_energies(history: History, path: Path) -> Path:
 
 
 def plot_overview(fields: Fields, history: History, path: Path) -> Path:
-    """Draw each interface in plan, the force with growth marked and the ledger in one picture."""
+    """Draw each interface in plan, with the cracks beside it, the force and the ledger in one picture."""
     interfaces = fields.snapshots[-1].mesh.interfaces
-    rows = max(len(interfaces), 2)
-    figure = Figure(figsize=(11, 2.7 * rows), layout="constrained")
-    grid = figure.add_gridspec(rows, 2, width_ratios=(1.2, 1))
-    for row, below_ply in enumerate(interfaces):
-        draw_delamination(figure.add_subplot(grid[row if len(interfaces) > 1 else slice(None), 0]), fields, below_ply)
-    _draw(figure.add_subplot(grid[0, 1]), [history], "force")
-    _stack(figure.add_subplot(grid[1, 1]), history)
+    if not interfaces:
+        raise FileError(f"{fields.name} has no interface that may come apart.")
+    figure = Figure(figsize=(11, 2.9 * max(len(interfaces), 2)), layout="constrained")
+    left, right = figure.subfigures(1, 2)
+    for axes, below_ply in zip(left.subplots(len(interfaces), squeeze=False)[:, 0], interfaces, strict=True):
+        draw_delamination(axes, fields, below_ply)
+        if fields.snapshots[-1].failures:
+            draw_cracks(axes, fields, below_ply)
+    force, ledger = right.subplots(2)
+    _draw(force, [history], "force")
+    _stack(ledger, history)
     return _save(figure, path, dots_per_inch=80)
 
 

@@ -1,9 +1,10 @@
-!> Load steps of a static analysis: Newton's iteration, with a fresh tangent unless the plate is linear, around it
-!> that of the contact pressures.
+!> Load steps of a static analysis: Newton's iteration with a fresh tangent, around it that of the contact
+!> pressures.
 module static_steps
   use kinds, only: wp
   use errors, only: error_t, exit_convergence
   use plate_options, only: kinematics_linear
+  use delamination_parameters, only: contact_none
   use models, only: model_t
   use states, only: state_t
   use residual_norms, only: relative_residual
@@ -35,7 +36,6 @@ contains
     type(error_t), allocatable, intent(out) :: error
     real(wp), allocatable :: residual(:, :), correction(:, :)
     real(wp) :: energy, norm
-    logical :: follows
 
     new = old
     new%time = load_factor
@@ -58,9 +58,8 @@ contains
         if (new%contact_iterations < model%scene%solver%max_iterations) cycle
       end if
       if (.not. norm <= huge(norm) .or. new%iterations >= model%scene%solver%max_iterations) exit
-      follows = operator%ready .and. model%scene%kinematics == kinematics_linear
-      if (follows) call operator%follow(model, new%separation, follows, error)
-      if (.not. follows) call operator%renew(model, new%separation, new%motion%displacement, 1.0_wp, 0.0_wp, error)
+      if (.not. operator%ready .or. changes(model, new%iterations)) &
+        call operator%renew(model, new%separation, new%motion%displacement, 1.0_wp, 0.0_wp, error)
       if (.not. allocated(error)) call operator%correct(model, residual, correction, error)
       if (allocated(error)) then
         if (error%code == exit_convergence .and. model%scene%kinematics /= kinematics_linear) deallocate (error)
@@ -72,6 +71,19 @@ contains
     end do
     if (converged) call finish(model, old, energy, new)
   end subroutine attempt_load
+
+  !> True if the tangent may not be what it was at the iteration before.
+  pure logical function changes(model, iterations)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Iterations of this step so far
+    integer, intent(in) :: iterations
+
+    changes = model%scene%kinematics /= kinematics_linear
+    if (changes .or. .not. model%map%layered) return
+    ! Cells may have come apart since the step before; later only contacts change.
+    changes = iterations == 0 .or. any(model%scene%delaminations%contact /= contact_none)
+  end function changes
 
   !> Takes the contact pressures found as the next estimates; they must repeat themselves for a step to be done.
   subroutine settle_contact(model, new, converged)

@@ -1,0 +1,60 @@
+"""The fields of a run, and of one that was restarted, as h5py and meshio read them.
+Usage: fields.py IMPLAM FOLDER"""
+
+import shutil
+import sys
+from pathlib import Path
+
+import h5py
+import meshio
+import numpy as np
+from solver_runs import TrialError, checkpoint_of, read_history, require, run, run_deck, write_deck
+
+SIDE = 8
+SETTINGS = [f"mesh%elements={SIDE},{SIDE}", "time%end=60e-6", "output%fields_every=10e-6",
+            "output%checkpoint_every=35e-6"]
+TIMES = 1e-6 * np.arange(10, 61, 10)
+
+
+def check_fields(history_path):
+    """Fail unless both readers find the mesh and the deflection that the history tells."""
+    base = str(history_path).removesuffix("_history.csv")
+    history = read_history(history_path)
+    with h5py.File(base + ".h5") as file:
+        stored = [file["times"][name]["time"][()] for name in sorted(file["times"])]
+        require(np.allclose(stored, TIMES, rtol=1e-12), f"{base}.h5 has the times {stored}.")
+        require(file["provenance/deck"][()].decode().startswith("!"), f"{base}.h5 hasn't got the deck.")
+    with meshio.xdmf.TimeSeriesReader(base + ".xdmf") as reader:
+        points, cells = reader.read_points_cells()
+        require(points.shape == ((2 * SIDE + 1)**2, 3), f"{base}.xdmf has {len(points)} points.")
+        require([(block.type, len(block.data)) for block in cells] == [("quad9", SIDE**2)], "The cells are wrong.")
+        centre = np.argmin(np.hypot(points[:, 0], points[:, 1]))
+        require(reader.num_steps == len(TIMES), f"{base}.xdmf has {reader.num_steps} times.")
+        for number, expected in enumerate(TIMES):
+            time, at_points, _ = reader.read_data(number)
+            require(abs(time - expected) <= 1e-12 * expected, f"{base}.xdmf: {time} instead of {expected}.")
+            require(np.all(np.isfinite(at_points["displacement"])), "A displacement isn't finite.")
+            deflection = np.interp(time, history["time"], history["deflection"])
+            found = at_points["displacement"][centre, 2]
+            require(abs(found - deflection) <= 1e-12 * deflection, f"At {time}: {found} instead of {deflection}.")
+
+
+def main(implam, folder):
+    """Run, restart and read; the exit code is 1 if something is wrong."""
+    folder = Path(folder)
+    try:
+        history = run_deck(implam, write_deck(folder / "run", "sun_chen_tan_sun.nml", SETTINGS))
+        check_fields(history)
+        shutil.rmtree(folder / "again", ignore_errors=True)
+        again = Path(shutil.copytree(folder / "run", folder / "again"))
+        run([implam, "restart", checkpoint_of(again)])
+        check_fields(again / history.name)
+    except TrialError as failure:
+        print(failure)
+        return 1
+    print(f"{len(TIMES)} times, the deflection of the history in each")
+    return 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main(*sys.argv[1:]))
