@@ -22,9 +22,14 @@ def delamination_figure(fields: Fields) -> Figure:
 
 
 def draw_delamination(axes: Axes, fields: Fields, below_ply: int) -> None:
-    """Draw the delamination below a ply: when each cell came apart, and the outline at every time written."""
+    """Draw the delamination below a ply: when each cell came apart, and the outline at every time written.
+
+    Cells that are apart at the first time, as the starter, are grey.
+    """
     cells, times = fields.times_apart(below_ply)
-    shown = PolyCollection(cells, array=times, cmap="viridis_r", linewidths=0)
+    first = fields.snapshots[0].time
+    axes.add_collection(PolyCollection(cells[times <= first], facecolors="lightgrey", linewidths=0))
+    shown = PolyCollection(cells[times > first], array=times[times > first], cmap="viridis_r", linewidths=0)
     axes.add_collection(shown)
     for time in np.unique(times):
         axes.add_collection(LineCollection(outline(cells[times <= time]), colors="black", linewidths=0.6))
@@ -32,17 +37,18 @@ def draw_delamination(axes: Axes, fields: Fields, below_ply: int) -> None:
     axes.set_title(f"below ply {below_ply}: area {area(cells):.3g}, {along:.3g} by {across:.3g}", fontsize="medium")
     axes.set(xlabel="x (the deck's units, as all)", ylabel="y")
     _frame(axes, along, across)
-    axes.figure.colorbar(shown, ax=axes, location="bottom", shrink=0.7, label="time at which cells came apart")
+    if np.any(times > first):
+        axes.figure.colorbar(shown, ax=axes, location="bottom", shrink=0.7, label="time at which cells came apart")
 
 
 def draw_cracks(axes: Axes, fields: Fields, below_ply: int) -> None:
-    """Draw over a delamination where the matrix of the ply on the back and of the one above the delamination cracked."""
+    """Draw over a delamination where the matrix cracked in the ply on the back and in the one above it."""
     last = fields.snapshots[-1]
     for ply, style in ((last.mesh.plies[-1], "-"), (below_ply, ":")):
         edges = outline(fields.whole(last.failed_cells(ply, MODES["matrix cracking"])))
         if len(edges):
             axes.add_collection(LineCollection(edges, colors="C3", linestyles=style, label=f"cracks of ply {ply}"))
-            axes.legend(loc="upper right", fontsize="small")
+            axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.12), fontsize="small", ncols=2)
 
 
 def failures_figure(fields: Fields) -> Figure:

@@ -80,6 +80,7 @@ def _stack(axes: Axes, history: History) -> None:
                  label="total at the start")
     axes.plot(history.time, history["energy_error"], color="black", linewidth=1, label="not accounted for")
     axes.set(xlabel="time (the deck's units, as all)", ylabel="energy", title=Path(history.name).stem)
+    axes.locator_params(axis="x", nbins=6)
     axes.legend(loc="center left", bbox_to_anchor=(1, 0.5))
 
 
@@ -93,6 +94,7 @@ def _draw(axes: Axes, histories: Sequence[History], column: str) -> None:
             axes.plot(history.time[grown], history[column][grown], "o", color=line.get_color(), markersize=3,
                       label="delamination grows")
     axes.set(xlabel="time (the deck's units, as all)", ylabel=_RESPONSES[column])
+    axes.locator_params(axis="x", nbins=6)
     axes.grid(alpha=0.3)
     axes.legend()
 

@@ -48,6 +48,8 @@ module simulations
     type(fields_file_t) :: fields
     !> Clocks of history, fields and checkpoints
     type(clock_t) :: history_clock, fields_clock, checkpoint_clock
+    !> Warnings already given
+    logical, private :: warned_of_border = .false., warned_of_energy = .false.
     !> Folder and name that all results share
     character(len=:), allocatable :: base
   contains
@@ -242,6 +244,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     logical :: row_due
 
+    call warn(self)
     row_due = self%history_clock%interval <= 0 .or. self%march%now%time >= end_of(self)
     if (self%history_clock%strikes_at(self%march%now%time)) row_due = .true.
     if (row_due) call self%history%write_row(row_of(self%model, self%march), error)
@@ -250,6 +253,28 @@ contains
     if (allocated(error)) return
     if (self%checkpoint_clock%strikes_at(self%march%now%time)) call save_checkpoint(self, error)
   end subroutine write_results
+
+  !> Warns, once each, of what a user must not overlook.
+  subroutine warn(self)
+    !> The run
+    class(simulation_t), intent(inout) :: self
+    real(wp) :: energy
+    real(wp), parameter :: much = 0.01_wp
+
+    associate (now => self%march%now)
+      if (now%border_reached .and. .not. self%warned_of_border) then
+        call self%log%warning('A delamination has reached the border of its zone at time '//to_text(now%time)// &
+                              ' and cannot grow there; make the zone larger.')
+        self%warned_of_border = .true.
+      end if
+      energy = max(now%ledger%initial, now%ledger%kinetic + now%ledger%strain)
+      if (-now%ledger%algorithmic > much*energy .and. .not. self%warned_of_energy .and. .not. self%deck%has_static) then
+        call self%log%warning('The time integrators have created more than 1 % of the energy by time '// &
+                              to_text(now%time)//': take smaller steps, or more damping (rho_inf) with delamination.')
+        self%warned_of_energy = .true.
+      end if
+    end associate
+  end subroutine warn
 
   !> Saves a checkpoint.
   subroutine save_checkpoint(self, error)

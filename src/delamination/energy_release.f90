@@ -10,8 +10,8 @@
 !> Corner lines belong to two segments, so their forces are shared (see `delamination_fronts`): the works
 !> of all segments of a straight front then add up to what the ties really do. Where the front turns around
 !> delaminated cells the corner line has no jump behind, as the other leg of the front runs there: it adds
-!> nothing. Where it turns around an intact cell both legs lead into that cell, the shared forces are split
-!> between them, and only both together release what the cell does: see `over_outside_cells`.
+!> nothing. Where it turns around an intact cell both legs lead into that cell and the shared forces are split
+!> between them; what both together release is found by `over_outside_cells`.
 module energy_release
   use delamination_fronts, only: front_segment_t
   use kinds, only: wp
@@ -113,18 +113,21 @@ contains
     value = (4*inside*(1 - inside)*jump(:, 1) + inside*(2*inside - 1)*jump(:, 2))*(distance/inside)
   end function jump_behind
 
-  !> Sums the rates of all segments that lead into the same intact cell: together they are the rate at which
-  !> that cell releases energy when it comes apart. On a straight front nothing changes.
-  !> Measured on a membrane held down outside a disc that grew cell by cell from a radius of 4 to 12 cells: at the
-  !> hardest outline on the way the largest rate was 1.0 to 1.2 of the exact one for sums over cells, 0.54 to 0.66
-  !> for single segments, which would put the threshold load a quarter or more too high.
-  pure function over_outside_cells(segments, rates) result(summed)
+  !> Rates of the intact cells ahead of a front from those of the segments that lead into them. Along a stepped
+  !> front each segment gets the component of G along its own normal, as the true front is shorter than its steps:
+  !> rates of parallel segments add up, and G is the root of the squares of the two directions' sums. On a straight
+  !> front nothing changes. The mixture of modes is that of the plain sums.
+  !> Measured on a disc that grows cell by cell under a central load, on the easiest way through its hardest
+  !> outline: this rate is 0.97 to 1.00 of the exact one, plain sums over the cell 1.18 to 1.25, single segments 0.74.
+  !> The threshold load is wrong by half of that.
+  pure function over_outside_cells(segments, rates) result(combined)
     !> All segments of a front, those into the same cell one after the other
     type(front_segment_t), intent(in) :: segments(:)
     !> G_I, G_II, G_III of each segment, (3, segments)
     real(wp), intent(in) :: rates(:, :)
-    !> The sums, repeated for each segment of a cell, (3, segments)
-    real(wp) :: summed(3, size(segments))
+    !> The rates of the cells, repeated for each segment of a cell, (3, segments)
+    real(wp) :: combined(3, size(segments))
+    real(wp) :: along(2)
     integer :: first, last, s
 
     first = 1
@@ -134,8 +137,13 @@ contains
         if (any(segments(last + 1)%outside /= segments(first)%outside)) exit
         last = last + 1
       end do
+      along = 0
       do s = first, last
-        summed(:, s) = sum(rates(:, first:last), dim=2)
+        along(segments(s)%direction) = along(segments(s)%direction) + sum(rates(:, s))
+      end do
+      do s = first, last
+        combined(:, s) = sum(rates(:, first:last), dim=2)
+        if (all(along > 0)) combined(:, s) = combined(:, s)*(norm2(along)/sum(along))
       end do
       first = last + 1
     end do

@@ -29,7 +29,7 @@ module equilibria
     logical :: mean = .false.
     !> The unknown force, and the force at the end of the step
     real(wp) :: unknown = 0, force_end = 0
-    !> Share of the unknown in the plate's load, and the load from the old force
+    !> Share of the unknown in the plate's load, and the rest of the load
     real(wp) :: share = 0, inherited = 0
     !> Iterations of the force
     integer :: iterations = 0
@@ -94,8 +94,12 @@ contains
       if (unsolvable(error)) return
       call operator%correct(model, residual, correction, error)
       if (unsolvable(error)) return
-      if (model%scene%has_impactor) call solve_strike(model, operator, old, new, strike, correction, error)
-      if (allocated(error)) return
+      if (model%scene%has_impactor) call solve_strike(model, integrator, operator, old, new, strike, correction, error)
+      if (allocated(error)) then
+        ! Numbers have run away, or the operator is not positive: a shorter step may cure it.
+        deallocate (error)
+        return
+      end if
       call new%separation%hold(model, correction)
       new%motion%displacement = new%motion%displacement + correction
       call integrator%complete(step, old%motion, new%motion%displacement, new%motion%velocity, new%motion%acceleration)
@@ -158,7 +162,8 @@ contains
     if (error%code == exit_convergence) deallocate (error)
   end function unsolvable
 
-  !> True if the lagged operator brings the residual down too slowly to be kept.
+  !> True if the lagged operator brings the residual down too slowly to be kept: it has had its share of
+  !> iterations, hardly helps, or would not reach the tolerance in the iterations left.
   pure logical function too_slow(model, iterations, norm, previous)
     !> The model
     type(model_t), intent(in) :: model
@@ -166,8 +171,12 @@ contains
     integer, intent(in) :: iterations
     !> Residual now and one iteration before
     real(wp), intent(in) :: norm, previous
+    real(wp) :: wanted
 
     too_slow = modulo(iterations + 1, model%scene%adapt%iterations) == 0 .or. norm > 0.5_wp*previous
+    if (too_slow .or. previous >= huge(previous) .or. norm <= model%scene%solver%tolerance) return
+    wanted = log(model%scene%solver%tolerance/norm)/log(norm/previous)
+    too_slow = wanted > model%scene%solver%max_iterations - iterations
   end function too_slow
 
   !> The impactor's part in a step.
@@ -251,9 +260,11 @@ contains
 
   !> Solves for the impact force, given the correction of the plate for the force assumed, and adds the
   !> plate's response to the change of the force.
-  subroutine solve_strike(model, operator, old, new, strike, correction, error)
+  subroutine solve_strike(model, integrator, operator, old, new, strike, correction, error)
     !> The model
     type(model_t), intent(in) :: model
+    !> Integrator of the plate
+    type(plate_integrator_t), intent(in) :: integrator
     !> Holds the response to a unit force
     type(tangent_operator_t), intent(in) :: operator
     !> State at the start
@@ -278,6 +289,8 @@ contains
                              strike%force_end, iterations, error)
     correction = correction + (strike%share*(strike%unknown - before))*operator%response
     new%force_iterations = new%force_iterations + iterations
+    ! The plate wants the force at 1 - alpha_f of the step, which is the mean force for alpha_f = 1/2 only.
+    if (strike%mean) strike%inherited = (0.5_wp - integrator%alpha_f)*(strike%force_end - old%force)
   end subroutine solve_strike
 
   !> Completes an accepted step: impactor, indentation and ledger.

@@ -51,7 +51,7 @@ contains
     front%ratio = [(release_ratio(model%scene%delaminations(zone), front%modes(:, s)), s=1, size(front%segments))]
   end function release_along_front
 
-  !> Rates by virtual crack closure, summed over the edges into the same cell.
+  !> Rates by virtual crack closure, those of the edges into the same cell put together.
   function vcct_rates(model, motion, zone, segments) result(modes)
     !> The model
     type(model_t), intent(in) :: model

@@ -113,6 +113,7 @@ contains
       if (converged) exit
       self%rejected = self%rejected + 1
       call self%controller%reject(step)
+      self%operator%ready = .false.
       if (step <= smallest_step(model)*(1 + 1.0e-9_wp)) then
         call fail(error, exit_convergence, 'No equilibrium from time '//to_text(self%now%time)// &
                   ' on with the smallest step, '//to_text(step)//'.')

@@ -28,6 +28,8 @@ contains
       curvature = curvature + strains(1 + modulo(model%struck_elements(i) - 1, lanes), 4:6)/model%struck_count
     end do
     call model%communicator%sum(curvature)
+    ! The twist vanishes at the struck point, but not in the mean over the elements of one quarter.
+    curvature(3) = 0
     associate (d => model%section%stiffness(13:18))
       moment = [d(1)*curvature(1) + d(2)*curvature(2) + d(3)*curvature(3), &
                 d(2)*curvature(1) + d(4)*curvature(2) + d(5)*curvature(3), &

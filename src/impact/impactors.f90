@@ -22,8 +22,9 @@ module impactors
   !> (omega*step)**6: 2.1e-5 a step at 0.2, 1.3e-3 at 0.4, 11 % at 1, worst 19 % at 1.86. At 0.2 the
   !> amplitude of a whole contact (omega*time = 4, some 20 steps) is off by 4e-4 at most.
   real(wp), parameter, public :: gear4_limit = 0.2_wp
-  !> Largest omega*step of the central difference: nine tenths of its stability limit 2.
-  real(wp), parameter, public :: central_limit = 1.8_wp
+  !> Largest omega*step of the other integrators, which are stable far beyond, so that a contact is seen at all:
+  !> some six steps a contact at least, where the rebound is still right to a per cent.
+  real(wp), parameter, public :: resolution_limit = 0.5_wp
   !> Past points that gear4 needs before the current one
   integer, parameter :: past = 3
 
@@ -132,8 +133,7 @@ contains
     next%force = force_end
   end function advance
 
-  !> Largest step that keeps the impactor's integrator stable against the contact stiffness; huge
-  !> for the integrators that need no limit. With gear4 omega*step stays below `gear4_limit` at
+  !> Largest step with which the impactor's integrator follows the contact: omega*step stays below its limit at
   !> every indentation the step may reach.
   pure function largest_safe_step(parameters, law, state, alpha, approach) result(step)
     !> Mass, integrator
@@ -151,14 +151,8 @@ contains
     real(wp) :: limit, rate, depth
 
     step = huge(step)
-    select case (parameters%integrator)
-    case (integrator_trapezoidal, integrator_conserving)
-      return
-    case (integrator_central)
-      limit = central_limit
-    case default
-      limit = gear4_limit
-    end select
+    limit = resolution_limit
+    if (parameters%integrator == integrator_gear4) limit = gear4_limit
     ! omega**2 = rate*sqrt(alpha); a bound from either part of alpha + approach*step, then both
     rate = 1.5_wp*law%k*stiffening(law, state)/parameters%mass
     depth = max(alpha, 0.0_wp)

@@ -38,11 +38,7 @@ contains
     do place = 1, size(deck%delaminations)
       call fill_delamination(deck, place)
     end do
-    if (size(deck%delaminations) == 0) return
     call check_delaminations(deck, problems)
-    if (.not. deck%has_time .or. deck%settings%is_given('time', 'rho_inf')) return
-    deck%time%rho_infinity = 0
-    call deck%settings%derive('time', 'rho_inf', '0', .false.)
   end subroutine fill_damage
 
   !> Strengths that the criteria need must be there.

@@ -202,6 +202,8 @@ contains
                                 [integrator_newmark, integrator_generalized_alpha])
       time%beta = s%real_of('time', 'beta')
       time%gamma = s%real_of('time', 'gamma')
+      if (.not. s%is_given('time', 'rho_inf')) &
+        call s%derive('time', 'rho_inf', merge('0', '1', s%has_group('delamination')), .false.)
       time%rho_infinity = s%real_of('time', 'rho_inf')
     end associate
   end subroutine fill_time
