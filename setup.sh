@@ -33,10 +33,11 @@ install_packages() {
   apt-get -o DPkg::Lock::Timeout=300 -qq install --no-install-recommends "${missing[@]}"
 }
 
-# The commands that check and plot results go into .venv, and with them, for the tests, a checker of style.
+# The commands that check and plot results go into .venv, and with them, for the tests, a checker of style and readers
+# of field files.
 install_python_tools() {
   local stamp=.venv/ready-to-$task tools=(./postproc) python=/usr/bin/python3
-  [[ $task == run ]] || tools+=('ruff==0.17.*')
+  [[ $task == run ]] || tools+=('ruff==0.17.*' h5py meshio)
   [[ -x $python ]] || python=python3
   if [[ -e $stamp && -z $(find postproc -name '*.py' -newer "$stamp" -o -name pyproject.toml -newer "$stamp") ]]; then
     return

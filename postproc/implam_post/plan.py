@@ -5,6 +5,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
+from matplotlib.ticker import MaxNLocator
 
 from implam_post.fields import MODES, Fields, area, extents, outline
 
@@ -38,7 +39,8 @@ def draw_delamination(axes: Axes, fields: Fields, below_ply: int) -> None:
     axes.set(xlabel="x (the deck's units, as all)", ylabel="y")
     _frame(axes, along, across)
     if np.any(times > first):
-        axes.figure.colorbar(shown, ax=axes, location="bottom", shrink=0.7, label="time at which cells came apart")
+        axes.figure.colorbar(shown, ax=axes, location="bottom", ticks=MaxNLocator(5), shrink=0.8,
+                             label="time at which cells came apart")
 
 
 def draw_cracks(axes: Axes, fields: Fields, below_ply: int) -> None:

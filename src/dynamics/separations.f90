@@ -315,15 +315,17 @@ contains
     end do
     call archive%item('separation/peak', self%peak)
     call archive%item('separation/glued', self%glued)
-    allocate (fields(2, size(self%free)))
+    allocate (fields(3, size(self%free)))
     fields(1, :) = self%multiplier
     fields(2, :) = self%pressure
+    fields(3, :) = self%slope
     associate (share => model%distribution)
       call archive%field('separation/pressures', share%points(:share%owned), model%mesh%points(), fields)
     end associate
     if (.not. archive%loading) return
     self%multiplier = fields(1, :)
     self%pressure = fields(2, :)
+    self%slope = fields(3, :)
     call self%free_jumps(model)
   end subroutine visit
 end module separations

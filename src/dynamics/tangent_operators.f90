@@ -48,7 +48,7 @@ module tangent_operators
     real(wp) :: deflection = 0
     !> Mean deflection of the patch under that force
     real(wp) :: compliance = 0
-    !> Factorisations and solves so far
+    !> Factorisations, and corrections solved for, so far
     integer :: factorizations = 0, solves = 0
     !> Time spent in the parts of a step
     type(timer_set_t) :: timers
@@ -268,6 +268,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     call solve_factor(self, model, residual, correction, error)
+    self%solves = self%solves + 1
     if (.not. allocated(error)) call self%changes%correct(model%communicator, self%numbering, correction)
   end subroutine correct
 
@@ -290,7 +291,6 @@ contains
     call self%timers%start('solve')
     call self%solver%solve(right_hand_side, values, error)
     call self%timers%stop('solve')
-    self%solves = self%solves + 1
     if (allocated(error)) return
     call self%numbering%scatter(values, solution)
     call model%halo%update(solution)

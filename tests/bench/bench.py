@@ -102,7 +102,7 @@ def speed(program, arguments):
                 runs = [Run(program, kinematics, elements, step*1e-6, 1e-3, arguments.more)
                         for _ in range(arguments.repeat)]
                 errors = [100*(runs[0].largest(column)/value - 1) for column, value
-                          in zip(('force', 'deflection'), REFERENCE[kinematics])]
+                          in zip(('force', 'deflection'), REFERENCE[kinematics], strict=True)]
                 seconds = statistics.median(run.seconds for run in runs)
                 print(f'| {kinematics} | {elements} x {elements} | {step:g} | {seconds:.2f} | {errors[0]:+.2f} % | '
                       f'{errors[1]:+.2f} % |', flush=True)

@@ -56,7 +56,7 @@ def main():
             text = page.read()
         table = ask(program, "explain", "--markdown", group)[1].strip()
         if "--write" in sys.argv:
-            text = TABLE.sub(lambda _: table, text)
+            text = TABLE.sub(table.replace("\\", r"\\"), text)
             with open(path, "w", encoding="utf-8") as page:
                 page.write(text)
         written = TABLE.search(text)

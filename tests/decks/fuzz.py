@@ -21,8 +21,8 @@ EXTREMES = [b"0", b"-0.0", b"1", b"-1", b"1e-300", b"1e300", b"1e999", b"1e-999"
             b"+", b"1e+", b"0x7f", b"1e99999999999999999999", b"3*", b"0*1", b"10000*1", b"9999999999*1", b"'1'", b"",
             b"1" * 500]
 PIECES = [b"&", b"/", b"'", b'"', b"!", b"=", b",", b"(", b")", b"%", b"*", b"\n", b"\r", b"\0", b"\t", b"&end",
-          b"&plate ", b"&material ", b"&time /", b"$", b";", b"2*'a'", b"'\n", b"//", b"\xff\xfe", b"\xc3\xa9", b" a=1 ",
-          b".true.", b".false.", b"name='x'", b"T", b"-", b"e", b"x" * 5000, b"a=1 " * 300, b"'" * 301]
+          b"&plate ", b"&material ", b"&time /", b"$", b";", b"2*'a'", b"'\n", b"//", b"\xff\xfe", b"\xc3\xa9",
+          b" a=1 ", b".true.", b".false.", b"name='x'", b"T", b"-", b"e", b"x" * 5000, b"a=1 " * 300, b"'" * 301]
 
 
 def spoil(deck, chance):

@@ -7,8 +7,6 @@ module cracked_plates
   use mesh_parameters, only: edge_free, edge_clamped, symmetry_none, symmetry_quarter
   use material_parameters, only: material_t
   use delamination_parameters, only: contact_none
-  use delamination_fronts, only: front_segment_t, find_front
-  use energy_release, only: vcct_release
   use front_releases, only: front_release_t, release_along_front
   use scenes, only: scene_t
   use models, only: model_t, create_model
@@ -17,10 +15,7 @@ module cracked_plates
   use static_steps, only: attempt_load
   implicit none
   private
-  public :: cracked_plate_t, strip, disc, outside_mean
-
-  !> Pressure on nothing: forces are set node by node.
-  real(wp), parameter, public :: pi = acos(-1.0_wp)
+  public :: cracked_plate_t, strip, disc, front_mean
 
   !> A plate and its state under the forces in model%pressure.
   type :: cracked_plate_t
@@ -37,6 +32,8 @@ module cracked_plates
     procedure :: release
     !> Adds a force along a line of nodes across the strip.
     procedure :: pull
+    !> Adds a force on the patch, half of it on the lower layer.
+    procedure :: strike
     !> Finds equilibrium.
     procedure :: settle
     !> Strain energy of the modelled part.
@@ -179,6 +176,23 @@ contains
     end associate
   end subroutine pull
 
+  !> Adds a force on the patch, half of it on the lower layer so that the faces neither part nor meet.
+  subroutine strike(self, force)
+    class(cracked_plate_t), intent(inout) :: self
+    real(wp), intent(in) :: force
+    integer :: node, upper, lower
+
+    associate (model => self%model)
+      do node = 1, model%mesh%nodes()
+        upper = model%distribution%local(model%mesh%first_point(node))
+        if (.not. abs(model%patch(upper)) > 0) cycle
+        lower = model%distribution%local(model%mesh%lower_point(node, 1))
+        model%pressure(3, upper) = force/model%mesh%multiplicity*model%patch(upper)
+        model%pressure(3, lower) = model%pressure(3, upper)/2
+      end do
+    end associate
+  end subroutine strike
+
   !> Finds equilibrium from rest.
   subroutine settle(self)
     class(cracked_plate_t), intent(inout) :: self
@@ -208,24 +222,10 @@ contains
     front = release_along_front(self%model, self%state%separation, self%state%motion, 1, method)
   end function rates
 
-  !> Mean over the area of the cells outside a front.
-  pure real(wp) function outside_mean(plate, front) result(mean)
-    type(cracked_plate_t), intent(in) :: plate
+  !> Mean rate over the length of a front.
+  pure real(wp) function front_mean(front) result(mean)
     type(front_release_t), intent(in) :: front
-    real(wp) :: area
-    integer :: s
 
-    mean = 0
-    area = 0
-    do s = 1, size(front%segments)
-      associate (segment => front%segments(s))
-        if (s > 1) then
-          if (all(segment%outside == front%segments(s - 1)%outside)) cycle
-        end if
-        mean = mean + sum(front%modes(:, s))*plate%model%mesh%cell_area(segment%outside)
-        area = area + plate%model%mesh%cell_area(segment%outside)
-      end associate
-    end do
-    mean = mean/area
-  end function outside_mean
+    mean = sum(sum(front%modes, dim=1)*front%segments%width)/sum(front%segments%width)
+  end function front_mean
 end module cracked_plates
