@@ -38,7 +38,7 @@ module tangent_operators
     real(wp), allocatable :: diagonal(:, :)
     !> Displacement under a unit force of the impactor, (5, points)
     real(wp), allocatable :: response(:, :)
-    !> That response without the changes since the factorisation; allocated only with layers
+    !> That response without the changes since the factorisation, (5, points)
     real(wp), allocatable :: fresh_response(:, :)
     !> Stiffness added to the three jumps of each point when factored, (3, points)
     real(wp), allocatable :: added(:, :)
@@ -128,7 +128,6 @@ contains
     type(model_t), intent(in) :: model
     !> Set if the operator is singular
     type(error_t), allocatable, intent(inout) :: error
-    real(wp), allocatable :: force(:, :)
 
     if (model%map%layered) call assemble_diagonal(model, self%numbering, self%added, self%solver)
     call self%solver%finish_assembly(error)
@@ -141,14 +140,26 @@ contains
     call self%changes%clear()
     self%response = 0
     self%compliance = 0
-    if (.not. model%scene%has_impactor) return
+    if (model%scene%has_impactor) call find_response(self, model, error)
+    self%fresh_response = self%response
+  end subroutine factorize
+
+  !> Finds the response to a unit force of the impactor.
+  subroutine find_response(self, model, error)
+    !> The operator
+    type(tangent_operator_t), intent(inout) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Set if the solve fails
+    type(error_t), allocatable, intent(inout) :: error
+    real(wp), allocatable :: force(:, :)
+
     allocate (force, mold=self%response)
     force = 0
     force(3, :) = model%patch/model%mesh%multiplicity
     call solve_factor(self, model, force, self%response, error)
     self%compliance = model%patch_mean(self%response)
-    if (model%map%layered) self%fresh_response = self%response
-  end subroutine factorize
+  end subroutine find_response
 
   !> Follows changes of ties and contacts since the factorisation.
   subroutine follow(self, model, separation, possible, error)
