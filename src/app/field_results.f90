@@ -70,15 +70,18 @@ contains
     type(fields_file_t), intent(inout) :: fields
     !> Set if the file cannot be written
     type(error_t), allocatable, intent(out) :: error
+    real(wp), allocatable :: motion(:, :)
 
     call fields%begin(march%now%time, march%now%step, error)
     if (allocated(error)) return
-    associate (owned => model%distribution%owned, motion => march%now%motion)
-      call fields%write_point_field('displacement', motion%displacement(1:3, :owned), error)
+    associate (owned => model%distribution%owned)
+      motion = model%motion_of(march%now%motion%displacement)
+      call fields%write_point_field('displacement', motion(1:3, :owned), error)
       if (allocated(error)) return
-      call fields%write_point_field('rotation', motion%displacement(4:5, :owned), error)
+      call fields%write_point_field('rotation', motion(4:5, :owned), error)
       if (allocated(error)) return
-      call fields%write_point_field('velocity', motion%velocity(1:3, :owned), error)
+      motion = model%motion_of(march%now%motion%velocity)
+      call fields%write_point_field('velocity', motion(1:3, :owned), error)
       if (allocated(error)) return
     end associate
     if (model%map%layered) call write_interfaces(model, march, fields, error)
