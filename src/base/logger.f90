@@ -109,7 +109,7 @@ contains
     character(len=*), intent(in) :: text
 
     call self%to_terminal(output_unit, text)
-    call self%to_file(text, at_once=.false.)
+    call self%to_file(text, at_once=.true.)
   end subroutine note
 
   !> Tells what only the file need know.

@@ -66,9 +66,30 @@ contains
     logical :: running
 
     call MPI_Initialized(running)
+    if (.not. running) call avoid_named_semaphores()
     if (.not. running) call MPI_Init()
     communicator = communicator_from_handle(MPI_COMM_WORLD%mpi_val)
   end subroutine start_mpi
+
+  !> Keeps Open MPI's parallel files off named semaphores, which outlive a killed run and make every later run that
+  !> opens a file of the same name wait for ever. Nothing here uses what they are for (shared file pointers), and a
+  !> choice of the user's own is left alone. Other MPI libraries ignore the variable.
+  subroutine avoid_named_semaphores()
+    use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char
+    interface
+      !> C library: sets a variable of the environment.
+      integer(c_int) function setenv(name, value, overwrite) bind(c, name='setenv')
+        import :: c_char, c_int
+        !> Name and value
+        character(kind=c_char), intent(in) :: name(*), value(*)
+        !> 0: a variable that is set stays as it is
+        integer(c_int), value :: overwrite
+      end function setenv
+    end interface
+    integer(c_int) :: status
+
+    status = setenv('OMPI_MCA_sharedfp'//c_null_char, '^sm'//c_null_char, 0_c_int)
+  end subroutine avoid_named_semaphores
 
   !> Ends MPI; nothing may be said between ranks afterwards.
   subroutine finish_mpi()

@@ -157,7 +157,7 @@ def stamp(folder):
     return max((path.stat().st_mtime_ns for path in folder.glob("*_restart.h5")), default=0)
 
 
-LONG = ["mesh%elements=12,12", "case%kinematics='von_karman'", "impactor%velocity=10", "time%end=600e-6"]
+LONG = ["mesh%elements=16,16", "case%kinematics='von_karman'", "impactor%velocity=10", "time%end=2400e-6"]
 
 
 def check_signal(implam, folder, _):
