@@ -34,16 +34,22 @@ class Mesh:
 
 @dataclass(frozen=True)
 class Snapshot:
-    """The state of interfaces and plies at one time: flags by element."""
+    """The state of interfaces and plies at one time, by element: flags, and G/G_c ahead of the fronts."""
 
     time: float
     mesh: Mesh
     delaminated: np.ndarray
     failures: dict[int, np.ndarray]
+    release_ratio: np.ndarray
 
     def delaminated_cells(self, below_ply: int) -> np.ndarray:
         """Return the corners of the cells that came apart below a ply."""
         return self.mesh.corners[self.delaminated & (self.mesh.first_ply == below_ply + 1)]
+
+    def release(self, below_ply: int) -> tuple[np.ndarray, np.ndarray]:
+        """Return the corners of the cells ahead of the front below a ply that release energy, and G/G_c there."""
+        loaded = (self.release_ratio > 0) & (self.mesh.first_ply == below_ply + 1)
+        return self.mesh.corners[loaded], self.release_ratio[loaded]
 
     def failed_cells(self, ply: int, mode: int) -> np.ndarray:
         """Return the corners of the cells in which a ply failed in a mode (1 fibres, 2 cracking, 4 crushing)."""
@@ -141,7 +147,9 @@ def _mesh(group: h5py.Group) -> Mesh:
 def _snapshot(group: h5py.Group, meshes: dict[int, Mesh]) -> Snapshot:
     """Read a time; without interfaces nothing is apart, without ply damage no ply has an entry."""
     mesh, cells = meshes[int(group["mesh"][()])], group.get("cells", {})
-    flags = {name: cells[name][()].ravel().astype(int) for name in cells}
-    delaminated = flags.get("delaminated_above", np.zeros(len(mesh.first_ply), dtype=int)) > 0
-    failures = {ply: flags[f"ply_{ply}_failure"] for ply in mesh.plies if f"ply_{ply}_failure" in flags}
-    return Snapshot(float(group["time"][()]), mesh, delaminated, failures)
+    nothing = np.zeros(len(mesh.first_ply))
+    delaminated, release_ratio = (cells[name][()].ravel() if name in cells else nothing
+                                  for name in ("delaminated_above", "energy_release_above"))
+    failures = {ply: cells[f"ply_{ply}_failure"][()].ravel().astype(int) for ply in mesh.plies
+                if f"ply_{ply}_failure" in cells}
+    return Snapshot(float(group["time"][()]), mesh, delaminated > 0, failures, release_ratio)

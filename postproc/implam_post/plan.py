@@ -37,7 +37,7 @@ def draw_delamination(axes: Axes, fields: Fields, below_ply: int) -> None:
     along, across = extents(cells)
     axes.set_title(f"below ply {below_ply}: area {area(cells):.3g}, {along:.3g} by {across:.3g}", fontsize="medium")
     axes.set(xlabel="x (the deck's units, as all)", ylabel="y")
-    _frame(axes, along, across)
+    frame(axes, along, across)
     if np.any(times > first):
         axes.figure.colorbar(shown, ax=axes, location="bottom", ticks=MaxNLocator(5), shrink=0.8,
                              label="time at which cells came apart")
@@ -78,7 +78,7 @@ def draw_failures(axes: Axes, fields: Fields, ply: int) -> None:
         cells = fields.whole(fields.snapshots[-1].failed_cells(ply, mode))
         axes.add_collection(PolyCollection(cells, facecolors=_COLOURS[name], linewidths=0))
     axes.set_title(f"ply {ply}", fontsize="medium")
-    _frame(axes, *_reach(fields))
+    frame(axes, *_reach(fields))
 
 
 def _reach(fields: Fields) -> tuple[float, float]:
@@ -88,7 +88,7 @@ def _reach(fields: Fields) -> tuple[float, float]:
     return max(along for along, _ in reached), max(across for _, across in reached)
 
 
-def _frame(axes: Axes, along: float, across: float) -> None:
+def frame(axes: Axes, along: float, across: float) -> None:
     """Show a rectangle around the struck point with room around what is there, equal scales both ways."""
     largest = max(along, across)
     half = 0.65 * np.maximum([along, across], largest / 3) if largest > 0 else np.ones(2)

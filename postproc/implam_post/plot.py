@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 
 from implam_post.errors import EXIT_DONE, CommandParser, FileError, ImplamError, run
 from implam_post.fields import Fields, read_fields
+from implam_post.front import front_figure
 from implam_post.history import ENERGIES, History, read_history
 from implam_post.plan import delamination_figure, draw_cracks, draw_delamination, failures_figure
 from implam_post.quantities import growth_rows
@@ -56,11 +57,13 @@ def plot_overview(fields: Fields, history: History, path: Path) -> Path:
     return _save(figure, path, dots_per_inch=80)
 
 
-def plot_fields(fields: Fields, base: Path) -> list[Path]:
-    """Draw what the fields hold of interfaces and of plies, a picture each."""
+def plot_fields(fields: Fields, base: Path, times: Sequence[float] | None = None) -> list[Path]:
+    """Draw what the fields hold of interfaces, of their fronts (at some times) and of plies, a picture each."""
     drawn = []
     if fields.snapshots[-1].mesh.interfaces:
         drawn.append(_save(delamination_figure(fields), base.with_name(f"{base.name}_delamination.png")))
+    if any(np.any(snapshot.release_ratio > 0) for snapshot in fields.snapshots):
+        drawn.append(_save(front_figure(fields, times), base.with_name(f"{base.name}_front.png")))
     if fields.snapshots[-1].failures:
         drawn.append(_save(failures_figure(fields), base.with_name(f"{base.name}_plies.png")))
     return drawn
@@ -120,7 +123,7 @@ def _command(options: argparse.Namespace) -> int:
         if options.save:
             print(plot_overview(fields, read_history(history), options.save))
             return EXIT_DONE
-        drawn = plot_fields(fields, (options.output or path.parent) / path.stem)
+        drawn = plot_fields(fields, (options.output or path.parent) / path.stem, options.times)
         print(*drawn or [f"{path} holds neither interfaces nor failures of plies."], sep="\n")
         if history not in histories and (options.history or history.exists()):
             histories.append(history)
@@ -140,13 +143,16 @@ def _plot_histories(paths: Sequence[Path], output: Path | None) -> int:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command."""
     parser = CommandParser("implam-plot", description="Plot force, indentation, deflection and energies of histories, "
-                           "several drawn over each other, and of NAME.h5 the delamination of each interface and the "
-                           "failures of each ply over the whole plate, with the history beside it.")
+                           "several drawn over each other, and of NAME.h5 the delamination of each interface, the "
+                           "energy release rate along its front and the failures of each ply over the whole plate, "
+                           "with the history beside it.")
     parser.add_argument("results", nargs="+", type=Path, metavar="RESULT",
                         help="histories (.csv) and fields (.h5) written by implam")
     parser.add_argument("--output", type=Path, metavar="DIR", help="folder of the plots (default: beside each result)")
     parser.add_argument("--history", type=Path, metavar="CSV",
                         help="history that goes with NAME.h5 (default: NAME_history.csv beside it)")
+    parser.add_argument("--times", nargs="+", type=float, metavar="TIME",
+                        help="times at which the front is drawn (default: up to eight of those written)")
     parser.add_argument("--save", type=Path, metavar="FILE",
                         help="one picture of delamination, force and energies of NAME.h5, instead of all")
     return run(_command, parser, arguments)

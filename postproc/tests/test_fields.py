@@ -12,6 +12,7 @@ import numpy as np
 from implam_post import plot
 from implam_post.errors import FileError
 from implam_post.fields import area, extents, outline, read_fields
+from implam_post.front import front_figure
 from implam_post.history import ENERGIES, History
 from implam_post.quantities import growth_rows
 
@@ -23,7 +24,8 @@ TIMES = (0.5, 1.0, 1.5)
 def write_fields(path: Path, part: str = "quarter", times: tuple[float, ...] = TIMES) -> None:
     """Write 3 x 3 cells of unequal sizes, each with layers of plies 1-2 and 3.
 
-    The starter is cell (0, 0); cell (1, 0) follows at the second time, cell (2, 0) at the third. Ply 3 cracks in cells
+    The starter is cell (0, 0); cell (1, 0) follows at the second time, cell (2, 0) at the third. The cells beside them
+    release energy, as many times G_c as their distance from the corner, halved at the first time. Ply 3 cracks in cells
     (0, 0) and (1, 0); ply 1 fails in all three modes in cell (2, 2).
     """
     corners, first, last = [], [], []
@@ -49,14 +51,18 @@ def write_fields(path: Path, part: str = "quarter", times: tuple[float, ...] = T
 
 def flags(number: int) -> dict[str, np.ndarray]:
     """Return the fields of a time by element."""
-    apart, back, front = (np.zeros((len(CELLS), 2)) for _ in range(3))
+    apart, release, back, front = (np.zeros((len(CELLS), 2)) for _ in range(4))
     for i in range(number):
         apart[CELLS.index((i, 0)), 1] = 1
     back[[CELLS.index((0, 0)), CELLS.index((1, 0))], 1] = 2
     front[CELLS.index((2, 2)), 0] = 7
     # The solver leaves what doesn't belong to an element's plies at zero; a stray flag must not count.
     back[CELLS.index((2, 2)), 0] = 2
-    named = {"delaminated_above": apart, "ply_1_failure": front, "ply_2_failure": 0 * front, "ply_3_failure": back}
+    for i, j in CELLS:
+        beside = (i, j) == (number, 0) or (j == 1 and i < number)
+        release[CELLS.index((i, j)), 1] = beside * (i + j) / (1 + (number == 1))
+    named = {"delaminated_above": apart, "energy_release_above": release, "ply_1_failure": front,
+             "ply_2_failure": 0 * front, "ply_3_failure": back}
     return {name: values.ravel() for name, values in named.items()}
 
 
@@ -123,15 +129,38 @@ class FieldsTest(unittest.TestCase):
         for mode in (1, 2, 4):
             self.assertAlmostEqual(area(last.failed_cells(1, mode)), 9)
 
+    def test_release_along_the_front(self) -> None:
+        """Cells ahead of the front with G/G_c; the picture has one line a time and the front in plan."""
+        fields = read_fields(self.path)
+        cells, ratio = fields.snapshots[0].release(2)
+        self.assertEqual(sorted(ratio), [0.5, 0.5])
+        self.assertAlmostEqual(area(cells), 2 + 2)
+        around, in_plan = front_figure(fields).axes[:2]
+        lines = [line for line in around.lines if line.get_marker() == "."]
+        self.assertEqual([len(line.get_xdata()) for line in lines], [2, 3, 3])
+        np.testing.assert_allclose(lines[0].get_xdata(), np.degrees(np.arctan([0.5 / 2, 2 / 0.5])))
+        self.assertEqual(in_plan.get_title(), "time 1.5")
+        self.assertEqual(np.max(in_plan.collections[0].get_array()), 3)
+        around, in_plan = front_figure(fields, [0.6]).axes[:2]
+        self.assertEqual([len(line.get_xdata()) for line in around.lines], [2, 2])
+        self.assertEqual(in_plan.get_title(), "time 0.5")
+
+    def test_times_asked_for(self) -> None:
+        """A time that the fields don't reach is told."""
+        self.assertEqual(self.plot(self.path, "--times", "0.5", "1.5")[0], 0)
+        code, text = self.plot(self.path, "--times", "2")
+        self.assertEqual((code, text.count("outside the fields")), (1, 1), text)
+
     def test_plots_beside_the_fields(self) -> None:
         """Delamination and plies, and the history if there is one; --output moves them."""
         code, text = self.plot(self.path)
         self.assertEqual(code, 0, text)
-        self.assertEqual({path.name for path in self.folder.glob("*.png")}, {"case_delamination.png", "case_plies.png"})
+        self.assertEqual({path.name for path in self.folder.glob("*.png")},
+                         {"case_delamination.png", "case_front.png", "case_plies.png"})
         self.write_history()
         self.assertEqual(self.plot(self.path, "--output", self.folder / "plots")[0], 0)
         self.assertEqual({path.name for path in (self.folder / "plots").iterdir()},
-                         {"case_delamination.png", "case_plies.png", "case_history_response.png",
+                         {"case_delamination.png", "case_front.png", "case_plies.png", "case_history_response.png",
                           "case_history_energies.png"})
 
     def test_one_small_picture(self) -> None:

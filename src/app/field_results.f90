@@ -2,10 +2,12 @@
 module field_results
   use kinds, only: wp
   use errors, only: error_t
-  use text, only: to_text
   use models, only: model_t
   use marches, only: march_t
+  use output_parameters, only: output_t
   use fields_file, only: fields_file_t
+  use interface_results, only: write_interfaces
+  use ply_results, only: write_failures, write_stresses
   implicit none
   private
   public :: write_mesh, write_fields
@@ -60,12 +62,14 @@ contains
     end associate
   end function heights
 
-  !> Writes the fields of the state reached.
-  subroutine write_fields(model, march, fields, error)
+  !> Writes the fields of the state reached that are wanted and whose physics is modelled.
+  subroutine write_fields(model, march, output, fields, error)
     !> The model
     type(model_t), intent(in) :: model
     !> The march
     type(march_t), intent(in) :: march
+    !> Which fields
+    type(output_t), intent(in) :: output
     !> The file
     type(fields_file_t), intent(inout) :: fields
     !> Set if the file cannot be written
@@ -73,96 +77,18 @@ contains
     real(wp), allocatable :: motion(:, :)
 
     call fields%begin(march%now%time, march%now%step, error)
-    if (allocated(error)) return
     associate (owned => model%distribution%owned)
       motion = model%motion_of(march%now%motion%displacement)
-      call fields%write_point_field('displacement', motion(1:3, :owned), error)
-      if (allocated(error)) return
-      call fields%write_point_field('rotation', motion(4:5, :owned), error)
-      if (allocated(error)) return
+      if (output%wants('displacement')) call fields%write_point_field('displacement', motion(1:3, :owned), error)
+      if (output%wants('rotation')) call fields%write_point_field('rotation', motion(4:5, :owned), error)
       motion = model%motion_of(march%now%motion%velocity)
-      call fields%write_point_field('velocity', motion(1:3, :owned), error)
-      if (allocated(error)) return
+      if (output%wants('velocity')) call fields%write_point_field('velocity', motion(1:3, :owned), error)
     end associate
-    if (model%map%layered) call write_interfaces(model, march, fields, error)
-    if (allocated(error)) return
-    if (allocated(march%failures%failed)) call write_failures(model, march, fields, error)
-    if (allocated(error)) return
+    if (model%map%layered) call write_interfaces(model, march, output, fields, error)
+    if (allocated(march%failures%failed) .and. output%wants('ply_damage')) &
+      call write_failures(model, march, fields, error)
+    if (output%wants('stress') .or. output%wants('face_stress')) &
+      call write_stresses(model, march, output, fields, error)
     call fields%finish(error)
   end subroutine write_fields
-
-  !> Writes jumps, contact pressure and delaminated cells of the interfaces.
-  subroutine write_interfaces(model, march, fields, error)
-    !> The model
-    type(model_t), intent(in) :: model
-    !> The march
-    type(march_t), intent(in) :: march
-    !> The file
-    type(fields_file_t), intent(inout) :: fields
-    !> Set if the file cannot be written
-    type(error_t), allocatable, intent(out) :: error
-    real(wp), allocatable :: jumps(:, :), pressure(:, :), delaminated(:, :)
-    integer :: i, element, cell
-
-    associate (owned => model%distribution%owned, mine => model%distribution%elements)
-      allocate (jumps(3, owned), pressure(1, owned), delaminated(1, size(mine)), source=0.0_wp)
-      do i = 1, owned
-        if (model%zone(i) == 0) cycle
-        jumps(:, i) = march%now%motion%displacement(1:3, i)
-        pressure(1, i) = march%now%separation%pressure(i)
-      end do
-      do i = 1, size(mine)
-        element = mine(i)
-        cell = model%mesh%element_cell(element) - 1
-        delaminated(1, i) = merge(1, 0, delaminated_above(model, march, element, &
-                                                          1 + modulo(cell, model%mesh%cells(1)), &
-                                                          1 + cell/model%mesh%cells(1)))
-      end do
-    end associate
-    call fields%write_point_field('jump', jumps, error)
-    if (.not. allocated(error)) call fields%write_point_field('contact_pressure', pressure, error)
-    if (.not. allocated(error)) call fields%write_cell_field('delaminated_above', delaminated, error)
-  end subroutine write_interfaces
-
-  !> True if the interface above an element has come apart.
-  pure logical function delaminated_above(model, march, element, column, row)
-    !> The model
-    type(model_t), intent(in) :: model
-    !> The march
-    type(march_t), intent(in) :: march
-    !> Element of the mesh
-    integer, intent(in) :: element
-    !> Place of its cell
-    integer, intent(in) :: column, row
-    integer :: zone
-
-    delaminated_above = .false.
-    do zone = 1, size(model%mesh%zones)
-      if (model%mesh%zones(zone)%below_ply /= model%mesh%element_plies(1, element) - 1) cycle
-      delaminated_above = march%now%separation%regions(zone)%is_delaminated(column, row)
-    end do
-  end function delaminated_above
-
-  !> Writes the failures of every ply: 1 for fibre failure, 2 for matrix cracking, 4 for crushing, added up.
-  subroutine write_failures(model, march, fields, error)
-    !> The model
-    type(model_t), intent(in) :: model
-    !> The march
-    type(march_t), intent(in) :: march
-    !> The file
-    type(fields_file_t), intent(inout) :: fields
-    !> Set if the file cannot be written
-    type(error_t), allocatable, intent(out) :: error
-    real(wp), allocatable :: code(:, :)
-    integer :: ply
-
-    allocate (code(1, model%elements%elements))
-    do ply = 1, size(model%plies)
-      associate (failed => march%failures%failed(:, ply, :))
-        code(1, :) = merge(1, 0, failed(1, :)) + merge(2, 0, failed(2, :)) + merge(4, 0, failed(3, :))
-      end associate
-      call fields%write_cell_field('ply_'//to_text(ply)//'_failure', code, error)
-      if (allocated(error)) return
-    end do
-  end subroutine write_failures
 end module field_results

@@ -249,7 +249,8 @@ contains
     if (self%history_clock%strikes_at(self%march%now%time)) row_due = .true.
     if (row_due) call self%history%write_row(row_of(self%model, self%march), error)
     if (allocated(error)) return
-    if (self%fields_clock%strikes_at(self%march%now%time)) call write_fields(self%model, self%march, self%fields, error)
+    if (self%fields_clock%strikes_at(self%march%now%time)) &
+      call write_fields(self%model, self%march, self%deck%output, self%fields, error)
     if (allocated(error)) return
     if (self%checkpoint_clock%strikes_at(self%march%now%time)) call save_checkpoint(self, error)
   end subroutine write_results
@@ -302,7 +303,8 @@ contains
     !> Set if a file cannot be written
     type(error_t), allocatable, intent(out) :: error
 
-    if (self%deck%output%fields_every <= 0) call write_fields(self%model, self%march, self%fields, error)
+    if (self%deck%output%fields_every <= 0) &
+      call write_fields(self%model, self%march, self%deck%output, self%fields, error)
     if (allocated(error)) return
     call self%history%close(error)
     call self%progress%finish(self%log, summary(self))

@@ -15,7 +15,7 @@ module ply_failures
   use models, only: model_t
   implicit none
   private
-  public :: ply_failure_t, new_ply_failure
+  public :: ply_failure_t, new_ply_failure, strains_of_plies
 
   !> Failed modes of every ply of this rank's elements.
   type :: ply_failure_t
@@ -28,6 +28,9 @@ module ply_failures
     procedure :: grow
     !> Gives all elements the stiffness that failures have left.
     procedure :: apply
+    !> Elastic constants left in a ply of an element, and in all its plies.
+    procedure :: elasticity
+    procedure :: elasticities
     !> Number of ply elements failed in each mode, of the whole plate.
     procedure :: counts
     !> Saves or loads.
@@ -97,12 +100,10 @@ contains
     integer :: ply, first
 
     first = model%mesh%element_plies(1, model%distribution%elements(element))
-    elasticity = elasticities(self, model, element)
+    elasticity = self%elasticities(model, element)
+    local = strains_of_plies(model, element, elasticity, strains)
     new = .false.
-    associate (plies => model%plies(first:first + size(elasticity) - 1), b => 1 + (element - 1)/lanes, &
-               lane => 1 + modulo(element - 1, lanes))
-      local = strains
-      local(7:8) = mean_shear_strain(plies, elasticity, model%elements%stiffness(lane, :, b), strains(7:8))
+    associate (plies => model%plies(first:first + size(elasticity) - 1))
       do ply = 1, size(elasticity)
         if (all(self%failed(:, first + ply - 1, element))) cycle
         modes = failing(model, plies(ply)%material, ply, elasticity(ply), local)
@@ -140,10 +141,49 @@ contains
     end function failing
   end subroutine fail_element
 
+  !> Strains of an element that the stresses of its plies follow from: its own, but for one transverse shear strain
+  !> whose stresses add up to the shear force.
+  pure function strains_of_plies(model, element, elasticity, strains) result(local)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Element of this rank
+    integer, intent(in) :: element
+    !> Present elastic constants of its plies
+    type(elasticity_t), intent(in) :: elasticity(:)
+    !> Mean strains of the element
+    real(wp), intent(in) :: strains(8)
+    !> Strains for ply_stress
+    real(wp) :: local(8)
+
+    local = strains
+    associate (range => model%mesh%element_plies(:, model%distribution%elements(element)), &
+               b => 1 + (element - 1)/lanes, lane => 1 + modulo(element - 1, lanes))
+      local(7:8) = mean_shear_strain(model%plies(range(1):range(2)), elasticity, &
+                                     model%elements%stiffness(lane, :, b), strains(7:8))
+    end associate
+  end function strains_of_plies
+
+  !> Elastic constants left in a ply of an element.
+  pure function elasticity(self, model, ply, element)
+    !> The failures
+    class(ply_failure_t), intent(in) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Ply of the laminate
+    integer, intent(in) :: ply
+    !> Element of this rank
+    integer, intent(in) :: element
+    !> Constants of the ply
+    type(elasticity_t) :: elasticity
+
+    elasticity = model%plies(ply)%elasticity
+    if (allocated(self%failed)) elasticity = degraded(elasticity, self%failed(:, ply, element), model%scene%ply_damage)
+  end function elasticity
+
   !> Elastic constants left in the plies of an element.
   pure function elasticities(self, model, element) result(elasticity)
     !> The failures
-    type(ply_failure_t), intent(in) :: self
+    class(ply_failure_t), intent(in) :: self
     !> The model
     type(model_t), intent(in) :: model
     !> Element of this rank
@@ -155,8 +195,7 @@ contains
     associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
       allocate (elasticity(range(2) - range(1) + 1))
       do ply = range(1), range(2)
-        elasticity(ply - range(1) + 1) = degraded(model%plies(ply)%elasticity, self%failed(:, ply, element), &
-                                                  model%scene%ply_damage)
+        elasticity(ply - range(1) + 1) = self%elasticity(model, ply, element)
       end do
     end associate
   end function elasticities
@@ -173,7 +212,7 @@ contains
     associate (range => model%mesh%element_plies(:, model%distribution%elements(element)), &
                b => 1 + (element - 1)/lanes, lane => 1 + modulo(element - 1, lanes))
       model%elements%stiffness(lane, :, b) = section_stiffness(model%plies(range(1):range(2)), &
-        elasticities(self, model, element), model%scene%laminate%shear_correction)
+        self%elasticities(model, element), model%scene%laminate%shear_correction)
     end associate
   end subroutine soften
 

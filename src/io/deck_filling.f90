@@ -157,14 +157,14 @@ contains
     k = 4*sqrt(deck%impactor%radius)/(3*compliance)
   end function sun_stiffness
 
-  !> Time, adaptivity, solver and output.
+  !> Time, adaptivity and solver.
   subroutine fill_control(deck)
     !> Receives them
     type(deck_t), intent(inout) :: deck
 
     deck%has_time = deck%settings%has_group('time')
     if (deck%has_time) call fill_time(deck)
-    associate (s => deck%settings, adapt => deck%adapt, solver => deck%solver, output => deck%output)
+    associate (s => deck%settings, adapt => deck%adapt, solver => deck%solver)
       deck%has_adapt = s%has_group('adapt')
       if (.not. deck%has_adapt) call s%derive('adapt', 'on', '.false.', .false.)
       adapt%on = s%logical_of('adapt', 'on')
@@ -178,11 +178,6 @@ contains
       solver%factorization = code_of(s%text_of('solver', 'factorization'), 'mumps cholmod', &
                                      [factorization_mumps, factorization_cholmod])
       solver%petsc_options = s%text_of('solver', 'petsc_options')
-      output%directory = s%text_of('output', 'directory')
-      output%history_every = s%real_of('output', 'history_every')
-      output%fields_every = s%real_of('output', 'fields_every')
-      output%checkpoint_every = s%real_of('output', 'checkpoint_every')
-      output%fields = s%text_of('output', 'fields')
     end associate
   end subroutine fill_control
 

@@ -5,6 +5,7 @@ module deck_reader
   use deck_filling, only: fill_case, fill_plate, fill_loads, fill_control
   use deck_damage, only: fill_damage
   use deck_laminate, only: fill_materials, fill_laminate
+  use deck_output, only: fill_output
   use deck_problems, only: problems_t
   use deck_rules, only: settle
   use deck_scanner, only: scan_t, scan_deck, most_bytes
@@ -67,6 +68,7 @@ contains
     call fill_loads(deck)
     call fill_control(deck)
     call fill_damage(deck, problems)
+    call fill_output(deck, problems)
     call check_deck(deck, problems)
   end subroutine read_deck_text
 end module deck_reader

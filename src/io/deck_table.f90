@@ -209,6 +209,6 @@ module deck_table
       &Time between fields written; 0: only the last.', &
     'output | checkpoint_every | real | 1 | time | 0 | >= 0 | &
       &Time between checkpoints; 0: only when a queue stops the run.', &
-    'output | fields | text | 1 | - | '''' | any text | &
-      &Names of the fields wanted, separated by blanks.']
+    'output | fields | choice | 1 or more | - | = all but the stresses | displacement rotation velocity gap &
+      &contact_pressure delamination energy_release ply_damage stress face_stress | Fields written, parted by commas.']
 end module deck_table

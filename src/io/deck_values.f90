@@ -3,7 +3,7 @@ module deck_values
   use deck_entries, only: value_t, shown
   use deck_vocabulary, only: key_entry_t
   use kinds, only: wp
-  use text, only: line_t, words_of, lower_case, joined, nearest_name
+  use text, only: line_t, append, words_of, lower_case, joined, nearest_name
   implicit none
   private
   public :: fault_of_value, fault_of_count, allowed_sentence, literal_value, real_value, integer_value, logical_value
@@ -80,16 +80,11 @@ contains
     character(len=*), intent(in) :: word
     !> Part of a sentence
     character(len=:), allocatable :: fault
-    type(line_t), allocatable :: choices(:)
-    integer :: i
 
     fault = ''
     select case (key%kind)
     case ('choice')
-      choices = words_of(key%allowed, ' ')
-      if (any([(choices(i)%text == lower_case(word), i=1, size(choices))])) return
-      fault = ''''//shown(word)//''' is not a choice'
-      if (nearest_name(word, choices) /= '') fault = fault//' (meant '''//nearest_name(word, choices)//'''?)'
+      fault = fault_of_choice(key, word)
     case ('name')
       if (len(word) == 0) then
         fault = 'the name is empty'
@@ -105,6 +100,36 @@ contains
       if (key%allowed /= 'any text' .and. len_trim(word) == 0) fault = 'the text is empty'
     end select
   end function fault_of_text
+
+  !> What is wrong with a choice, or an empty text. Where a key takes several, one text may hold them all,
+  !> separated by commas.
+  pure function fault_of_choice(key, word) result(fault)
+    !> The key as the table has it
+    type(key_entry_t), intent(in) :: key
+    !> The text without its quotes
+    character(len=*), intent(in) :: word
+    !> Part of a sentence
+    character(len=:), allocatable :: fault
+    type(line_t), allocatable :: choices(:), chosen(:)
+    integer :: i, j
+
+    choices = words_of(key%allowed, ' ')
+    allocate (chosen(0))
+    if (key%values == '1 or more') then
+      chosen = words_of(word, ',')
+    else
+      call append(chosen, word)
+    end if
+    fault = ''
+    do j = 1, size(chosen)
+      associate (name => chosen(j)%text)
+        if (any([(choices(i)%text == lower_case(name), i=1, size(choices))])) cycle
+        fault = ''''//shown(name)//''' is not a choice'
+        if (nearest_name(name, choices) /= '') fault = fault//' (meant '''//nearest_name(name, choices)//'''?)'
+        return
+      end associate
+    end do
+  end function fault_of_choice
 
   !> What is wrong with the number of values, or an empty text; lists over the plies are checked where these are known.
   pure function fault_of_count(key, number) result(fault)

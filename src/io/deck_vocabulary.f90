@@ -22,7 +22,7 @@ module deck_vocabulary
     character(len=:), allocatable :: group, name
     !> real, integer, logical, text, name or choice
     character(len=:), allocatable :: kind
-    !> Number of values: 1, 2, 1 or 4, plies, 1 or plies
+    !> Number of values: 1, 2, 1 or 4, plies, 1 or plies, 1 or more
     character(len=:), allocatable :: values
     !> Physical dimension, - if none
     character(len=:), allocatable :: unit

@@ -15,7 +15,22 @@ module output_parameters
     real(wp) :: fields_every = 0
     !> Time between checkpoints; 0: none but at a queue's signal
     real(wp) :: checkpoint_every = 0
-    !> Names of the fields wanted
+    !> Names of the fields wanted, in lower case, separated by commas without blanks
     character(len=:), allocatable :: fields
+  contains
+    !> True if a field is wanted.
+    procedure :: wants
   end type output_t
+
+contains
+
+  !> True if a field is wanted.
+  pure logical function wants(self, field)
+    !> What is written
+    class(output_t), intent(in) :: self
+    !> Name of the field
+    character(len=*), intent(in) :: field
+
+    wants = index(','//self%fields//',', ','//field//',') > 0
+  end function wants
 end module output_parameters

@@ -1,0 +1,85 @@
+"""Pictures of the energy release rate along the fronts over its critical value, around the struck point and in plan."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+from matplotlib.ticker import MultipleLocator
+
+from implam_post.errors import ImplamError
+from implam_post.fields import Fields, Snapshot, extents, outline
+from implam_post.plan import frame
+
+_MOST_TIMES = 8
+
+
+def front_figure(fields: Fields, times: Sequence[float] | None = None) -> Figure:
+    """Draw each interface at the given times, or at some of those at which its front is loaded.
+
+    On the left G/G_c against the angle around the struck point, a line a time; on the right in plan, at that one of
+    these times at which G/G_c is largest.
+    """
+    interfaces = fields.snapshots[-1].mesh.interfaces
+    figure = Figure(figsize=(11, 4 * len(interfaces)), layout="constrained")
+    for (left, right), below_ply in zip(figure.subplots(len(interfaces), 2, squeeze=False), interfaces, strict=True):
+        snapshots = _chosen(fields, below_ply, times)
+        left.set_title(f"below ply {below_ply}", fontsize="medium")
+        _draw_around(left, fields, below_ply, snapshots)
+        if snapshots:
+            draw_front(right, fields, below_ply, max(snapshots, key=lambda one: np.max(one.release(below_ply)[1])))
+    return figure
+
+
+def draw_front(axes: Axes, fields: Fields, below_ply: int, snapshot: Snapshot) -> None:
+    """Draw the outline in plan at one time, and the cells ahead of it coloured by G/G_c."""
+    cells, ratio = snapshot.release(below_ply)
+    cells, ratio = fields.whole(cells), np.tile(ratio, 4 if fields.quarter else 1)
+    shown = PolyCollection(cells, array=ratio, cmap="plasma_r", norm=Normalize(0, max(1.0, np.max(ratio, initial=0))),
+                           linewidths=0)
+    axes.add_collection(shown)
+    apart = fields.whole(snapshot.delaminated_cells(below_ply))
+    axes.add_collection(LineCollection(outline(apart), colors="black", linewidths=0.8))
+    axes.set_title(f"time {snapshot.time:.4g}", fontsize="medium")
+    axes.set(xlabel="x (the deck's units, as all)", ylabel="y")
+    frame(axes, *extents(np.concatenate([cells, apart])))
+    axes.figure.colorbar(shown, ax=axes, location="bottom", shrink=0.8, label="$G/G_c$ ahead of the front")
+
+
+def _draw_around(axes: Axes, fields: Fields, below_ply: int, snapshots: Sequence[Snapshot]) -> None:
+    """Draw G/G_c against the angle from x to the cells ahead of the front; one quarter stands for all."""
+    colours = colormaps["viridis_r"](np.linspace(0, 1, max(len(snapshots), 2)))
+    for snapshot, colour in zip(snapshots, colours, strict=False):
+        cells, ratio = snapshot.release(below_ply)
+        x, y = np.mean(cells, axis=1).T
+        angle = np.degrees(np.arctan2(y, x))
+        order = np.argsort(angle)
+        axes.plot(angle[order], ratio[order], ".-", color=colour, linewidth=1, label=f"{snapshot.time:.4g}")
+    axes.axhline(1, color="black", linestyle="--", linewidth=1)
+    axes.set(xlabel="angle from x around the struck point (degrees)", ylabel="$G/G_c$",
+             xlim=(0, 90) if fields.quarter else (-180, 180))
+    axes.set_ylim(bottom=0)
+    axes.xaxis.set_major_locator(MultipleLocator(15 if fields.quarter else 45))
+    axes.grid(alpha=0.3)
+    if snapshots:
+        axes.legend(title="time", fontsize="small", loc="center left", bbox_to_anchor=(1, 0.5))
+
+
+def _chosen(fields: Fields, below_ply: int, times: Sequence[float] | None) -> list[Snapshot]:
+    """Return the times nearest to those asked for, or up to eight evenly among those with a loaded front."""
+    def loaded(snapshots: Sequence[Snapshot]) -> list[Snapshot]:
+        return [snapshot for snapshot in snapshots if len(snapshot.release(below_ply)[1])]
+
+    if times is None:
+        all_loaded = loaded(fields.snapshots)
+        places = np.linspace(0, len(all_loaded) - 1, min(len(all_loaded), _MOST_TIMES)).astype(int)
+        return [all_loaded[place] for place in places]
+    stored = np.array([snapshot.time for snapshot in fields.snapshots])
+    if outside := [time for time in times if not stored[0] * (1 - 1e-6) <= time <= stored[-1] * (1 + 1e-6)]:
+        raise ImplamError(f"time {outside[0]:g} is outside the fields, which reach from {stored[0]:g} to "
+                          f"{stored[-1]:g}.")
+    nearest = sorted({int(np.argmin(np.abs(stored - time))) for time in times})
+    return loaded([fields.snapshots[place] for place in nearest])

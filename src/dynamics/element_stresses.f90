@@ -1,0 +1,67 @@
+!> Stresses of the plies in every element, averaged over its nine points as the failure criteria take them.
+module element_stresses
+  use kinds, only: wp
+  use element_batches, only: lanes, first_element
+  use strain_recovery, only: mean_strains
+  use plies, only: elasticity_t
+  use ply_stresses, only: middle_stress, face_stresses
+  use ply_failures, only: ply_failure_t, strains_of_plies
+  use models, only: model_t
+  implicit none
+  private
+  public :: element_strains, stresses_of_ply
+
+contains
+
+  !> Mean strains of every element, in the form that the stresses of its plies follow from.
+  function element_strains(model, failures, displacement) result(strains)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Failures of its plies
+    type(ply_failure_t), intent(in) :: failures
+    !> Displacement, ghosts up to date, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> Membrane exx, eyy, gxy; curvature kxx, kyy, kxy; shear gxz, gyz of the plies, (8, elements)
+    real(wp), allocatable :: strains(:, :)
+    real(wp) :: means(lanes, 8)
+    real(wp), allocatable :: motion(:, :)
+    integer :: b, lane, element
+
+    allocate (strains(8, model%elements%elements))
+    motion = model%motion_of(displacement)
+    do b = 1, model%elements%batches
+      call mean_strains(model%elements, b, model%scene%kinematics, motion, means)
+      do lane = 1, model%elements%lanes_used(b)
+        element = first_element(b) + lane - 1
+        strains(:, element) = strains_of_plies(model, element, failures%elasticities(model, element), means(lane, :))
+      end do
+    end do
+  end function element_strains
+
+  !> Stresses of one ply in its own axes, with the stiffness that failures have left.
+  pure function stresses_of_ply(model, failures, strains, ply) result(stresses)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Failures of its plies
+    type(ply_failure_t), intent(in) :: failures
+    !> Those of element_strains
+    real(wp), intent(in) :: strains(:, :)
+    !> Ply of the laminate
+    integer, intent(in) :: ply
+    !> s11, s22, s12, s13, s23 in the ply's mid-plane, on its top and on its bottom; zero in elements without
+    !> this ply, (5, 3, elements)
+    real(wp), allocatable :: stresses(:, :, :)
+    type(elasticity_t) :: elasticity
+    integer :: element
+
+    allocate (stresses(5, 3, size(strains, 2)), source=0.0_wp)
+    do element = 1, size(strains, 2)
+      associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
+        if (ply < range(1) .or. ply > range(2)) cycle
+      end associate
+      elasticity = failures%elasticity(model, ply, element)
+      stresses(:, 1, element) = middle_stress(model%plies(ply), elasticity, strains(:, element))
+      stresses(:, 2:3, element) = face_stresses(model%plies(ply), elasticity, strains(:, element))
+    end do
+  end function stresses_of_ply
+end module element_stresses

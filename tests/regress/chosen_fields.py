@@ -1,0 +1,188 @@
+"""The fields that a deck chooses: those and no others are written, and stresses and energy release rates are right.
+Usage: chosen_fields.py IMPLAM FOLDER"""
+
+import sys
+from pathlib import Path
+
+import h5py
+import numpy as np
+from implam_post.deck import read_deck
+from implam_post.navier import Plate
+from solver_runs import TrialError, read_history, require, run_deck, write_deck
+
+# Nodes of an element in the file, as 1 + i + 3 j.
+ORDER = np.array([1, 3, 9, 7, 2, 6, 8, 4, 5])
+GAUSS = np.sqrt(0.6) * np.array([-1, 0, 1])
+WEIGHTS = np.array([5, 8, 5]) / 9
+IN_PLANE, TRANSVERSE = ("sigma11", "sigma22", "tau12"), ("tau13", "tau23")
+
+
+class Results:
+    """The last time in NAME.h5: mesh and fields."""
+
+    def __init__(self, history_path):
+        """Read all of it."""
+        with h5py.File(str(history_path).removesuffix("_history.csv") + ".h5") as file:
+            last = file["times"][max(file["times"])]
+            mesh = file[f"meshes/{int(last['mesh'][()]):08d}"]
+            self.coordinates = mesh["coordinates"][()]
+            self.connectivity = mesh["connectivity"][()][:, np.argsort(ORDER)]
+            self.first_ply, self.last_ply = (mesh[f"cells/{name}"][()].ravel() for name in ("first_ply", "last_ply"))
+            self.points = {name: item[()] for name, item in last.get("points", {}).items()}
+            self.cells = {name: item[()].ravel() for name, item in last.get("cells", {}).items()}
+        corners = self.coordinates[self.connectivity[:, [0, 8]], :2]
+        self.low, self.high = corners[:, 0], corners[:, 1]
+
+    def mean_strains(self):
+        """Return membrane strains (von Karman) and curvatures, means of the nine Gauss points, from the nodes."""
+        u, v, w = self.points["displacement"][self.connectivity].transpose(2, 0, 1)
+        # Two components become two scalars in the file.
+        tx, ty = (self.points[f"rotation_{i}"].ravel()[self.connectivity] for i in (1, 2))
+        strains = 0
+        for p, along in enumerate(GAUSS):
+            for q, across in enumerate(GAUSS):
+                x, y = self.derivatives(along, across)
+                slopes = np.sum(x * w, axis=1), np.sum(y * w, axis=1)
+                rows = [np.sum(term, axis=1) for term in (x * u, y * v, y * u + x * v, x * tx, y * ty, y * tx + x * ty)]
+                rows[0] = rows[0] + slopes[0]**2 / 2
+                rows[1] = rows[1] + slopes[1]**2 / 2
+                rows[2] = rows[2] + slopes[0] * slopes[1]
+                strains = strains + WEIGHTS[p] * WEIGHTS[q] / 4 * np.array(rows)
+        return strains[:3].T, strains[3:].T
+
+    def derivatives(self, along, across):
+        """Return the derivatives of the nine shapes by x and by y at a place of each element."""
+        def shapes(t):
+            return np.array([t * (t - 1), 2 * (1 - t * t), t * (t + 1)]) / 2, np.array([t - 0.5, -2 * t, t + 0.5])
+        (a, da), (b, db) = shapes(along), shapes(across)
+        sides = self.high - self.low
+        return (np.outer(b, da).ravel() * 2 / sides[:, :1], np.outer(db, a).ravel() * 2 / sides[:, 1:])
+
+
+def heights(plies):
+    """Return z of the faces of the plies from the mid-plane."""
+    thicknesses = [ply.thickness for ply in plies]
+    return np.concatenate([[0], np.cumsum(thicknesses)]) - sum(thicknesses) / 2
+
+
+def turned(angle, strains):
+    """Return strains in the axes of a ply."""
+    c, s = np.cos(np.radians(angle)), np.sin(np.radians(angle))
+    return strains @ np.array([[c * c, s * s, c * s], [s * s, c * c, -c * s], [-2 * c * s, 2 * c * s, c * c - s * s]]).T
+
+
+def ply_stresses(material, angle, strains, failures):
+    """Return sigma11, sigma22 and tau12 of strains in the axes of the plate, with what failures left (Table 2)."""
+    fibre, cracked, crushed = (failures & bit > 0 for bit in (1, 2, 4))
+    left = [np.maximum(0.01**np.sum(modes, axis=0), 1e-3)
+            for modes in ([fibre], [fibre, cracked], [fibre, cracked, crushed])]
+    e1, g12 = material.e1 * left[0], material.g12 * left[1]
+    e2, nu12 = material.e2 * left[2], material.nu12 * left[2]
+    e = turned(angle, strains)
+    scale = 1 - nu12**2 * e2 / e1
+    return np.array([(e1 * e[:, 0] + nu12 * e2 * e[:, 1]) / scale, (nu12 * e2 * e[:, 0] + e2 * e[:, 1]) / scale,
+                     g12 * e[:, 2]])
+
+
+def navier_strains(deck, results, amplitude):
+    """Return curvatures and shear strains of Navier's plate, exact means over the elements."""
+    plate = Plate(deck.section(), deck.lengths())
+    w, x, y = np.linalg.solve(plate.stiffness(np.array(1), np.array(1)), [amplitude, 0, 0])
+    a, b = np.pi / np.array(plate.lengths)
+    arguments = np.array([a, b]) * np.array([results.low, results.high])
+    sides = results.high - results.low
+    # The struck point is the origin: half-sines are cosines here.
+    cosine = np.diff(np.sin(arguments), axis=0)[0] / ([a, b] * sides)
+    sine = -np.diff(np.cos(arguments), axis=0)[0] / ([a, b] * sides)
+    both, mixed, (x_only, y_only) = np.prod(cosine, axis=1), np.prod(sine, axis=1), (
+        sine[:, 0] * cosine[:, 1], cosine[:, 0] * sine[:, 1])
+    curvatures = np.array([-a * x * both, -b * y * both, (b * x + a * y) * mixed]).T
+    return curvatures, -np.array([(a * w + x) * x_only, (b * w + y) * y_only]).T
+
+
+def check_navier(implam, folder):
+    """Stresses of a plate whose stresses are known, all five, in each of its plies."""
+    names = [f"ply_{ply}_{name}" for ply in (1, 2, 3) for name in IN_PLANE + TRANSVERSE]
+    faces = [f"ply_{ply}_{name}_{face}" for ply in (1, 2, 3) for name in IN_PLANE for face in ("top", "bottom")]
+    deck_path = write_deck(folder / "navier", "navier_laminate.nml",
+                           ["mesh%elements=12,12", "output%fields='Stress, face_stress'"])
+    results, deck = Results(run_deck(implam, deck_path)), read_deck(deck_path)
+    require(not results.points and set(results.cells) == {*names, *faces}, f"There are {sorted(results.cells)}.")
+    curvatures, shear = navier_strains(deck, results, deck.number("pressure", "value"))
+    plies = deck.plies()
+    z, worst, sound = heights(plies), 0.0, np.zeros(len(curvatures), dtype=int)
+    for number, ply in enumerate(plies, start=1):
+        places = {"": (z[number - 1] + z[number]) / 2, "_top": z[number - 1], "_bottom": z[number]}
+        largest = max(map(abs, places.values()))
+        for suffix, place in places.items():
+            scales, rights = (ply_stresses(ply.material, ply.angle, height * curvatures, sound)
+                              for height in (largest, place))
+            for scale, right, name in zip(scales, rights, IN_PLANE, strict=True):
+                found = results.cells[f"ply_{number}_{name}{suffix}"]
+                worst = max(worst, np.max(np.abs(found - right)) / np.max(np.abs(scale)))
+        c, s = np.cos(np.radians(ply.angle)), np.sin(np.radians(ply.angle))
+        strains = 5 / 6 * shear @ np.array([[c, -s], [s, c]])
+        for right, name in zip((strains * [ply.material.g13, ply.material.g23]).T, TRANSVERSE, strict=True):
+            found = results.cells[f"ply_{number}_{name}"]
+            worst = max(worst, np.max(np.abs(found - right)) / np.max(np.abs(right)))
+    print(f"Navier's plate: the worst stress is {worst:.1e} of the largest of its kind off")
+    require(worst < 1e-5, "The stresses aren't those of Navier's plate.")
+
+
+def check_damaged_layers(implam, folder):
+    """Stresses of layers, some of whose plies have failed, against strains from the nodes' motion."""
+    deck_path = write_deck(folder / "damage", "../small/damage.nml",
+                           ["output%fields='displacement','rotation','ply_damage','stress','face_stress'"])
+    results, plies = Results(run_deck(implam, deck_path)), read_deck(deck_path).plies()
+    require("jump" not in results.points and "delaminated_above" not in results.cells, "Unwanted fields are there.")
+    membrane, curvature = results.mean_strains()
+    z, worst, failed = heights(plies), 0.0, 0
+    for number, ply in enumerate(plies, start=1):
+        inside = (results.first_ply <= number) & (number <= results.last_ply)
+        failures = results.cells[f"ply_{number}_failure"].astype(int)
+        failed += np.count_nonzero(failures[inside])
+        for suffix, place in (("", (z[number - 1] + z[number]) / 2), ("_top", z[number - 1]), ("_bottom", z[number])):
+            rights = ply_stresses(ply.material, ply.angle, membrane + place * curvature, failures)
+            for right, name in zip(rights, IN_PLANE, strict=True):
+                found = results.cells[f"ply_{number}_{name}{suffix}"]
+                require(not np.any(found[~inside]), f"{name} of ply {number} stands in elements without this ply.")
+                worst = max(worst, np.max(np.abs(found - right)[inside]) / np.max(np.abs(right)))
+    require(failed > 0, "No ply failed.")
+    print(f"damaged layers: {failed} failures; the worst stress is {worst:.1e} of the largest of its kind off")
+    require(worst < 1e-13, "The stresses don't follow from the motion of the nodes.")
+
+
+def check_energy_release(implam, folder):
+    """G/G_c stands in intact cells along the front only, and its largest value is that of the history."""
+    history_path = run_deck(implam, write_deck(folder / "release", "../small/delamination.nml",
+                                               ["output%fields='delamination,energy_release'"]))
+    results = Results(history_path)
+    require(not results.points and set(results.cells) == {"delaminated_above", "energy_release_above"},
+            f"There are {sorted(results.cells)}.")
+    ratio, apart = results.cells["energy_release_above"], results.cells["delaminated_above"] > 0
+    below = results.first_ply == 3
+    expected = read_history(history_path)["release_ratio"][-1]
+    require(abs(np.max(ratio) - expected) < 1e-12 * expected, f"{np.max(ratio)} instead of {expected}.")
+    require(np.all(np.isfinite(ratio)) and np.all(ratio >= 0), "A rate is negative or no number.")
+    tiny = 1e-9 * np.max(results.high)
+    for i in np.flatnonzero(ratio > 0):
+        common = np.minimum(results.high[i], results.high) - np.maximum(results.low[i], results.low)
+        beside = np.all(common > -tiny, axis=1) & (np.sum(common > tiny, axis=1) == 1)
+        require(below[i] and not apart[i], "A rate stands where the interface isn't intact.")
+        require(np.any(apart & beside), "A rate stands away from the front.")
+    print(f"energy release: {np.count_nonzero(ratio)} cells ahead of the front, G/G_c up to {np.max(ratio):.3f}")
+
+
+def main(implam, folder):
+    """Run the trials; the exit code is 1 if one fails."""
+    try:
+        for trial in (check_navier, check_damaged_layers, check_energy_release):
+            trial(implam, Path(folder))
+    except TrialError as failure:
+        print(failure)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main(*sys.argv[1:]))
