@@ -15,7 +15,7 @@ module face_contact
   !> compliances of 40 nodes a factor of 1 left 40 to over 80 factorisations, 100 about 5 multiplier updates
   !> and 10 factorisations, 1000 to 1e6 2 to 5 updates and 4 to 10 (augmented Lagrangian; the continuous
   !> penalty with q = 1 the same updates and 4 to 14). With q = 1.5 most cases had not converged after 80 updates.
-  real(wp), parameter :: stiffness_factor = 1.0e3_wp
+  real(wp), parameter :: stiffness_factor = 1.0e6_wp
   !> Decay of the pressure times the mean gap (section 3.4 of the paper).
   real(wp), parameter :: decay_factor = 1.5_wp
   !> A pressure below this part of stiffness times gap is none: the faces are clearly open.

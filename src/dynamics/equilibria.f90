@@ -10,16 +10,13 @@ module equilibria
   use models, only: model_t
   use pressure_histories, only: pressure_amplitude
   use states, only: state_t
+  use separations, only: contact_tolerance
   use tangent_operators, only: tangent_operator_t
   use residual_norms, only: relative_residual
   use step_ledgers, only: book_step
   implicit none
   private
   public :: attempt_step
-
-  !> Change of the contact pressures over the largest so far at which they have settled: the law is a thousand
-  !> times stiffer than the layers, so the gaps left are 5e-7 of that pressure over the layers' stiffness.
-  real(wp), parameter :: contact_tolerance = 5.0e-4_wp
 
   !> The impactor's side of a step: its motion and the indentation are affine in one unknown force.
   type :: strike_t
@@ -41,7 +38,7 @@ module equilibria
 contains
 
   !> Tries a step. On return either `converged` and `new` is the state at its end, or nothing of it counts.
-  subroutine attempt_step(model, integrator, operator, old, step, new, converged, error)
+  subroutine attempt_step(model, integrator, operator, old, step, new, converged, error, guess)
     !> The model
     type(model_t), intent(in) :: model
     !> Integrator of the plate
@@ -58,9 +55,11 @@ contains
     logical, intent(out) :: converged
     !> Set if the solver fails for good
     type(error_t), allocatable, intent(out) :: error
+    !> Displacement to start from, (5, points); left out: the motion goes on as it was
+    real(wp), intent(in), optional :: guess(:, :)
     type(strike_t) :: strike
     real(wp), allocatable :: residual(:, :), correction(:, :)
-    real(wp) :: norm, previous, energy, patch_square
+    real(wp) :: norm, energy, patch_square
 
     new = old
     new%time = old%time + step
@@ -68,9 +67,9 @@ contains
     correction = 0
     patch_square = sum((model%patch/model%mesh%multiplicity)**2)
     if (model%scene%has_impactor) strike = begin_strike(model, integrator, old, step)
-    call predict_motion(integrator, old, step, new)
+    call predict_motion(model, integrator, old, step, new, guess)
+    call operator%mixing%forget()
     converged = .false.
-    previous = huge(1.0_wp)
     do
       call operator%timers%start('element forces')
       call find_residual(model, integrator, old, new, strike%load(), residual, energy)
@@ -79,34 +78,65 @@ contains
       norm = relative_residual(model%communicator, operator%numbering, residual, new%motion%internal, &
                                new%motion%inertia, patch_square*strike%load()**2, &
                                operator%diagonal*new%motion%displacement, model%scene%solver%tolerance, &
-                               new%largest_forces)
+                               model%thickness, new%largest_forces)
       ! The force answers to the motion only within an iteration, so an impact needs one.
       converged = norm <= model%scene%solver%tolerance .and. (new%iterations > 0 .or. .not. model%scene%has_impactor)
       if (converged) then
         call settle_contact(model, new, converged)
         if (converged) exit
-        ! New pressures disturb the residual; that is not the operator's fault.
-        previous = huge(1.0_wp)
+        call operator%mixing%pause()
         if (new%contact_iterations < model%scene%solver%max_iterations) cycle
       end if
       if (.not. norm <= huge(norm) .or. new%iterations >= model%scene%solver%max_iterations) exit
-      call prepare_operator(model, integrator, operator, step, new, norm, previous, error)
+      call prepare_operator(model, integrator, operator, step, new, error)
       if (unsolvable(error)) return
       call operator%correct(model, residual, correction, error)
       if (unsolvable(error)) return
-      if (model%scene%has_impactor) call solve_strike(model, integrator, operator, old, new, strike, correction, error)
+      call improve(model, integrator, operator, old, new, strike, correction, error)
       if (allocated(error)) then
         ! Numbers have run away, or the operator is not positive: a shorter step may cure it.
         deallocate (error)
         return
       end if
-      call new%separation%hold(model, correction)
       new%motion%displacement = new%motion%displacement + correction
       call integrator%complete(step, old%motion, new%motion%displacement, new%motion%velocity, new%motion%acceleration)
       new%iterations = new%iterations + 1
     end do
     if (converged) call finish(model, integrator, old, step, strike, energy, new)
   end subroutine attempt_step
+
+  !> Turns the correction for the force assumed into one for the force that goes with it, and betters it by
+  !> what earlier iterations showed.
+  subroutine improve(model, integrator, operator, old, new, strike, correction, error)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Integrator of the plate
+    type(plate_integrator_t), intent(in) :: integrator
+    !> The factored operator, with its memory
+    type(tangent_operator_t), intent(inout) :: operator
+    !> State at the start
+    type(state_t), intent(in) :: old
+    !> State at the end, before the correction
+    type(state_t), intent(inout) :: new
+    !> The strike
+    type(strike_t), intent(inout) :: strike
+    !> Correction of the displacement, (5, points)
+    real(wp), intent(inout) :: correction(:, :)
+    !> Set if numbers are not finite
+    type(error_t), allocatable, intent(inout) :: error
+
+    if (model%scene%has_impactor) call solve_strike(model, integrator, operator, old, new, strike, correction, error)
+    call new%separation%hold(model, correction)
+    if (allocated(error)) return
+    call operator%mixing%mix(model%communicator, operator%diagonal(:, :model%distribution%owned), correction, &
+                             strike%unknown)
+    ! The law of the force is not linear: the force must be found for the displacement that it has become.
+    if (model%scene%has_impactor .and. operator%mixing%kept > 0) then
+      call solve_strike(model, integrator, operator, old, new, strike, correction, error)
+      call new%separation%hold(model, correction)
+    end if
+    call operator%mixing%note(correction)
+  end subroutine improve
 
   !> Takes the contact pressures found as the next estimates; they must repeat themselves for a step to be done.
   subroutine settle_contact(model, new, converged)
@@ -124,7 +154,7 @@ contains
   end subroutine settle_contact
 
   !> Makes the operator follow ties and contacts, or renews it where that or its age asks for it.
-  subroutine prepare_operator(model, integrator, operator, step, new, norm, previous, error)
+  subroutine prepare_operator(model, integrator, operator, step, new, error)
     !> The model
     type(model_t), intent(in) :: model
     !> Integrator of the plate
@@ -135,21 +165,15 @@ contains
     real(wp), intent(in) :: step
     !> State at the end
     type(state_t), intent(in) :: new
-    !> Residual now
-    real(wp), intent(in) :: norm
-    !> Residual one iteration before; receives the present one
-    real(wp), intent(inout) :: previous
     !> Set if the solver fails
     type(error_t), allocatable, intent(inout) :: error
     logical :: follows
 
-    follows = .not. too_slow(model, new%iterations, norm, previous)
-    previous = norm
+    follows = modulo(new%iterations + 1, model%scene%adapt%iterations) > 0
     if (follows) call operator%follow(model, new%separation, follows, error)
     if (follows .or. allocated(error)) return
     call operator%renew(model, new%separation, new%motion%displacement, integrator%stiffness_factor(), &
                         integrator%mass_factor(step), error)
-    previous = huge(1.0_wp)
   end subroutine prepare_operator
 
   !> True if the solver failed; lack of convergence is dropped, since a shorter step may cure it.
@@ -161,23 +185,6 @@ contains
     if (.not. unsolvable) return
     if (error%code == exit_convergence) deallocate (error)
   end function unsolvable
-
-  !> True if the lagged operator brings the residual down too slowly to be kept: it has had its share of
-  !> iterations, hardly helps, or would not reach the tolerance in the iterations left.
-  pure logical function too_slow(model, iterations, norm, previous)
-    !> The model
-    type(model_t), intent(in) :: model
-    !> Iterations of this step so far
-    integer, intent(in) :: iterations
-    !> Residual now and one iteration before
-    real(wp), intent(in) :: norm, previous
-    real(wp) :: wanted
-
-    too_slow = modulo(iterations + 1, model%scene%adapt%iterations) == 0 .or. norm > 0.5_wp*previous
-    if (too_slow .or. previous >= huge(previous) .or. norm <= model%scene%solver%tolerance) return
-    wanted = log(model%scene%solver%tolerance/norm)/log(norm/previous)
-    too_slow = wanted > model%scene%solver%max_iterations - iterations
-  end function too_slow
 
   !> The impactor's part in a step.
   pure function begin_strike(model, integrator, old, step) result(strike)
@@ -210,8 +217,10 @@ contains
     load = self%share*self%unknown + self%inherited
   end function load
 
-  !> First guess: the acceleration stays what it is.
-  pure subroutine predict_motion(integrator, old, step, new)
+  !> First guess: the velocity stays what it is, and touching faces stay together.
+  subroutine predict_motion(model, integrator, old, step, new, guess)
+    !> The model
+    type(model_t), intent(in) :: model
     !> Integrator of the plate
     type(plate_integrator_t), intent(in) :: integrator
     !> State at the start
@@ -220,8 +229,15 @@ contains
     real(wp), intent(in) :: step
     !> State at the end
     type(state_t), intent(inout) :: new
+    !> A better guess of the displacement, (5, points)
+    real(wp), intent(in), optional :: guess(:, :)
 
-    new%motion%displacement = old%motion%displacement + step*old%motion%velocity + (step**2/2)*old%motion%acceleration
+    if (present(guess)) then
+      new%motion%displacement = guess
+    else
+      new%motion%displacement = old%motion%displacement + step*old%motion%velocity
+      call new%separation%keep_touching(model, new%motion%displacement)
+    end if
     call integrator%complete(step, old%motion, new%motion%displacement, new%motion%velocity, new%motion%acceleration)
     new%iterations = 0
     new%force_iterations = 0

@@ -179,18 +179,21 @@ contains
     !> Set if the solver fails for good
     type(error_t), allocatable, intent(inout) :: error
     type(state_t) :: start
+    real(wp), allocatable :: guess(:, :)
     logical :: grown
 
     do
       call grow_fronts(model, self%trial, grown)
       if (.not. grown .or. all(model%scene%delaminations%growth /= growth_equilibrium)) return
+      guess = self%trial%motion%displacement
       start = self%now
       start%separation = self%trial%separation
       start%ledger%delamination = start%ledger%delamination &
                                   + (self%trial%ledger%delamination - self%now%ledger%delamination)
       start%ledger%algorithmic = start%ledger%algorithmic &
                                  - (self%trial%ledger%delamination - self%now%ledger%delamination)
-      call attempt_step(model, self%integrator, self%operator, start, step, self%trial, converged, error)
+      call attempt_step(model, self%integrator, self%operator, start, step, self%trial, converged, error, &
+                        guess)
       if (.not. converged .or. allocated(error)) return
     end do
   end subroutine let_grow

@@ -13,6 +13,9 @@ module operator_changes
   type :: column_t
     !> Equation of the unknown, from 0
     integer :: equation = -1
+    !> Number of columns found together with this one: a restart finds them in the same company, since solvers
+    !> round differently for different numbers of right-hand sides
+    integer :: company = 0
     !> The solution, (5, points)
     real(wp), allocatable :: field(:, :)
   end type column_t
@@ -25,6 +28,8 @@ module operator_changes
     real(wp), allocatable :: stiffness(:)
     !> Columns found since the factorisation
     type(column_t), allocatable :: columns(:)
+    !> How many there are
+    integer :: kept = 0
     !> Column of each change
     integer, allocatable :: column(:)
     !> System of the changes
@@ -36,6 +41,8 @@ module operator_changes
     procedure :: column_of
     !> Keeps a column.
     procedure :: keep
+    !> Equation and company of each column kept.
+    procedure :: list
     !> Puts changes in force whose columns are all kept.
     procedure :: set
     !> Turns a solution of the factored operator into one of the changed operator.
@@ -54,6 +61,7 @@ contains
     self%column = [integer ::]
     if (allocated(self%columns)) deallocate (self%columns)
     allocate (self%columns(0))
+    self%kept = 0
     self%matrix = reshape([real(wp) ::], [0, 0])
   end subroutine clear
 
@@ -64,22 +72,49 @@ contains
     !> The equation
     integer, intent(in) :: equation
 
-    do position = size(self%columns), 1, -1
+    do position = self%kept, 1, -1
       if (self%columns(position)%equation == equation) return
     end do
   end function column_of
 
   !> Keeps a column.
-  pure subroutine keep(self, equation, field)
+  pure subroutine keep(self, equation, company, field)
     !> The changes
     class(operator_changes_t), intent(inout) :: self
     !> The equation
     integer, intent(in) :: equation
+    !> Number of columns found together
+    integer, intent(in) :: company
     !> Solution for a unit force on it, (5, points)
     real(wp), intent(in) :: field(:, :)
+    type(column_t), allocatable :: more(:)
+    integer :: k
 
-    self%columns = [self%columns, column_t(equation, field)]
+    self%kept = self%kept + 1
+    if (self%kept > size(self%columns)) then
+      allocate (more(2*self%kept))
+      do k = 1, self%kept - 1
+        more(k)%equation = self%columns(k)%equation
+        more(k)%company = self%columns(k)%company
+        call move_alloc(self%columns(k)%field, more(k)%field)
+      end do
+      call move_alloc(more, self%columns)
+    end if
+    self%columns(self%kept)%equation = equation
+    self%columns(self%kept)%company = company
+    self%columns(self%kept)%field = field
   end subroutine keep
+
+  !> Equation and company of each column kept.
+  pure function list(self) result(columns)
+    !> The changes
+    class(operator_changes_t), intent(in) :: self
+    !> Equation and company in turn, (2 columns)
+    integer, allocatable :: columns(:)
+    integer :: k
+
+    columns = [([self%columns(k)%equation, self%columns(k)%company], k=1, self%kept)]
+  end function list
 
   !> Puts changes in force whose columns are all kept.
   subroutine set(self, communicator, numbering, equations, stiffness)

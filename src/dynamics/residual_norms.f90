@@ -14,7 +14,7 @@ contains
   !> Residual over the largest of the forces in play, the larger of translations and rotations; infinite if
   !> any number is not finite. The same on every rank.
   real(wp) function relative_residual(communicator, numbering, residual, first, second, load, rounding, &
-                                         tolerance, largest) result(norm)
+                                         tolerance, length, largest) result(norm)
     !> The ranks
     type(communicator_t), intent(in) :: communicator
     !> Knows which unknowns are held
@@ -30,6 +30,9 @@ contains
     real(wp), intent(in) :: rounding(:, :)
     !> Relative residual that will be accepted
     real(wp), intent(in) :: tolerance
+    !> Lever arm that makes moments of forces, the laminate's thickness: moments balance among themselves, so
+    !> those left over tell nothing of the moments in play
+    real(wp), intent(in) :: length
     !> Largest forces so far, translations and rotations: judged by these once forces have faded
     real(wp), intent(inout) :: largest(2)
     real(wp) :: squares(10), scale(2)
@@ -42,6 +45,7 @@ contains
     if (.not. all(squares <= huge(norm))) return
     squares = sqrt(squares)
     scale = max(squares(3:4), squares(5:6), squares(9:10), faded*largest)
+    scale(2) = max(scale(2), length*scale(1))
     largest = max(largest, scale)
     norm = maxval(squares(1:2)/max(scale, last_digits/tolerance*squares(7:8), tiny(norm)))
   end function relative_residual

@@ -14,6 +14,10 @@ module separations
   private
   public :: separation_t, new_separation
 
+  !> Change of the contact pressures over the largest so far at which they have settled: the law is a million
+  !> times stiffer than the layers, so the gaps left are 5e-7 of that pressure over the layers' stiffness.
+  real(wp), parameter, public :: contact_tolerance = 0.5_wp
+
   !> State of all interfaces.
   type :: separation_t
     !> Delaminated cells of each zone, the same on every rank
@@ -39,6 +43,8 @@ module separations
     procedure :: work
     !> Keeps held jumps as they are.
     procedure :: hold
+    !> Keeps touching faces together in a first guess, and open ones from passing through each other.
+    procedure :: keep_touching
     !> Stiffness that ties and contact add to the diagonal.
     procedure :: added_stiffness
     !> Largest penetration.
@@ -234,6 +240,29 @@ contains
       if (holds(self, model, i)) correction(1:3, i) = 0
     end do
   end subroutine hold
+
+  !> Keeps touching faces together in a first guess, and open ones from passing through each other: the stiff
+  !> law would answer small errors of a guess with large pressures.
+  pure subroutine keep_touching(self, model, guess)
+    !> The state
+    class(separation_t), intent(in) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Guess of the unknowns at its end, (5, points)
+    real(wp), intent(inout) :: guess(:, :)
+    integer :: i
+
+    if (.not. model%map%layered) return
+    do i = 1, size(self%free)
+      if (.not. self%free(i)) cycle
+      if (model%scene%delaminations(model%zone(i))%contact == contact_none) cycle
+      if (self%multiplier(i) > 0) then
+        guess(3, i) = 0
+      else
+        guess(3, i) = max(0.0_wp, guess(3, i))
+      end if
+    end do
+  end subroutine keep_touching
 
   !> Stiffness that ties and contact add to the diagonal of the operator.
   pure subroutine added_stiffness(self, model, diagonal, added)

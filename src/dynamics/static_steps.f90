@@ -6,15 +6,13 @@ module static_steps
   use plate_options, only: kinematics_linear
   use delamination_parameters, only: contact_none
   use models, only: model_t
+  use separations, only: contact_tolerance
   use states, only: state_t
   use residual_norms, only: relative_residual
   use tangent_operators, only: tangent_operator_t
   implicit none
   private
   public :: attempt_load
-
-  !> Change of the contact pressures over the largest so far at which they have settled.
-  real(wp), parameter :: contact_tolerance = 5.0e-7_wp
 
 contains
 
@@ -50,7 +48,7 @@ contains
       norm = relative_residual(model%communicator, operator%numbering, residual, new%motion%internal, &
                                load_factor*model%pressure, 0.0_wp, &
                                operator%diagonal*new%motion%displacement, model%scene%solver%tolerance, &
-                               new%largest_forces)
+                               model%thickness, new%largest_forces)
       converged = norm <= model%scene%solver%tolerance
       if (converged) then
         call settle_contact(model, new, converged)

@@ -13,14 +13,17 @@ module tangent_operators
   use numberings, only: numbering_t, number_equations
   use models, only: model_t
   use separations, only: separation_t
+  use correction_mixing, only: mixing_t
   use operator_assembly, only: assemble_elements, assemble_diagonal
   use operator_changes, only: operator_changes_t
   implicit none
   private
   public :: tangent_operator_t
 
+  !> Stiffness over the diagonal above which more makes no difference.
+  real(wp), parameter :: rigid = 1.0e4_wp
   !> Changes that are followed before a factorisation is cheaper.
-  integer, parameter :: most_changes = 32
+  integer, parameter :: most_changes = 150
 
   !> A factor of `stiffness_factor * tangent stiffness + mass_factor * mass`.
   type :: tangent_operator_t
@@ -44,6 +47,8 @@ module tangent_operators
     real(wp), allocatable :: added(:, :)
     !> Changes of ties and contacts since then
     type(operator_changes_t) :: changes
+    !> What the iterations of the present step have shown
+    type(mixing_t) :: mixing
     !> Deflection of the struck point at which the tangent was taken
     real(wp) :: deflection = 0
     !> Mean deflection of the patch under that force
@@ -138,6 +143,7 @@ contains
     if (.not. self%ready) return
     self%factorizations = self%factorizations + 1
     call self%changes%clear()
+    call self%mixing%forget()
     self%response = 0
     self%compliance = 0
     if (model%scene%has_impactor) call find_response(self, model, error)
@@ -176,6 +182,8 @@ contains
     real(wp), allocatable :: wanted(:, :)
     integer, allocatable :: equations(:)
     real(wp), allocatable :: stiffness(:)
+    logical, allocatable :: missing(:)
+    integer :: k
 
     possible = .true.
     if (.not. model%map%layered) return
@@ -184,9 +192,11 @@ contains
     call list_changes(self, model, wanted, equations, stiffness)
     possible = size(equations) <= most_changes
     if (.not. possible .or. same_changes(self%changes, equations, stiffness)) return
-    call find_columns(self, model, equations, error)
+    missing = [(self%changes%column_of(equations(k)) == 0, k=1, size(equations))]
+    call find_columns(self, model, pack(equations, missing), error)
     if (allocated(error)) return
     call self%changes%set(model%communicator, self%numbering, equations, stiffness)
+    call self%mixing%forget()
     self%response = self%fresh_response
     call self%changes%correct(model%communicator, self%numbering, self%response)
     self%compliance = model%patch_mean(self%response)
@@ -227,6 +237,7 @@ contains
       do component = 1, 3
         if (self%numbering%equation(component, i) < 0) cycle
         associate (want => wanted(component, i), have => self%added(component, i))
+          if (min(want, have) > rigid*self%diagonal(component, i)) cycle
           if (abs(want - have) <= 0.2_wp*max(want, have, 0.1_wp*self%diagonal(component, i))) cycle
           mine = [mine, self%numbering%equation(component, i)]
           change = [change, want - have]
@@ -237,31 +248,35 @@ contains
     call model%communicator%allgather(change, stiffness)
   end subroutine list_changes
 
-  !> Finds the columns that are still missing, one solve each.
+  !> Finds columns, all at once.
   subroutine find_columns(self, model, equations, error)
     !> The operator
     type(tangent_operator_t), intent(inout) :: self
     !> The model
     type(model_t), intent(in) :: model
-    !> Equations wanted
+    !> Equations wanted, none of which has its column yet, the same on every rank
     integer, intent(in) :: equations(:)
     !> Set if a solve fails
     type(error_t), allocatable, intent(inout) :: error
-    real(wp), allocatable :: force(:, :), column(:, :)
-    integer :: k, point, component
+    real(wp), allocatable :: forces(:, :), values(:, :), column(:, :)
+    integer :: k
 
-    allocate (force, column, mold=self%response)
+    if (size(equations) == 0) return
+    allocate (forces(self%numbering%rows, size(equations)), source=0.0_wp)
+    allocate (values, mold=forces)
+    allocate (column, mold=self%response)
+    do k = 1, size(equations)
+      if (self%numbering%owns(equations(k))) forces(equations(k) - self%numbering%first_row + 1, k) = 1
+    end do
+    call self%timers%start('solve')
+    call self%solver%solve_many(forces, values, error)
+    call self%timers%stop('solve')
+    if (allocated(error)) return
     column = 0
     do k = 1, size(equations)
-      if (self%changes%column_of(equations(k)) > 0) cycle
-      force = 0
-      if (self%numbering%owns(equations(k))) then
-        call self%numbering%place_of(equations(k), point, component)
-        force(component, point) = 1
-      end if
-      call solve_factor(self, model, force, column, error)
-      if (allocated(error)) return
-      call self%changes%keep(equations(k), column)
+      call self%numbering%scatter(values(:, k), column)
+      call model%halo%update(column)
+      call self%changes%keep(equations(k), size(equations), column)
     end do
   end subroutine find_columns
 
@@ -318,6 +333,7 @@ contains
     type(model_t), intent(in) :: model
     !> Set if the factor cannot be made again
     type(error_t), allocatable, intent(out) :: error
+    integer, allocatable :: columns(:)
 
     call archive%item('operator/ready', self%ready)
     call archive%item('operator/stiffness_factor', self%stiffness_factor)
@@ -329,18 +345,22 @@ contains
       if (model%map%layered) &
         call archive%field('operator/added', share%points(:share%owned), model%mesh%points(), self%added)
     end associate
-    if (archive%loading .and. self%ready) call remake(self, model, error)
+    columns = self%changes%list()
+    call archive%item('operator/columns', columns)
+    if (archive%loading .and. self%ready) call remake(self, model, columns, error)
   end subroutine visit
 
   !> Makes the factor again from what was loaded.
-  subroutine remake(self, model, error)
+  subroutine remake(self, model, columns, error)
     !> The operator
     type(tangent_operator_t), intent(inout) :: self
     !> The model
     type(model_t), intent(in) :: model
+    !> Equation and company of each column found since, (2 columns)
+    integer, intent(in) :: columns(:)
     !> Set if it cannot be made
     type(error_t), allocatable, intent(inout) :: error
-    integer :: factorizations, solves
+    integer :: factorizations, solves, k
 
     factorizations = self%factorizations
     solves = self%solves
@@ -350,6 +370,11 @@ contains
     call assemble_elements(model, self%numbering, self%displacement, self%stiffness_factor, self%mass_factor, &
                            self%solver, self%diagonal)
     call factorize(self, model, error)
+    k = 1
+    do while (k < size(columns) .and. .not. allocated(error))
+      call find_columns(self, model, columns(k:k + 2*columns(k + 1) - 2:2), error)
+      k = k + 2*columns(k + 1)
+    end do
     self%factorizations = factorizations
     self%solves = solves
   end subroutine remake

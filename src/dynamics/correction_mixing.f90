@@ -1,0 +1,160 @@
+!> Learns from the corrections of a step's earlier iterations (Anderson's mixing): a lagged operator that would
+!> converge slowly, or not at all, then does in a few iterations more, each the price of one solve.
+module correction_mixing
+  use kinds, only: wp
+  use communicators, only: communicator_t
+  use dense_systems, only: solve_dense
+  implicit none
+  private
+  public :: mixing_t
+
+  !> Iterations remembered; more no longer pay.
+  integer, parameter :: depth = 8
+  !> Keeps the small system solvable once two memories say the same, relative to its diagonal.
+  real(wp), parameter :: regularisation = 1.0e-12_wp
+
+  !> What earlier iterations of a step showed: a change of the displacement and what that did to the correction.
+  type :: mixing_t
+    !> Changes of the displacement and of the correction, (5, points, depth)
+    real(wp), allocatable :: moves(:, :, :), changes(:, :, :)
+    !> Changes of the force, displacement's fellow unknown (depth)
+    real(wp) :: force_changes(depth) = 0
+    !> Weighted products of the changes with each other, (depth, depth)
+    real(wp) :: products(depth, depth) = 0
+    !> Correction and force of the iteration before, and how far that moved, (5, points)
+    real(wp), allocatable :: correction(:, :), move(:, :)
+    !> Force that went with that correction
+    real(wp) :: force = 0
+    !> Memories kept, and where the next goes
+    integer :: kept = 0, next = 1
+    !> True once the iteration before can be compared with
+    logical :: comparable = .false.
+  contains
+    !> Forgets all, after the operator or the set of touching points has changed.
+    procedure :: forget
+    !> Compares nothing with the iteration before, after the loads have changed.
+    procedure :: pause
+    !> Betters a correction and the force that goes with it.
+    procedure :: mix
+    !> Takes note of the move that was made of it.
+    procedure :: note
+  end type mixing_t
+
+contains
+
+  !> Forgets all, after the operator or the set of touching points has changed.
+  pure subroutine forget(self)
+    !> The memory
+    class(mixing_t), intent(inout) :: self
+
+    self%kept = 0
+    self%next = 1
+    self%comparable = .false.
+  end subroutine forget
+
+  !> Compares nothing with the iteration before, after the loads have changed.
+  pure subroutine pause(self)
+    !> The memory
+    class(mixing_t), intent(inout) :: self
+
+    self%comparable = .false.
+  end subroutine pause
+
+  !> Betters a correction and the force that goes with it: the combination with earlier ones that would have left
+  !> the smallest correction if all were linear.
+  subroutine mix(self, communicator, weight, correction, force)
+    !> The memory
+    class(mixing_t), intent(inout) :: self
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> Weight of each unknown's square, (5, owned points)
+    real(wp), intent(in) :: weight(:, :)
+    !> Correction of the displacement, (5, points)
+    real(wp), intent(inout) :: correction(:, :)
+    !> Force found with it
+    real(wp), intent(inout) :: force
+    real(wp) :: shares(depth), matrix(depth, depth)
+    logical :: singular
+    integer :: i
+
+    call remember(self, communicator, weight, correction, force)
+    if (self%kept == 0) return
+    shares(:self%kept) = [(weighted_product(weight, self%changes(:, :, i), correction), i=1, self%kept)]
+    call communicator%sum(shares(:self%kept))
+    matrix = self%products
+    do i = 1, self%kept
+      matrix(i, i) = matrix(i, i)*(1 + regularisation)
+    end do
+    call solve_dense(matrix(:self%kept, :self%kept), shares(:self%kept), singular)
+    if (singular .or. .not. all(abs(shares(:self%kept)) <= huge(force))) return
+    do i = 1, self%kept
+      correction = correction - shares(i)*(self%moves(:, :, i) + self%changes(:, :, i))
+      force = force - shares(i)*self%force_changes(i)
+    end do
+  end subroutine mix
+
+  !> Adds what the last move showed to the memory, in place of the oldest.
+  subroutine remember(self, communicator, weight, correction, force)
+    !> The memory
+    type(mixing_t), intent(inout) :: self
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> Weight of each unknown's square, (5, owned points)
+    real(wp), intent(in) :: weight(:, :)
+    !> Correction after the last move, (5, points)
+    real(wp), intent(in) :: correction(:, :)
+    !> Force found with it
+    real(wp), intent(in) :: force
+    real(wp) :: products(depth)
+    integer :: i
+
+    if (.not. allocated(self%correction)) allocate (self%correction, self%move, mold=correction)
+    if (self%comparable) then
+      if (.not. allocated(self%moves)) then
+        allocate (self%moves(size(correction, 1), size(correction, 2), depth))
+        allocate (self%changes, mold=self%moves)
+      end if
+      self%moves(:, :, self%next) = self%move
+      self%changes(:, :, self%next) = correction - self%correction
+      self%force_changes(self%next) = force - self%force
+      self%kept = min(self%kept + 1, depth)
+      products = 0
+      do i = 1, self%kept
+        products(i) = weighted_product(weight, self%changes(:, :, i), self%changes(:, :, self%next))
+      end do
+      call communicator%sum(products)
+      self%products(:, self%next) = products
+      self%products(self%next, :) = products
+      self%next = 1 + modulo(self%next, depth)
+    end if
+    self%correction = correction
+    self%force = force
+  end subroutine remember
+
+  !> Weighted product of two fields, over this rank's points.
+  pure real(wp) function weighted_product(weight, first, second) result(product)
+    !> Weight of each unknown, (5, owned points)
+    real(wp), intent(in) :: weight(:, :)
+    !> The fields, (5, points)
+    real(wp), intent(in) :: first(:, :), second(:, :)
+    integer :: i, j
+
+    product = 0
+    do j = 1, size(weight, 2)
+      do i = 1, size(weight, 1)
+        product = product + weight(i, j)*first(i, j)*second(i, j)
+      end do
+    end do
+  end function weighted_product
+
+  !> Takes note of the move that was made of a correction.
+  pure subroutine note(self, move)
+    !> The memory
+    class(mixing_t), intent(inout) :: self
+    !> Change of the displacement, (5, points)
+    real(wp), intent(in) :: move(:, :)
+
+    self%move = move
+    self%comparable = .true.
+  end subroutine note
+end module correction_mixing
