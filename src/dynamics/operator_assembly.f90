@@ -28,20 +28,23 @@ contains
     class(linear_solver_t), intent(inout) :: solver
     !> Receives the diagonal, (5, points)
     real(wp), intent(inout) :: diagonal(:, :)
-    real(wp), allocatable :: matrices(:, :, :), motion(:, :)
+    real(wp), allocatable :: matrices(:, :, :), turned(:, :, :), motion(:, :)
     real(wp) :: consistent_factor
-    integer :: b, lane, point
+    integer :: b, lane, point, column
 
     diagonal = 0
     consistent_factor = mass_factor
     if (allocated(model%lumped)) consistent_factor = 0
-    allocate (matrices(lanes, 45, 45))
+    allocate (matrices(lanes, 45, 45), turned(45, 45, lanes))
     motion = model%motion_of(displacement)
     do b = 1, model%elements%batches
       call tangent(model%elements, b, model%scene%kinematics, motion, stiffness_factor, consistent_factor, matrices)
+      do column = 1, 45
+        turned(:, column, :) = transpose(matrices(:, :, column))
+      end do
       do lane = 1, model%elements%lanes_used(b)
         call add_block(model, numbering, model%distribution%connectivity(:, first_element(b) + lane - 1), &
-                       matrices(lane, :, :), solver, diagonal)
+                       turned(:, :, lane), solver, diagonal)
       end do
     end do
     if (allocated(model%lumped)) then

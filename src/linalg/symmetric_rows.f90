@@ -13,7 +13,9 @@ module symmetric_rows
     integer, pointer, contiguous :: columns(:) => null()
     !> Values of the entries
     real(wp), pointer, contiguous :: values(:) => null()
-    !> False once an entry outside the pattern was added
+    !> First of the rows that end in the same columns as a row from its diagonal on, as those of a node do
+    integer, allocatable, private :: first_alike(:)
+    !> False once an entry outside the pattern was added, which spoils the values
     logical :: complete = .true.
   contains
     !> Takes the upper triangle of a pattern.
@@ -22,6 +24,8 @@ module symmetric_rows
     procedure :: add
     !> Frees the lists.
     procedure :: release
+    procedure, private :: find_alike
+    procedure, private :: locate
   end type symmetric_rows_t
 
 contains
@@ -50,38 +54,80 @@ contains
       k = row_start(row + 1)
       self%columns(self%start(row) + 1:self%start(row + 1)) = columns(k - self%start(row + 1) + self%start(row):k - 1)
     end do
+    call self%find_alike()
     self%complete = .true.
   end subroutine define
 
-  !> Adds an element's matrix, walking along each of its rows once.
+  !> Finds the rows that hold what the row before them holds right of its diagonal.
+  pure subroutine find_alike(self)
+    class(symmetric_rows_t), intent(inout) :: self
+    integer :: row
+
+    allocate (self%first_alike(size(self%start) - 1))
+    do row = 1, size(self%first_alike)
+      self%first_alike(row) = row
+      if (row == 1) cycle
+      associate (before => self%columns(self%start(row - 1) + 2:self%start(row)), &
+                 mine => self%columns(self%start(row) + 1:self%start(row + 1)))
+        if (size(before) /= size(mine)) cycle
+        if (all(before == mine)) self%first_alike(row) = self%first_alike(row - 1)
+      end associate
+    end do
+  end subroutine find_alike
+
+  !> Adds an element's matrix. Where its columns stand is looked up once for all rows that are alike.
   pure subroutine add(self, equations, matrix)
     class(symmetric_rows_t), intent(inout) :: self
     !> Equation of each row of the element's matrix, from 0; -1 for a row left out
     integer, intent(in) :: equations(:)
     !> The symmetric matrix, shape (equations, equations)
     real(wp), intent(in) :: matrix(:, :)
-    integer :: order(size(equations)), n, a, b, k, last, row, column
+    integer :: order(size(equations)), from_end(size(equations)), n, a, b, k, row, alike
 
     call sort_present(equations, order, n)
+    alike = 0
     do a = 1, n
-      row = equations(order(a))
-      k = self%start(row + 1) + 1
-      last = self%start(row + 2)
+      row = equations(order(a)) + 1
+      if (self%first_alike(row) /= alike) call self%locate(row, equations(order(a:n)), from_end(a:n))
+      alike = self%first_alike(row)
       do b = a, n
-        column = equations(order(b))
-        do while (k < last .and. self%columns(k) < column)
-          k = k + 1
-        end do
-        if (self%columns(k) /= column) then
-          self%complete = .false.
-          cycle
-        end if
+        k = self%start(row + 1) - from_end(b)
         self%values(k) = self%values(k) + matrix(order(b), order(a))
-        ! Two rows of the element in the same equation: both triangles fall on the diagonal.
-        if (column == row .and. b > a) self%values(k) = self%values(k) + matrix(order(a), order(b))
+      end do
+      ! Two rows of the element in the same equation: both triangles fall on the diagonal.
+      do b = a + 1, n
+        if (equations(order(b)) /= row - 1) exit
+        k = self%start(row + 1) - from_end(b)
+        self%values(k) = self%values(k) + matrix(order(a), order(b))
       end do
     end do
   end subroutine add
+
+  !> Finds columns in a row by walking along it once.
+  pure subroutine locate(self, row, columns, from_end)
+    class(symmetric_rows_t), intent(inout) :: self
+    !> The row, from 1
+    integer, intent(in) :: row
+    !> The columns, from 0, ascending
+    integer, intent(in) :: columns(:)
+    !> How many entries of the row follow each of them; 0 for one outside the pattern
+    integer, intent(out) :: from_end(:)
+    integer :: b, k, last
+
+    k = self%start(row) + 1
+    last = self%start(row + 1)
+    do b = 1, size(columns)
+      do while (k < last .and. self%columns(k) < columns(b))
+        k = k + 1
+      end do
+      from_end(b) = 0
+      if (self%columns(k) == columns(b)) then
+        from_end(b) = last - k
+      else
+        self%complete = .false.
+      end if
+    end do
+  end subroutine locate
 
   !> Order in which the equations that are not left out ascend.
   pure subroutine sort_present(equations, order, n)
@@ -110,6 +156,6 @@ contains
     class(symmetric_rows_t), intent(inout) :: self
 
     if (.not. associated(self%start)) return
-    deallocate (self%start, self%columns, self%values)
+    deallocate (self%start, self%columns, self%values, self%first_alike)
   end subroutine release
 end module symmetric_rows

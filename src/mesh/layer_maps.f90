@@ -101,7 +101,6 @@ contains
     integer, allocatable, intent(out) :: unknown_points(:)
     !> Expanded matrix
     real(wp), allocatable, intent(out) :: expanded(:, :)
-    real(wp), allocatable :: transform(:, :)
     integer :: a, p, columns
 
     columns = 0
@@ -112,61 +111,48 @@ contains
         p = self%above(p)
       end do
     end do
-    allocate (unknown_points(columns), transform(5*size(points), 5*columns))
-    transform = 0
+    allocate (unknown_points(columns))
     columns = 0
     do a = 1, size(points)
-      call fill_node(self, points(a), transform(5*a - 4:5*a, :), columns, unknown_points)
+      p = points(a)
+      do while (p > 0)
+        columns = columns + 1
+        unknown_points(columns) = p
+        p = self%above(p)
+      end do
     end do
-    expanded = matmul(transpose(transform), matmul(matrix, transform))
+    expanded = times_map(self, points, transpose(times_map(self, points, matrix, columns)), columns)
   end subroutine expand
 
-  !> Rows of the transform for one node: its motion from its own unknowns and those above.
-  pure subroutine fill_node(self, point, rows, columns, unknown_points)
+  !> Matrix times the map from unknowns to motion. A motion is its own unknowns and the motion above, so that
+  !> no product of matrices is needed.
+  pure function times_map(self, points, matrix, count) result(product)
     !> The map
     class(layer_map_t), intent(in) :: self
-    !> Point of the node
-    integer, intent(in) :: point
-    !> Rows of the transform, (5, 5*points)
-    real(wp), intent(inout) :: rows(:, :)
-    !> Points filled in so far
-    integer, intent(inout) :: columns
-    !> Points of the columns
-    integer, intent(inout) :: unknown_points(:)
-    real(wp) :: from_motion(5, 5), step(5, 5)
-    integer :: p, i
+    !> Points of the columns of the matrix
+    integer, intent(in) :: points(:)
+    !> Matrix, five columns a point
+    real(wp), intent(in) :: matrix(:, :)
+    !> Number of these points and of those above them
+    integer, intent(in) :: count
+    !> Product, five columns for every point and every one above it
+    real(wp) :: product(size(matrix, 1), 5*count)
+    real(wp) :: motion(size(matrix, 1), 5)
+    integer :: a, p, last
 
-    p = point
-    from_motion = identity()
-    do
-      columns = columns + 1
-      unknown_points(columns) = p
-      if (self%above(p) == 0) exit
-      step = identity()
-      step(1, 4) = -self%height(p)
-      step(2, 5) = -self%height(p)
-      rows(:, 5*columns - 4:5*columns) = matmul(from_motion, step)
-      step = 0
-      do i = 1, 3
-        step(i, i) = 1
+    last = 0
+    do a = 1, size(points)
+      motion = matrix(:, 5*a - 4:5*a)
+      p = points(a)
+      do while (self%above(p) > 0)
+        product(:, last + 1:last + 3) = motion(:, 1:3)
+        product(:, last + 4:last + 5) = motion(:, 4:5) - self%height(p)*motion(:, 1:2)
+        motion(:, 4:5) = self%height(p)*motion(:, 1:2)
+        last = last + 5
+        p = self%above(p)
       end do
-      step(1, 4) = self%height(p)
-      step(2, 5) = self%height(p)
-      from_motion = matmul(from_motion, step)
-      p = self%above(p)
+      product(:, last + 1:last + 5) = motion
+      last = last + 5
     end do
-    rows(:, 5*columns - 4:5*columns) = from_motion
-  end subroutine fill_node
-
-  !> The identity of a point's five unknowns.
-  pure function identity()
-    !> 5 x 5
-    real(wp) :: identity(5, 5)
-    integer :: i
-
-    identity = 0
-    do i = 1, 5
-      identity(i, i) = 1
-    end do
-  end function identity
+  end function times_map
 end module layer_maps

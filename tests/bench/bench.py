@@ -43,16 +43,16 @@ class Run:
             if process.returncode:
                 sys.exit(f'The run failed with exit code {process.returncode}.')
             self.seconds = usage.ru_utime + usage.ru_stime
-            self.peak_megabytes = usage.ru_maxrss/1024
+            self.peak_megabytes = usage.ru_maxrss*1024/1e6
             log = pathlib.Path(folder, 'bench.log').read_text()
             with open(pathlib.Path(folder, 'bench_history.csv')) as lines:
                 self.history = list(csv.DictReader(line for line in lines if not line.startswith('#')))
         # Name, times, seconds on the wall, seconds of the processor.
         self.phases = {name.strip(): (int(times), float(processor)) for name, times, processor in
-                       re.findall(r'^(\S.*?) +(\d+) +[\d.]+ s +([\d.]+) s$', log, re.M)}
+                       re.findall(r'^(\S.*?) +(\d+) +[\d.]+ s +([\d.]+) s$', log, re.MULTILINE)}
         self.unknowns = int(re.search(r'(\d+) unknowns', log)[1])
-        self.factor_megabytes, self.matrix_numbers = (
-            float(n) for n in re.search(r'Factor: \S+ numbers, (\S+) MB; matrix: (\d+) numbers', log).groups())
+        self.factor_numbers, self.working_megabytes, self.matrix_numbers = (
+            float(n) for n in re.search(r'Factor: (\S+) numbers, (\S+) MB; matrix: (\d+) numbers', log).groups())
 
     def mean(self, phase):
         """Seconds of the processor of one run of a phase."""
@@ -85,11 +85,13 @@ def step_cost(program, arguments):
         print(f'  before the first step: {before:.2f} s of {run.seconds:.2f} s, {100*before/run.seconds:.1f} %; with '
               f'the first factor {100*(before + factoring/factors)/run.seconds:.1f} % (at most 10 % of 500 steps)')
         # The upper triangle: a number of eight bytes and a column of four each.
-        matrix = 12*(run.matrix_numbers + run.unknowns)/2/2**20
-        both = matrix + run.factor_megabytes
-        print(f'  peak memory {run.peak_megabytes:.0f} MB, {bare:.0f} MB of it with four elements; matrix '
-              f'{matrix:.0f} MB, factor {run.factor_megabytes:.0f} MB: ratio {run.peak_megabytes/both:.2f}, '
-              f'{(run.peak_megabytes - bare)/both:.2f} without those (at most 1.5)')
+        matrix = 12*(run.matrix_numbers + run.unknowns)/2/1e6
+        factor = 8*run.factor_numbers/1e6
+        print(f'  peak memory {run.peak_megabytes:.0f} MB, {bare:.0f} MB of it with four elements')
+        for name, size in (('factor', factor), ("MUMPS' own memory", run.working_megabytes)):
+            both = matrix + size
+            print(f'    over matrix {matrix:.0f} MB and {name} {size:.0f} MB: {run.peak_megabytes/both:.2f}, '
+                  f'{(run.peak_megabytes - bare)/both:.2f} without those (at most 1.5)')
 
 
 def speed(program, arguments):
