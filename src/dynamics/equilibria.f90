@@ -68,7 +68,7 @@ contains
     correction = 0
     patch_square = sum((model%patch/model%mesh%multiplicity)**2)
     if (model%scene%has_impactor) strike = begin_strike(model, integrator, old, step)
-    call predict_motion(integrator, old, step, new)
+    call predict_motion(model, integrator, old, step, new)
     converged = .false.
     previous = huge(1.0_wp)
     do
@@ -210,8 +210,10 @@ contains
     load = self%share*self%unknown + self%inherited
   end function load
 
-  !> First guess: the acceleration stays what it is.
-  pure subroutine predict_motion(integrator, old, step, new)
+  !> First guess: the acceleration stays what it is. Held jumps stay where they are, also those glued in motion.
+  pure subroutine predict_motion(model, integrator, old, step, new)
+    !> The model
+    type(model_t), intent(in) :: model
     !> Integrator of the plate
     type(plate_integrator_t), intent(in) :: integrator
     !> State at the start
@@ -221,7 +223,9 @@ contains
     !> State at the end
     type(state_t), intent(inout) :: new
 
-    new%motion%displacement = old%motion%displacement + step*old%motion%velocity + (step**2/2)*old%motion%acceleration
+    new%motion%displacement = step*old%motion%velocity + (step**2/2)*old%motion%acceleration
+    call new%separation%hold(model, new%motion%displacement)
+    new%motion%displacement = old%motion%displacement + new%motion%displacement
     call integrator%complete(step, old%motion, new%motion%displacement, new%motion%velocity, new%motion%acceleration)
     new%iterations = 0
     new%force_iterations = 0
