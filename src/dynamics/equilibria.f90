@@ -17,9 +17,9 @@ module equilibria
   private
   public :: attempt_step
 
-  !> Change of the contact pressures over the largest so far at which they have settled: the law is a thousand
-  !> times stiffer than the layers, so the gaps left are 5e-7 of that pressure over the layers' stiffness.
-  real(wp), parameter :: contact_tolerance = 5.0e-4_wp
+  !> Distance of pressures and gaps from contact (complementarity) at which they have settled: the gaps left are
+  !> this part of the largest pressure over the layers' stiffness.
+  real(wp), parameter :: contact_tolerance = 5.0e-7_wp
 
   !> The impactor's side of a step: its motion and the indentation are affine in one unknown force.
   type :: strike_t
@@ -108,7 +108,7 @@ contains
     if (converged) call finish(model, integrator, old, step, strike, energy, new)
   end subroutine attempt_step
 
-  !> Takes the contact pressures found as the next estimates; they must repeat themselves for a step to be done.
+  !> Takes the contact pressures found as the next estimates; a step is done once they go with the gaps.
   subroutine settle_contact(model, new, converged)
     !> The model
     type(model_t), intent(in) :: model
@@ -116,11 +116,12 @@ contains
     type(state_t), intent(inout) :: new
     !> False on return where the pressures have not settled
     logical, intent(inout) :: converged
-    real(wp) :: change
+    real(wp) :: unmet
 
-    call new%separation%update_multipliers(model, new%motion%displacement, change)
-    new%contact_iterations = new%contact_iterations + merge(1, 0, change > 0)
-    converged = converged .and. change <= contact_tolerance
+    unmet = new%separation%complementarity(model, new%motion%displacement)
+    call new%separation%update_multipliers(model, new%motion%displacement, unmet <= contact_tolerance)
+    new%contact_iterations = new%contact_iterations + merge(1, 0, unmet > 0)
+    converged = converged .and. unmet <= contact_tolerance
   end subroutine settle_contact
 
   !> Makes the operator follow ties and contacts, or renews it where that or its age asks for it.
