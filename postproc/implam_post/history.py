@@ -8,8 +8,8 @@ import numpy as np
 
 from implam_post.errors import FileError
 
-ENERGIES = ("energy_impactor", "energy_kinetic", "energy_strain", "energy_indentation", "energy_delamination",
-            "energy_ply_damage", "energy_contact", "energy_algorithmic")
+KEPT_ENERGIES = ("energy_impactor", "energy_kinetic", "energy_strain", "energy_indentation")
+ENERGIES = (*KEPT_ENERGIES, "energy_delamination", "energy_ply_damage", "energy_contact", "energy_algorithmic")
 
 
 @dataclass(frozen=True)

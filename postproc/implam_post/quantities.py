@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from implam_post.history import ENERGIES, History
+from implam_post.history import ENERGIES, KEPT_ENERGIES, History
 
 
 class Peak(NamedTuple):
@@ -95,6 +95,13 @@ def energy_error(history: History) -> float:
         return float(np.max(np.abs(history["energy_error"])) / np.abs(initial))
 
 
+def energy_rise(history: History) -> float:
+    """Return the most that the energy kept, less the pressure's work, rises over any window, over that at the start."""
+    kept = sum(history[column] for column in KEPT_ENERGIES) - history["work_external"]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return float(np.max(kept - np.minimum.accumulate(kept)) / np.abs(kept[0]))
+
+
 def growth_rows(history: History) -> np.ndarray:
     """Return the rows at which delaminations have grown; none if the history tells no area."""
     area = history.columns.get("delaminated_area", np.zeros(len(history.time)))
@@ -131,6 +138,7 @@ QUANTITIES: dict[str, Callable[[History], float]] = {
     "max_deflection_time": lambda history: peak(history, "deflection").time,
     "rebound_velocity": rebound_velocity,
     "energy_error": energy_error,
+    "energy_rise": energy_rise,
 }
 
 COLUMN_QUANTITIES: dict[str, Callable[[np.ndarray], float]] = {

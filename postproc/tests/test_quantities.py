@@ -43,6 +43,17 @@ class QuantitiesTest(unittest.TestCase):
         columns["energy_impactor"] = np.zeros(3)
         self.assertFalse(np.isfinite(QUANTITIES["energy_error"](History(columns))))
 
+    def test_energy_rise(self) -> None:
+        """From the lowest row before; what the pressure puts in and what is lost don't count."""
+        columns = {name: np.zeros(6) for name in ENERGIES}
+        columns |= {"time": np.arange(6.0), "work_external": np.array([0, 0, 0, 1.0, 1, 1])}
+        columns["energy_impactor"] = np.array([10.0, 8, 6, 8, 7, 6])
+        columns["energy_strain"] = np.array([0, 1, 1, 1, 2.5, 1])
+        columns["energy_delamination"] = np.arange(6.0)
+        self.assertAlmostEqual(QUANTITIES["energy_rise"](History(columns)), 0.15, delta=1e-15)
+        columns["energy_kinetic"] = np.full(6, np.nan)
+        self.assertTrue(np.isnan(QUANTITIES["energy_rise"](History(columns))))
+
     def test_rms_force_difference(self) -> None:
         """A constant difference over the contact, and NaN if a history ends too early."""
         reference = pulses(0, 2, 4, 2, 0, 0)

@@ -8,19 +8,19 @@ module result_rows
   public :: row_of
 
   !> Number of columns.
-  integer, parameter, public :: columns = 35
+  integer, parameter, public :: columns = 36
   !> Their names; the first seventeen and their order are the public interface.
   character(len=*), parameter, public :: column_names(columns) = [character(len=24) :: &
     'time', 'step', 'force', 'indentation', 'impactor_displacement', 'impactor_velocity', 'deflection', &
     'delaminated_area', 'energy_impactor', 'energy_kinetic', 'energy_strain', 'energy_indentation', &
     'energy_delamination', 'energy_ply_damage', 'energy_contact', 'energy_algorithmic', 'energy_error', &
     'patch_deflection', 'work_external', 'step_length', 'stress', 'release_ratio', &
-    'penetration', 'iterations', 'force_iterations', &
+    'penetration', 'complementarity', 'iterations', 'force_iterations', &
     'contact_iterations', 'total_iterations', 'total_force_iterations', 'total_contact_iterations', 'rejected', &
     'refactorisations', 'solves', 'fibre_failures', 'matrix_cracks', 'matrix_crushings']
   !> Which of them are whole numbers.
   logical, parameter, public :: column_whole(columns) = &
-    [.false., .true., spread(.false., 1, 21), spread(.true., 1, 12)]
+    [.false., .true., spread(.false., 1, 22), spread(.true., 1, 12)]
 
 contains
 
@@ -39,10 +39,11 @@ contains
       row(8) = now%separation%area(model)
       row(9:12) = [ledger%impactor, ledger%kinetic, ledger%strain, ledger%indentation]
       row(13:15) = [ledger%delamination, ledger%ply_damage, ledger%contact]
-      row(16:23) = [ledger%algorithmic, ledger%error(), now%patch_mean, ledger%external_work, &
+      row(16:24) = [ledger%algorithmic, ledger%error(), now%patch_mean, ledger%external_work, &
                     march%controller%last, now%stress, now%release_ratio, &
-                    now%separation%penetration(model, now%motion%displacement)]
-      row(24:35) = real([now%iterations, now%force_iterations, now%contact_iterations, now%all_iterations, &
+                    now%separation%penetration(model, now%motion%displacement), &
+                    now%separation%complementarity(model, now%motion%displacement)]
+      row(25:36) = real([now%iterations, now%force_iterations, now%contact_iterations, now%all_iterations, &
                          now%all_force_iterations, now%all_contact_iterations, march%rejected, &
                          march%operator%factorizations, march%operator%solves, march%failures%counts(model)], wp)
     end associate

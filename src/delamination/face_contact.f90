@@ -4,20 +4,29 @@
 !> with the pressure's dependence on the gap; the outer loop then takes the pressure found as the next
 !> multiplier until the gap closes exactly where there is pressure. (Eq. 13a of the paper taken as a fixed
 !> point diverges for most stiffnesses.) A converged state is the same for any stiffness and method.
+!>
+!> Eq. 12 as printed has a kink at the closed gap, between whose two sides Newton's method goes to and fro without
+!> end for exponents above 1. Here the pressure's slope at the closed gap is the same on both sides, as the paper
+!> says ("first-order continuous"): the pressure is then convex, and Newton's method comes down to it from one side.
 module face_contact
   use delamination_parameters, only: contact_augmented_lagrangian, contact_continuous_penalty, contact_none
   use kinds, only: wp
   implicit none
   private
-  public :: contact_law_t, create_contact_law, contact_pressure, updated_multiplier, pressure_decay
+  public :: contact_law_t, create_contact_law, contact_pressure, updated_multiplier, updated_decay, unmet_contact
 
   !> Stiffness of the contact over the transverse stiffness of the layers. On random and plate-like
   !> compliances of 40 nodes a factor of 1 left 40 to over 80 factorisations, 100 about 5 multiplier updates
   !> and 10 factorisations, 1000 to 1e6 2 to 5 updates and 4 to 10 (augmented Lagrangian; the continuous
-  !> penalty with q = 1 the same updates and 4 to 14). With q = 1.5 most cases had not converged after 80 updates.
-  real(wp), parameter :: stiffness_factor = 1.0e6_wp
+  !> penalty with q = 1 the same updates and 4 to 14, with q = 1.5 2 to 4 updates and 15 to 30).
+  real(wp), parameter :: usual_stiffness = 1.0e3_wp
+  !> The same for the augmented Lagrangian between the steps of a motion, whose pressures change little: it leaves
+  !> gaps so small that the first pressures found mostly stand.
+  real(wp), parameter :: moving_stiffness = 2.0e6_wp
   !> Decay of the pressure times the mean gap (section 3.4 of the paper).
   real(wp), parameter :: decay_factor = 1.5_wp
+  !> Slope of the steepest tail over the stiffness: rounding of the gap is still less than the pressures' own error.
+  real(wp), parameter :: steepest = 1.0e5_wp
   !> A pressure below this part of stiffness times gap is none: the faces are clearly open.
   real(wp), parameter :: open_fraction = 1.0e-9_wp
 
@@ -25,20 +34,21 @@ module face_contact
   type :: contact_law_t
     !> contact_augmented_lagrangian, contact_continuous_penalty or contact_none
     integer :: method = contact_augmented_lagrangian
+    !> Transverse stiffness of the layers, pressure per length: modulus across the plies over the thickness of the
+    !> thinner layer
+    real(wp) :: layer_stiffness = 0
     !> Pressure per length of penetration
     real(wp) :: stiffness = 0
     !> Exponent q of Eq. 12; 1 makes the pressure's slope continuous
     real(wp) :: exponent = 1
     !> Penetration at which the pressure of any exponent is stiffness times penetration
     real(wp) :: length = 1
-    !> Least decay beta of the pressure with an open gap, 1/length (Eq. 12)
-    real(wp) :: decay = 0
   end type contact_law_t
 
 contains
 
   !> A law for an interface.
-  pure function create_contact_law(method, exponent, transverse_stiffness, thickness) result(law)
+  pure function create_contact_law(method, exponent, transverse_stiffness, thickness, moving) result(law)
     !> contact_augmented_lagrangian, contact_continuous_penalty or contact_none
     integer, intent(in) :: method
     !> Exponent q of Eq. 12
@@ -47,29 +57,61 @@ contains
     real(wp), intent(in) :: transverse_stiffness
     !> Thickness of the thinner layer
     real(wp), intent(in) :: thickness
-    !> The law, its decay not yet set
+    !> True for the steps of a motion, false for load steps
+    logical, intent(in) :: moving
+    !> The law
     type(contact_law_t) :: law
 
     law%method = method
     law%exponent = exponent
-    law%stiffness = stiffness_factor*transverse_stiffness
+    law%layer_stiffness = transverse_stiffness
+    law%stiffness = usual_stiffness*transverse_stiffness
+    if (moving .and. method == contact_augmented_lagrangian) law%stiffness = moving_stiffness*transverse_stiffness
     law%length = thickness
   end function create_contact_law
 
-  !> Decay of the pressure that suits the open gaps (section 3.4 of the paper, where it is printed as
-  !> proportional to the mean gap; it is inversely so).
-  pure real(wp) function pressure_decay(mean_gap) result(decay)
-    !> Mean of the gaps that are open; 0: none is
-    real(wp), intent(in) :: mean_gap
-
-    decay = 0
-    if (mean_gap > tiny(mean_gap)*decay_factor) decay = decay_factor/mean_gap
-  end function pressure_decay
-
-  !> Pressure and its derivative by the gap. Pressure never pulls.
-  elemental subroutine contact_pressure(law, gap, multiplier, pressure, slope)
+  !> The decay that suits the gaps: 1.5 over the mean gap (section 3.4 of the paper, where it is printed as
+  !> proportional to it), the mean weighted by the pressures. The plain mean is ruled by faces that are wide open,
+  !> and the pressures settle so slowly with it that most had not after 80 updates. The weighted mean shrinks as
+  !> the faces under pressure meet, and 2 to 6 updates do, be the faces held back by stiffness or by inertia.
+  !> A new step starts with a tail as steep as the contact is stiff.
+  elemental real(wp) function updated_decay(law, gaps, pressures, largest_pressure, settled) result(decay)
     !> The law
     type(contact_law_t), intent(in) :: law
+    !> Sums over the faces of area times pressure times size of the gap, and of area times pressure
+    real(wp), intent(in) :: gaps, pressures
+    !> Largest pressure
+    real(wp), intent(in) :: largest_pressure
+    !> True: the pressures go with the gaps, the step is done
+    logical, intent(in) :: settled
+
+    decay = 0
+    if (.not. largest_pressure > 0) return
+    decay = law%stiffness/largest_pressure
+    if (settled) return
+    decay = steepest*decay
+    if (gaps*decay > decay_factor*pressures) decay = decay_factor*pressures/gaps
+  end function updated_decay
+
+  !> What is missing from pressure only at closed faces: the lesser of the pressure and of the pressure that
+  !> would close the gap in the layers' own thickness.
+  elemental real(wp) function unmet_contact(law, gap, pressure) result(unmet)
+    !> The law
+    type(contact_law_t), intent(in) :: law
+    !> Gap, positive when open
+    real(wp), intent(in) :: gap
+    !> Pressure, not negative
+    real(wp), intent(in) :: pressure
+
+    unmet = abs(min(pressure, law%layer_stiffness*gap))
+  end function unmet_contact
+
+  !> Pressure and its derivative by the gap. Pressure never pulls.
+  elemental subroutine contact_pressure(law, decay, gap, multiplier, pressure, slope)
+    !> The law
+    type(contact_law_t), intent(in) :: law
+    !> Decay beta of the pressure with an open gap, 1/length (Eq. 12); the augmented Lagrangian has none
+    real(wp), intent(in) :: decay
     !> Gap, positive when open
     real(wp), intent(in) :: gap
     !> Estimate of the pressure, not negative
@@ -80,7 +122,7 @@ contains
     real(wp), intent(out) :: slope
 
     if (law%method == contact_continuous_penalty) then
-      call continuous_pressure(law, gap, multiplier, pressure, slope)
+      call continuous_pressure(law, decay, gap, multiplier, pressure, slope)
     else if (law%method == contact_none) then
       pressure = 0
       slope = 0
@@ -90,11 +132,13 @@ contains
     end if
   end subroutine contact_pressure
 
-  !> Eq. 12, with an exponential tail where the gap is open. With the exponent 1 the slopes on both sides
-  !> of the closed gap are made equal by the larger of the two stiffnesses, k and beta times multiplier.
-  elemental subroutine continuous_pressure(law, gap, multiplier, pressure, slope)
+  !> Eq. 12, with an exponential tail where the gap is open. The slope at the closed gap is beta times multiplier
+  !> on both sides, with the exponent 1 the larger of it and of k.
+  elemental subroutine continuous_pressure(law, decay, gap, multiplier, pressure, slope)
     !> The law
     type(contact_law_t), intent(in) :: law
+    !> Decay beta
+    real(wp), intent(in) :: decay
     !> Gap, positive when open
     real(wp), intent(in) :: gap
     !> Estimate of the pressure, not negative
@@ -105,7 +149,7 @@ contains
     real(wp), intent(out) :: slope
     real(wp) :: closing
 
-    closing = law%decay*multiplier
+    closing = decay*multiplier
     if (law%exponent == 1) closing = max(closing, law%stiffness)
     if (gap >= 0) then
       pressure = 0
@@ -113,26 +157,25 @@ contains
       if (.not. closing*gap < -log(tiny(gap))*multiplier) return
       pressure = multiplier*exp(-closing*gap/multiplier)
       slope = -closing*pressure/multiplier
-    else if (law%exponent == 1) then
+    else
       pressure = multiplier - closing*gap
       slope = -closing
-    else
-      pressure = multiplier + law%stiffness*law%length*(-gap/law%length)**law%exponent
-      slope = -law%exponent*law%stiffness*(-gap/law%length)**(law%exponent - 1)
+      if (law%exponent == 1) return
+      pressure = pressure + law%stiffness*law%length*(-gap/law%length)**law%exponent
+      slope = slope - law%exponent*law%stiffness*(-gap/law%length)**(law%exponent - 1)
     end if
   end subroutine continuous_pressure
 
   !> The next multiplier: the pressure found, or nothing where the faces are clearly open.
-  elemental real(wp) function updated_multiplier(law, gap, multiplier) result(updated)
+  elemental real(wp) function updated_multiplier(law, gap, pressure) result(updated)
     !> The law
     type(contact_law_t), intent(in) :: law
-    !> Gap that was found with the multiplier
+    !> Gap
     real(wp), intent(in) :: gap
-    !> Multiplier it was found with
-    real(wp), intent(in) :: multiplier
-    real(wp) :: slope
+    !> Pressure found with the gap
+    real(wp), intent(in) :: pressure
 
-    call contact_pressure(law, gap, multiplier, updated, slope)
+    updated = pressure
     if (updated < open_fraction*law%stiffness*gap) updated = 0
   end function updated_multiplier
 end module face_contact

@@ -10,13 +10,16 @@ module equilibria
   use models, only: model_t
   use pressure_histories, only: pressure_amplitude
   use states, only: state_t
-  use separations, only: contact_tolerance
   use tangent_operators, only: tangent_operator_t
   use residual_norms, only: relative_residual
   use step_ledgers, only: book_step
   implicit none
   private
   public :: attempt_step
+
+  !> Distance of pressures and gaps from contact (complementarity) at which they have settled: the gaps left are
+  !> this part of the largest pressure over the layers' stiffness.
+  real(wp), parameter :: contact_tolerance = 5.0e-7_wp
 
   !> The impactor's side of a step: its motion and the indentation are affine in one unknown force.
   type :: strike_t
@@ -138,7 +141,7 @@ contains
     call operator%mixing%note(correction)
   end subroutine improve
 
-  !> Takes the contact pressures found as the next estimates; they must repeat themselves for a step to be done.
+  !> Takes the contact pressures found as the next estimates; a step is done once they go with the gaps.
   subroutine settle_contact(model, new, converged)
     !> The model
     type(model_t), intent(in) :: model
@@ -146,11 +149,12 @@ contains
     type(state_t), intent(inout) :: new
     !> False on return where the pressures have not settled
     logical, intent(inout) :: converged
-    real(wp) :: change
+    real(wp) :: unmet
 
-    call new%separation%update_multipliers(model, new%motion%displacement, change)
-    new%contact_iterations = new%contact_iterations + merge(1, 0, change > 0)
-    converged = converged .and. change <= contact_tolerance
+    unmet = new%separation%complementarity(model, new%motion%displacement)
+    call new%separation%update_multipliers(model, new%motion%displacement, unmet <= contact_tolerance)
+    new%contact_iterations = new%contact_iterations + merge(1, 0, unmet > 0)
+    converged = converged .and. unmet <= contact_tolerance
   end subroutine settle_contact
 
   !> Makes the operator follow ties and contacts, or renews it where that or its age asks for it.
@@ -217,8 +221,9 @@ contains
     load = self%share*self%unknown + self%inherited
   end function load
 
-  !> First guess: the velocity stays what it is, and touching faces stay together.
-  subroutine predict_motion(model, integrator, old, step, new, guess)
+  !> First guess: the velocity stays what it is, touching faces stay together, and held jumps stay where they are,
+  !> also those glued in motion.
+  pure subroutine predict_motion(model, integrator, old, step, new, guess)
     !> The model
     type(model_t), intent(in) :: model
     !> Integrator of the plate
@@ -235,7 +240,9 @@ contains
     if (present(guess)) then
       new%motion%displacement = guess
     else
-      new%motion%displacement = old%motion%displacement + step*old%motion%velocity
+      new%motion%displacement = step*old%motion%velocity
+      call new%separation%hold(model, new%motion%displacement)
+      new%motion%displacement = old%motion%displacement + new%motion%displacement
       call new%separation%keep_touching(model, new%motion%displacement)
     end if
     call integrator%complete(step, old%motion, new%motion%displacement, new%motion%velocity, new%motion%acceleration)

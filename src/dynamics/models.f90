@@ -287,7 +287,8 @@ contains
           thickness = min(self%plies(below)%z_bottom - self%plies(1)%z_top, &
                           self%plies(size(self%plies))%z_bottom - self%plies(below)%z_bottom)
           self%contact_laws(zone) = create_contact_law(interface%contact, interface%contact_exponent, &
-                                                       self%plies(below)%elasticity%e2/thickness, thickness)
+                                                       self%plies(below)%elasticity%e2/thickness, thickness, &
+                                                       moving=.not. self%scene%has_static)
         end associate
       end do
     end associate

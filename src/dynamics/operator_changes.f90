@@ -3,7 +3,7 @@
 module operator_changes
   use kinds, only: wp
   use communicators, only: communicator_t
-  use dense_systems, only: solve_dense
+  use dense_systems, only: dense_factor_t
   use numberings, only: numbering_t
   implicit none
   private
@@ -33,7 +33,7 @@ module operator_changes
     !> Column of each change
     integer, allocatable :: column(:)
     !> System of the changes
-    real(wp), allocatable :: matrix(:, :)
+    type(dense_factor_t), private :: system
   contains
     !> Forgets everything, after a factorisation.
     procedure :: clear
@@ -62,7 +62,6 @@ contains
     if (allocated(self%columns)) deallocate (self%columns)
     allocate (self%columns(0))
     self%kept = 0
-    self%matrix = reshape([real(wp) ::], [0, 0])
   end subroutine clear
 
   !> Position of the column of an equation; 0: not found yet.
@@ -128,16 +127,19 @@ contains
     integer, intent(in) :: equations(:)
     !> Stiffness added to their diagonals, none zero
     real(wp), intent(in) :: stiffness(:)
+    real(wp), allocatable :: matrix(:, :)
     integer :: k
 
     self%equations = equations
     self%stiffness = stiffness
     self%column = [(self%column_of(equations(k)), k=1, size(equations))]
-    self%matrix = reshape(spread(0.0_wp, 1, size(equations)**2), [size(equations), size(equations)])
+    allocate (matrix(size(equations), size(equations)))
     do k = 1, size(equations)
-      self%matrix(:, k) = values_at(communicator, numbering, equations, self%columns(self%column(k))%field)
-      self%matrix(k, k) = self%matrix(k, k) + 1/stiffness(k)
+      matrix(:, k) = values_at(numbering, equations, self%columns(self%column(k))%field)
+      call communicator%sum(matrix(:, k))
+      matrix(k, k) = matrix(k, k) + 1/stiffness(k)
     end do
+    call self%system%factorize(matrix)
   end subroutine set
 
   !> Turns a solution of the factored operator into one of the changed operator.
@@ -151,22 +153,19 @@ contains
     !> Solution, (5, points)
     real(wp), intent(inout) :: solution(:, :)
     real(wp) :: forces(size(self%equations))
-    logical :: singular
     integer :: k
 
-    if (size(self%equations) == 0) return
-    forces = values_at(communicator, numbering, self%equations, solution)
-    call solve_dense(self%matrix, forces, singular)
-    if (singular) return
+    if (size(self%equations) == 0 .or. self%system%singular) return
+    forces = values_at(numbering, self%equations, solution)
+    call communicator%sum(forces)
+    call self%system%solve(forces)
     do k = 1, size(forces)
       solution = solution - forces(k)*self%columns(self%column(k))%field
     end do
   end subroutine correct
 
-  !> Values of a field at some equations, the same on every rank.
-  function values_at(communicator, numbering, equations, field) result(values)
-    !> The ranks
-    type(communicator_t), intent(in) :: communicator
+  !> Values of a field at those of some equations that this rank owns, zero at the others.
+  pure function values_at(numbering, equations, field) result(values)
     !> Equations of this rank's points
     type(numbering_t), intent(in) :: numbering
     !> The equations, ascending
@@ -183,6 +182,5 @@ contains
       call numbering%place_of(equations(k), point, component)
       values(k) = field(component, point)
     end do
-    call communicator%sum(values)
   end function values_at
 end module operator_changes

@@ -8,15 +8,11 @@ module separations
   use archives, only: archive_t
   use delamination_parameters, only: contact_none, tie_penalty, unloading_glued
   use delaminated_regions, only: delaminated_region_t, create_region
-  use face_contact, only: contact_pressure, updated_multiplier
+  use face_contact, only: contact_pressure, unmet_contact, updated_decay, updated_multiplier
   use models, only: model_t
   implicit none
   private
   public :: separation_t, new_separation
-
-  !> Change of the contact pressures over the largest so far at which they have settled: the law is a million
-  !> times stiffer than the layers, so the gaps left are 5e-7 of that pressure over the layers' stiffness.
-  real(wp), parameter, public :: contact_tolerance = 0.5_wp
 
   !> State of all interfaces.
   type :: separation_t
@@ -28,6 +24,8 @@ module separations
     real(wp), allocatable :: multiplier(:), pressure(:)
     !> Slope of the pressure by the gap, not positive, (local points)
     real(wp), allocatable :: slope(:)
+    !> Decay of the pressure with an open gap (beta of Eq. 12), 1/length, (zones), the same on every rank
+    real(wp), allocatable :: decay(:)
     !> Largest pressure so far
     real(wp) :: peak = 0
     !> True: separated faces move together (the paper's shortcut for unloading)
@@ -37,8 +35,10 @@ module separations
     procedure :: free_jumps
     !> Adds the contact and penalty forces to a residual and takes the residual of held jumps out.
     procedure :: act
-    !> Takes the pressures found as the next estimates; how far they were off.
+    !> Takes the pressures found as the next estimates, and the decay that suits the gaps.
     procedure :: update_multipliers
+    !> How far pressures and gaps are from contact.
+    procedure :: complementarity
     !> Work of contact and penalty ties in a step.
     procedure :: work
     !> Keeps held jumps as they are.
@@ -74,6 +74,7 @@ contains
     do zone = 1, size(self%regions)
       self%regions(zone) = create_region(model%mesh, zone, model%scene%delaminations(zone)%starter)
     end do
+    allocate (self%decay(size(self%regions)), source=0.0_wp)
     if (.not. model%map%layered) return
     allocate (self%free(points), source=.false.)
     allocate (self%multiplier(points), self%pressure(points), self%slope(points), source=0.0_wp)
@@ -157,8 +158,11 @@ contains
 
     self%pressure(i) = 0
     self%slope(i) = 0
-    if (model%scene%delaminations(model%zone(i))%contact == contact_none) return
-    call contact_pressure(model%contact_laws(model%zone(i)), gap, self%multiplier(i), self%pressure(i), self%slope(i))
+    associate (zone => model%zone(i))
+      if (model%scene%delaminations(zone)%contact == contact_none) return
+      call contact_pressure(model%contact_laws(zone), self%decay(zone), gap, self%multiplier(i), self%pressure(i), &
+                            self%slope(i))
+    end associate
   end subroutine press
 
   !> Stiffness of a penalty tie at a point.
@@ -170,39 +174,83 @@ contains
 
     associate (interface => model%scene%delaminations(model%zone(i)))
       stiffness = interface%penalty_stiffness
-      if (stiffness <= 0) stiffness = 1.0e3_wp*model%contact_laws(model%zone(i))%stiffness
+      if (stiffness <= 0) stiffness = 1.0e6_wp*model%contact_laws(model%zone(i))%layer_stiffness
       stiffness = stiffness*model%contact_area(i)
     end associate
   end function tie_stiffness
 
-  !> Takes the pressures found as the next estimates.
-  subroutine update_multipliers(self, model, displacement, error)
+  !> Takes the pressures found as the next estimates, and the decay that suits the gaps. Pressures are those of
+  !> the last residual.
+  subroutine update_multipliers(self, model, displacement, settled)
     !> The state
     class(separation_t), intent(inout) :: self
     !> The model
     type(model_t), intent(in) :: model
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
-    !> Largest change of an estimate over the largest pressure so far, the same on every rank
-    real(wp), intent(out) :: error
-    real(wp) :: change, updated
+    !> True: the pressures go with the gaps, the step is done
+    logical, intent(in) :: settled
+    real(wp) :: sums(2, size(self%decay)), largest(size(self%decay))
+    integer :: i, zone
+
+    if (.not. model%map%layered) return
+    sums = 0
+    largest = 0
+    do i = 1, model%distribution%owned
+      if (.not. touches(self, model, i)) cycle
+      zone = model%zone(i)
+      associate (gap => displacement(3, i), pressure => self%pressure(i))
+        sums(:, zone) = sums(:, zone) + model%contact_area(i)*pressure*[abs(gap), 1.0_wp]
+        largest(zone) = max(largest(zone), pressure)
+        self%multiplier(i) = updated_multiplier(model%contact_laws(zone), gap, pressure)
+      end associate
+    end do
+    do zone = 1, size(largest)
+      call model%communicator%sum(sums(:, zone))
+      call model%communicator%maximum(largest(zone))
+    end do
+    self%decay = updated_decay(model%contact_laws, sums(1, :), sums(2, :), largest, settled)
+    self%peak = max(self%peak, maxval(largest))
+  end subroutine update_multipliers
+
+  !> True where the faces at a point are apart and may press on each other.
+  pure logical function touches(self, model, i)
+    !> The state
+    type(separation_t), intent(in) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Point of this rank
+    integer, intent(in) :: i
+
+    touches = self%free(i)
+    if (touches) touches = .not. holds(self, model, i)
+  end function touches
+
+  !> How far pressures and gaps are from contact, where faces with a gap have no pressure and none is negative:
+  !> the largest part of the pressure that is unmet over the largest pressure so far. The same on every rank.
+  real(wp) function complementarity(self, model, displacement)
+    !> The state
+    class(separation_t), intent(in) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Unknowns, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    real(wp) :: peak
     integer :: i
 
-    error = 0
+    complementarity = 0
     if (.not. model%map%layered) return
-    change = 0
+    peak = self%peak
     do i = 1, model%distribution%owned
-      if (model%zone(i) == 0) cycle
-      if (.not. self%free(i) .or. holds(self, model, i)) cycle
-      updated = updated_multiplier(model%contact_laws(model%zone(i)), displacement(3, i), self%multiplier(i))
-      change = max(change, abs(updated - self%multiplier(i)))
-      self%multiplier(i) = updated
-      self%peak = max(self%peak, updated)
+      if (.not. touches(self, model, i)) cycle
+      peak = max(peak, self%pressure(i))
+      complementarity = max(complementarity, unmet_contact(model%contact_laws(model%zone(i)), displacement(3, i), &
+                                                           self%pressure(i)))
     end do
-    call model%communicator%maximum(change)
-    call model%communicator%maximum(self%peak)
-    if (self%peak > 0) error = change/self%peak
-  end subroutine update_multipliers
+    call model%communicator%maximum(complementarity)
+    call model%communicator%maximum(peak)
+    complementarity = merge(complementarity/max(peak, tiny(peak)), 0.0_wp, peak > 0)
+  end function complementarity
 
   !> Work of contact and penalty ties in a step, of this rank's points.
   pure real(wp) function work(self, model, displacement, change)
@@ -254,7 +302,7 @@ contains
 
     if (.not. model%map%layered) return
     do i = 1, size(self%free)
-      if (.not. self%free(i)) cycle
+      if (.not. touches(self, model, i)) cycle
       if (model%scene%delaminations(model%zone(i))%contact == contact_none) cycle
       if (self%multiplier(i) > 0) then
         guess(3, i) = 0
@@ -344,6 +392,7 @@ contains
     end do
     call archive%item('separation/peak', self%peak)
     call archive%item('separation/glued', self%glued)
+    call archive%item('separation/decay', self%decay)
     allocate (fields(3, size(self%free)))
     fields(1, :) = self%multiplier
     fields(2, :) = self%pressure

@@ -6,13 +6,15 @@ module static_steps
   use plate_options, only: kinematics_linear
   use delamination_parameters, only: contact_none
   use models, only: model_t
-  use separations, only: contact_tolerance
   use states, only: state_t
   use residual_norms, only: relative_residual
   use tangent_operators, only: tangent_operator_t
   implicit none
   private
   public :: attempt_load
+
+  !> Distance of pressures and gaps from contact (complementarity) at which they have settled.
+  real(wp), parameter :: contact_tolerance = 5.0e-10_wp
 
 contains
 
@@ -83,7 +85,7 @@ contains
     changes = iterations == 0 .or. any(model%scene%delaminations%contact /= contact_none)
   end function changes
 
-  !> Takes the contact pressures found as the next estimates; they must repeat themselves for a step to be done.
+  !> Takes the contact pressures found as the next estimates; a step is done once they go with the gaps.
   subroutine settle_contact(model, new, converged)
     !> The model
     type(model_t), intent(in) :: model
@@ -91,11 +93,12 @@ contains
     type(state_t), intent(inout) :: new
     !> False on return where the pressures have not settled
     logical, intent(inout) :: converged
-    real(wp) :: change
+    real(wp) :: unmet
 
-    call new%separation%update_multipliers(model, new%motion%displacement, change)
-    new%contact_iterations = new%contact_iterations + merge(1, 0, change > 0)
-    converged = change <= contact_tolerance
+    unmet = new%separation%complementarity(model, new%motion%displacement)
+    call new%separation%update_multipliers(model, new%motion%displacement, unmet <= contact_tolerance)
+    new%contact_iterations = new%contact_iterations + merge(1, 0, unmet > 0)
+    converged = unmet <= contact_tolerance
   end subroutine settle_contact
 
   !> Completes an accepted load step.

@@ -20,10 +20,11 @@ module tangent_operators
   private
   public :: tangent_operator_t
 
-  !> Stiffness over the diagonal above which more makes no difference.
-  real(wp), parameter :: rigid = 1.0e4_wp
   !> Changes that are followed before a factorisation is cheaper.
   integer, parameter :: most_changes = 150
+
+  !> Part of a stiffness below which its change is left to the iterations.
+  real(wp), parameter :: noticed = 0.2_wp
 
   !> A factor of `stiffness_factor * tangent stiffness + mass_factor * mass`.
   type :: tangent_operator_t
@@ -202,7 +203,7 @@ contains
     self%compliance = model%patch_mean(self%response)
   end subroutine follow
 
-  !> True if changes are those already in force.
+  !> True if changes are those already in force, or nearly so.
   pure logical function same_changes(changes, equations, stiffness)
     !> Changes in force
     type(operator_changes_t), intent(in) :: changes
@@ -212,7 +213,8 @@ contains
     real(wp), intent(in) :: stiffness(:)
 
     same_changes = size(equations) == size(changes%equations)
-    if (same_changes) same_changes = all(equations == changes%equations) .and. all(stiffness == changes%stiffness)
+    if (same_changes) same_changes = all(equations == changes%equations) .and. &
+      all(abs(stiffness - changes%stiffness) <= noticed*abs(stiffness))
   end function same_changes
 
   !> Lists the unknowns whose added stiffness has changed much since the factorisation, on every rank.
@@ -237,8 +239,7 @@ contains
       do component = 1, 3
         if (self%numbering%equation(component, i) < 0) cycle
         associate (want => wanted(component, i), have => self%added(component, i))
-          if (min(want, have) > rigid*self%diagonal(component, i)) cycle
-          if (abs(want - have) <= 0.2_wp*max(want, have, 0.1_wp*self%diagonal(component, i))) cycle
+          if (abs(want - have) <= noticed*max(want, have, 0.1_wp*self%diagonal(component, i))) cycle
           mine = [mine, self%numbering%equation(component, i)]
           change = [change, want - have]
         end associate

@@ -2,6 +2,7 @@
 Usage: restart.py TRIAL IMPLAM FOLDER [LAUNCHER...]     (LAUNCHER takes the number of ranks as its last word)
 
 integrators  every pair of integrators, linear and von Karman, one with adaptive steps: bitwise on one rank
+contact      delaminated faces in contact by both laws: bitwise
 ranks        on 2 ranks, and from 1 rank to 2 and back: to 1e-9
 rejected     from checkpoints on either side of rejected steps: bitwise
 signal       SIGTERM ends a run with a checkpoint and its own exit code: bitwise
@@ -97,6 +98,19 @@ def check_integrators(implam, folder, _):
         again = go_on(implam, copy_run(deck.parent, folder / f"{name}_again"))
         require_same(again, reference, name)
         print(f"{name}: {len(read_history(reference)['time'])} rows, the same to the last bit")
+
+
+def check_contact(implam, folder, _):
+    """Delaminated faces in contact, by both laws: the pressures and their decay go on as they were."""
+    laws = {"augmented_lagrangian": [], "continuous_penalty": ["delamination%contact_exponent=1.5"]}
+    for contact, exponent in laws.items():
+        law = [f"delamination%contact='{contact}'", *exponent]
+        deck = write_deck(folder / contact, "../small/delamination.nml", split_at(0.53, ["time%end=0.3e-3", *law]))
+        reference = run_deck(implam, deck)
+        pressed = max(read_history(reference)["contact_iterations"])
+        require(pressed > 0, f"{contact}: no faces ever touched, the trial proves nothing.")
+        require_same(go_on(implam, copy_run(deck.parent, folder / f"{contact}_again")), reference, contact)
+        print(f"{contact}: the same to the last bit")
 
 
 def check_ranks(implam, folder, launcher):
@@ -224,8 +238,8 @@ def check_damaged(implam, folder, _):
     print(f"absent: {said.strip()}")
 
 
-TRIALS = {"integrators": check_integrators, "ranks": check_ranks, "rejected": check_rejected, "signal": check_signal,
-          "kill": check_kill, "damaged": check_damaged}
+TRIALS = {"integrators": check_integrators, "contact": check_contact, "ranks": check_ranks, "rejected": check_rejected,
+          "signal": check_signal, "kill": check_kill, "damaged": check_damaged}
 
 
 def main(trial, implam, folder, *launcher):
