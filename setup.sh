@@ -24,8 +24,7 @@ install_packages() {
   done
   ((${#missing[@]})) || return 0
   if ((EUID != 0)); then
-    echo "Missing packages. Install them, then run this script again:" >&2
-    echo "  sudo apt-get install --no-install-recommends ${missing[*]}" >&2
+    echo "Packages are missing; as root run: apt-get install --no-install-recommends ${missing[*]}" >&2
     exit 1
   fi
   export DEBIAN_FRONTEND=noninteractive
@@ -42,13 +41,11 @@ install_python_tools() {
   if [[ -e $stamp && -z $(find postproc -name '*.py' -newer "$stamp" -o -name pyproject.toml -newer "$stamp") ]]; then
     return
   fi
-  if [[ ! -x .venv/bin/pip ]]; then
-    "$python" -m venv --clear .venv
-  fi
-  if .venv/bin/pip install --quiet --disable-pip-version-check "${tools[@]}"; then
+  if { [[ -x .venv/bin/pip ]] || "$python" -m venv --clear .venv; } &&
+    .venv/bin/pip install --quiet --disable-pip-version-check "${tools[@]}"; then
     touch "$stamp"
   else
-    echo "Warning: pip failed (see above), so the commands that check and plot results are left out." >&2
+    echo "Warning: Python's venv or pip failed (see above), so the commands that check and plot results are left out." >&2
   fi
 }
 
@@ -66,5 +63,7 @@ export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
 build/implam input/sun_chen.nml --output results/sun_chen
 echo
 echo "Done. The history of force, deflection and energies is in results/sun_chen/sun_chen_history.csv,"
-echo "the fields for ParaView in results/sun_chen/sun_chen.xdmf. To plot the history:"
-echo "  .venv/bin/implam-plot results/sun_chen/sun_chen_history.csv"
+echo "the fields for ParaView in results/sun_chen/sun_chen.xdmf."
+if [[ -x .venv/bin/implam-plot ]]; then
+  echo "To plot the history: .venv/bin/implam-plot results/sun_chen/sun_chen_history.csv"
+fi
