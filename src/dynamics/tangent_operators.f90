@@ -21,7 +21,9 @@ module tangent_operators
   public :: tangent_operator_t
 
   !> Changes that are followed before a factorisation is cheaper.
-  integer, parameter :: most_changes = 150
+  integer, parameter :: most_changes = 200
+  !> Columns found at once before that is so.
+  integer, parameter :: most_columns = 100
 
   !> Part of a stiffness below which its change is left to the iterations.
   real(wp), parameter :: noticed = 0.2_wp
@@ -191,9 +193,9 @@ contains
     allocate (wanted, mold=self%added)
     call separation%added_stiffness(model, self%diagonal, wanted)
     call list_changes(self, model, wanted, equations, stiffness)
-    possible = size(equations) <= most_changes
-    if (.not. possible .or. same_changes(self%changes, equations, stiffness)) return
     missing = [(self%changes%column_of(equations(k)) == 0, k=1, size(equations))]
+    possible = size(equations) <= most_changes .and. count(missing) <= most_columns
+    if (.not. possible .or. same_changes(self%changes, equations, stiffness)) return
     call find_columns(self, model, pack(equations, missing), error)
     if (allocated(error)) return
     call self%changes%set(model%communicator, self%numbering, equations, stiffness)

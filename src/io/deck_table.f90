@@ -160,7 +160,7 @@ module deck_table
     'delamination | tie | choice | 1 | - | ''eliminate'' | eliminate penalty | &
       &Intact faces: exactly joined, or by penalty springs as in the paper.', &
     'delamination | penalty | real | 1 | pressure/length | = from E2 | > 0 | &
-      &Stiffness of penalty ties; left out: 1000 times the stiffness of the contact.', &
+      &Stiffness of penalty ties; left out: a million times E2 over the thinner layer.', &
     'delamination | contact | choice | 1 | - | ''augmented_lagrangian'' | &
       &augmented_lagrangian continuous_penalty none | Contact of separated faces.', &
     'delamination | contact_exponent | real | 1 | - | 1 | >= 1, <= 2 | &

@@ -28,6 +28,8 @@ DECK = """&case        name='bench'  kinematics='{kinematics}' /
 # One thread, so that processor time is comparable; Open MPI refuses root unless told twice.
 ENVIRONMENT = dict(os.environ, OMP_NUM_THREADS='1', OPENBLAS_NUM_THREADS='1',
                    OMPI_ALLOW_RUN_AS_ROOT='1', OMPI_ALLOW_RUN_AS_ROOT_CONFIRM='1')
+# A line of the log's table of times.
+PHASE = r'^(\S.*?) +(\d+) +([\d.]+) s +([\d.]+) s$'
 
 
 class Run:
@@ -48,8 +50,10 @@ class Run:
             with open(pathlib.Path(folder, 'bench_history.csv')) as lines:
                 self.history = list(csv.DictReader(line for line in lines if not line.startswith('#')))
         # Name, times, seconds on the wall, seconds of the processor.
-        self.phases = {name.strip(): (int(times), float(processor)) for name, times, processor in
-                       re.findall(r'^(\S.*?) +(\d+) +[\d.]+ s +([\d.]+) s$', log, re.MULTILINE)}
+        self.phases = {name.strip(): (int(times), float(processor)) for name, times, wall, processor in
+                       re.findall(PHASE, log, re.MULTILINE)}
+        self.wall = {name.strip(): float(wall)/max(int(times), 1) for name, times, wall, processor in
+                     re.findall(PHASE, log, re.MULTILINE)}
         self.unknowns = int(re.search(r'(\d+) unknowns', log)[1])
         self.factor_numbers, self.working_megabytes, self.matrix_numbers = (
             float(n) for n in re.search(r'Factor: (\S+) numbers, (\S+) MB; matrix: (\d+) numbers', log).groups())
@@ -75,7 +79,8 @@ def step_cost(program, arguments):
         factoring += run.phases['assembly'][1]
         print(f'{kinematics}: {run.unknowns} unknowns, {steps} steps, {run.phases["solve"][0]} solves of '
               f'{1e3*solve:.1f} ms, {factors} factorisations of {1e3*factoring/factors:.0f} ms')
-        print(f'  a step over a solve: {seconds/steps/solve:.2f} (at most {target}); without factorisations '
+        print(f'  a step over a solve, on the wall: {run.wall["steps"]/run.wall["solve"]:.2f} (at most {target}); '
+              f'of the processor {seconds/steps/solve:.2f}; without factorisations '
               f'{(seconds - factoring)/steps/solve:.2f}')
         for phase in ('solve', 'factorisation', 'assembly', 'element forces'):
             print(f'    {phase}: {100*run.phases[phase][1]/seconds:.1f} % of the steps')
