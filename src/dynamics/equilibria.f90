@@ -3,13 +3,13 @@
 module equilibria
   use kinds, only: wp
   use errors, only: error_t, exit_convergence
-  use contact_forces, only: solve_contact_force
-  use impactors, only: predict, advance, takes_mean_force
+  use impactors, only: advance
   use indentations, only: commit_indentation
   use plate_integrators, only: plate_integrator_t
   use models, only: model_t
   use pressure_histories, only: pressure_amplitude
   use states, only: state_t
+  use strikes, only: strike_t, begin_strike
   use tangent_operators, only: tangent_operator_t
   use residual_norms, only: relative_residual
   use step_ledgers, only: book_step
@@ -20,23 +20,6 @@ module equilibria
   !> Distance of pressures and gaps from contact (complementarity) at which they have settled: the gaps left are
   !> this part of the largest pressure over the layers' stiffness.
   real(wp), parameter :: contact_tolerance = 5.0e-7_wp
-
-  !> The impactor's side of a step: its motion and the indentation are affine in one unknown force.
-  type :: strike_t
-    !> Displacement of the impactor at the end of the step without force, and its fall per unit of force
-    real(wp) :: free_displacement = 0, compliance = 0
-    !> True: the unknown is the mean force over the step; false: the force at its end
-    logical :: mean = .false.
-    !> The unknown force, and the force at the end of the step
-    real(wp) :: unknown = 0, force_end = 0
-    !> Share of the unknown in the plate's load, and the rest of the load
-    real(wp) :: share = 0, inherited = 0
-    !> Iterations of the force
-    integer :: iterations = 0
-  contains
-    !> Force on the plate in its equation of motion.
-    procedure :: load
-  end type strike_t
 
 contains
 
@@ -85,7 +68,8 @@ contains
       ! The force answers to the motion only within an iteration, so an impact needs one.
       converged = norm <= model%scene%solver%tolerance .and. (new%iterations > 0 .or. .not. model%scene%has_impactor)
       if (converged) then
-        call settle_contact(model, new, converged)
+        call new%separation%settle(model, new%motion%displacement, contact_tolerance, new%contact_iterations, &
+                                   converged)
         if (converged) exit
         call operator%mixing%pause()
         if (new%contact_iterations < model%scene%solver%max_iterations) cycle
@@ -128,34 +112,18 @@ contains
     !> Set if numbers are not finite
     type(error_t), allocatable, intent(inout) :: error
 
-    if (model%scene%has_impactor) call solve_strike(model, integrator, operator, old, new, strike, correction, error)
+    if (model%scene%has_impactor) call strike%solve(model, integrator, operator, old, new, correction, error)
     call new%separation%hold(model, correction)
     if (allocated(error)) return
     call operator%mixing%mix(model%communicator, operator%diagonal(:, :model%distribution%owned), correction, &
                              strike%unknown)
     ! The law of the force is not linear: the force must be found for the displacement that it has become.
     if (model%scene%has_impactor .and. operator%mixing%kept > 0) then
-      call solve_strike(model, integrator, operator, old, new, strike, correction, error)
+      call strike%solve(model, integrator, operator, old, new, correction, error)
       call new%separation%hold(model, correction)
     end if
     call operator%mixing%note(correction)
   end subroutine improve
-
-  !> Takes the contact pressures found as the next estimates; a step is done once they go with the gaps.
-  subroutine settle_contact(model, new, converged)
-    !> The model
-    type(model_t), intent(in) :: model
-    !> State at the end
-    type(state_t), intent(inout) :: new
-    !> False on return where the pressures have not settled
-    logical, intent(inout) :: converged
-    real(wp) :: unmet
-
-    unmet = new%separation%complementarity(model, new%motion%displacement)
-    call new%separation%update_multipliers(model, new%motion%displacement, unmet <= contact_tolerance)
-    new%contact_iterations = new%contact_iterations + merge(1, 0, unmet > 0)
-    converged = converged .and. unmet <= contact_tolerance
-  end subroutine settle_contact
 
   !> Makes the operator follow ties and contacts, or renews it where that or its age asks for it.
   subroutine prepare_operator(model, integrator, operator, step, new, error)
@@ -189,37 +157,6 @@ contains
     if (.not. unsolvable) return
     if (error%code == exit_convergence) deallocate (error)
   end function unsolvable
-
-  !> The impactor's part in a step.
-  pure function begin_strike(model, integrator, old, step) result(strike)
-    !> The model
-    type(model_t), intent(in) :: model
-    !> Integrator of the plate
-    type(plate_integrator_t), intent(in) :: integrator
-    !> State at the start
-    type(state_t), intent(in) :: old
-    !> Time step
-    real(wp), intent(in) :: step
-    !> The strike
-    type(strike_t) :: strike
-
-    call predict(model%scene%impactor, old%impactor, step, strike%free_displacement, strike%compliance)
-    strike%mean = takes_mean_force(model%scene%impactor)
-    strike%unknown = old%force
-    strike%force_end = old%force
-    strike%share = 1
-    if (strike%mean) return
-    strike%share = 1 - integrator%alpha_f
-    strike%inherited = integrator%alpha_f*old%force
-  end function begin_strike
-
-  !> Force on the plate in its equation of motion.
-  pure real(wp) function load(self)
-    !> The strike
-    class(strike_t), intent(in) :: self
-
-    load = self%share*self%unknown + self%inherited
-  end function load
 
   !> First guess: the velocity stays what it is, touching faces stay together, and held jumps stay where they are,
   !> also those glued in motion.
@@ -280,41 +217,6 @@ contains
       residual(3, :) = residual(3, :) + amplitude*model%pressure(3, :)
     end associate
   end subroutine find_residual
-
-  !> Solves for the impact force, given the correction of the plate for the force assumed, and adds the
-  !> plate's response to the change of the force.
-  subroutine solve_strike(model, integrator, operator, old, new, strike, correction, error)
-    !> The model
-    type(model_t), intent(in) :: model
-    !> Integrator of the plate
-    type(plate_integrator_t), intent(in) :: integrator
-    !> Holds the response to a unit force
-    type(tangent_operator_t), intent(in) :: operator
-    !> State at the start
-    type(state_t), intent(in) :: old
-    !> State at the end, before the correction
-    type(state_t), intent(inout) :: new
-    !> The strike
-    type(strike_t), intent(inout) :: strike
-    !> Correction of the displacement, (5, points)
-    real(wp), intent(inout) :: correction(:, :)
-    !> Set if numbers are not finite
-    type(error_t), allocatable, intent(inout) :: error
-    real(wp) :: alpha_free, alpha_end, compliance, before
-    integer :: iterations
-
-    before = strike%unknown
-    compliance = strike%share*operator%compliance
-    new%patch_mean = model%patch_mean(new%motion%displacement) + model%patch_mean(correction)
-    alpha_free = strike%free_displacement - new%patch_mean + before*compliance
-    call solve_contact_force(model%scene%indentation, old%indentation, old%indentation%alpha, alpha_free, &
-                             strike%compliance + compliance, strike%mean, strike%unknown, alpha_end, &
-                             strike%force_end, iterations, error)
-    correction = correction + (strike%share*(strike%unknown - before))*operator%response
-    new%force_iterations = new%force_iterations + iterations
-    ! The plate wants the force at 1 - alpha_f of the step, which is the mean force for alpha_f = 1/2 only.
-    if (strike%mean) strike%inherited = (0.5_wp - integrator%alpha_f)*(strike%force_end - old%force)
-  end subroutine solve_strike
 
   !> Completes an accepted step: impactor, indentation and ledger.
   subroutine finish(model, integrator, old, step, strike, energy, new)

@@ -35,8 +35,8 @@ module separations
     procedure :: free_jumps
     !> Adds the contact and penalty forces to a residual and takes the residual of held jumps out.
     procedure :: act
-    !> Takes the pressures found as the next estimates, and the decay that suits the gaps.
-    procedure :: update_multipliers
+    !> Takes the pressures found as the next estimates; they have settled once they go with the gaps.
+    procedure :: settle
     !> How far pressures and gaps are from contact.
     procedure :: complementarity
     !> Work of contact and penalty ties in a step.
@@ -179,11 +179,33 @@ contains
     end associate
   end function tie_stiffness
 
+  !> Takes the pressures found as the next estimates; they have settled once they go with the gaps.
+  subroutine settle(self, model, displacement, tolerance, rounds, settled)
+    !> The state
+    class(separation_t), intent(inout) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Unknowns, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> Complementarity at which they have settled
+    real(wp), intent(in) :: tolerance
+    !> Counts the times that there was something to settle
+    integer, intent(inout) :: rounds
+    !> True if they have
+    logical, intent(out) :: settled
+    real(wp) :: unmet
+
+    unmet = self%complementarity(model, displacement)
+    settled = unmet <= tolerance
+    call update_multipliers(self, model, displacement, settled)
+    rounds = rounds + merge(1, 0, unmet > 0)
+  end subroutine settle
+
   !> Takes the pressures found as the next estimates, and the decay that suits the gaps. Pressures are those of
   !> the last residual.
   subroutine update_multipliers(self, model, displacement, settled)
     !> The state
-    class(separation_t), intent(inout) :: self
+    type(separation_t), intent(inout) :: self
     !> The model
     type(model_t), intent(in) :: model
     !> Unknowns, (5, points)

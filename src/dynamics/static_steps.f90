@@ -53,7 +53,8 @@ contains
                                model%thickness, new%largest_forces)
       converged = norm <= model%scene%solver%tolerance
       if (converged) then
-        call settle_contact(model, new, converged)
+        call new%separation%settle(model, new%motion%displacement, contact_tolerance, new%contact_iterations, &
+                                   converged)
         if (converged) exit
         if (new%contact_iterations < model%scene%solver%max_iterations) cycle
       end if
@@ -84,22 +85,6 @@ contains
     ! Cells may have come apart since the step before; later only contacts change.
     changes = iterations == 0 .or. any(model%scene%delaminations%contact /= contact_none)
   end function changes
-
-  !> Takes the contact pressures found as the next estimates; a step is done once they go with the gaps.
-  subroutine settle_contact(model, new, converged)
-    !> The model
-    type(model_t), intent(in) :: model
-    !> State at this load
-    type(state_t), intent(inout) :: new
-    !> False on return where the pressures have not settled
-    logical, intent(inout) :: converged
-    real(wp) :: unmet
-
-    unmet = new%separation%complementarity(model, new%motion%displacement)
-    call new%separation%update_multipliers(model, new%motion%displacement, unmet <= contact_tolerance)
-    new%contact_iterations = new%contact_iterations + merge(1, 0, unmet > 0)
-    converged = unmet <= contact_tolerance
-  end subroutine settle_contact
 
   !> Completes an accepted load step.
   subroutine finish(model, old, energy, new)
