@@ -60,10 +60,10 @@ fi
 
 cmake --build --preset release --target implam
 export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
-build/implam input/sun_chen.nml --output results/sun_chen
+build/implam input/peanut.nml --output results/peanut
 echo
-echo "Done. The history of force, deflection and energies is in results/sun_chen/sun_chen_history.csv,"
-echo "the fields for ParaView in results/sun_chen/sun_chen.xdmf."
+echo "Done. The history of force, deflection and energies is in results/peanut/peanut_history.csv,"
+echo "the fields for ParaView in results/peanut/peanut.xdmf."
 if [[ -x .venv/bin/implam-plot ]]; then
-  echo "To plot the history: .venv/bin/implam-plot results/sun_chen/sun_chen_history.csv"
+  echo "To draw the delamination: .venv/bin/implam-plot results/peanut/peanut.h5"
 fi
