@@ -80,7 +80,7 @@ contains
     room = 2
     if (scene%adapt%on) then
       room = scene%adapt%stress_change/max(stress_change, tiny(room)**0.5_wp)
-      if (2*iterations > scene%solver%max_iterations) room = min(room, 0.7_wp)
+      if (4*iterations > 3*scene%solver%max_iterations) room = min(room, 0.7_wp)
     end if
     if (room < 0.8_wp) then
       self%wanted = self%wanted*max(room, 0.5_wp)

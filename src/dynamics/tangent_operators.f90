@@ -25,8 +25,9 @@ module tangent_operators
   !> Columns found at once before that is so.
   integer, parameter :: most_columns = 100
 
-  !> Part of a stiffness below which its change is left to the iterations.
-  real(wp), parameter :: noticed = 0.2_wp
+  !> Part of a stiffness below which its change is left to the iterations: a law whose slope falls off
+  !> exponentially goes to and fro without end where 0.2 of it is.
+  real(wp), parameter :: noticed = 0.01_wp
 
   !> A factor of `stiffness_factor * tangent stiffness + mass_factor * mass`.
   type :: tangent_operator_t
