@@ -108,6 +108,14 @@ def growth_rows(history: History) -> np.ndarray:
     return 1 + np.flatnonzero(np.diff(area) > 1e-9 * np.max(area, initial=0))
 
 
+def first_growth(history: History) -> Peak:
+    """Return the largest force up to the row at which delaminations first grow, and the time of that row."""
+    rows = growth_rows(history)
+    if not len(rows):
+        return NO_PEAK
+    return Peak(float(np.max(history["force"][:rows[0] + 1])), float(history.time[rows[0]]))
+
+
 def rms_force_difference(history: History, reference: History) -> float:
     """Return the rms difference of force over the reference's first contact, as a fraction of its peak.
 
@@ -136,6 +144,8 @@ QUANTITIES: dict[str, Callable[[History], float]] = {
     "second_peak_force_time": lambda history: second_peak(history).time,
     "max_deflection": lambda history: peak(history, "deflection").value,
     "max_deflection_time": lambda history: peak(history, "deflection").time,
+    "first_growth_force": lambda history: first_growth(history).value,
+    "first_growth_time": lambda history: first_growth(history).time,
     "rebound_velocity": rebound_velocity,
     "energy_error": energy_error,
     "energy_rise": energy_rise,

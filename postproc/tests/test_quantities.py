@@ -54,6 +54,18 @@ class QuantitiesTest(unittest.TestCase):
         columns["energy_kinetic"] = np.full(6, np.nan)
         self.assertTrue(np.isnan(QUANTITIES["energy_rise"](History(columns))))
 
+    def test_first_growth(self) -> None:
+        """The largest force up to the first growth; without growth, area or a number there is none."""
+        columns = dict(pulses(0, 5, 3, 9).columns)
+        force, time = (QUANTITIES[f"first_growth_{name}"] for name in ("force", "time"))
+        self.assertTrue(np.isnan(force(History(columns))))
+        columns["delaminated_area"] = np.array([1.0, 1, 2, 2])
+        self.assertEqual(force(History(columns)), 5)
+        self.assertEqual(time(History(columns)), columns["time"][2])
+        for area in (np.ones(4), np.full(4, np.nan)):
+            self.assertTrue(np.isnan(force(History(columns | {"delaminated_area": area}))))
+        self.assertTrue(np.isnan(force(History(columns | {"force": np.full(4, np.nan)}))))
+
     def test_rms_force_difference(self) -> None:
         """A constant difference over the contact, and NaN if a history ends too early."""
         reference = pulses(0, 2, 4, 2, 0, 0)

@@ -25,6 +25,8 @@ DECK = """&case        name='bench'  kinematics='{kinematics}' /
 {more}
 """
 
+SUN_CHEN = pathlib.Path(__file__).resolve().parents[2]/'input'/'sun_chen.nml'
+
 # One thread, so that processor time is comparable; Open MPI refuses root unless told twice.
 ENVIRONMENT = dict(os.environ, OMP_NUM_THREADS='1', OPENBLAS_NUM_THREADS='1',
                    OMPI_ALLOW_RUN_AS_ROOT='1', OMPI_ALLOW_RUN_AS_ROOT_CONFIRM='1')
@@ -115,6 +117,43 @@ def speed(program, arguments):
                       f'{errors[1]:+.2f} % |', flush=True)
 
 
+def cost(program, text):
+    """Seconds of the processor of one run of a deck, its iterations of equilibrium and its factorisations."""
+    with tempfile.TemporaryDirectory() as folder:
+        deck = pathlib.Path(folder, 'bench.nml')
+        deck.write_text(text)
+        process = subprocess.Popen([program, deck, '--output', folder], stdout=subprocess.DEVNULL, env=ENVIRONMENT)
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        if process.returncode:
+            sys.exit(f'{program} failed with exit code {process.returncode}.')
+        log = next(pathlib.Path(folder).glob('*.log')).read_text()
+        counts = re.search(r'(\d+) iterations of equilibrium.*?(\d+) factorisations', log).groups()
+        return usage.ru_utime + usage.ru_stime, counts
+
+
+def absent_physics(program, arguments):
+    """What an elastic scene costs with this program against an older one, run in turns; least and median times."""
+    old = os.path.abspath(arguments.old)
+    text = arguments.deck.read_text()
+    decks = {'linear': text, 'von_karman': text.replace("kinematics='linear'", "kinematics='von_karman'")}
+    if decks['von_karman'] == text:
+        sys.exit(f"{arguments.deck} has no kinematics='linear' to change.")
+    print('| strains | old, s | new, s | new/old, least | new/old, median of pairs | old and new iterations, factors |')
+    print('|---|---|---|---|---|---|')
+    for kinematics, deck in decks.items():
+        pairs = []
+        for number in range(arguments.repeat):
+            # Each goes first in every other pair, so that neither always meets the warmer machine.
+            order = (old, program) if number % 2 == 0 else (program, old)
+            costs = {path: cost(path, deck) for path in order}
+            pairs.append((costs[old][0], costs[program][0]))
+        counts = ' and '.join(', '.join(costs[path][1]) for path in (old, program))
+        least_old, least_new = (min(times) for times in zip(*pairs, strict=True))
+        print(f'| {kinematics} | {least_old:.3f} | {least_new:.3f} | {least_new/least_old:.3f} | '
+              f'{statistics.median(new/before for before, new in pairs):.3f} | {counts} |', flush=True)
+
+
 def main():
     """Reads the command line."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -130,6 +169,11 @@ def main():
     part.add_argument('--repeat', type=int, default=3)
     part.add_argument('--more', default='', help='groups added to the deck')
     part.set_defaults(act=speed)
+    part = parts.add_parser('absent-physics', help=absent_physics.__doc__)
+    part.add_argument('old', help='path of the implam to compare with')
+    part.add_argument('--deck', type=pathlib.Path, default=SUN_CHEN, help='elastic deck with linear strains')
+    part.add_argument('--repeat', type=int, default=10)
+    part.set_defaults(act=absent_physics)
     arguments = parser.parse_args()
     arguments.act(os.path.abspath(arguments.program), arguments)
 

@@ -1,18 +1,22 @@
 """Runs a deck in two ways that must give the same history.
 Usage: same_history.py ranks IMPLAM DECK FOLDER TOLERANCE LAUNCHER... [-- SETTING...]
        same_history.py symmetry IMPLAM DECK FOLDER TOLERANCE [-- SETTING...]
+       same_history.py mirror IMPLAM DECK FOLDER TOLERANCE [-- SETTING...]
 
 ranks: on 1, 2 and 4 ranks, LAUNCHER taking the number of ranks as its last word. symmetry: the quarter against the
-whole plate with twice the elements each way."""
+whole plate with twice the elements each way. mirror: against the plate with x and y exchanged. Where an interface
+delaminates or plies fail, it must grow, and the same cells and plies be the ones at the end."""
 
 import re
 import sys
 from pathlib import Path
 
+from released_cells import damage_of, folded, mirrored
 from solver_runs import TrialError, largest_difference, read_history, require, run_deck, write_deck
 
-# How the solution was found, not what it is; the stress is a measure for the step only.
-COUNTS = ("iterations", "force_iterations", "total_iterations", "total_force_iterations", "refactorisations", "solves")
+# How the solution was found and how closely, not what it is; the stress is a measure for the step only.
+COUNTS = ("iterations", "force_iterations", "contact_iterations", "total_iterations", "total_force_iterations",
+          "total_contact_iterations", "refactorisations", "solves", "complementarity")
 
 
 def histories_of_ranks(implam, deck, folder, launcher, settings):
@@ -22,33 +26,59 @@ def histories_of_ranks(implam, deck, folder, launcher, settings):
         history = run_deck(implam, path, [*launcher, str(ranks)])
         log = next(path.parent.glob("*.log")).read_text(encoding="utf-8")
         require(f"{ranks} rank" in log, f"The log doesn't tell of {ranks} ranks.")
-        yield f"{ranks} ranks", read_history(history)
+        yield f"{ranks} ranks", read_history(history), damage_of(history)
 
 
 def histories_of_symmetry(implam, deck, folder, _, settings):
     """Yield name and history of the quarter and of the whole plate."""
     quarter = write_deck(folder / "quarter", deck, [*settings, "plate%symmetry='quarter'"])
-    yield "quarter", read_history(run_deck(implam, quarter))
+    history = run_deck(implam, quarter)
+    yield "quarter", read_history(history), damage_of(history)
     elements = re.search(r"elements=(\d+), *(\d+)", quarter.read_text(encoding="utf-8"))
     doubled = f"mesh%elements={2 * int(elements[1])},{2 * int(elements[2])}"
     whole = write_deck(folder / "whole", deck, [*settings, "plate%symmetry='none'", doubled])
-    yield "whole", read_history(run_deck(implam, whole))
+    history = run_deck(implam, whole)
+    yield "whole", read_history(history), folded(damage_of(history))
+
+
+def exchange_axes(text):
+    """Return a deck with x and y exchanged: pairs swapped and a fibre angle replaced by 90 degrees less it."""
+    pairs = r"\b(length|elements|zone)=([^\s,]+), *([^\s,]+)"
+    text = re.sub(pairs, r"\1=\3, \2", text)
+    text = re.sub(r"\bedges=('\w+'), *('\w+'), *('\w+'), *('\w+')", r"edges=\3, \4, \1, \2", text)
+    return re.sub(r"(?<=\bangles=).*?(?=\s+\w+\s*=|\s*/)", lambda angles: re.sub(
+        r"(\d+\*)?([-+.\d]+)", lambda ply: f"{ply[1] or ''}{90 - float(ply[2])!r}", angles[0]), text)
+
+
+def histories_of_mirror(implam, deck, folder, _, settings):
+    """Yield name, history and damage of the plate and of its mirror image, whose damage is mirrored back."""
+    plate = write_deck(folder / "plate", deck, settings)
+    history = run_deck(implam, plate)
+    yield "plate", read_history(history), damage_of(history)
+    image = write_deck(folder / "image", deck, settings)
+    image.write_text(exchange_axes(plate.read_text(encoding="utf-8")), encoding="utf-8")
+    history = run_deck(implam, image)
+    yield "mirror image", read_history(history), mirrored(damage_of(history))
 
 
 def main(kind, implam, deck, folder, tolerance, *words):
     """Run and compare; the exit code is 1 if the histories differ."""
-    left_out = COUNTS if kind == "ranks" else (*COUNTS, "stress")
+    left_out = (*COUNTS, "stress") if kind == "symmetry" else COUNTS
     divide = words.index("--") if "--" in words else len(words)
     launcher, settings = words[:divide], words[divide + 1:]
-    histories = {"ranks": histories_of_ranks, "symmetry": histories_of_symmetry}[kind]
+    histories = {"ranks": histories_of_ranks, "symmetry": histories_of_symmetry, "mirror": histories_of_mirror}[kind]
     runs = histories(implam, deck, Path(folder), launcher, settings)
-    _, reference = next(runs)
     passed = True
     try:
-        for name, history in runs:
+        _, reference, reference_damage = next(runs)
+        area = reference["delaminated_area"]
+        require(area[0] == 0 or area[-1] > area[0], "Nothing grew: the trial proves nothing.")
+        require(bool(reference_damage) >= (area[-1] > 0), "The fields don't tell what came apart.")
+        for name, history, damage in runs:
             difference, column = largest_difference(history, reference, left_out)
-            within = difference <= float(tolerance)
+            within = difference <= float(tolerance) and damage == reference_damage
             print(f"{name}: {len(history['time'])} rows, largest difference {difference:.2e} ({column}), "
+                  f"{len(damage)} cells apart or failed, {len(damage.items() ^ reference_damage.items())} other, "
                   f"{'pass' if within else 'FAIL'}", flush=True)
             passed &= within
         require(passed, "The histories differ.")

@@ -93,8 +93,8 @@ def read_history(path):
 def largest_difference(history, reference, leave_out=()):
     """Return the largest difference of two histories and its column.
 
-    Each column is relative to its largest value; what the ledger found missing and what the integrators took
-    is relative to the largest sum of the energies.
+    Each column is relative to its largest value; what the ledger found missing and what integrators and contact took
+    is relative to the largest sum of the energies, what the faces overlap to the largest deflection.
     """
     require(list(history) == list(reference), "The columns of the histories differ.")
     require(len(history["time"]) == len(reference["time"]),
@@ -105,8 +105,10 @@ def largest_difference(history, reference, leave_out=()):
         if name in leave_out:
             continue
         scale = max(map(abs, reference[name]))
-        if name in ("energy_error", "energy_algorithmic"):
+        if name in ("energy_error", "energy_algorithmic", "energy_contact"):
             scale = max(scale, total)
+        if name == "penetration":
+            scale = max(scale, *reference["deflection"])
         difference = max(abs(a - b) for a, b in zip(history[name], reference[name], strict=True))
         worst = max(worst, (difference / scale if scale > 0 else difference, name))
     return worst

@@ -1,0 +1,74 @@
+"""The cells that a run took apart and the plies that failed, from its fields. Needs h5py."""
+
+import h5py
+import numpy as np
+
+CORNERS = 4  # the first nodes of an element in the file
+PLACE = 1e-9  # lengths that are told apart
+
+
+def fields_of(history_path):
+    """Return the path of the fields beside a history."""
+    return history_path.with_name(history_path.name.removesuffix("_history.csv") + ".h5")
+
+
+def fields_of_times(history_path, words):
+    """Return for each time written a dictionary by the names that end in one of the words and by places."""
+    found = []
+    with h5py.File(fields_of(history_path)) as file:
+        for key in sorted(file["times"]):
+            time = file["times"][key]
+            mesh = file[f"meshes/{int(time['mesh'][()]):08d}"]
+            corners = mesh["coordinates"][()][mesh["connectivity"][()][:, :CORNERS], :2]
+            places = np.rint(corners.mean(axis=1) / PLACE).astype(int)
+            layers = mesh["cells/first_ply"][()].ravel()
+            values = {}
+            for name, item in time.get("cells", {}).items():
+                if name.endswith(words):
+                    values |= {(name, int(layer), int(x), int(y)): float(value) for layer, (x, y), value
+                               in zip(layers, places, item[()].ravel(), strict=True) if value != 0}
+            found.append(values)
+    return found
+
+
+def released_cells(history_path):
+    """Return for each time written the set of cells apart, as (first ply below, x, y)."""
+    return [{key[1:] for key in values} for values in fields_of_times(history_path, ("delaminated_above",))]
+
+
+def damage_of(history_path):
+    """Return cells apart and failed plies at the last time written, by name, layer and place."""
+    return fields_of_times(history_path, ("delaminated_above", "_failure"))[-1]
+
+
+def mirrored(damage):
+    """Return the damage mirrored at the line x = y."""
+    return {(name, layer, y, x): value for (name, layer, x, y), value in damage.items()}
+
+
+def folded(damage):
+    """Return the damage of a whole plate as that of its quarter; nothing if the quarters differ."""
+    quarters = {}
+    for (name, layer, x, y), value in damage.items():
+        quarters.setdefault((x > 0, y > 0), {})[name, layer, abs(x), abs(y)] = value
+    first, *others = quarters.values() or [{}]
+    same = len(others) == 3 and all(other == first for other in others)
+    return first if same else {}
+
+
+def least_releases(before, after):
+    """Return how many releases after each other it took at least: each takes apart neighbours of what is apart."""
+    columns = {x: i for i, x in enumerate(sorted({cell[1] for cell in after}))}
+    rows = {y: j for j, y in enumerate(sorted({cell[2] for cell in after}))}
+    apart = {(layer, columns[x], rows[y]) for layer, x, y in before}
+    missing = {(layer, columns[x], rows[y]) for layer, x, y in after} - apart
+    releases = 0
+    while missing:
+        reached = {(layer, i, j) for layer, i, j in missing
+                   if apart & {(layer, i + 1, j), (layer, i - 1, j), (layer, i, j + 1), (layer, i, j - 1)}}
+        if not reached:
+            return 0  # apart from nowhere: no count
+        apart |= reached
+        missing -= reached
+        releases += 1
+    return releases

@@ -1,0 +1,158 @@
+"""Runs whose delaminations grow and plies fail, split anywhere, must give the history of the run that was not.
+Usage: restart_growth.py TRIAL IMPLAM FOLDER [LAUNCHER...]     (LAUNCHER takes the number of ranks as its last word)
+
+splits   just before and just after a step with the most growth, by every rule of growth and of energy release: bitwise
+moments  SIGTERM and SIGKILL while a step with several releases is being computed: bitwise, the same cells apart
+ranks    from 2 ranks to 1, from 1 to 2: to 1e-9
+rejected from checkpoints next to rejected steps, while delaminations grow: bitwise"""
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from itertools import pairwise
+from pathlib import Path
+
+from released_cells import damage_of, least_releases, released_cells
+from restart import check_next_to_rejections, copy_run, exit_code, go_on, require_close, require_same, start, wait_until
+from solver_runs import (
+    EXIT_DONE,
+    EXIT_STOPPED,
+    TrialError,
+    history_of,
+    read_history,
+    require,
+    run_deck,
+    write_deck,
+)
+
+DECK = "../small/damage.nml"
+STEP = 10e-6
+GROWING = ["mesh%elements=10,10", "impactor%velocity=3", "delamination%G_c=200"]
+# Steps of a second, with several releases each.
+RUNNING = ["mesh%elements=20,20", "impactor%velocity=3", "delamination%G_c=100", f"time%end={11 * STEP!r}",
+           f"output%checkpoint_every={STEP!r}", f"output%fields_every={STEP!r}"]
+
+
+def growth(history):
+    """Return the area that came apart in each step but the first."""
+    area = history["delaminated_area"]
+    return [0.0, *(after - before for before, after in pairwise(area))]
+
+
+def split_after(step, settings):
+    """Add a single checkpoint after a step, some steps before the end, to the settings of a deck."""
+    return [*settings, f"output%checkpoint_every={step * STEP!r}", f"time%end={min(2 * step - 1, step + 7) * STEP!r}"]
+
+
+def check_splits(implam, folder, _):
+    """Before and after the step with the most growth."""
+    for rule in ("equilibrium", "one_per_step"):
+        for release in ("vcct", "two_state"):
+            name = f"{rule}_{release}"
+            settings = [*GROWING, f"delamination%growth='{rule}'", f"delamination%energy_release='{release}'"]
+            scout = write_deck(folder / name, DECK, [*settings, f"time%end={20 * STEP!r}"])
+            grown = growth(read_history(run_deck(implam, scout)))
+            most = 1 + max(range(len(grown)), key=grown.__getitem__)
+            for step in (most - 1, most):
+                deck = write_deck(folder / f"{name}_{step}", DECK, split_after(step, settings))
+                reference = run_deck(implam, deck)
+                again = go_on(implam, copy_run(deck.parent, folder / "again"))
+                require_same(again, reference, f"{name} split after step {step}")
+                require(damage_of(again) == damage_of(reference), f"{name}: other cells came apart.")
+                history = read_history(reference)
+                later = history["delaminated_area"][-1] - history["delaminated_area"][step - 1]
+                require(later > 0, f"{name}: nothing grew after the split, the trial proves nothing.")
+                print(f"{name} split after step {step}: {1e6 * later:.0f} mm^2 grow after it, the same to the last bit")
+
+
+def rows_written(folder):
+    """Return how many rows the history in a folder has by now; 0 if there is none yet."""
+    return sum(max(0, path.read_text(encoding="utf-8", errors="replace").count("\n") - lines_before_rows(path))
+               for path in folder.glob("*_history.csv"))
+
+
+def lines_before_rows(path):
+    """Return the number of lines before the first row of a history."""
+    with path.open(encoding="utf-8", errors="replace") as file:
+        return 1 + sum(line.startswith("#") for line in file)
+
+
+def stop_during(implam, deck, step, stop):
+    """Send a signal while a step is being computed; tell whether that was so by what the run leaves."""
+    process = start(implam, deck, "--output", deck.parent)
+    wait_until(lambda: rows_written(deck.parent) >= step - 1, process)
+    time.sleep(0.1)
+    # Frozen, so that it is certain that the step isn't over yet when the signal comes.
+    process.send_signal(signal.SIGSTOP)
+    inside = rows_written(deck.parent) == step - 1
+    process.send_signal(stop)
+    process.send_signal(signal.SIGCONT)
+    code = exit_code(process)
+    if stop == signal.SIGKILL:
+        return inside
+    require(code == EXIT_STOPPED, f"After {stop.name} the exit code is {code}, not {EXIT_STOPPED}.")
+    return inside and len(read_history(history_of(deck.parent))["time"]) == step
+
+
+def check_moments(implam, folder, _):
+    """Stopped and killed in the step with the most releases."""
+    reference = run_deck(implam, write_deck(folder / "uninterrupted", DECK, RUNNING))
+    cells = released_cells(reference)
+    require(len(cells) == len(read_history(reference)["time"]), "The fields aren't those of every step.")
+    releases = [0, *(least_releases(before, after) for before, after in pairwise(cells))]
+    step = 1 + max(range(len(releases)), key=releases.__getitem__)
+    print(f"Step {step} has {releases[step - 1]} releases at least, {len(cells[step - 1] - cells[step - 2])} cells")
+    require(releases[step - 1] > 1, "No step has several releases: the trial proves nothing.")
+    for stop in (signal.SIGTERM, signal.SIGKILL):
+        for _ in range(3):
+            deck = write_deck(folder / stop.name, DECK, RUNNING)
+            if stop_during(implam, deck, step, stop):
+                break
+        else:
+            raise TrialError(f"{stop.name} never came within the step.")
+        go_on(implam, deck.parent)
+        require_same(history_of(deck.parent), reference, stop.name)
+        require(released_cells(history_of(deck.parent)) == cells, f"{stop.name}: other cells came apart.")
+        print(f"{stop.name} within step {step}: the same to the last bit, the same cells in every step")
+
+
+def check_ranks(implam, folder, launcher):
+    """Changes of the number of ranks just before the growth."""
+    for first, second in ((2, 1), (1, 2)):
+        settings = split_after(11, [*GROWING, "solver%tolerance=1e-9"])
+        deck = write_deck(folder / f"ranks_{first}_{second}", DECK, settings)
+        reference = run_deck(implam, deck, [*launcher, str(first)])
+        again = go_on(implam, copy_run(deck.parent, folder / "again"), [*launcher, str(second)])
+        require_close(again, reference, f"from {first} to {second} ranks")
+        require(damage_of(again) == damage_of(reference), "Other cells came apart.")
+        require(read_history(reference)["delaminated_area"][-1] > read_history(reference)["delaminated_area"][10],
+                "Nothing grew after the split, the trial proves nothing.")
+
+
+def check_rejected(implam, folder, _):
+    """Steps that are tried again shorter while delaminations grow."""
+    tight = [*GROWING, f"time%step={STEP!r}", "solver%tolerance=1e-9"]
+    histories = check_next_to_rejections(implam, folder, DECK, tight, STEP, 16)
+    require(max(growth(read_history(histories[-1]))) > 0, "Nothing grew: the trial proves nothing.")
+
+
+TRIALS = {"splits": check_splits, "moments": check_moments, "ranks": check_ranks, "rejected": check_rejected}
+
+
+def main(trial, implam, folder, *launcher):
+    """Run one trial; the exit code is 1 if it fails."""
+    folder = Path(folder)
+    shutil.rmtree(folder, ignore_errors=True)
+    try:
+        TRIALS[trial](os.path.abspath(implam), folder, launcher)
+    except (TrialError, subprocess.TimeoutExpired) as failure:
+        print(failure)
+        return 1
+    return EXIT_DONE
+
+
+if __name__ == "__main__":
+    raise SystemExit(main(*sys.argv[1:]))
