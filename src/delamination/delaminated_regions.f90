@@ -20,17 +20,12 @@ module delaminated_regions
     procedure :: in_zone
     !> True for a delaminated cell; false also outside the zone.
     procedure :: is_delaminated
-    !> Number of delaminated cells.
-    procedure :: cells_delaminated
-    !> True for a node whose two faces are apart, and the list of all such nodes.
+    !> True for a node whose two faces are apart.
     procedure :: released
-    procedure :: released_nodes
     !> Node on two lines of nodes, in the numbering of the mesh.
     procedure :: node_at
     !> Takes a cell apart.
     procedure :: release
-    !> Moves the zone's border outwards.
-    procedure :: enlarge
     !> Saves or loads.
     procedure :: visit
   end type delaminated_region_t
@@ -106,13 +101,6 @@ contains
     if (is_delaminated) is_delaminated = self%delaminated(column, row)
   end function is_delaminated
 
-  !> Number of delaminated cells.
-  pure integer function cells_delaminated(self)
-    !> The region
-    class(delaminated_region_t), intent(in) :: self
-    cells_delaminated = count(self%delaminated)
-  end function cells_delaminated
-
   !> True if all cells around a node are delaminated. Beyond the model's border and its symmetry lines
   !> there is no cell to ask; nodes on the zone's own border never come apart, as both layers share them.
   pure logical function released(self, i, j)
@@ -144,38 +132,6 @@ contains
     range = [max(1, (line + 1)/2), min(cells, line/2 + 1)]
   end function cells_around
 
-  !> Nodes whose faces are apart, in ascending order.
-  pure function released_nodes(self) result(nodes)
-    !> The region
-    class(delaminated_region_t), intent(in) :: self
-    !> Node numbers of the mesh
-    integer, allocatable :: nodes(:)
-    nodes = released_within(self, 2*[self%columns(1) - 1, self%columns(2)], 2*[self%rows(1) - 1, self%rows(2)])
-  end function released_nodes
-
-  !> Released nodes on a range of lines, in ascending order.
-  pure function released_within(self, columns, rows) result(nodes)
-    !> The region
-    class(delaminated_region_t), intent(in) :: self
-    !> First and last line along x, then along y
-    integer, intent(in) :: columns(2), rows(2)
-    !> Node numbers of the mesh
-    integer, allocatable :: nodes(:)
-    integer :: i, j, pass, found
-
-    do pass = 1, 2
-      found = 0
-      do j = rows(1), rows(2)
-        do i = columns(1), columns(2)
-          if (.not. self%released(i, j)) cycle
-          found = found + 1
-          if (pass == 2) nodes(found) = self%node_at(i, j)
-        end do
-      end do
-      if (pass == 1) allocate (nodes(found))
-    end do
-  end function released_within
-
   !> Node on two lines of nodes, as the mesh numbers them.
   pure integer function node_at(self, i, j) result(node)
     !> The region
@@ -185,39 +141,17 @@ contains
     node = 1 + i + (2*self%cells(1) + 1)*j
   end function node_at
 
-  !> Takes a cell of the zone apart. Nothing happens if it is apart already or outside the zone.
-  pure subroutine release(self, cell, nodes)
+  !> Takes a cell of the zone apart. Nothing happens if it is outside the zone.
+  pure subroutine release(self, cell)
     !> The region
     class(delaminated_region_t), intent(inout) :: self
     !> Column and row of the cell
     integer, intent(in) :: cell(2)
-    !> Nodes whose faces come apart with it, node numbers of the mesh in ascending order
-    integer, allocatable, intent(out) :: nodes(:)
 
-    if (self%in_zone(cell(1), cell(2)) .and. .not. self%is_delaminated(cell(1), cell(2))) then
-      self%delaminated(cell(1), cell(2)) = .true.
-      nodes = released_within(self, 2*[cell(1) - 1, cell(1)], 2*[cell(2) - 1, cell(2)])
-    else
-      allocate (nodes(0))
-    end if
+    if (self%in_zone(cell(1), cell(2))) self%delaminated(cell(1), cell(2)) = .true.
   end subroutine release
 
-  !> Moves the zone's border outwards; the delaminated cells stay as they are.
-  pure subroutine enlarge(self, columns, rows)
-    !> The region
-    class(delaminated_region_t), intent(inout) :: self
-    !> First and last column, then row, of the new zone, which contains the old one
-    integer, intent(in) :: columns(2), rows(2)
-    logical, allocatable :: delaminated(:, :)
-
-    allocate (delaminated(columns(1):columns(2), rows(1):rows(2)), source=.false.)
-    delaminated(self%columns(1):self%columns(2), self%rows(1):self%rows(2)) = self%delaminated
-    call move_alloc(delaminated, self%delaminated)
-    self%columns = columns
-    self%rows = rows
-  end subroutine enlarge
-
-  !> Saves or loads the region; its zone may have been enlarged, so that is part of it.
+  !> Saves or loads the region with the place of its zone.
   subroutine visit(self, archive, name)
     !> The region
     class(delaminated_region_t), intent(inout) :: self

@@ -14,7 +14,7 @@ module delamination_fronts
     integer :: inside(2) = 0, outside(2) = 0
     !> Outward normal: along x (1) or y (2), and its sign
     integer :: direction = 0, sign = 0
-    !> True where the zone ends: the delamination cannot grow here unless the zone is enlarged
+    !> True where the zone ends: the delamination cannot grow here
     logical :: at_border = .false.
     !> Nodes of the edge, one for each line
     integer :: edge(3) = 0

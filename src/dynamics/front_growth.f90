@@ -51,7 +51,6 @@ contains
     !> Set true if cells came apart
     logical, intent(inout) :: grown
     real(wp) :: largest, energy
-    integer, allocatable :: nodes(:)
     integer :: s
 
     state%border_reached = state%border_reached .or. any(front%ratio > 1 .and. front%segments%at_border)
@@ -61,7 +60,7 @@ contains
       associate (segment => front%segments(s), region => state%separation%regions(zone))
         if (segment%at_border .or. front%ratio(s) < max(1.0_wp, together*largest)) cycle
         if (region%is_delaminated(segment%outside(1), segment%outside(2))) cycle
-        call region%release(segment%outside, nodes)
+        call region%release(segment%outside)
         energy = critical_release_rate(model%scene%delaminations(zone), front%modes(:, s)) &
                  *model%mesh%cell_area(segment%outside)*model%mesh%multiplicity
         ! The integrators cannot tell the energy that fracture takes from their own losses.

@@ -152,23 +152,20 @@ contains
     type(front_segment_t), intent(in) :: segments(:)
     !> Zero, G, zero, (3, segments)
     real(wp), allocatable :: modes(:, :)
-    real(wp), allocatable :: strains(:), stiffness(:), rates(:, :), field(:, :)
+    real(wp) :: rates(3, size(segments))
+    real(wp), allocatable :: strains(:), stiffness(:)
     integer :: s, line
 
-    allocate (strains(96*size(segments)), stiffness(42*size(segments)))
-    allocate (modes(3, size(segments)), rates(3, size(segments)), source=0.0_wp)
-    field = model%motion_of(motion%displacement)
-    strains = 0
-    stiffness = 0
-    do s = 1, size(segments)
-      call segment_states(model, field, zone, segments(s), strains(96*s - 95:96*s), stiffness(42*s - 41:42*s))
-    end do
+    allocate (modes(3, size(segments)), source=0.0_wp)
+    allocate (strains(96*size(segments)), stiffness(42*size(segments)), source=0.0_wp)
+    call front_states(model, model%motion_of(motion%displacement), segments, front_elements(model, zone, segments), &
+                      strains, stiffness)
     call model%communicator%sum(strains)
     call model%communicator%sum(stiffness)
     do s = 1, size(segments)
-      associate (e => reshape(strains(96*s - 95:96*s), [8, 2, 2, 3]), c => reshape(stiffness(42*s - 41:42*s), [21, 2]))
+      associate (e => reshape(strains(96*s - 95:96*s), [8, 3, 2, 2]), c => reshape(stiffness(42*s - 41:42*s), [21, 2]))
         do line = 1, 3
-          rates(line, s) = two_state_release(c, e(:, :, 1, line), e(:, :, 2, line))
+          rates(line, s) = two_state_release(c, e(:, line, :, 1), e(:, line, :, 2))
         end do
       end associate
     end do
@@ -178,44 +175,66 @@ contains
     end do
   end function two_state_rates
 
-  !> Strains on both sides of a segment at its three nodes, of the layers above and below the interface, and
-  !> the stiffness of the intact side; zero where another rank has the element.
-  subroutine segment_states(model, field, zone, segment, strains, stiffness)
+  !> Elements above and below the interface on the delaminated and the intact side of every segment, as this rank
+  !> numbers them; 0: another rank has it.
+  pure function front_elements(model, zone, segments) result(elements)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Index of the zone
+    integer, intent(in) :: zone
+    !> The front
+    type(front_segment_t), intent(in) :: segments(:)
+    !> Elements, (2 layers, 2 sides, segments)
+    integer :: elements(2, 2, size(segments))
+    integer :: s, side, layer, cells(2)
+
+    do s = 1, size(segments)
+      cells = [model%mesh%cell_at(segments(s)%inside(1), segments(s)%inside(2)), &
+               model%mesh%cell_at(segments(s)%outside(1), segments(s)%outside(2))]
+      do side = 1, 2
+        do layer = 1, 2
+          elements(layer, side, s) = model%distribution%local_element( &
+                                     model%mesh%element_at(cells(side), model%mesh%zones(zone)%below_ply + layer - 1))
+        end do
+      end do
+    end do
+  end function front_elements
+
+  !> Strains of the elements along a front at the three nodes of their segments, and the stiffness of those on its
+  !> intact side; zero where another rank has the element. Every batch is computed once.
+  subroutine front_states(model, field, segments, elements, strains, stiffness)
     !> The model
     type(model_t), intent(in) :: model
     !> Motion of every layer, (5, points)
     real(wp), intent(in) :: field(:, :)
-    !> Index of the zone
-    integer, intent(in) :: zone
-    !> The segment
-    type(front_segment_t), intent(in) :: segment
-    !> (8 strains, 2 layers, delaminated and intact side, 3 nodes) in one list
-    real(wp), intent(inout) :: strains(:)
-    !> (21, 2 layers) in one list
-    real(wp), intent(inout) :: stiffness(:)
+    !> The front
+    type(front_segment_t), intent(in) :: segments(:)
+    !> Elements of this rank, layer by layer, side by side, segment by segment; 0: none
+    integer, intent(in) :: elements(4*size(segments))
+    !> Strains, zero on entry, (8 components, 3 nodes, elements)
+    real(wp), intent(inout) :: strains(8, 3, size(elements))
+    !> Stiffness, zero on entry, (21, 2 layers, segments)
+    real(wp), intent(inout) :: stiffness(21, 2, size(segments))
     real(wp) :: at_nodes(lanes, 9, 8)
-    integer :: side, layer, cell, element, lane, nodes(9), line, start
+    integer :: batches(size(elements)), e, same, s, lane, line, nodes(9)
 
-    do side = 1, 2
-      cell = model%mesh%cell_at(merge(segment%inside(1), segment%outside(1), side == 1), &
-                                merge(segment%inside(2), segment%outside(2), side == 1))
-      nodes = model%mesh%cell_nodes(cell)
-      do layer = 1, 2
-        element = model%distribution%local_element( &
-                  model%mesh%element_at(cell, model%mesh%zones(zone)%below_ply + layer - 1))
-        if (element == 0) cycle
-        lane = 1 + modulo(element - 1, lanes)
-        associate (batch => 1 + (element - 1)/lanes)
-          call nodal_strains(model%elements, batch, model%scene%kinematics, field, at_nodes)
-          if (side == 2) stiffness(21*layer - 20:21*layer) = model%elements%stiffness(lane, :, batch)
-        end associate
+    batches = merge(1 + (elements - 1)/lanes, 0, elements > 0)
+    do e = 1, size(elements)
+      if (batches(e) == 0 .or. any(batches(:e - 1) == batches(e))) cycle
+      call nodal_strains(model%elements, batches(e), model%scene%kinematics, field, at_nodes)
+      do same = e, size(elements)
+        if (batches(same) /= batches(e)) cycle
+        s = 1 + (same - 1)/4
+        lane = 1 + modulo(elements(same) - 1, lanes)
+        nodes = model%mesh%cell_nodes(model%mesh%element_cell(model%distribution%elements(elements(same))))
         do line = 1, 3
-          start = 8*(layer - 1 + 2*(side - 1 + 2*(line - 1)))
-          strains(start + 1:start + 8) = at_nodes(lane, findloc(nodes, segment%edge(line), dim=1), :)
+          strains(:, line, same) = at_nodes(lane, findloc(nodes, segments(s)%edge(line), dim=1), :)
         end do
+        if (modulo(same - 1, 4) >= 2) stiffness(:, 1 + modulo(same - 1, 2), s) = &
+          model%elements%stiffness(lane, :, batches(e))
       end do
     end do
-  end subroutine segment_states
+  end subroutine front_states
 
   !> Replaces the rates at nodes that segments share by their mean.
   pure subroutine average_shared(segments, rates)

@@ -5,7 +5,7 @@ module small_regions
   use layered_meshes, only: layered_mesh_t, zone_t
   implicit none
   private
-  public :: mesh_with_zone, drawn_region
+  public :: mesh_with_zone, drawn_region, released_nodes
 
 contains
 
@@ -27,7 +27,6 @@ contains
     character(len=*), intent(in) :: picture(:)
     type(layered_mesh_t), intent(out) :: mesh
     type(delaminated_region_t), intent(out) :: region
-    integer, allocatable :: nodes(:)
     integer :: column, row, i
 
     mesh = mesh_with_zone([(real(i, wp), i=0, len(picture))], [(real(i, wp), i=0, size(picture))], &
@@ -35,8 +34,22 @@ contains
     region = create_region(mesh, 1, 0.0_wp)
     do row = 1, size(picture)
       do column = 1, len(picture)
-        if (picture(size(picture) + 1 - row)(column:column) == '#') call region%release([column, row], nodes)
+        if (picture(size(picture) + 1 - row)(column:column) == '#') call region%release([column, row])
       end do
     end do
   end subroutine drawn_region
+
+  !> Nodes whose faces are apart, in ascending order.
+  pure function released_nodes(region) result(nodes)
+    type(delaminated_region_t), intent(in) :: region
+    integer, allocatable :: nodes(:)
+    integer :: i, j
+
+    allocate (nodes(0))
+    do j = 0, 2*region%cells(2)
+      do i = 0, 2*region%cells(1)
+        if (region%released(i, j)) nodes = [nodes, region%node_at(i, j)]
+      end do
+    end do
+  end function released_nodes
 end module small_regions

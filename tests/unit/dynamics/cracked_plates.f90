@@ -143,7 +143,7 @@ contains
       do j = rows(1), rows(2)
         do i = columns(1), columns(2)
           nodes = mesh%cell_nodes(mesh%cell_at(i, j))
-          if (norm2(mesh%node_coordinates(:, nodes(5))) < radius) call region%release([i, j], nodes)
+          if (norm2(mesh%node_coordinates(:, nodes(5))) < radius) call region%release([i, j])
         end do
       end do
     end associate
