@@ -8,7 +8,7 @@ module result_rows
   public :: row_of
 
   !> Number of columns.
-  integer, parameter, public :: columns = 36
+  integer, parameter, public :: columns = 37
   !> Their names; the first seventeen and their order are the public interface.
   character(len=*), parameter, public :: column_names(columns) = [character(len=24) :: &
     'time', 'step', 'force', 'indentation', 'impactor_displacement', 'impactor_velocity', 'deflection', &
@@ -17,10 +17,11 @@ module result_rows
     'patch_deflection', 'work_external', 'step_length', 'stress', 'release_ratio', &
     'penetration', 'complementarity', 'iterations', 'force_iterations', &
     'contact_iterations', 'total_iterations', 'total_force_iterations', 'total_contact_iterations', 'rejected', &
-    'refactorisations', 'solves', 'fibre_failures', 'matrix_cracks', 'matrix_crushings']
+    'refactorisations', 'solves', 'fibre_failures', 'matrix_cracks', 'matrix_crushings', &
+    'border_reached']
   !> Which of them are whole numbers.
   logical, parameter, public :: column_whole(columns) = &
-    [.false., .true., spread(.false., 1, 22), spread(.true., 1, 12)]
+    [.false., .true., spread(.false., 1, 22), spread(.true., 1, 13)]
 
 contains
 
@@ -46,6 +47,7 @@ contains
       row(25:36) = real([now%iterations, now%force_iterations, now%contact_iterations, now%all_iterations, &
                          now%all_force_iterations, now%all_contact_iterations, march%rejected, &
                          march%operator%factorizations, march%operator%solves, march%failures%counts(model)], wp)
+      row(37) = merge(1.0_wp, 0.0_wp, now%border_reached)
     end associate
   end function row_of
 end module result_rows

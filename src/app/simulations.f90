@@ -169,6 +169,7 @@ contains
     if (allocated(error)) return
     call archive%close(error)
     if (allocated(error)) return
+    self%warned_of_border = self%march%now%border_reached
     call self%history%resume(communicator, self%base//'_history.csv', column_names, column_whole, rows, error)
     if (allocated(error)) return
     if (self%history%rows /= rows) &
@@ -265,7 +266,7 @@ contains
     associate (now => self%march%now)
       if (now%border_reached .and. .not. self%warned_of_border) then
         call self%log%warning('A delamination has reached the border of its zone at time '//to_text(now%time)// &
-                              ' and cannot grow there; make the zone larger.')
+                              ' and cannot grow on there: if it would, make the zone larger.')
         self%warned_of_border = .true.
       end if
       energy = max(now%ledger%initial, now%ledger%kinetic + now%ledger%strain)

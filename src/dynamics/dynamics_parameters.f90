@@ -54,6 +54,8 @@ module dynamics_parameters
     real(wp) :: stress_change = 0.05_wp
     !> Iterations of a step above which the operator is renewed (refactor_iterations)
     integer :: iterations = 16
+    !> Smallest part of the step left to a delamination that grows one cell a step; 1: it takes whole steps
+    real(wp) :: growth_step = 0.25_wp
   end type adapt_t
 
   !> Convergence and linear algebra.

@@ -28,6 +28,7 @@ contains
 
     grown = .false.
     state%release_ratio = 0
+    state%growth_ratio = 0
     do zone = 1, size(model%mesh%zones)
       front = release_along_front(model, state%separation, state%motion, zone, &
                                   model%scene%delaminations(zone)%energy_release)
@@ -50,15 +51,19 @@ contains
     type(front_release_t), intent(in) :: front
     !> Set true if cells came apart
     logical, intent(inout) :: grown
-    real(wp) :: largest, energy
+    real(wp) :: largest, enough, energy
     integer :: s
 
-    state%border_reached = state%border_reached .or. any(front%ratio > 1 .and. front%segments%at_border)
+    ! Where the layers end, virtual crack closure finds no force to close: a rate cannot tell that growth is barred.
+    state%border_reached = state%border_reached .or. any(front%segments%at_border)
     largest = maxval(front%ratio, mask=.not. front%segments%at_border)
+    state%growth_ratio = max(state%growth_ratio, largest)
     if (.not. largest > 1) return
+    enough = max(1.0_wp, together*largest)
+    if (model%scene%delaminations(zone)%growth == growth_one_per_step) enough = largest
     do s = 1, size(front%segments)
       associate (segment => front%segments(s), region => state%separation%regions(zone))
-        if (segment%at_border .or. front%ratio(s) < max(1.0_wp, together*largest)) cycle
+        if (segment%at_border .or. front%ratio(s) < enough) cycle
         if (region%is_delaminated(segment%outside(1), segment%outside(2))) cycle
         call region%release(segment%outside)
         energy = critical_release_rate(model%scene%delaminations(zone), front%modes(:, s)) &

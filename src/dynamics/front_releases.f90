@@ -200,8 +200,9 @@ contains
     end do
   end function front_elements
 
-  !> Strains of the elements along a front at the three nodes of their segments, and the stiffness of those on its
-  !> intact side; zero where another rank has the element. Every batch is computed once.
+  !> Strains of the elements along a front at the three nodes of their segments, and the stiffness of the layers on
+  !> its intact side, or behind it where the zone ends and one layer follows; zero where another rank has the
+  !> element. Every batch is computed once.
   subroutine front_states(model, field, segments, elements, strains, stiffness)
     !> The model
     type(model_t), intent(in) :: model
@@ -216,7 +217,7 @@ contains
     !> Stiffness, zero on entry, (21, 2 layers, segments)
     real(wp), intent(inout) :: stiffness(21, 2, size(segments))
     real(wp) :: at_nodes(lanes, 9, 8)
-    integer :: batches(size(elements)), e, same, s, lane, line, nodes(9)
+    integer :: batches(size(elements)), e, same, s, lane, line, nodes(9), layer, side
 
     batches = merge(1 + (elements - 1)/lanes, 0, elements > 0)
     do e = 1, size(elements)
@@ -230,7 +231,9 @@ contains
         do line = 1, 3
           strains(:, line, same) = at_nodes(lane, findloc(nodes, segments(s)%edge(line), dim=1), :)
         end do
-        if (modulo(same - 1, 4) >= 2) stiffness(:, 1 + modulo(same - 1, 2), s) = &
+        layer = 1 + modulo(same - 1, 2)
+        side = 1 + modulo(same - 1, 4)/2
+        if (side == merge(1, 2, segments(s)%at_border)) stiffness(:, layer, s) = &
           model%elements%stiffness(lane, :, batches(e))
       end do
     end do

@@ -184,7 +184,7 @@ contains
 
     do
       call grow_fronts(model, self%trial, grown)
-      if (.not. grown .or. all(model%scene%delaminations%growth /= growth_equilibrium)) return
+      if (.not. grown .or. grows_by_steps(model)) return
       guess = self%trial%motion%displacement
       start = self%now
       start%separation = self%trial%separation
@@ -197,6 +197,15 @@ contains
       if (.not. converged .or. allocated(error)) return
     end do
   end subroutine let_grow
+
+  !> True if delaminations grow with the steps, none of them at a frozen time.
+  pure logical function grows_by_steps(model)
+    !> The model
+    type(model_t), intent(in) :: model
+
+    grows_by_steps = model%map%layered
+    if (grows_by_steps) grows_by_steps = all(model%scene%delaminations%growth /= growth_equilibrium)
+  end function grows_by_steps
 
   !> Longest step that the impactor's integrator bears now, as a binary fraction of the step wanted so that
   !> the factored operator need not follow every small change.
@@ -242,6 +251,7 @@ contains
     !> Step taken
     real(wp), intent(in) :: step
     real(wp) :: change
+    logical :: extended
 
     self%trial%stress = struck_stress(model, self%trial%motion%displacement)
     self%trial%largest_stress = max(self%now%largest_stress, self%trial%stress)
@@ -253,11 +263,13 @@ contains
     call self%failures%grow(model, self%trial)
     self%trial%separation%glued = self%trial%separation%glued .or. model%scene%has_impactor .and. &
                                   self%trial%impactor%velocity <= 0 .and. self%trial%force < self%now%force
+    extended = self%trial%ledger%delamination > self%now%ledger%delamination
     self%now = self%trial
     if (model%scene%has_static) then
       self%controller%wanted = 1.0_wp/model%scene%static_steps
     else
       call self%controller%accept(model%scene, step, self%now%iterations, change)
+      if (grows_by_steps(model)) call self%controller%heed_fronts(model%scene, self%now%growth_ratio, extended)
     end if
   end subroutine accept
 

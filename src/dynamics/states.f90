@@ -29,7 +29,9 @@ module states
     type(separation_t) :: separation
     !> Largest energy release rate on the fronts over its critical value
     real(wp) :: release_ratio = 0
-    !> True once a delamination wanted to grow beyond its zone
+    !> The same of those fronts that can grow, not at the border of their zone
+    real(wp) :: growth_ratio = 0
+    !> True once a front has reached the border of its zone, where it cannot grow on
     logical :: border_reached = .false.
     !> Impact force at this time
     real(wp) :: force = 0
@@ -86,6 +88,7 @@ contains
     call self%impactor%visit(archive)
     call self%indentation%visit(archive)
     call archive%item('release_ratio', self%release_ratio)
+    call archive%item('growth_ratio', self%growth_ratio)
     call archive%item('border_reached', self%border_reached)
     call archive%item('force', self%force)
     call archive%item('patch_mean', self%patch_mean)

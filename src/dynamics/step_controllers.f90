@@ -2,6 +2,7 @@
 module step_controllers
   use kinds, only: wp
   use archives, only: archive_t
+  use impactors, only: largest_growth_ratio
   use plate_options, only: kinematics_von_karman
   use dynamics_parameters, only: refactor_deflection
   use scenes, only: scene_t
@@ -9,8 +10,8 @@ module step_controllers
   private
   public :: step_controller_t
 
-  !> Largest growth of the step from one to the next: more would unsettle the multistep integrator.
-  real(wp), parameter :: growth = 1.19_wp
+  !> Energy release rate over its critical value from which fronts that grow a cell a step shorten the step.
+  real(wp), parameter :: nearing = 0.8_wp
   !> Ratios of the mass factor between which a lagged operator still serves well.
   real(wp), parameter :: lag_low = 0.6_wp, lag_high = 1.7_wp
 
@@ -18,6 +19,9 @@ module step_controllers
   type :: step_controller_t
     !> Step wanted next, and the last one taken
     real(wp) :: wanted = 0, last = 0
+    !> Part of the step wanted that growing fronts leave: halves of halves, so that the factored operator need not
+    !> follow every small change
+    real(wp) :: part = 1
     !> Fewest iterations of a step since the operator was renewed, and the sum of those beyond it
     integer :: fewest = huge(1), excess = 0
   contains
@@ -25,6 +29,8 @@ module step_controllers
     procedure :: propose
     !> Learns from an accepted step.
     procedure :: accept
+    !> Shortens the step where fronts are about to grow or have grown.
+    procedure :: heed_fronts
     !> Learns from a rejected step.
     procedure :: reject
     !> True if the operator should be renewed before a step.
@@ -46,8 +52,8 @@ contains
     !> Longest step that the impactor's integrator bears
     real(wp), intent(in) :: limit
 
-    step = min(self%wanted, limit)
-    if (self%last > 0) step = min(step, growth*self%last)
+    step = min(self%part*self%wanted, limit)
+    if (self%last > 0) step = min(step, largest_growth_ratio*self%last)
     step = remaining/max(1.0_wp, ceiling_of(remaining/step*(1 - 1.0e-9_wp)))
   end function propose
 
@@ -85,10 +91,37 @@ contains
     if (room < 0.8_wp) then
       self%wanted = self%wanted*max(room, 0.5_wp)
     else if (room > 1.5_wp) then
-      self%wanted = self%wanted*growth
+      self%wanted = self%wanted*largest_growth_ratio
     end if
     self%wanted = min(max(self%wanted, scene%time%step_min), scene%time%step_max)
   end subroutine accept
+
+  !> Shortens the step where delaminations that grow one cell a step are about to grow or have grown (section 3.3.3
+  !> of the paper, step 5): as their energy release rate nears the critical one, the step is halved at 0.9 of it, again
+  !> at 0.95 and so on in proportion to what is left, down to twice the smallest part; after an extension the smallest
+  !> part is taken. Then it doubles from step to step, as far as the steps may grow.
+  pure subroutine heed_fronts(self, scene, ratio, extended)
+    !> The controller, after `accept`
+    class(step_controller_t), intent(inout) :: self
+    !> The scene
+    type(scene_t), intent(in) :: scene
+    !> Largest energy release rate over its critical value of the step
+    real(wp), intent(in) :: ratio
+    !> True if a front grew in it
+    logical, intent(in) :: extended
+    real(wp) :: smallest, allowed
+
+    smallest = min(1.0_wp, max(scene%adapt%growth_step, scene%time%step_min/self%wanted))
+    allowed = 1
+    do while (allowed/2 >= max(2*smallest, (1 - ratio)/(1 - nearing)))
+      allowed = allowed/2
+    end do
+    if (extended) then
+      self%part = smallest
+    else
+      self%part = min(allowed, max(smallest, 2*self%part))
+    end if
+  end subroutine heed_fronts
 
   !> Learns from a rejected step: half of it is tried next.
   pure subroutine reject(self, step)
@@ -97,7 +130,7 @@ contains
     !> Step that failed
     real(wp), intent(in) :: step
 
-    self%wanted = step/2
+    self%wanted = step/(2*self%part)
   end subroutine reject
 
   !> True if the operator should be renewed before a step: by the paper's rule, or once the iterations
@@ -141,6 +174,7 @@ contains
 
     call archive%item('controller/wanted', self%wanted)
     call archive%item('controller/last', self%last)
+    call archive%item('controller/part', self%part)
     call archive%item('controller/fewest', self%fewest)
     call archive%item('controller/excess', self%excess)
   end subroutine visit

@@ -4,6 +4,7 @@ module deck_checks
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
   use deck_remarks, only: tell, remark
+  use delamination_parameters, only: growth_one_per_step
   use dynamics_parameters, only: integrator_newmark, integrator_generalized_alpha
   use impact_parameters, only: law_tan_sun, law_hertz, dent_yang_sun
   use kinds, only: wp
@@ -276,5 +277,7 @@ contains
                          'has no effect with integrator = ''generalized_alpha''.')
       end if
     end associate
+    if (size(deck%delaminations) > 0 .and. all(deck%delaminations%growth == growth_one_per_step)) return
+    call remark_idle(deck, problems, 'adapt', 'growth_step', 'has no effect without growth = ''one_per_step''.')
   end subroutine check_time
 end module deck_checks

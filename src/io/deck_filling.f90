@@ -173,6 +173,7 @@ contains
       adapt%stiffness_update = s%real_of('adapt', 'stiffness_update')
       adapt%stress_change = s%real_of('adapt', 'stress_change')
       adapt%iterations = s%integer_of('adapt', 'iterations')
+      adapt%growth_step = s%real_of('adapt', 'growth_step')
       solver%tolerance = s%real_of('solver', 'tolerance')
       solver%max_iterations = s%integer_of('solver', 'max_iterations')
       solver%factorization = code_of(s%text_of('solver', 'factorization'), 'mumps cholmod', &

@@ -193,6 +193,8 @@ module deck_table
       &Change of the struck point''s stress wanted in a step, as a fraction of its largest so far.', &
     'adapt | iterations | integer | 1 | - | 16 | >= 1, <= 1000 | &
       &Iterations lost to an old factored stiffness that pay for a new one.', &
+    'adapt | growth_step | real | 1 | - | 0.25 | > 0, <= 1 | &
+      &Smallest part of a step to which growth = ''one_per_step'' shortens it; 1: not at all.', &
     'solver | tolerance | real | 1 | - | 1e-6 | >= 1e-13, <= 0.01 | &
       &Residual of equilibrium accepted, relative to the forces in play.', &
     'solver | max_iterations | integer | 1 | - | 30 | >= 1, <= 10000 | &
