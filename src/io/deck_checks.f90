@@ -9,6 +9,7 @@ module deck_checks
   use impact_parameters, only: law_tan_sun, law_hertz, dent_yang_sun
   use kinds, only: wp
   use laminate_parameters, only: shear_five_sixths
+  use gradings, only: core_elements
   use mesh_parameters, only: edge_free, edge_clamped, symmetry_quarter
   use plies, only: ply_t
   use stacking, only: stacked_plies, section_stiffness
@@ -127,6 +128,7 @@ contains
       call tell(deck, problems, 'mesh', 'patch', 'is too small for the plate; allowed: from '// &
                 to_text(least_patch*shorter)//'.')
     end if
+    call check_core(deck, problems)
     if (.not. allocated(deck%laminate%thickness)) return
     thickness = sum(deck%laminate%thickness)
     if (thickness > shorter) then
@@ -140,6 +142,40 @@ contains
                   ' thicknesses wide; plate theory is inaccurate there.')
     end if
   end subroutine check_size
+
+  !> Core of equal elements: in the plate, and with elements left for the rest.
+  subroutine check_core(deck, problems)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    integer :: direction, parts, least
+
+    associate (s => deck%settings, mesh => deck%mesh)
+      if (s%is_given('mesh', 'core') .neqv. s%is_given('mesh', 'cell')) then
+        call tell(deck, problems, 'mesh', trim(merge('cell', 'core', s%is_given('mesh', 'core'))), &
+                  'is missing; `core` and `cell` go together.')
+      else if (mesh%cell > 0 .and. .not. problems%concern('mesh')) then
+        parts = merge(1, 2, deck%plate%symmetry == symmetry_quarter)
+        if (any(mesh%core >= deck%plate%length)) then
+          call tell(deck, problems, 'mesh', 'core', 'is as large as the plate; give it smaller or leave it out.')
+          return
+        else if (any(mesh%core/mesh%cell > most_elements)) then
+          call tell(deck, problems, 'mesh', 'cell', 'is too small for the core.')
+          return
+        end if
+        do direction = 1, 2
+          least = parts*(sum(core_elements(mesh%patch/2, mesh%core(direction)/2, mesh%cell)) + 1)
+          if (mesh%elements(direction) < least .or. modulo(mesh%elements(direction), parts) > 0) then
+            call tell(deck, problems, 'mesh', 'elements', 'the core needs at least '//to_text(least)//' along '// &
+                      merge('x', 'y', direction == 1)//trim(merge(', and an even number.', '.                    ', &
+                                                                  parts == 2)))
+            return
+          end if
+        end do
+      end if
+    end associate
+  end subroutine check_core
 
   !> What must be symmetric if only a quarter is modelled.
   subroutine check_quarter(deck, problems)

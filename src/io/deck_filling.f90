@@ -86,6 +86,8 @@ contains
       if (s%is_known('mesh', 'elements')) mesh%elements = s%integers_of('mesh', 'elements')
       mesh%grading = s%real_of('mesh', 'grading')
       mesh%patch = s%real_of('mesh', 'patch')
+      if (s%is_given('mesh', 'core')) mesh%core = s%reals_of('mesh', 'core')
+      if (s%is_given('mesh', 'cell')) mesh%cell = s%real_of('mesh', 'cell')
       mesh%shear = code_of(s%text_of('mesh', 'shear'), 'assumed full selective', &
                            [shear_assumed, shear_full, shear_selective])
       mesh%mass = code_of(s%text_of('mesh', 'mass'), 'consistent lumped', [mass_consistent, mass_lumped])

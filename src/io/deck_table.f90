@@ -47,6 +47,10 @@ module deck_table
       &Largest over smallest element edge outside the patch; 0: sizes change smoothly.', &
     'mesh | patch | real | 1 | length | 0 | >= 0 | &
       &Side of the loaded square centred on the struck point; an impactor needs one.', &
+    'mesh | core | real | 2 | length | none | > 0 | &
+      &Full extents of a rectangle of equal elements around the struck point; given with `cell`.', &
+    'mesh | cell | real | 1 | length | none | > 0 | &
+      &Side of the elements in the core; outside sizes grow smoothly or by `grading`.', &
     'mesh | shear | choice | 1 | - | ''assumed'' | assumed full selective | &
       &Transverse shear of the element: assumed strains, 3 x 3 or 2 x 2 integration.', &
     'mesh | mass | choice | 1 | - | ''consistent'' | consistent lumped | &

@@ -1,10 +1,10 @@
 !> Element edges along one side of the plate: the loaded patch is an exact number of elements, sizes
-!> outside grow geometrically.
+!> outside grow geometrically. A core of equal elements around the patch gives a front that moves in it equal steps.
 module gradings
   use kinds, only: wp
   implicit none
   private
-  public :: graded_half_line, graded_line
+  public :: graded_half_line, graded_line, cored_half_line, core_elements
 
 contains
 
@@ -29,6 +29,53 @@ contains
     if (inside < elements) edges(inside:) = outer_edges(edges(inside), half_length, elements - inside, &
                                                         half_patch/max(inside, 1), grading)
   end function graded_half_line
+
+  !> Element edges from the struck point (0) to the border, equal in a core around the patch.
+  pure function cored_half_line(half_length, elements, half_patch, grading, half_core, cell) result(edges)
+    !> Distance from the struck point to the border
+    real(wp), intent(in) :: half_length
+    !> Number of elements, more than core_elements gives
+    integer, intent(in) :: elements
+    !> Half the side of the loaded patch; 0: none
+    real(wp), intent(in) :: half_patch
+    !> Largest over smallest element edge outside the core; 0: smooth from the core's elements
+    real(wp), intent(in) :: grading
+    !> Half the extent of the core, less than half_length
+    real(wp), intent(in) :: half_core
+    !> Side of its elements; patch and core become whole numbers of about this size
+    real(wp), intent(in) :: cell
+    !> Ascending coordinates of the element edges, (0:elements)
+    real(wp) :: edges(0:elements)
+    real(wp) :: border
+    integer :: counts(2), i
+
+    counts = core_elements(half_patch, half_core, cell)
+    border = max(half_patch, half_core)
+    do i = 0, counts(1)
+      edges(i) = half_patch*i/max(counts(1), 1)
+    end do
+    do i = 1, counts(2)
+      edges(counts(1) + i) = half_patch + (border - half_patch)*i/counts(2)
+    end do
+    edges(sum(counts):) = outer_edges(edges(sum(counts)), half_length, elements - sum(counts), cell, grading)
+  end function cored_half_line
+
+  !> Numbers of elements on half the patch and from there to the border of the core, at least one where there is length.
+  pure function core_elements(half_patch, half_core, cell) result(counts)
+    !> Half the side of the loaded patch; 0: none
+    real(wp), intent(in) :: half_patch
+    !> Half the extent of the core
+    real(wp), intent(in) :: half_core
+    !> Side of the core's elements
+    real(wp), intent(in) :: cell
+    !> On the patch, and on the rest of the core
+    integer :: counts(2)
+    real(wp) :: lengths(2)
+
+    lengths = [half_patch, max(0.0_wp, half_core - half_patch)]
+    counts = nint(lengths/cell)
+    where (lengths > 1.0e-9_wp*half_core) counts = max(1, counts)
+  end function core_elements
 
   !> Element edges from border to border, symmetric about the struck point in the middle.
   pure function graded_line(length, elements, patch, grading) result(edges)

@@ -3,7 +3,7 @@
 module layered_meshes
   use kinds, only: wp
   use mesh_parameters, only: plate_t, mesh_t, symmetry_quarter
-  use gradings, only: graded_half_line, graded_line
+  use gradings, only: graded_half_line, graded_line, cored_half_line
   implicit none
   private
   public :: layered_mesh_t, zone_t, create_mesh, cell_edges
@@ -96,9 +96,15 @@ contains
     integer, intent(in) :: direction
     !> Ascending coordinates, (0:cells)
     real(wp), allocatable :: edges(:)
+    integer :: half
 
     allocate (edges(0:mesh%elements(direction)))
-    if (plate%symmetry == symmetry_quarter) then
+    if (mesh%cell > 0) then
+      half = merge(0, mesh%elements(direction)/2, plate%symmetry == symmetry_quarter)
+      edges(half:) = cored_half_line(plate%length(direction)/2, mesh%elements(direction) - half, mesh%patch/2, &
+                                     mesh%grading, mesh%core(direction)/2, mesh%cell)
+      edges(:half) = -edges(2*half:half:-1)
+    else if (plate%symmetry == symmetry_quarter) then
       edges(:) = graded_half_line(plate%length(direction)/2, mesh%elements(direction), mesh%patch/2, mesh%grading)
     else
       edges(:) = graded_line(plate%length(direction), mesh%elements(direction), mesh%patch, mesh%grading)

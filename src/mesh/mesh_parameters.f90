@@ -31,6 +31,8 @@ module mesh_parameters
     real(wp) :: grading = 0
     !> Side of the loaded square, centred on the struck point; 0: none
     real(wp) :: patch = 0
+    !> Full extents along x and y of the rectangle of equal elements around the patch, and their side; 0: none
+    real(wp) :: core(2) = 0, cell = 0
     !> Transverse shear of the element, one of `plate_options`
     integer :: shear = shear_assumed
     !> Mass matrix, one of `plate_options`

@@ -154,6 +154,80 @@ def absent_physics(program, arguments):
               f'{statistics.median(new/before for before, new in pairs):.3f} | {counts} |', flush=True)
 
 
+def spread(program, arguments):
+    """Peanut-shaped delamination of input/peanut.nml on finer meshes and with halved steps."""
+    print('| cell, mm | step, us | unknowns | first growth, N | peak force, N | area, mm^2 | along x across, mm | at x = 0, '
+          'mm | cracks | fibre failures | processor, s |')
+    print('|---|---|---|---|---|---|---|---|---|---|---|')
+    runs = {}
+    for side in arguments.cell:
+        runs[side, 1] = Peanut(program, side, 1)
+    if arguments.halved:
+        runs[arguments.halved, 2] = Peanut(program, arguments.halved, 2)
+    finest = sorted(arguments.cell)[:2]
+    pairs = [('finest two meshes', runs[finest[1], 1], runs[finest[0], 1])] if len(finest) > 1 else []
+    if (arguments.halved, 1) in runs:
+        pairs.append(('half the step', runs[arguments.halved, 1], runs[arguments.halved, 2]))
+    for name, rough, fine in pairs:
+        print(f'{name}: first growth {100*(fine.growth/rough.growth - 1):+.1f} %, peak force '
+              f'{100*(fine.peak/rough.peak - 1):+.1f} %, area {100*(fine.area/rough.area - 1):+.1f} %')
+
+
+class Peanut:
+    """input/peanut.nml on a mesh of its own; prints a row of the table."""
+
+    def __init__(self, program, side, finer_steps):
+        deck = pathlib.Path(__file__).parents[2].joinpath('input/peanut.nml').read_text()
+        core = [float(n) for n in re.search(r'core=(\S+), (\S+)', deck).groups()]
+        cell, step = (float(re.search(key + r'=([\d.e+-]+)', deck)[1]) for key in ('cell', 'step'))
+        counts = [int(n) for n in re.search(r'elements=(\d+), (\d+)', deck).groups()]
+        # The rest of the plate gets finer in proportion.
+        counts = [round(extent/2/(1e-3*side)) + round((count - extent/2/cell)*cell/(1e-3*side))
+                  for extent, count in zip(core, counts, strict=True)]
+        deck = re.sub(r'elements=\d+, \d+', 'elements={}, {}'.format(*counts), deck)
+        deck = deck.replace(re.search(r'cell=\S+', deck)[0], f'cell={1e-3*side}')
+        deck = deck.replace(re.search(r'step=\S+', deck)[0], f'step={step/finer_steps}')
+        with tempfile.TemporaryDirectory() as folder:
+            seconds = self.run(program, deck, pathlib.Path(folder))
+            self.read(pathlib.Path(folder))
+        print(f'| {side:g} | {1e6*step/finer_steps:g} | {self.unknowns} | {self.growth:.0f} | {self.peak:.0f} | '
+              f'{self.area:.0f} | {self.along:.1f} x {self.across:.1f} | {self.waist:.1f} | {self.cracks} | '
+              f'{self.fibres} | {seconds:.0f} |', flush=True)
+
+    def run(self, program, deck, folder):
+        """Seconds of the processor."""
+        folder.joinpath('peanut.nml').write_text(deck)
+        process = subprocess.Popen([program, folder/'peanut.nml', '--output', folder], stdout=subprocess.DEVNULL,
+                                   env=ENVIRONMENT)
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        if process.returncode:
+            sys.exit(f'The run failed with exit code {process.returncode}.')
+        return usage.ru_utime + usage.ru_stime
+
+    def read(self, folder):
+        """What the table shows."""
+        # Elsewhere Python's standard library is enough.
+        sys.path.insert(0, str(pathlib.Path(__file__).parents[2]/'postproc'))
+        from implam_post.fields import extents, read_fields
+        self.unknowns = int(re.search(r'(\d+) unknowns', folder.joinpath('peanut.log').read_text())[1])
+        with open(folder/'peanut_history.csv') as lines:
+            rows = [{key: float(value) for key, value in row.items()} for row in
+                    csv.DictReader(line for line in lines if not line.startswith('#'))]
+        self.peak = max(row['force'] for row in rows)
+        # In the last step before growth G is short of its critical value by a little, and goes with the force squared.
+        still = next(row for row, later in zip(rows, rows[1:])
+                     if later['delaminated_area'] > 1.001*rows[0]['delaminated_area'])
+        self.growth = still['force']/still['release_ratio']**0.5
+        self.area = 1e6*rows[-1]['delaminated_area']
+        self.cracks, self.fibres = (int(rows[-1][name]) for name in ('matrix_cracks', 'fibre_failures'))
+        fields = read_fields(folder/'peanut.h5')
+        cells = fields.whole(fields.snapshots[-1].delaminated_cells(10))
+        self.along, self.across = (1e3*extent for extent in extents(cells))
+        near = min(abs(cells[:, :, 0]).max(axis=1))
+        self.waist = 1e3*extents(cells[abs(cells[:, :, 0]).max(axis=1) < 1.001*near])[1]
+
+
 def main():
     """Reads the command line."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -174,6 +248,10 @@ def main():
     part.add_argument('--deck', type=pathlib.Path, default=SUN_CHEN, help='elastic deck with linear strains')
     part.add_argument('--repeat', type=int, default=10)
     part.set_defaults(act=absent_physics)
+    part = parts.add_parser('mesh-study', help=spread.__doc__)
+    part.add_argument('--cell', type=float, nargs='+', default=[1.2, 0.8, 0.6], help='mm; a divisor of 2.4')
+    part.add_argument('--halved', type=float, default=0.8, help='the mesh that is also run with half the step')
+    part.set_defaults(act=spread)
     arguments = parser.parse_args()
     arguments.act(os.path.abspath(arguments.program), arguments)
 
