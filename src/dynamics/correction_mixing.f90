@@ -13,12 +13,18 @@ module correction_mixing
   !> Keeps the small system solvable once two memories say the same, relative to its diagonal.
   real(wp), parameter :: regularisation = 1.0e-12_wp
 
-  !> What earlier iterations of a step showed: a change of the displacement and what that did to the correction.
+  !> What one iteration showed.
+  type :: memory_t
+    !> A change of the displacement, and what that did to the correction, (5, points)
+    real(wp), allocatable :: move(:, :), change(:, :)
+    !> What it did to the force
+    real(wp) :: force_change = 0
+  end type memory_t
+
+  !> What earlier iterations of a step showed.
   type :: mixing_t
-    !> Changes of the displacement and of the correction, (5, points, depth)
-    real(wp), allocatable :: moves(:, :, :), changes(:, :, :)
-    !> Changes of the force, displacement's fellow unknown (depth)
-    real(wp) :: force_changes(depth) = 0
+    !> The iterations remembered; most steps need few
+    type(memory_t) :: memories(depth)
     !> Weighted products of the changes with each other, (depth, depth)
     real(wp) :: products(depth, depth) = 0
     !> Correction and force of the iteration before, and how far that moved, (5, points)
@@ -79,7 +85,7 @@ contains
 
     call remember(self, communicator, weight, correction, force)
     if (self%kept == 0) return
-    shares(:self%kept) = [(weighted_product(weight, self%changes(:, :, i), correction), i=1, self%kept)]
+    shares(:self%kept) = [(weighted_product(weight, self%memories(i)%change, correction), i=1, self%kept)]
     call communicator%sum(shares(:self%kept))
     matrix = self%products
     do i = 1, self%kept
@@ -88,8 +94,8 @@ contains
     call solve_dense(matrix(:self%kept, :self%kept), shares(:self%kept), singular)
     if (singular .or. .not. all(abs(shares(:self%kept)) <= huge(force))) return
     do i = 1, self%kept
-      correction = correction - shares(i)*(self%moves(:, :, i) + self%changes(:, :, i))
-      force = force - shares(i)*self%force_changes(i)
+      correction = correction - shares(i)*(self%memories(i)%move + self%memories(i)%change)
+      force = force - shares(i)*self%memories(i)%force_change
     end do
   end subroutine mix
 
@@ -110,17 +116,15 @@ contains
 
     if (.not. allocated(self%correction)) allocate (self%correction, self%move, mold=correction)
     if (self%comparable) then
-      if (.not. allocated(self%moves)) then
-        allocate (self%moves(size(correction, 1), size(correction, 2), depth))
-        allocate (self%changes, mold=self%moves)
-      end if
-      self%moves(:, :, self%next) = self%move
-      self%changes(:, :, self%next) = correction - self%correction
-      self%force_changes(self%next) = force - self%force
+      associate (memory => self%memories(self%next))
+        memory%move = self%move
+        memory%change = correction - self%correction
+        memory%force_change = force - self%force
+      end associate
       self%kept = min(self%kept + 1, depth)
       products = 0
       do i = 1, self%kept
-        products(i) = weighted_product(weight, self%changes(:, :, i), self%changes(:, :, self%next))
+        products(i) = weighted_product(weight, self%memories(i)%change, self%memories(self%next)%change)
       end do
       call communicator%sum(products)
       self%products(:, self%next) = products
