@@ -2,6 +2,7 @@
 """Measures what a run costs. See README.md beside this file."""
 import argparse
 import csv
+import itertools
 import os
 import pathlib
 import re
@@ -156,8 +157,8 @@ def absent_physics(program, arguments):
 
 def spread(program, arguments):
     """Peanut-shaped delamination of input/peanut.nml on finer meshes and with halved steps."""
-    print('| cell, mm | step, us | unknowns | first growth, N | peak force, N | area, mm^2 | along x across, mm | at x = 0, '
-          'mm | cracks | fibre failures | processor, s |')
+    print('| cell, mm | step, us | unknowns | first growth, N | peak force, N | area, mm^2 | along x across, mm '
+          '| at x = 0, mm | cracks | fibre failures | processor, s |')
     print('|---|---|---|---|---|---|---|---|---|---|---|')
     runs = {}
     for side in arguments.cell:
@@ -216,7 +217,7 @@ class Peanut:
                     csv.DictReader(line for line in lines if not line.startswith('#'))]
         self.peak = max(row['force'] for row in rows)
         # In the last step before growth G is short of its critical value by a little, and goes with the force squared.
-        still = next(row for row, later in zip(rows, rows[1:])
+        still = next(row for row, later in itertools.pairwise(rows)
                      if later['delaminated_area'] > 1.001*rows[0]['delaminated_area'])
         self.growth = still['force']/still['release_ratio']**0.5
         self.area = 1e6*rows[-1]['delaminated_area']
