@@ -2,6 +2,7 @@
 module petsc_session
   use, intrinsic :: iso_c_binding, only: c_int, c_ptr, c_null_ptr, c_char, c_null_char, c_funptr, c_funloc, &
                                          c_associated, c_f_pointer
+  use blas_threads, only: use_one_thread
   use communicators, only: communicator_t
   use errors, only: error_t, fail, exit_usage, exit_internal
   implicit none
@@ -71,6 +72,7 @@ contains
 
     call PetscInitialized(running, ierr)
     if (running) return
+    call use_one_thread()
     ! Options such as -log_view must be there when PETSc starts, and it looks for them in the environment.
     call get_environment_variable('PETSC_OPTIONS', length=length)
     allocate (character(len=length) :: all_options)
