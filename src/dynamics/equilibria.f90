@@ -160,7 +160,7 @@ contains
 
   !> First guess: the velocity stays what it is, touching faces stay together, and held jumps stay where they are,
   !> also those glued in motion.
-  pure subroutine predict_motion(model, integrator, old, step, new, guess)
+  subroutine predict_motion(model, integrator, old, step, new, guess)
     !> The model
     type(model_t), intent(in) :: model
     !> Integrator of the plate

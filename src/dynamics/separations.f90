@@ -313,7 +313,7 @@ contains
 
   !> Keeps touching faces together in a first guess, and open ones from passing through each other: the stiff
   !> law would answer small errors of a guess with large pressures.
-  pure subroutine keep_touching(self, model, guess)
+  subroutine keep_touching(self, model, guess)
     !> The state
     class(separation_t), intent(in) :: self
     !> The model
@@ -323,7 +323,8 @@ contains
     integer :: i
 
     if (.not. model%map%layered) return
-    do i = 1, size(self%free)
+    ! Pressures are known to a point's owner only.
+    do i = 1, model%distribution%owned
       if (.not. touches(self, model, i)) cycle
       if (model%scene%delaminations(model%zone(i))%contact == contact_none) cycle
       if (self%multiplier(i) > 0) then
@@ -332,6 +333,7 @@ contains
         guess(3, i) = max(0.0_wp, guess(3, i))
       end if
     end do
+    call model%halo%update(guess)
   end subroutine keep_touching
 
   !> Stiffness that ties and contact add to the diagonal of the operator.
