@@ -13,7 +13,8 @@ if(CMAKE_Fortran_COMPILER_ID STREQUAL "GNU")
     -Wno-unused-dummy-argument # an override need not use every argument of its interface
     -Wno-compare-reals)        # exact comparisons are written where they are meant
   set(IMPLAM_RELEASE -O3 -funroll-loops
-    -fno-math-errno)      # square roots without a call; NaN and Inf keep their meaning
+    -fno-math-errno       # square roots without a call; NaN and Inf keep their meaning
+    -ffp-contract=off)    # the same digits wherever the compiler puts a copy of a procedure: restarts need them
   if(IMPLAM_NATIVE)
     list(APPEND IMPLAM_RELEASE -march=native)
   endif()
