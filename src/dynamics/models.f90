@@ -12,7 +12,8 @@ module models
   use stacking, only: section_t, stacked_plies, section_of
   use plies, only: ply_t
   use mesh_parameters, only: edge_free, symmetry_none
-  use layered_meshes, only: layered_mesh_t, zone_t, create_mesh, cell_edges
+  use cell_grids, only: cell_edges
+  use layered_meshes, only: layered_mesh_t, zone_t, create_mesh
   use layer_maps, only: layer_map_t, create_layer_map
   use delaminated_regions, only: cells_within
   use face_contact, only: contact_law_t, create_contact_law
