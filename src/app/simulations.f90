@@ -7,7 +7,8 @@ module simulations
   use logger, only: log_t
   use timers, only: timer_set_t
   use communicators, only: communicator_t
-  use models, only: model_t, create_model
+  use models, only: model_t
+  use model_building, only: create_model
   use marches, only: march_t
   use deck_contents, only: deck_t
   use deck_echo, only: echo

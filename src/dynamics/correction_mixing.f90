@@ -31,8 +31,8 @@ module correction_mixing
     real(wp), allocatable :: correction(:, :), move(:, :)
     !> Force that went with that correction
     real(wp) :: force = 0
-    !> Memories kept, and where the next goes
-    integer :: kept = 0, next = 1
+    !> Memories kept, and place of the latest
+    integer :: kept = 0, latest = 0
     !> True once the iteration before can be compared with
     logical :: comparable = .false.
   contains
@@ -54,7 +54,7 @@ contains
     class(mixing_t), intent(inout) :: self
 
     self%kept = 0
-    self%next = 1
+    self%latest = 0
     self%comparable = .false.
   end subroutine forget
 
@@ -79,14 +79,22 @@ contains
     real(wp), intent(inout) :: correction(:, :)
     !> Force found with it
     real(wp), intent(inout) :: force
-    real(wp) :: shares(depth), matrix(depth, depth)
+    real(wp) :: shares(depth), matrix(depth, depth), sums(2*depth)
     logical :: singular
     integer :: i
 
-    call remember(self, communicator, weight, correction, force)
+    call remember(self, correction, force)
     if (self%kept == 0) return
-    shares(:self%kept) = [(weighted_product(weight, self%memories(i)%change, correction), i=1, self%kept)]
-    call communicator%sum(shares(:self%kept))
+    ! All at once: a sum over the ranks costs the waiting, not the numbers.
+    sums = 0
+    do i = 1, self%kept
+      sums(i) = weighted_product(weight, self%memories(i)%change, correction)
+      sums(depth + i) = weighted_product(weight, self%memories(i)%change, self%memories(self%latest)%change)
+    end do
+    call communicator%sum(sums)
+    shares = sums(:depth)
+    self%products(:, self%latest) = sums(depth + 1:)
+    self%products(self%latest, :) = sums(depth + 1:)
     matrix = self%products
     do i = 1, self%kept
       matrix(i, i) = matrix(i, i)*(1 + regularisation)
@@ -100,36 +108,23 @@ contains
   end subroutine mix
 
   !> Adds what the last move showed to the memory, in place of the oldest.
-  subroutine remember(self, communicator, weight, correction, force)
+  subroutine remember(self, correction, force)
     !> The memory
     type(mixing_t), intent(inout) :: self
-    !> The ranks
-    type(communicator_t), intent(in) :: communicator
-    !> Weight of each unknown's square, (5, owned points)
-    real(wp), intent(in) :: weight(:, :)
     !> Correction after the last move, (5, points)
     real(wp), intent(in) :: correction(:, :)
     !> Force found with it
     real(wp), intent(in) :: force
-    real(wp) :: products(depth)
-    integer :: i
 
     if (.not. allocated(self%correction)) allocate (self%correction, self%move, mold=correction)
     if (self%comparable) then
-      associate (memory => self%memories(self%next))
+      self%kept = min(self%kept + 1, depth)
+      self%latest = 1 + modulo(self%latest, depth)
+      associate (memory => self%memories(self%latest))
         memory%move = self%move
         memory%change = correction - self%correction
         memory%force_change = force - self%force
       end associate
-      self%kept = min(self%kept + 1, depth)
-      products = 0
-      do i = 1, self%kept
-        products(i) = weighted_product(weight, self%memories(i)%change, self%memories(self%next)%change)
-      end do
-      call communicator%sum(products)
-      self%products(:, self%next) = products
-      self%products(self%next, :) = products
-      self%next = 1 + modulo(self%next, depth)
     end if
     self%correction = correction
     self%force = force

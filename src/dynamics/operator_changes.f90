@@ -7,7 +7,11 @@ module operator_changes
   use numberings, only: numbering_t
   implicit none
   private
-  public :: operator_changes_t
+  public :: operator_changes_t, list_changes
+
+  !> Part of a stiffness below which its change is left to the iterations: a law whose slope falls off
+  !> exponentially goes to and fro without end where 0.2 of it is.
+  real(wp), parameter :: noticed = 0.01_wp
 
   !> Solution of the factored operator for a unit force on one unknown.
   type :: column_t
@@ -37,6 +41,8 @@ module operator_changes
   contains
     !> Forgets everything, after a factorisation.
     procedure :: clear
+    !> True if changes are those already in force, or nearly so.
+    procedure :: same
     !> Position of the column of an equation; 0: not found yet.
     procedure :: column_of
     !> Keeps a column.
@@ -63,6 +69,45 @@ contains
     allocate (self%columns(0))
     self%kept = 0
   end subroutine clear
+
+  !> True if changes are those already in force, or nearly so.
+  pure logical function same(self, equations, stiffness)
+    !> The changes in force
+    class(operator_changes_t), intent(in) :: self
+    !> Equations wanted
+    integer, intent(in) :: equations(:)
+    !> Stiffness wanted
+    real(wp), intent(in) :: stiffness(:)
+
+    same = size(equations) == size(self%equations)
+    if (same) same = all(equations == self%equations) .and. &
+      all(abs(stiffness - self%stiffness) <= noticed*abs(stiffness))
+  end function same
+
+  !> Lists the jumps whose added stiffness has changed much since the factorisation, on every rank.
+  subroutine list_changes(communicator, numbering, diagonal, have, want, equations, stiffness)
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> Equations of this rank's points
+    type(numbering_t), intent(in) :: numbering
+    !> Diagonal of the operator, (5, points)
+    real(wp), intent(in) :: diagonal(:, :)
+    !> Stiffness added to the jumps when factored and wanted now, (3, points)
+    real(wp), intent(in) :: have(:, :), want(:, :)
+    !> Equations, ascending
+    integer, allocatable, intent(out) :: equations(:)
+    !> Change of stiffness
+    real(wp), allocatable, intent(out) :: stiffness(:)
+    logical, allocatable :: changed(:, :)
+
+    associate (owned => numbering%owned)
+      changed = .not. abs(want(:, :owned) - have(:, :owned)) <= noticed*max(want(:, :owned), have(:, :owned), &
+                                                                          0.1_wp*diagonal(1:3, :owned)) &
+                .and. numbering%equation(1:3, :owned) >= 0
+      call communicator%allgather(pack(numbering%equation(1:3, :owned), changed), equations)
+      call communicator%allgather(pack(want(:, :owned) - have(:, :owned), changed), stiffness)
+    end associate
+  end subroutine list_changes
 
   !> Position of the column of an equation; 0: not found yet.
   pure integer function column_of(self, equation) result(position)

@@ -15,7 +15,7 @@ module tangent_operators
   use separations, only: separation_t
   use correction_mixing, only: mixing_t
   use operator_assembly, only: assemble_elements, assemble_diagonal
-  use operator_changes, only: operator_changes_t
+  use operator_changes, only: operator_changes_t, list_changes
   implicit none
   private
   public :: tangent_operator_t
@@ -24,10 +24,6 @@ module tangent_operators
   integer, parameter :: most_changes = 200
   !> Columns found at once before that is so.
   integer, parameter :: most_columns = 100
-
-  !> Part of a stiffness below which its change is left to the iterations: a law whose slope falls off
-  !> exponentially goes to and fro without end where 0.2 of it is.
-  real(wp), parameter :: noticed = 0.01_wp
 
   !> A factor of `stiffness_factor * tangent stiffness + mass_factor * mass`.
   type :: tangent_operator_t
@@ -193,10 +189,10 @@ contains
     if (.not. model%map%layered) return
     allocate (wanted, mold=self%added)
     call separation%added_stiffness(model, self%diagonal, wanted)
-    call list_changes(self, model, wanted, equations, stiffness)
+    call list_changes(model%communicator, self%numbering, self%diagonal, self%added, wanted, equations, stiffness)
     missing = [(self%changes%column_of(equations(k)) == 0, k=1, size(equations))]
     possible = size(equations) <= most_changes .and. count(missing) <= most_columns
-    if (.not. possible .or. same_changes(self%changes, equations, stiffness)) return
+    if (.not. possible .or. self%changes%same(equations, stiffness)) return
     call find_columns(self, model, pack(equations, missing), error)
     if (allocated(error)) return
     call self%changes%set(model%communicator, self%numbering, equations, stiffness)
@@ -205,52 +201,6 @@ contains
     call self%changes%correct(model%communicator, self%numbering, self%response)
     self%compliance = model%patch_mean(self%response)
   end subroutine follow
-
-  !> True if changes are those already in force, or nearly so.
-  pure logical function same_changes(changes, equations, stiffness)
-    !> Changes in force
-    type(operator_changes_t), intent(in) :: changes
-    !> Equations and stiffness wanted
-    integer, intent(in) :: equations(:)
-    !> Stiffness wanted
-    real(wp), intent(in) :: stiffness(:)
-
-    same_changes = size(equations) == size(changes%equations)
-    if (same_changes) same_changes = all(equations == changes%equations) .and. &
-      all(abs(stiffness - changes%stiffness) <= noticed*abs(stiffness))
-  end function same_changes
-
-  !> Lists the unknowns whose added stiffness has changed much since the factorisation, on every rank.
-  subroutine list_changes(self, model, wanted, equations, stiffness)
-    !> The operator
-    type(tangent_operator_t), intent(in) :: self
-    !> The model
-    type(model_t), intent(in) :: model
-    !> Stiffness wanted on the jumps, (3, points)
-    real(wp), intent(in) :: wanted(:, :)
-    !> Equations, ascending
-    integer, allocatable, intent(out) :: equations(:)
-    !> Change of stiffness
-    real(wp), allocatable, intent(out) :: stiffness(:)
-    integer, allocatable :: mine(:)
-    real(wp), allocatable :: change(:)
-    integer :: i, component
-
-    allocate (mine(0), change(0))
-    do i = 1, model%distribution%owned
-      if (model%zone(i) == 0) cycle
-      do component = 1, 3
-        if (self%numbering%equation(component, i) < 0) cycle
-        associate (want => wanted(component, i), have => self%added(component, i))
-          if (abs(want - have) <= noticed*max(want, have, 0.1_wp*self%diagonal(component, i))) cycle
-          mine = [mine, self%numbering%equation(component, i)]
-          change = [change, want - have]
-        end associate
-      end do
-    end do
-    call model%communicator%allgather(mine, equations)
-    call model%communicator%allgather(change, stiffness)
-  end subroutine list_changes
 
   !> Finds columns, all at once.
   subroutine find_columns(self, model, equations, error)

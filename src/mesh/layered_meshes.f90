@@ -1,12 +1,11 @@
-!> The mesh of the modelled part: a rectangle of nine-node cells, and over each cell the layers of
-!> plies that may separate there. Every rank holds the whole of it; it is small beside a factor.
+!> The mesh of the modelled part: a grid of cells, and over each cell the layers of plies that may separate
+!> there. Every rank holds the whole of it; it is small beside a factor.
 module layered_meshes
-  use kinds, only: wp
-  use mesh_parameters, only: plate_t, mesh_t, symmetry_quarter
-  use gradings, only: graded_half_line, graded_line, cored_half_line
+  use mesh_parameters, only: plate_t, mesh_t
+  use cell_grids, only: cell_grid_t, create_grid
   implicit none
   private
-  public :: layered_mesh_t, zone_t, create_mesh, cell_edges
+  public :: layered_mesh_t, zone_t, create_mesh
 
   !> A rectangle in which the plies above and below an interface have unknowns of their own.
   type :: zone_t
@@ -16,14 +15,8 @@ module layered_meshes
     integer :: columns(2) = 0, rows(2) = 0
   end type zone_t
 
-  !> Nodes, cells, layers and the points (node and layer pairs) that carry five unknowns each.
-  type :: layered_mesh_t
-    !> Cells along x and y
-    integer :: cells(2) = 0
-    !> Edges of the cells along x and y, (cells + 1)
-    real(wp), allocatable :: x_edges(:), y_edges(:)
-    !> Coordinates of the nodes, (2, nodes), x fastest
-    real(wp), allocatable :: node_coordinates(:, :)
+  !> Cells, layers and the points (node and layer pairs) that carry five unknowns each.
+  type, extends(cell_grid_t) :: layered_mesh_t
     !> Zones, from the struck face downwards
     type(zone_t), allocatable :: zones(:)
     !> Node of each point; points of a node follow each other from the struck face downwards
@@ -40,25 +33,13 @@ module layered_meshes
     integer, allocatable :: first_element(:)
     !> First and last ply of each element, (2, elements)
     integer, allocatable :: element_plies(:, :)
-    !> Node at the struck point
-    integer :: struck_node = 0
-    !> Models that make up the whole plate: 4 for a quarter
-    integer :: multiplicity = 1
   contains
-    !> Numbers of nodes, points and elements.
-    procedure :: nodes
+    !> Numbers of points and elements.
     procedure :: points
     procedure :: elements
-    !> Cells of a column and row, and the nine nodes of a cell.
-    procedure :: cell_at
-    procedure :: cell_nodes
-    !> Area of a cell.
-    procedure :: cell_area
     !> Element of a cell that contains a ply, and point of a node below an interface.
     procedure :: element_at
     procedure :: lower_point
-    !> True where a cell lies under the loaded patch.
-    procedure :: in_patch
   end type layered_mesh_t
 
 contains
@@ -76,73 +57,11 @@ contains
     !> The mesh
     type(layered_mesh_t) :: self
 
-    self%multiplicity = merge(4, 1, plate%symmetry == symmetry_quarter)
-    self%cells = mesh%elements
-    self%x_edges = cell_edges(plate, mesh, 1)
-    self%y_edges = cell_edges(plate, mesh, 2)
+    call create_grid(plate, mesh, self)
     self%zones = zones
-    call place_nodes(self, plate%symmetry == symmetry_quarter)
     call number_points(self)
     call build_elements(self, plies)
   end function create_mesh
-
-  !> Edges of the cells along x or y.
-  pure function cell_edges(plate, mesh, direction) result(edges)
-    !> Plate and symmetry
-    type(plate_t), intent(in) :: plate
-    !> Elements, grading and patch
-    type(mesh_t), intent(in) :: mesh
-    !> 1 for x, 2 for y
-    integer, intent(in) :: direction
-    !> Ascending coordinates, (0:cells)
-    real(wp), allocatable :: edges(:)
-    integer :: half
-
-    allocate (edges(0:mesh%elements(direction)))
-    if (mesh%cell > 0) then
-      half = merge(0, mesh%elements(direction)/2, plate%symmetry == symmetry_quarter)
-      edges(half:) = cored_half_line(plate%length(direction)/2, mesh%elements(direction) - half, mesh%patch/2, &
-                                     mesh%grading, mesh%core(direction)/2, mesh%cell)
-      edges(:half) = -edges(2*half:half:-1)
-    else if (plate%symmetry == symmetry_quarter) then
-      edges(:) = graded_half_line(plate%length(direction)/2, mesh%elements(direction), mesh%patch/2, mesh%grading)
-    else
-      edges(:) = graded_line(plate%length(direction), mesh%elements(direction), mesh%patch, mesh%grading)
-    end if
-  end function cell_edges
-
-  !> Nodes at the edges and middles of the cells.
-  pure subroutine place_nodes(self, quarter)
-    !> The mesh, with its edges known
-    type(layered_mesh_t), intent(inout) :: self
-    !> True: the struck point is the corner of the model
-    logical, intent(in) :: quarter
-    real(wp) :: x(0:2*self%cells(1)), y(0:2*self%cells(2))
-    integer :: i, j, along
-
-    call edges_and_middles(self%x_edges, x)
-    call edges_and_middles(self%y_edges, y)
-    along = size(x)
-    allocate (self%node_coordinates(2, along*size(y)))
-    do j = 0, size(y) - 1
-      do i = 0, along - 1
-        self%node_coordinates(:, 1 + i + along*j) = [x(i), y(j)]
-      end do
-    end do
-    self%struck_node = 1
-    if (.not. quarter) self%struck_node = 1 + self%cells(1) + along*self%cells(2)
-  end subroutine place_nodes
-
-  !> Coordinates of the cells' edges with their middles in between.
-  pure subroutine edges_and_middles(edges, coordinates)
-    !> Edges, (0:cells)
-    real(wp), intent(in) :: edges(0:)
-    !> Edges and middles, (0:2*cells)
-    real(wp), intent(out) :: coordinates(0:)
-
-    coordinates(0::2) = edges
-    coordinates(1::2) = (edges(:size(edges) - 2) + edges(1:))/2
-  end subroutine edges_and_middles
 
   !> Gives a node one point more for each zone that it lies inside of; on the border of a zone both
   !> layers share the point, so that their displacements are continuous without a constraint.
@@ -302,13 +221,6 @@ contains
     end do
   end function layer_points
 
-  !> Number of nodes.
-  pure integer function nodes(self)
-    !> The mesh
-    class(layered_mesh_t), intent(in) :: self
-    nodes = size(self%node_coordinates, 2)
-  end function nodes
-
   !> Number of points.
   pure integer function points(self)
     !> The mesh
@@ -322,52 +234,4 @@ contains
     class(layered_mesh_t), intent(in) :: self
     elements = size(self%element_cell)
   end function elements
-
-  !> Cell of a column and a row.
-  pure integer function cell_at(self, column, row) result(cell)
-    !> The mesh
-    class(layered_mesh_t), intent(in) :: self
-    !> Column and row, from 1
-    integer, intent(in) :: column, row
-    cell = column + self%cells(1)*(row - 1)
-  end function cell_at
-
-  !> The nine nodes of a cell, tensor order.
-  pure function cell_nodes(self, cell) result(nodes)
-    !> The mesh
-    class(layered_mesh_t), intent(in) :: self
-    !> Cell
-    integer, intent(in) :: cell
-    !> Nodes
-    integer :: nodes(9)
-    integer :: corner, along, i, j
-
-    along = 2*self%cells(1) + 1
-    corner = 1 + 2*modulo(cell - 1, self%cells(1)) + along*2*((cell - 1)/self%cells(1))
-    nodes = [((corner + i + along*j, i=0, 2), j=0, 2)]
-  end function cell_nodes
-
-  !> Area of a cell.
-  pure real(wp) function cell_area(self, place) result(area)
-    !> The mesh
-    class(layered_mesh_t), intent(in) :: self
-    !> Column and row, from 1
-    integer, intent(in) :: place(2)
-
-    area = (self%x_edges(place(1) + 1) - self%x_edges(place(1)))*(self%y_edges(place(2) + 1) - self%y_edges(place(2)))
-  end function cell_area
-
-  !> True where a cell lies under the loaded patch.
-  pure logical function in_patch(self, cell, patch)
-    !> The mesh
-    class(layered_mesh_t), intent(in) :: self
-    !> Cell
-    integer, intent(in) :: cell
-    !> Side of the patch
-    real(wp), intent(in) :: patch
-    integer :: nodes(9)
-
-    nodes = self%cell_nodes(cell)
-    in_patch = all(abs(self%node_coordinates(:, nodes(5))) < patch/2)
-  end function in_patch
 end module layered_meshes

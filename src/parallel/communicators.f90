@@ -1,41 +1,19 @@
 !> The ranks of a run and what they say to each other. Only this folder knows of MPI; on one rank
 !> every procedure returns at once, so a communicator that was never set up serves serial work.
 module communicators
-  use mpi_f08, only: MPI_Comm, MPI_COMM_WORLD, MPI_IN_PLACE, MPI_DOUBLE_PRECISION, MPI_INTEGER, MPI_INTEGER8, &
-                     MPI_LOGICAL, MPI_CHARACTER, MPI_SUM, MPI_MAX, MPI_MIN, MPI_LOR, MPI_Op, MPI_Init, &
-                     MPI_Initialized, MPI_Finalize, MPI_Comm_rank, MPI_Comm_size, MPI_Allreduce, MPI_Bcast, &
-                     MPI_Allgather, MPI_Allgatherv, MPI_Gatherv, MPI_Exscan, MPI_Barrier
+  use mpi_f08, only: MPI_COMM_WORLD, MPI_DOUBLE_PRECISION, MPI_INTEGER, MPI_LOGICAL, MPI_CHARACTER, MPI_Init, &
+                     MPI_Initialized, MPI_Finalize, MPI_Comm_rank, MPI_Comm_size, MPI_Bcast, MPI_Allgather, &
+                     MPI_Allgatherv, MPI_Gatherv
   use errors, only: error_t
-  use kinds, only: wp, long
+  use kinds, only: wp
+  use rank_groups, only: rank_group_t
   implicit none
   private
   public :: communicator_t, start_mpi, finish_mpi, communicator_from_handle
 
-  !> A group of ranks. By default one rank, without MPI.
-  type :: communicator_t
-    !> Number of this rank, from 0
-    integer :: rank = 0
-    !> Number of ranks
-    integer :: size = 1
-    !> MPI's own object, undefined until set up by `start_mpi` or `communicator_from_handle`
-    type(MPI_Comm), private :: group
+  !> A group of ranks that tell each other what they have. By default one rank, without MPI.
+  type, extends(rank_group_t) :: communicator_t
   contains
-    !> The integer handle that PETSc and HDF5 ask for.
-    procedure :: handle
-    !> Whether this is rank 0, which writes.
-    procedure :: is_root
-    !> Replaces a value by its sum over the ranks, the same on every rank.
-    generic :: sum => sum_real, sum_reals, sum_integer, sum_long
-    !> Replaces a value by its greatest over the ranks.
-    generic :: maximum => maximum_real, maximum_integer
-    !> Replaces a value by its least over the ranks.
-    generic :: minimum => minimum_real, minimum_integer
-    !> Whether a flag is raised on at least one rank.
-    procedure :: any => any_flag
-    !> Whether a flag is raised on every rank.
-    procedure :: all => all_flags
-    !> Sum of a count over the ranks before this one.
-    procedure :: preceding
     !> Copies a value of rank 0 to every rank.
     generic :: broadcast => broadcast_real, broadcast_reals, broadcast_integer, broadcast_integers, &
       broadcast_logical, broadcast_characters
@@ -45,12 +23,8 @@ module communicators
     generic :: gather => gather_reals, gather_integers, gather_table
     !> Strings the parts of all ranks together on every rank, in the order of ranks.
     generic :: allgather => allgather_reals, allgather_integers
-    !> Waits for all ranks.
-    procedure :: barrier
     !> If any rank failed, gives every rank the error of the lowest rank that did.
     procedure :: agree
-    procedure, private :: sum_real, sum_reals, sum_integer, sum_long
-    procedure, private :: maximum_real, maximum_integer, minimum_real, minimum_integer
     procedure, private :: broadcast_real, broadcast_reals, broadcast_integer, broadcast_integers
     procedure, private :: broadcast_logical, broadcast_characters
     procedure, private :: gather_reals, gather_integers, gather_table, allgather_reals, allgather_integers
@@ -107,132 +81,6 @@ contains
     call MPI_Comm_rank(communicator%group, communicator%rank)
     call MPI_Comm_size(communicator%group, communicator%size)
   end function communicator_from_handle
-
-  !> The integer handle that PETSc and HDF5 ask for.
-  pure integer function handle(self)
-    class(communicator_t), intent(in) :: self
-
-    handle = self%group%mpi_val
-  end function handle
-
-  !> Whether this is rank 0, which writes.
-  pure logical function is_root(self)
-    class(communicator_t), intent(in) :: self
-
-    is_root = self%rank == 0
-  end function is_root
-
-  !> Sum of a real over the ranks.
-  subroutine sum_real(self, value)
-    class(communicator_t), intent(in) :: self
-    !> This rank's share; the sum on return
-    real(wp), intent(inout) :: value
-
-    if (self%size == 1) return
-    call MPI_Allreduce(MPI_IN_PLACE, value, 1, MPI_DOUBLE_PRECISION, MPI_SUM, self%group)
-  end subroutine sum_real
-
-  !> Sum of a list of reals over the ranks, item by item.
-  subroutine sum_reals(self, values)
-    class(communicator_t), intent(in) :: self
-    !> This rank's shares; the sums on return
-    real(wp), contiguous, intent(inout) :: values(:)
-
-    if (self%size == 1) return
-    call MPI_Allreduce(MPI_IN_PLACE, values, size(values), MPI_DOUBLE_PRECISION, MPI_SUM, self%group)
-  end subroutine sum_reals
-
-  !> Sum of an integer over the ranks.
-  subroutine sum_integer(self, value)
-    class(communicator_t), intent(in) :: self
-    !> This rank's share; the sum on return
-    integer, intent(inout) :: value
-
-    if (self%size == 1) return
-    call MPI_Allreduce(MPI_IN_PLACE, value, 1, MPI_INTEGER, MPI_SUM, self%group)
-  end subroutine sum_integer
-
-  !> Sum of a long integer over the ranks.
-  subroutine sum_long(self, value)
-    class(communicator_t), intent(in) :: self
-    !> This rank's share; the sum on return
-    integer(long), intent(inout) :: value
-
-    if (self%size == 1) return
-    call MPI_Allreduce(MPI_IN_PLACE, value, 1, MPI_INTEGER8, MPI_SUM, self%group)
-  end subroutine sum_long
-
-  !> Greatest real of the ranks.
-  subroutine maximum_real(self, value)
-    class(communicator_t), intent(in) :: self
-    !> This rank's value; the greatest on return
-    real(wp), intent(inout) :: value
-
-    if (self%size == 1) return
-    call MPI_Allreduce(MPI_IN_PLACE, value, 1, MPI_DOUBLE_PRECISION, MPI_MAX, self%group)
-  end subroutine maximum_real
-
-  !> Greatest integer of the ranks.
-  subroutine maximum_integer(self, value)
-    class(communicator_t), intent(in) :: self
-    !> This rank's value; the greatest on return
-    integer, intent(inout) :: value
-
-    if (self%size == 1) return
-    call MPI_Allreduce(MPI_IN_PLACE, value, 1, MPI_INTEGER, MPI_MAX, self%group)
-  end subroutine maximum_integer
-
-  !> Least real of the ranks.
-  subroutine minimum_real(self, value)
-    class(communicator_t), intent(in) :: self
-    !> This rank's value; the least on return
-    real(wp), intent(inout) :: value
-
-    if (self%size == 1) return
-    call MPI_Allreduce(MPI_IN_PLACE, value, 1, MPI_DOUBLE_PRECISION, MPI_MIN, self%group)
-  end subroutine minimum_real
-
-  !> Least integer of the ranks.
-  subroutine minimum_integer(self, value)
-    class(communicator_t), intent(in) :: self
-    !> This rank's value; the least on return
-    integer, intent(inout) :: value
-
-    if (self%size == 1) return
-    call MPI_Allreduce(MPI_IN_PLACE, value, 1, MPI_INTEGER, MPI_MIN, self%group)
-  end subroutine minimum_integer
-
-  !> Whether a flag is raised on at least one rank.
-  logical function any_flag(self, flag) result(raised)
-    class(communicator_t), intent(in) :: self
-    !> This rank's flag
-    logical, intent(in) :: flag
-
-    raised = flag
-    if (self%size == 1) return
-    call MPI_Allreduce(MPI_IN_PLACE, raised, 1, MPI_LOGICAL, MPI_LOR, self%group)
-  end function any_flag
-
-  !> Whether a flag is raised on every rank.
-  logical function all_flags(self, flag) result(raised)
-    class(communicator_t), intent(in) :: self
-    !> This rank's flag
-    logical, intent(in) :: flag
-
-    raised = .not. self%any(.not. flag)
-  end function all_flags
-
-  !> Sum of a count over the ranks before this one.
-  integer function preceding(self, count)
-    class(communicator_t), intent(in) :: self
-    !> This rank's count
-    integer, intent(in) :: count
-
-    preceding = 0
-    if (self%size == 1) return
-    call MPI_Exscan(count, preceding, 1, MPI_INTEGER, MPI_SUM, self%group)
-    if (self%rank == 0) preceding = 0
-  end function preceding
 
   !> Copies a real of rank 0 to every rank.
   subroutine broadcast_real(self, value)
@@ -411,13 +259,6 @@ contains
     if (self%size > 1) call MPI_Allgather(count, 1, MPI_INTEGER, counts, 1, MPI_INTEGER, self%group)
     offsets = [(sum(counts(:i - 1)), i=1, self%size)]
   end subroutine counts_of_ranks
-
-  !> Waits for all ranks.
-  subroutine barrier(self)
-    class(communicator_t), intent(in) :: self
-
-    if (self%size > 1) call MPI_Barrier(self%group)
-  end subroutine barrier
 
   !> If any rank failed, gives every rank the error of the lowest rank that did.
   subroutine agree(self, error)

@@ -25,6 +25,7 @@ from solver_runs import (
     EXIT_STOPPED,
     TrialError,
     checkpoint_of,
+    exit_code_of,
     history_of,
     largest_difference,
     read_history,
@@ -58,6 +59,13 @@ def go_on(implam, folder, launcher=()):
     """Restart from the checkpoint in a folder and return the path of the history."""
     run([*launcher, implam, "restart", checkpoint_of(folder)])
     return history_of(folder)
+
+
+def run_split(implam, folder, deck, settings, launchers=((), ())):
+    """Run a deck that leaves a checkpoint and go on from that in a copy; return the paths of both histories."""
+    deck = write_deck(folder, deck, settings)
+    reference = run_deck(implam, deck, launchers[0])
+    return reference, go_on(implam, copy_run(deck.parent, folder.with_name(f"{folder.name}_again")), launchers[1])
 
 
 def require_same(path, reference, what):
@@ -96,9 +104,7 @@ def check_integrators(implam, folder, _):
         cases[f"{impactor}_adaptive"] = [f"impactor%integrator='{impactor}'", "case%kinematics='von_karman'",
             "adapt%on=.true.", "time%step=0.1e-6", "time%step_max=4e-6", "adapt%refactor='deflection'"]
     for name, settings in cases.items():
-        deck = write_deck(folder / name, IMPACT, split_at(0.53, SHORT + settings))
-        reference = run_deck(implam, deck)
-        again = go_on(implam, copy_run(deck.parent, folder / f"{name}_again"))
+        reference, again = run_split(implam, folder / name, IMPACT, split_at(0.53, SHORT + settings))
         require_same(again, reference, name)
         print(f"{name}: {len(read_history(reference)['time'])} rows, the same to the last bit")
 
@@ -108,11 +114,11 @@ def check_contact(implam, folder, _):
     laws = {"augmented_lagrangian": [], "continuous_penalty": ["delamination%contact_exponent=1.5"]}
     for contact, exponent in laws.items():
         law = [f"delamination%contact='{contact}'", *exponent]
-        deck = write_deck(folder / contact, "../small/delamination.nml", split_at(0.53, ["time%end=0.3e-3", *law]))
-        reference = run_deck(implam, deck)
+        settings = split_at(0.53, ["time%end=0.3e-3", *law])
+        reference, again = run_split(implam, folder / contact, "../small/delamination.nml", settings)
         pressed = max(read_history(reference)["contact_iterations"])
         require(pressed > 0, f"{contact}: no faces ever touched, the trial proves nothing.")
-        require_same(go_on(implam, copy_run(deck.parent, folder / f"{contact}_again")), reference, contact)
+        require_same(again, reference, contact)
         print(f"{contact}: the same to the last bit")
 
 
@@ -120,9 +126,8 @@ def check_ranks(implam, folder, launcher):
     """2 ranks throughout, then changes of the number of ranks."""
     settings = split_at(0.53, [*SHORT, "case%kinematics='von_karman'"])
     for first, second in ((2, 2), (1, 2), (2, 1), (4, 2)):
-        deck = write_deck(folder / f"ranks_{first}_{second}", IMPACT, settings)
-        reference = run_deck(implam, deck, [*launcher, str(first)])
-        again = go_on(implam, copy_run(deck.parent, folder / "again"), [*launcher, str(second)])
+        launchers = [*launcher, str(first)], [*launcher, str(second)]
+        reference, again = run_split(implam, folder / f"ranks_{first}_{second}", IMPACT, settings, launchers)
         require_close(again, reference, f"from {first} to {second} ranks")
 
 
@@ -155,10 +160,10 @@ def check_next_to_rejections(implam, folder, deck, settings, period, periods):
     settings, found = rejecting(implam, folder, deck, settings, period, periods * period)
     before, after, histories = 0, 0, []
     for end in sorted({number + share for number in found[:2] for share in (0.99, 1.5) if number + share > 1}):
-        path = write_deck(folder / f"end_{end}", deck, [*settings, f"time%end={end * period!r}"])
-        histories.append(run_deck(implam, path))
-        require_same(go_on(implam, copy_run(path.parent, folder / "again")), histories[-1], f"end after {end} periods")
-        now, last = rejections(histories[-1], period)
+        reference, again = run_split(implam, folder / f"end_{end}", deck, [*settings, f"time%end={end * period!r}"])
+        require_same(again, reference, f"end after {end} periods")
+        histories.append(reference)
+        now, last = rejections(reference, period)
         before += last in now
         after += last - 1 in now
     print(f"Checkpoints just before a rejected step: {before}, just after: {after}; the same to the last bit")
@@ -275,17 +280,11 @@ TRIALS = {"integrators": check_integrators, "contact": check_contact, "ranks": c
           "signal": check_signal, "kill": check_kill, "damaged": check_damaged}
 
 
-def main(trial, implam, folder, *launcher):
-    """Run one trial; the exit code is 1 if it fails."""
-    folder = Path(folder)
+def main(trials, trial, implam, folder, *launcher):
+    """Run one of the trials; the exit code is 1 if it fails."""
     shutil.rmtree(folder, ignore_errors=True)
-    try:
-        TRIALS[trial](os.path.abspath(implam), folder, launcher)
-    except (TrialError, subprocess.TimeoutExpired) as failure:
-        print(failure)
-        return 1
-    return 0
+    return exit_code_of(trials[trial], os.path.abspath(implam), Path(folder), launcher)
 
 
 if __name__ == "__main__":
-    raise SystemExit(main(*sys.argv[1:]))
+    raise SystemExit(main(TRIALS, *sys.argv[1:]))

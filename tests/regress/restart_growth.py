@@ -6,19 +6,24 @@ moments  SIGTERM and SIGKILL while a step with several releases is being compute
 ranks    from 2 ranks to 1, from 1 to 2: to 1e-9
 rejected from checkpoints next to rejected steps, while delaminations grow: bitwise"""
 
-import os
-import shutil
 import signal
-import subprocess
 import sys
 import time
 from itertools import pairwise
-from pathlib import Path
 
 from released_cells import damage_of, least_releases, released_cells
-from restart import check_next_to_rejections, copy_run, exit_code, go_on, require_close, require_same, start, wait_until
+from restart import (
+    check_next_to_rejections,
+    exit_code,
+    go_on,
+    main,
+    require_close,
+    require_same,
+    run_split,
+    start,
+    wait_until,
+)
 from solver_runs import (
-    EXIT_DONE,
     EXIT_STOPPED,
     TrialError,
     history_of,
@@ -57,9 +62,7 @@ def check_splits(implam, folder, _):
             grown = growth(read_history(run_deck(implam, scout)))
             most = 1 + max(range(len(grown)), key=grown.__getitem__)
             for step in (most - 1, most):
-                deck = write_deck(folder / f"{name}_{step}", DECK, split_after(step, settings))
-                reference = run_deck(implam, deck)
-                again = go_on(implam, copy_run(deck.parent, folder / "again"))
+                reference, again = run_split(implam, folder / f"{name}_{step}", DECK, split_after(step, settings))
                 require_same(again, reference, f"{name} split after step {step}")
                 require(damage_of(again) == damage_of(reference), f"{name}: other cells came apart.")
                 history = read_history(reference)
@@ -123,9 +126,8 @@ def check_ranks(implam, folder, launcher):
     """Changes of the number of ranks just before the growth."""
     for first, second in ((2, 1), (1, 2)):
         settings = split_after(11, [*GROWING, "solver%tolerance=1e-9"])
-        deck = write_deck(folder / f"ranks_{first}_{second}", DECK, settings)
-        reference = run_deck(implam, deck, [*launcher, str(first)])
-        again = go_on(implam, copy_run(deck.parent, folder / "again"), [*launcher, str(second)])
+        launchers = [*launcher, str(first)], [*launcher, str(second)]
+        reference, again = run_split(implam, folder / f"ranks_{first}_{second}", DECK, settings, launchers)
         require_close(again, reference, f"from {first} to {second} ranks")
         require(damage_of(again) == damage_of(reference), "Other cells came apart.")
         require(read_history(reference)["delaminated_area"][-1] > read_history(reference)["delaminated_area"][10],
@@ -142,17 +144,5 @@ def check_rejected(implam, folder, _):
 TRIALS = {"splits": check_splits, "moments": check_moments, "ranks": check_ranks, "rejected": check_rejected}
 
 
-def main(trial, implam, folder, *launcher):
-    """Run one trial; the exit code is 1 if it fails."""
-    folder = Path(folder)
-    shutil.rmtree(folder, ignore_errors=True)
-    try:
-        TRIALS[trial](os.path.abspath(implam), folder, launcher)
-    except (TrialError, subprocess.TimeoutExpired) as failure:
-        print(failure)
-        return 1
-    return EXIT_DONE
-
-
 if __name__ == "__main__":
-    raise SystemExit(main(*sys.argv[1:]))
+    raise SystemExit(main(TRIALS, *sys.argv[1:]))

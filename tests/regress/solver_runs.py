@@ -24,6 +24,16 @@ def require(condition, sentence):
         raise TrialError(sentence)
 
 
+def exit_code_of(trial, *arguments):
+    """Run a trial; return 0, or 1 after saying what was found wrong."""
+    try:
+        trial(*arguments)
+    except (TrialError, subprocess.TimeoutExpired) as failure:
+        print(failure)
+        return 1
+    return EXIT_DONE
+
+
 def change_deck(text, settings):
     """Return a deck with keys set anew; each setting reads group%key=value."""
     for setting in settings:

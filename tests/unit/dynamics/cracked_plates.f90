@@ -10,7 +10,8 @@ module cracked_plates
   use delamination_parameters, only: contact_none
   use front_releases, only: front_release_t, release_along_front
   use scenes, only: scene_t
-  use models, only: model_t, create_model
+  use models, only: model_t
+  use model_building, only: create_model
   use states, only: state_t, new_state
   use tangent_operators, only: tangent_operator_t
   use static_steps, only: attempt_load
