@@ -8,20 +8,20 @@ module result_rows
   public :: row_of
 
   !> Number of columns.
-  integer, parameter, public :: columns = 37
+  integer, parameter, public :: columns = 38
   !> Their names; the first seventeen and their order are the public interface.
   character(len=*), parameter, public :: column_names(columns) = [character(len=24) :: &
     'time', 'step', 'force', 'indentation', 'impactor_displacement', 'impactor_velocity', 'deflection', &
     'delaminated_area', 'energy_impactor', 'energy_kinetic', 'energy_strain', 'energy_indentation', &
     'energy_delamination', 'energy_ply_damage', 'energy_contact', 'energy_algorithmic', 'energy_error', &
     'patch_deflection', 'work_external', 'step_length', 'stress', 'release_ratio', &
-    'penetration', 'complementarity', 'iterations', 'force_iterations', &
+    'energy_released', 'penetration', 'complementarity', 'iterations', 'force_iterations', &
     'contact_iterations', 'total_iterations', 'total_force_iterations', 'total_contact_iterations', 'rejected', &
     'refactorisations', 'solves', 'fibre_failures', 'matrix_cracks', 'matrix_crushings', &
     'border_reached']
   !> Which of them are whole numbers.
   logical, parameter, public :: column_whole(columns) = &
-    [.false., .true., spread(.false., 1, 22), spread(.true., 1, 13)]
+    [.false., .true., spread(.false., 1, 23), spread(.true., 1, 13)]
 
 contains
 
@@ -40,14 +40,14 @@ contains
       row(8) = now%separation%area(model)
       row(9:12) = [ledger%impactor, ledger%kinetic, ledger%strain, ledger%indentation]
       row(13:15) = [ledger%delamination, ledger%ply_damage, ledger%contact]
-      row(16:24) = [ledger%algorithmic, ledger%error(), now%patch_mean, ledger%external_work, &
-                    march%controller%last, now%stress, now%release_ratio, &
+      row(16:25) = [ledger%algorithmic, ledger%error(), now%patch_mean, ledger%external_work, &
+                    march%controller%last, now%stress, now%release_ratio, sum(now%ties%set_free), &
                     now%separation%penetration(model, now%motion%displacement), &
                     now%separation%complementarity(model, now%motion%displacement)]
-      row(25:36) = real([now%iterations, now%force_iterations, now%contact_iterations, now%all_iterations, &
+      row(26:37) = real([now%iterations, now%force_iterations, now%contact_iterations, now%all_iterations, &
                          now%all_force_iterations, now%all_contact_iterations, march%rejected, &
                          march%operator%factorizations, march%operator%solves, march%failures%counts(model)], wp)
-      row(37) = merge(1.0_wp, 0.0_wp, now%border_reached)
+      row(38) = merge(1.0_wp, 0.0_wp, now%border_reached)
     end associate
   end function row_of
 end module result_rows

@@ -49,6 +49,7 @@ contains
 
     new = old
     new%time = old%time + step
+    call new%ties%fade(model, step)
     allocate (residual, correction, mold=old%motion%displacement)
     correction = 0
     patch_square = sum((model%patch/model%mesh%multiplicity)**2)
@@ -59,6 +60,7 @@ contains
     do
       call operator%timers%start('element forces')
       call find_residual(model, integrator, old, new, strike%load(), residual, energy)
+      call new%ties%act(model, residual)
       call new%separation%act(model, new%motion%displacement, residual)
       call operator%timers%stop('element forces')
       norm = relative_residual(model%communicator, operator%numbering, residual, new%motion%internal, &

@@ -51,30 +51,42 @@ contains
     type(front_release_t), intent(in) :: front
     !> Set true if cells came apart
     logical, intent(inout) :: grown
-    real(wp) :: largest, enough, energy
+    real(wp) :: largest, enough, energy, demand
     integer :: s
 
     ! Where the layers end, virtual crack closure finds no force to close: a rate cannot tell that growth is barred.
     state%border_reached = state%border_reached .or. any(front%segments%at_border)
     largest = maxval(front%ratio, mask=.not. front%segments%at_border)
     state%growth_ratio = max(state%growth_ratio, largest)
-    if (.not. largest > 1) return
-    enough = max(1.0_wp, together*largest)
+    demand = state%ties%demand(zone, cell_energy(findloc(front%ratio, largest, dim=1)))
+    if (.not. largest > demand) return
+    enough = max(demand, together*largest)
     if (model%scene%delaminations(zone)%growth == growth_one_per_step) enough = largest
     do s = 1, size(front%segments)
       associate (segment => front%segments(s), region => state%separation%regions(zone))
         if (segment%at_border .or. front%ratio(s) < enough) cycle
         if (region%is_delaminated(segment%outside(1), segment%outside(2))) cycle
         call region%release(segment%outside)
-        energy = critical_release_rate(model%scene%delaminations(zone), front%modes(:, s)) &
-                 *model%mesh%cell_area(segment%outside)*model%mesh%multiplicity
+        energy = cell_energy(s)
         ! The integrators cannot tell the energy that fracture takes from their own losses.
         state%ledger%delamination = state%ledger%delamination + energy
         state%ledger%algorithmic = state%ledger%algorithmic - energy
         grown = .true.
         if (model%scene%delaminations(zone)%growth == growth_one_per_step) return
+        state%ties%asked(zone) = state%ties%asked(zone) + energy
       end associate
     end do
+
+  contains
+
+    !> Energy that the toughness of the cell ahead of a segment asks for, of the whole plate.
+    pure real(wp) function cell_energy(s)
+      !> Segment
+      integer, intent(in) :: s
+
+      cell_energy = critical_release_rate(model%scene%delaminations(zone), front%modes(:, s)) &
+                    *model%mesh%cell_area(front%segments(s)%outside)*model%mesh%multiplicity
+    end function cell_energy
   end subroutine release_cells
 
   !> Frees the jumps of the new delamination; faces that were pressed together start in contact.

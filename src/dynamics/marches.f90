@@ -15,6 +15,7 @@ module marches
   use static_steps, only: attempt_load
   use struck_stresses, only: struck_stress
   use front_growth, only: grow_fronts
+  use fading_ties, only: fading_ties_t
   use ply_failures, only: ply_failure_t, new_ply_failure
   use delamination_parameters, only: growth_equilibrium
   implicit none
@@ -179,15 +180,25 @@ contains
     !> Set if the solver fails for good
     type(error_t), allocatable, intent(inout) :: error
     type(state_t) :: start
-    real(wp), allocatable :: guess(:, :)
+    type(fading_ties_t) :: ties
+    real(wp), allocatable :: guess(:, :), before(:)
+    logical, allocatable :: free(:)
     logical :: grown
 
+    ties = self%now%ties
     do
+      free = self%trial%separation%free
       call grow_fronts(model, self%trial, grown)
       if (.not. grown .or. grows_by_steps(model)) return
-      guess = self%trial%motion%displacement
+      associate (trial => self%trial)
+        call ties%let_go(model, free, trial%separation%free, &
+                         trial%motion%internal(1:3, :) + trial%motion%inertia(1:3, :))
+        ties%asked = trial%ties%asked
+        guess = trial%motion%displacement
+      end associate
       start = self%now
       start%separation = self%trial%separation
+      start%ties = ties
       start%ledger%delamination = start%ledger%delamination &
                                   + (self%trial%ledger%delamination - self%now%ledger%delamination)
       start%ledger%algorithmic = start%ledger%algorithmic &
@@ -195,6 +206,11 @@ contains
       call attempt_step(model, self%integrator, self%operator, start, step, self%trial, converged, error, &
                         guess)
       if (.not. converged .or. allocated(error)) return
+      associate (trial => self%trial)
+        before = trial%ties%set_free
+        call trial%ties%open(model, free, trial%separation%free, trial%motion%displacement)
+        ties%set_free = ties%set_free + (trial%ties%set_free - before)
+      end associate
     end do
   end subroutine let_grow
 

@@ -9,6 +9,7 @@ module states
   use plate_integrators, only: motion_t
   use models, only: model_t
   use separations, only: separation_t, new_separation
+  use fading_ties, only: fading_ties_t, new_fading_ties
   implicit none
   private
   public :: state_t, new_state
@@ -27,6 +28,8 @@ module states
     type(indentation_t) :: indentation
     !> Ties and contacts of the interfaces
     type(separation_t) :: separation
+    !> Ties let go that still fade, and what they set free
+    type(fading_ties_t) :: ties
     !> Largest energy release rate on the fronts over its critical value
     real(wp) :: release_ratio = 0
     !> The same of those fronts that can grow, not at the border of their zone
@@ -67,6 +70,7 @@ contains
               self%motion%acceleration(5, points), self%motion%internal(5, points), &
               self%motion%inertia(5, points), source=0.0_wp)
     self%separation = new_separation(model)
+    self%ties = new_fading_ties(model)
     if (.not. model%scene%has_impactor) return
     self%impactor = new_impactor(model%scene%impactor)
     self%ledger%impactor = impactor_energy(model%scene%impactor, self%impactor)
@@ -96,6 +100,7 @@ contains
     call archive%item('stress', self%stress)
     call archive%item('largest_stress', self%largest_stress)
     call self%separation%visit(archive, model)
+    call self%ties%visit(archive, model)
     call self%ledger%visit(archive)
     call archive%item('iterations', self%iterations)
     call archive%item('force_iterations', self%force_iterations)

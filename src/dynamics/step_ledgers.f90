@@ -43,7 +43,7 @@ contains
     !> State at the end; receives its ledger
     type(state_t), intent(inout) :: new
     type(products_t) :: products
-    real(wp) :: amplitudes(2), gain, impactor
+    real(wp) :: amplitudes(2), gain, impactor, taken
 
     products = step_products(model, old, energy, new)
     amplitudes = [pressure_amplitude(model%scene, old%time), pressure_amplitude(model%scene, new%time)]
@@ -53,7 +53,9 @@ contains
     new%ledger%external_work = old%ledger%external_work + sum(amplitudes)/2*products%pressure
     gain = integrator_gain(integrator, step, products, amplitudes(2) - amplitudes(1)) &
            + (products%strain - old%ledger%strain - products%mean_internal)
-    new%ledger%algorithmic = old%ledger%algorithmic - gain
+    ! What fracture takes has been booked, and taken off here, when the ties were let go.
+    call new%ties%book(model, old%ties, new%motion%displacement - old%motion%displacement, taken)
+    new%ledger%algorithmic = old%ledger%algorithmic - gain + taken
     if (.not. model%scene%has_impactor) return
     impactor = impactor_energy(model%scene%impactor, new%impactor)
     new%ledger%impactor = impactor
