@@ -85,7 +85,7 @@ contains
       if (output%wants('velocity')) call fields%write_point_field('velocity', motion(1:3, :owned), error)
     end associate
     if (model%map%layered) call write_interfaces(model, march, output, fields, error)
-    if (allocated(march%failures%failed) .and. output%wants('ply_damage')) &
+    if (model%scene%has_ply_damage .and. output%wants('ply_damage')) &
       call write_failures(model, march, fields, error)
     if (output%wants('stress') .or. output%wants('face_stress')) &
       call write_stresses(model, march, output, fields, error)

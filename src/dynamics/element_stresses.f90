@@ -5,7 +5,8 @@ module element_stresses
   use strain_recovery, only: mean_strains
   use plies, only: elasticity_t
   use ply_stresses, only: middle_stress, face_stresses
-  use ply_failures, only: ply_failure_t, strains_of_plies
+  use ply_criteria, only: strains_of_plies
+  use ply_failures, only: ply_failure_t
   use models, only: model_t
   implicit none
   private

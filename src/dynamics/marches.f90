@@ -258,7 +258,7 @@ contains
     change = 0
     if (self%trial%largest_stress > 0) change = abs(self%trial%stress - self%now%stress)/self%trial%largest_stress
     if (self%operator%factorizations /= self%factorizations_noted .and. model%scene%has_ply_damage) &
-      self%failures%failed_when_factored = self%failures%failed
+      self%failures%time_when_factored = self%failures%time
     self%factorizations_noted = self%operator%factorizations
     call self%failures%grow(model, self%trial)
     self%trial%separation%glued = self%trial%separation%glued .or. model%scene%has_impactor .and. &
@@ -283,30 +283,17 @@ contains
     type(model_t), intent(inout) :: model
     !> Set if the operator cannot be made again
     type(error_t), allocatable, intent(out) :: error
+    real(wp) :: time
 
     call self%now%visit(archive, model)
     call self%controller%visit(archive)
     call archive%item('march/rejected', self%rejected)
     call self%failures%visit(archive, model)
-    if (archive%loading .and. model%scene%has_ply_damage) call swap(self%failures)
-    if (archive%loading) call self%failures%apply(model)
+    ! The lagged factor is made again with the stiffness of its time.
+    time = self%failures%time
+    if (archive%loading) call self%failures%apply(model, self%failures%time_when_factored)
     call self%operator%visit(archive, model, error)
     self%factorizations_noted = self%operator%factorizations
-    if (.not. archive%loading .or. .not. model%scene%has_ply_damage) return
-    call swap(self%failures)
-    call self%failures%apply(model)
-
-  contains
-
-    !> The lagged factor is made again with the stiffness of its time.
-    pure subroutine swap(failures)
-      !> The failures
-      type(ply_failure_t), intent(inout) :: failures
-      logical, allocatable :: kept(:, :, :)
-
-      kept = failures%failed
-      failures%failed = failures%failed_when_factored
-      failures%failed_when_factored = kept
-    end subroutine swap
+    if (archive%loading) call self%failures%apply(model, time)
   end subroutine visit
 end module marches

@@ -1,36 +1,45 @@
-!> Failure of plies, element by element: criteria from the stresses averaged over an element's nine
-!> points (section 3.2 of the paper), permanent loss of stiffness, and the energy lost with it.
+!> Failed plies, element by element: since when each mode has been taking stiffness away, the stiffness that is left,
+!> and the energy lost with it.
 module ply_failures
   use kinds, only: wp
   use archives, only: archive_t
   use element_batches, only: lanes, first_element
   use strain_recovery, only: mean_strains
   use plies, only: elasticity_t
-  use ply_damage_parameters, only: failure_modes, stress_at_faces
-  use ply_stresses, only: middle_stress, face_stresses, mean_shear_strain
-  use failure_criteria, only: failure_indices, largest_failure_indices
+  use ply_damage_parameters, only: failure_modes
   use degradation, only: degraded
   use stacking, only: section_stiffness
   use states, only: state_t
   use models, only: model_t
+  use ply_criteria, only: criteria_met
   implicit none
   private
-  public :: ply_failure_t, new_ply_failure, strains_of_plies
+  public :: ply_failure_t, new_ply_failure
+
+  !> Start of a mode that has not occurred.
+  real(wp), parameter :: never = huge(never)
 
   !> Failed modes of every ply of this rank's elements.
   type :: ply_failure_t
-    !> True where a mode has occurred, (modes, plies, elements); unallocated: not modelled
-    logical, allocatable :: failed(:, :, :)
+    !> Time, or load factor, from which on a mode takes stiffness away: the start of the step at whose end its criterion
+    !> was found met, (modes, plies, elements); unallocated: not modelled
+    real(wp), allocatable, private :: start(:, :, :)
+    !> Time over which it does so
+    real(wp), private :: fade = 0
+    !> Time whose stiffness the elements have
+    real(wp) :: time = 0
     !> The same when the operator was last factored, which a restart must make again
-    logical, allocatable :: failed_when_factored(:, :, :)
+    real(wp) :: time_when_factored = 0
   contains
-    !> Finds new failures in an accepted state and takes their stiffness away.
+    !> Finds new failures in an accepted state and takes stiffness away.
     procedure :: grow
-    !> Gives all elements the stiffness that failures have left.
+    !> Gives all elements the stiffness of a time.
     procedure :: apply
     !> Elastic constants left in a ply of an element, and in all its plies.
     procedure :: elasticity
     procedure :: elasticities
+    !> Modes that have occurred in a ply.
+    procedure :: failed
     !> Number of ply elements failed in each mode, of the whole plate.
     procedure :: counts
     !> Saves or loads.
@@ -47,11 +56,12 @@ contains
     type(ply_failure_t) :: self
 
     if (.not. model%scene%has_ply_damage) return
-    allocate (self%failed(failure_modes, size(model%plies), model%elements%elements), source=.false.)
-    self%failed_when_factored = self%failed
+    allocate (self%start(failure_modes, size(model%plies), model%elements%elements), source=never)
+    ! Load steps know no time.
+    if (.not. model%scene%has_static) self%fade = model%scene%ply_damage%fade
   end function new_ply_failure
 
-  !> Finds new failures in an accepted state, takes their stiffness away and books the energy lost.
+  !> Finds new failures in an accepted state, takes away what stiffness is due until then and books the energy lost.
   subroutine grow(self, model, state)
     !> The failures
     class(ply_failure_t), intent(inout) :: self
@@ -59,22 +69,19 @@ contains
     type(model_t), intent(inout) :: model
     !> The state
     type(state_t), intent(inout) :: state
-    real(wp) :: strains(lanes, 8), energy
-    real(wp), allocatable :: motion(:, :)
-    logical :: any_new, new
-    integer :: b, lane
+    real(wp) :: energy
+    logical, allocatable :: changing(:)
+    integer :: element
 
-    if (.not. allocated(self%failed)) return
-    any_new = .false.
-    motion = model%motion_of(state%motion%displacement)
-    do b = 1, model%elements%batches
-      call mean_strains(model%elements, b, model%scene%kinematics, motion, strains)
-      do lane = 1, model%elements%lanes_used(b)
-        call fail_element(self, model, first_element(b) + lane - 1, strains(lane, :), new)
-        any_new = any_new .or. new
-      end do
+    if (.not. allocated(self%start)) return
+    call find_failures(self, model, state)
+    changing = [(any(self%start(:, :, element) < never .and. taken(self, self%start(:, :, element)) < 1), &
+                 element=1, model%elements%elements)]
+    self%time = state%time
+    if (.not. model%communicator%any(any(changing))) return
+    do element = 1, size(changing)
+      if (changing(element)) call soften(self, model, element)
     end do
-    if (.not. model%communicator%any(any_new)) return
     call model%internal(state%motion%displacement, state%motion%internal, energy)
     call model%communicator%sum(energy)
     energy = energy*model%mesh%multiplicity
@@ -82,86 +89,48 @@ contains
     state%ledger%strain = energy
   end subroutine grow
 
-  !> Fails the plies of one element whose criteria are met.
-  subroutine fail_element(self, model, element, strains, new)
+  !> Finds the modes whose criteria are met for the first time. They count from the start of the step.
+  subroutine find_failures(self, model, state)
     !> The failures
     type(ply_failure_t), intent(inout) :: self
     !> The model
-    type(model_t), intent(inout) :: model
-    !> Element of this rank
-    integer, intent(in) :: element
-    !> Mean strains of the element
-    real(wp), intent(in) :: strains(8)
-    !> True if a ply failed anew
-    logical, intent(out) :: new
-    type(elasticity_t), allocatable :: elasticity(:)
-    real(wp) :: local(8)
-    logical :: modes(failure_modes)
-    integer :: ply, first
-
-    first = model%mesh%element_plies(1, model%distribution%elements(element))
-    elasticity = self%elasticities(model, element)
-    local = strains_of_plies(model, element, elasticity, strains)
-    new = .false.
-    associate (plies => model%plies(first:first + size(elasticity) - 1))
-      do ply = 1, size(elasticity)
-        if (all(self%failed(:, first + ply - 1, element))) cycle
-        modes = failing(model, plies(ply)%material, ply, elasticity(ply), local)
-        if (.not. any(modes .and. .not. self%failed(:, first + ply - 1, element))) cycle
-        self%failed(:, first + ply - 1, element) = self%failed(:, first + ply - 1, element) .or. modes
-        new = .true.
-      end do
-    end associate
-    if (new) call soften(self, model, element)
-
-  contains
-
-    !> Modes whose criterion a ply meets.
-    function failing(model, material, ply, constants, strains) result(modes)
-      !> The model
-      type(model_t), intent(in) :: model
-      !> Index of the ply's material
-      integer, intent(in) :: material
-      !> Ply of the element
-      integer, intent(in) :: ply
-      !> Its present constants
-      type(elasticity_t), intent(in) :: constants
-      !> Strains
-      real(wp), intent(in) :: strains(8)
-      !> True where the criterion is met
-      logical :: modes(failure_modes)
-
-      associate (strength => model%scene%materials(material), place => model%plies(first + ply - 1))
-        if (model%scene%ply_damage%stress == stress_at_faces) then
-          modes = largest_failure_indices(strength, face_stresses(place, constants, strains)) >= 1
-        else
-          modes = failure_indices(strength, middle_stress(place, constants, strains)) >= 1
-        end if
-      end associate
-    end function failing
-  end subroutine fail_element
-
-  !> Strains of an element that the stresses of its plies follow from: its own, but for one transverse shear strain
-  !> whose stresses add up to the shear force.
-  pure function strains_of_plies(model, element, elasticity, strains) result(local)
-    !> The model
     type(model_t), intent(in) :: model
-    !> Element of this rank
-    integer, intent(in) :: element
-    !> Present elastic constants of its plies
-    type(elasticity_t), intent(in) :: elasticity(:)
-    !> Mean strains of the element
-    real(wp), intent(in) :: strains(8)
-    !> Strains for ply_stress
-    real(wp) :: local(8)
+    !> The state at the end of the step
+    type(state_t), intent(in) :: state
+    real(wp) :: strains(lanes, 8)
+    real(wp), allocatable :: motion(:, :)
+    integer :: b, lane, element
 
-    local = strains
-    associate (range => model%mesh%element_plies(:, model%distribution%elements(element)), &
-               b => 1 + (element - 1)/lanes, lane => 1 + modulo(element - 1, lanes))
-      local(7:8) = mean_shear_strain(model%plies(range(1):range(2)), elasticity, &
-                                     model%elements%stiffness(lane, :, b), strains(7:8))
-    end associate
-  end function strains_of_plies
+    motion = model%motion_of(state%motion%displacement)
+    do b = 1, model%elements%batches
+      call mean_strains(model%elements, b, model%scene%kinematics, motion, strains)
+      do lane = 1, model%elements%lanes_used(b)
+        element = first_element(b) + lane - 1
+        associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
+          associate (start => self%start(:, range(1):range(2), element))
+            where (criteria_met(model, element, self%elasticities(model, element), strains(lane, :))) &
+              start = min(start, self%time)
+          end associate
+        end associate
+      end do
+    end do
+  end subroutine find_failures
+
+  !> Part that a mode has taken, by the present time, of the stiffness that it takes.
+  elemental real(wp) function taken(self, start)
+    !> The failures
+    type(ply_failure_t), intent(in) :: self
+    !> Time from which on the mode acts
+    real(wp), intent(in) :: start
+
+    if (start >= self%time) then
+      taken = 0
+    else if (self%time - start >= self%fade) then
+      taken = 1
+    else
+      taken = (self%time - start)/self%fade
+    end if
+  end function taken
 
   !> Elastic constants left in a ply of an element.
   pure function elasticity(self, model, ply, element)
@@ -177,7 +146,8 @@ contains
     type(elasticity_t) :: elasticity
 
     elasticity = model%plies(ply)%elasticity
-    if (allocated(self%failed)) elasticity = degraded(elasticity, self%failed(:, ply, element), model%scene%ply_damage)
+    if (allocated(self%start)) &
+      elasticity = degraded(elasticity, taken(self, self%start(:, ply, element)), model%scene%ply_damage)
   end function elasticity
 
   !> Elastic constants left in the plies of an element.
@@ -200,7 +170,7 @@ contains
     end associate
   end function elasticities
 
-  !> Gives one element the stiffness that failures have left.
+  !> Gives one element the stiffness of the present time.
   subroutine soften(self, model, element)
     !> The failures
     type(ply_failure_t), intent(in) :: self
@@ -216,19 +186,34 @@ contains
     end associate
   end subroutine soften
 
-  !> Gives all elements the stiffness that failures have left.
-  subroutine apply(self, model)
+  !> Gives all elements the stiffness that failures have left at a time.
+  subroutine apply(self, model, time)
     !> The failures
-    class(ply_failure_t), intent(in) :: self
+    class(ply_failure_t), intent(inout) :: self
     !> The model
     type(model_t), intent(inout) :: model
+    !> The time, from now on that of the failures
+    real(wp), intent(in) :: time
     integer :: element
 
-    if (.not. allocated(self%failed)) return
+    if (.not. allocated(self%start)) return
+    self%time = time
     do element = 1, model%elements%elements
       call soften(self, model, element)
     end do
   end subroutine apply
+
+  !> Modes that have occurred in a ply.
+  pure function failed(self, ply)
+    !> The failures
+    class(ply_failure_t), intent(in) :: self
+    !> Ply of the laminate
+    integer, intent(in) :: ply
+    !> True where a mode has occurred, (modes, elements)
+    logical, allocatable :: failed(:, :)
+
+    failed = self%start(:, ply, :) < never
+  end function failed
 
   !> Number of ply elements failed in each mode, of the whole plate.
   function counts(self, model)
@@ -241,9 +226,9 @@ contains
     integer :: mode
 
     counts = 0
-    if (.not. allocated(self%failed)) return
+    if (.not. allocated(self%start)) return
     do mode = 1, failure_modes
-      counts(mode) = count(self%failed(mode, :, :))*model%mesh%multiplicity
+      counts(mode) = count(self%start(mode, :, :) < never)*model%mesh%multiplicity
       call model%communicator%sum(counts(mode))
     end do
   end function counts
@@ -256,24 +241,13 @@ contains
     class(archive_t), intent(inout) :: archive
     !> The model
     type(model_t), intent(in) :: model
+    real(wp), allocatable :: start(:, :)
 
-    if (.not. allocated(self%failed)) return
-    call visit_flags('ply_failure/failed', self%failed)
-    call visit_flags('ply_failure/failed_when_factored', self%failed_when_factored)
-
-  contains
-
-    !> Saves or loads flags as a field over the elements.
-    subroutine visit_flags(name, flags)
-      !> Name of the item
-      character(len=*), intent(in) :: name
-      !> The flags
-      logical, intent(inout) :: flags(:, :, :)
-      real(wp), allocatable :: values(:, :)
-
-      values = reshape(merge(1.0_wp, 0.0_wp, flags), [size(flags, 1)*size(flags, 2), size(flags, 3)])
-      call archive%field(name, model%distribution%elements, model%mesh%elements(), values)
-      flags = reshape(values > 0.5_wp, shape(flags))
-    end subroutine visit_flags
+    if (.not. allocated(self%start)) return
+    start = reshape(self%start, [size(self%start, 1)*size(self%start, 2), size(self%start, 3)])
+    call archive%field('ply_failure/start', model%distribution%elements, model%mesh%elements(), start)
+    self%start = reshape(start, shape(self%start))
+    call archive%item('ply_failure/time', self%time)
+    call archive%item('ply_failure/time_when_factored', self%time_when_factored)
   end subroutine visit
 end module ply_failures
