@@ -29,7 +29,7 @@ contains
 
     allocate (code(1, model%elements%elements))
     do ply = 1, size(model%plies)
-      associate (failed => march%failures%failed(ply))
+      associate (failed => march%failures%onset%failed(ply))
         code(1, :) = merge(1, 0, failed(1, :)) + merge(2, 0, failed(2, :)) + merge(4, 0, failed(3, :))
       end associate
       call fields%write_cell_field('ply_'//to_text(ply)//'_failure', code, error)

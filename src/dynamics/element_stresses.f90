@@ -34,7 +34,7 @@ contains
       call mean_strains(model%elements, b, model%scene%kinematics, motion, means)
       do lane = 1, model%elements%lanes_used(b)
         element = first_element(b) + lane - 1
-        strains(:, element) = strains_of_plies(model, element, failures%elasticities(model, element), means(lane, :))
+        strains(:, element) = strains_of_plies(model, element, failures%onset%elasticities(model, element), means(lane, :))
       end do
     end do
   end function element_strains
@@ -60,7 +60,7 @@ contains
       associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
         if (ply < range(1) .or. ply > range(2)) cycle
       end associate
-      elasticity = failures%elasticity(model, ply, element)
+      elasticity = failures%onset%elasticity(model, ply, element)
       stresses(:, 1, element) = middle_stress(model%plies(ply), elasticity, strains(:, element))
       stresses(:, 2:3, element) = face_stresses(model%plies(ply), elasticity, strains(:, element))
     end do

@@ -257,10 +257,9 @@ contains
     self%trial%largest_stress = max(self%now%largest_stress, self%trial%stress)
     change = 0
     if (self%trial%largest_stress > 0) change = abs(self%trial%stress - self%now%stress)/self%trial%largest_stress
-    if (self%operator%factorizations /= self%factorizations_noted .and. model%scene%has_ply_damage) &
-      self%failures%time_when_factored = self%failures%time
+    if (self%operator%factorizations /= self%factorizations_noted) call self%failures%note_factored()
     self%factorizations_noted = self%operator%factorizations
-    call self%failures%grow(model, self%trial)
+    call self%failures%grow(model, self%now, self%trial)
     self%trial%separation%glued = self%trial%separation%glued .or. model%scene%has_impactor .and. &
                                   self%trial%impactor%velocity <= 0 .and. self%trial%force < self%now%force
     extended = self%trial%ledger%delamination > self%now%ledger%delamination
@@ -283,17 +282,18 @@ contains
     type(model_t), intent(inout) :: model
     !> Set if the operator cannot be made again
     type(error_t), allocatable, intent(out) :: error
-    real(wp) :: time
 
     call self%now%visit(archive, model)
     call self%controller%visit(archive)
     call archive%item('march/rejected', self%rejected)
     call self%failures%visit(archive, model)
     ! The lagged factor is made again with the stiffness of its time.
-    time = self%failures%time
-    if (archive%loading) call self%failures%apply(model, self%failures%time_when_factored)
+    if (archive%loading) call self%failures%swap()
+    if (archive%loading) call self%failures%apply(model)
     call self%operator%visit(archive, model, error)
     self%factorizations_noted = self%operator%factorizations
-    if (archive%loading) call self%failures%apply(model, time)
+    if (.not. archive%loading) return
+    call self%failures%swap()
+    call self%failures%apply(model)
   end subroutine visit
 end module marches

@@ -9,12 +9,13 @@ module ply_criteria
   use models, only: model_t
   implicit none
   private
-  public :: criteria_met, strains_of_plies
+  public :: failure_measures, strains_of_plies
 
 contains
 
-  !> Modes whose criterion the plies of an element meet, whether or not they failed so before.
-  function criteria_met(model, element, elasticity, strains) result(met)
+  !> How near the plies of an element are to each mode of failure, whether or not they failed so before: 1 where the
+  !> criterion is met. Roots of the criteria's values, so that they grow with the load.
+  function failure_measures(model, element, elasticity, strains) result(measures)
     !> The model
     type(model_t), intent(in) :: model
     !> Element of this rank
@@ -23,8 +24,8 @@ contains
     type(elasticity_t), intent(in) :: elasticity(:)
     !> Mean strains of the element
     real(wp), intent(in) :: strains(8)
-    !> True where the criterion is met
-    logical :: met(failure_modes, size(elasticity))
+    !> The measures
+    real(wp) :: measures(failure_modes, size(elasticity))
     real(wp) :: local(8)
     integer :: i
 
@@ -34,15 +35,16 @@ contains
         associate (ply => model%plies(range(1) + i - 1))
           associate (strength => model%scene%materials(ply%material))
             if (model%scene%ply_damage%stress == stress_at_faces) then
-              met(:, i) = largest_failure_indices(strength, face_stresses(ply, elasticity(i), local)) >= 1
+              measures(:, i) = largest_failure_indices(strength, face_stresses(ply, elasticity(i), local))
             else
-              met(:, i) = failure_indices(strength, middle_stress(ply, elasticity(i), local)) >= 1
+              measures(:, i) = failure_indices(strength, middle_stress(ply, elasticity(i), local))
             end if
           end associate
         end associate
       end do
     end associate
-  end function criteria_met
+    measures = sqrt(max(measures, 0.0_wp))
+  end function failure_measures
 
   !> Strains of an element that the stresses of its plies follow from: its own, but for one transverse shear strain
   !> whose stresses add up to the shear force.
