@@ -34,7 +34,8 @@ contains
       call mean_strains(model%elements, b, model%scene%kinematics, motion, means)
       do lane = 1, model%elements%lanes_used(b)
         element = first_element(b) + lane - 1
-        strains(:, element) = strains_of_plies(model, element, failures%onset%elasticities(model, element), means(lane, :))
+        strains(:, element) = strains_of_plies(model, element, failures%onset%elasticities(model, element), &
+                                               means(lane, :))
       end do
     end do
   end function element_strains

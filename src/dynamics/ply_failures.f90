@@ -21,7 +21,7 @@ module ply_failures
   contains
     !> Finds new failures in an accepted state and takes stiffness away.
     procedure :: grow
-    !> Gives all elements the stiffness that failures have left.
+    !> Gives all failed elements the stiffness that is left.
     procedure :: apply
     !> Notes that the operator was factored with the present stiffness.
     procedure :: note_factored
@@ -92,17 +92,23 @@ contains
     end associate
   end subroutine soften
 
-  !> Gives all elements the stiffness that failures have left.
+  !> Gives all failed elements the stiffness that is left. The others are left alone: the same sums made in another
+  !> place may differ in the last digit, and a restart is to go on bit by bit.
   subroutine apply(self, model)
     !> The failures
     class(ply_failure_t), intent(in) :: self
     !> The model
     type(model_t), intent(inout) :: model
-    integer :: element
+    logical, allocatable :: cut(:)
+    integer :: ply, element
 
     if (.not. model%scene%has_ply_damage) return
-    do element = 1, model%elements%elements
-      call soften(self, model, element)
+    allocate (cut(model%elements%elements), source=.false.)
+    do ply = 1, size(model%plies)
+      cut = cut .or. any(self%onset%failed(ply), dim=1)
+    end do
+    do element = 1, size(cut)
+      if (cut(element)) call soften(self, model, element)
     end do
   end subroutine apply
 

@@ -84,8 +84,8 @@ def check_fading(implam, folder, _):
     settings = [*GROWING, f"ply_damage%fade={8 * STEP!r}"]
     scout = run_deck(implam, write_deck(folder / "scout", DECK, [*settings, f"time%end={20 * STEP!r}"]))
     steps = [step for step in steps_of_fading(read_history(scout)) if step > 2]
-    require(len(steps) > 1, "Hardly any plies fade while none fails: the trial proves nothing.")
-    for step in (steps[0], steps[-1]):
+    require(steps, "No plies fade while none fails: the trial proves nothing.")
+    for step in {steps[0], steps[-1]}:
         deck = write_deck(folder / f"fading_{step}", DECK, split_after(step, settings))
         reference = run_deck(implam, deck)
         again = go_on(implam, copy_run(deck.parent, folder / "again"))
