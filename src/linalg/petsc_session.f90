@@ -5,7 +5,6 @@ module petsc_session
   use blas_threads, only: use_one_thread
   use communicators, only: communicator_t
   use errors, only: error_t, fail, exit_usage, exit_internal
-  use freed_memory, only: give_back_freed
   implicit none
   private
   public :: start_petsc, finish_petsc, report_petsc
@@ -74,7 +73,6 @@ contains
     call PetscInitialized(running, ierr)
     if (running) return
     call use_one_thread()
-    call give_back_freed()
     ! Options such as -log_view must be there when PETSc starts, and it looks for them in the environment.
     call get_environment_variable('PETSC_OPTIONS', length=length)
     allocate (character(len=length) :: all_options)

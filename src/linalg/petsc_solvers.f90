@@ -9,7 +9,7 @@ module petsc_solvers
   use errors, only: error_t, fail, exit_convergence, exit_internal, exit_usage
   use factor_packages, only: prepare_mumps, prepare_cholmod, mumps_report, why_not_factored, mumps_outcome, &
                              mumps_negative, mumps_memory, mumps_entries, mumps_singular, mumps_short_of_room
-  use freed_memory, only: keep_freed
+  use freed_memory, only: give_back_freed, keep_freed
   use kinds, only: wp
   use linear_solvers, only: linear_solver_t
   use petsc_matrices, only: petsc_matrix_t, put, take
@@ -89,6 +89,7 @@ contains
     type(error_t), allocatable, intent(inout) :: error
 
     call self%release()
+    call give_back_freed()
     if (self%package == 'cholmod' .and. (communicator%size > 1 .or. .not. positive_definite)) then
       call fail(error, exit_usage, 'CHOLMOD works on one rank and positive definite matrices only: choose MUMPS.')
       return
