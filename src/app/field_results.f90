@@ -121,8 +121,8 @@ contains
     if (any(wanted)) strains = element_strains(model, march%failures, march%now%motion%displacement)
     do ply = 1, size(model%plies)
       associate (name => 'ply_'//to_text(ply)//'_')
-        if (output%wants('ply_damage') .and. allocated(march%failures%failed)) &
-          call fields%write_cell_field(name//'failure', failure_code(march%failures%failed(:, ply, :)), error)
+        if (output%wants('ply_damage') .and. model%scene%has_ply_damage) &
+          call fields%write_cell_field(name//'failure', failure_code(march%failures%onset%failed(ply)), error)
         if (any(wanted)) stresses = stresses_of_ply(model, march%failures, strains, ply)
         do place = 1, 3
           if (.not. wanted(place)) cycle

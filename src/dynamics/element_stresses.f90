@@ -5,7 +5,8 @@ module element_stresses
   use strain_recovery, only: mean_strains
   use plies, only: elasticity_t
   use ply_stresses, only: middle_stress, face_stresses
-  use ply_failures, only: ply_failure_t, strains_of_plies
+  use ply_criteria, only: strains_of_plies
+  use ply_failures, only: ply_failure_t
   use models, only: model_t
   implicit none
   private
@@ -33,7 +34,8 @@ contains
       call mean_strains(model%elements, b, model%scene%kinematics, motion, means)
       do lane = 1, model%elements%lanes_used(b)
         element = first_element(b) + lane - 1
-        strains(:, element) = strains_of_plies(model, element, failures%elasticities(model, element), means(lane, :))
+        strains(:, element) = strains_of_plies(model, element, failures%onset%elasticities(model, element), &
+                                               means(lane, :))
       end do
     end do
   end function element_strains
@@ -59,7 +61,7 @@ contains
       associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
         if (ply < range(1) .or. ply > range(2)) cycle
       end associate
-      elasticity = failures%elasticity(model, ply, element)
+      elasticity = failures%onset%elasticity(model, ply, element)
       stresses(:, 1, element) = middle_stress(model%plies(ply), elasticity, strains(:, element))
       stresses(:, 2:3, element) = face_stresses(model%plies(ply), elasticity, strains(:, element))
     end do

@@ -273,10 +273,9 @@ contains
     self%trial%largest_stress = max(self%now%largest_stress, self%trial%stress)
     change = 0
     if (self%trial%largest_stress > 0) change = abs(self%trial%stress - self%now%stress)/self%trial%largest_stress
-    if (self%operator%factorizations /= self%factorizations_noted .and. model%scene%has_ply_damage) &
-      self%failures%failed_when_factored = self%failures%failed
+    if (self%operator%factorizations /= self%factorizations_noted) call self%failures%note_factored()
     self%factorizations_noted = self%operator%factorizations
-    call self%failures%grow(model, self%trial)
+    call self%failures%grow(model, self%now, self%trial)
     self%trial%separation%glued = self%trial%separation%glued .or. model%scene%has_impactor .and. &
                                   self%trial%impactor%velocity <= 0 .and. self%trial%force < self%now%force
     extended = self%trial%ledger%delamination > self%now%ledger%delamination
@@ -304,25 +303,13 @@ contains
     call self%controller%visit(archive)
     call archive%item('march/rejected', self%rejected)
     call self%failures%visit(archive, model)
-    if (archive%loading .and. model%scene%has_ply_damage) call swap(self%failures)
+    ! The lagged factor is made again with the stiffness of its time.
+    if (archive%loading) call self%failures%swap()
     if (archive%loading) call self%failures%apply(model)
     call self%operator%visit(archive, model, error)
     self%factorizations_noted = self%operator%factorizations
-    if (.not. archive%loading .or. .not. model%scene%has_ply_damage) return
-    call swap(self%failures)
+    if (.not. archive%loading) return
+    call self%failures%swap()
     call self%failures%apply(model)
-
-  contains
-
-    !> The lagged factor is made again with the stiffness of its time.
-    pure subroutine swap(failures)
-      !> The failures
-      type(ply_failure_t), intent(inout) :: failures
-      logical, allocatable :: kept(:, :, :)
-
-      kept = failures%failed
-      failures%failed = failures%failed_when_factored
-      failures%failed_when_factored = kept
-    end subroutine swap
   end subroutine visit
 end module marches

@@ -1,36 +1,32 @@
-!> Failure of plies, element by element: criteria from the stresses averaged over an element's nine
-!> points (section 3.2 of the paper), permanent loss of stiffness, and the energy lost with it.
+!> Failure of plies: the stiffness it takes from the elements, and the energy lost with it.
 module ply_failures
   use kinds, only: wp
   use archives, only: archive_t
-  use element_batches, only: lanes, first_element
-  use strain_recovery, only: mean_strains
-  use plies, only: elasticity_t
-  use ply_damage_parameters, only: failure_modes, stress_at_faces
-  use ply_stresses, only: middle_stress, face_stresses, mean_shear_strain
-  use failure_criteria, only: failure_indices, largest_failure_indices
-  use degradation, only: degraded
+  use element_batches, only: lanes
+  use ply_damage_parameters, only: failure_modes
   use stacking, only: section_stiffness
   use states, only: state_t
   use models, only: model_t
+  use ply_onsets, only: ply_onset_t, new_ply_onset
   implicit none
   private
-  public :: ply_failure_t, new_ply_failure, strains_of_plies
+  public :: ply_failure_t, new_ply_failure
 
-  !> Failed modes of every ply of this rank's elements.
+  !> Failures of the plies of this rank's elements.
   type :: ply_failure_t
-    !> True where a mode has occurred, (modes, plies, elements); unallocated: not modelled
-    logical, allocatable :: failed(:, :, :)
+    !> When they began
+    type(ply_onset_t) :: onset
     !> The same when the operator was last factored, which a restart must make again
-    logical, allocatable :: failed_when_factored(:, :, :)
+    type(ply_onset_t), private :: onset_when_factored
   contains
-    !> Finds new failures in an accepted state and takes their stiffness away.
+    !> Finds new failures in an accepted state and takes stiffness away.
     procedure :: grow
-    !> Gives all elements the stiffness that failures have left.
+    !> Gives all failed elements the stiffness that is left.
     procedure :: apply
-    !> Elastic constants left in a ply of an element, and in all its plies.
-    procedure :: elasticity
-    procedure :: elasticities
+    !> Notes that the operator was factored with the present stiffness.
+    procedure :: note_factored
+    !> Exchanges the failures with those of the last factorisation.
+    procedure :: swap
     !> Number of ply elements failed in each mode, of the whole plate.
     procedure :: counts
     !> Saves or loads.
@@ -46,159 +42,39 @@ contains
     !> The failures
     type(ply_failure_t) :: self
 
-    if (.not. model%scene%has_ply_damage) return
-    allocate (self%failed(failure_modes, size(model%plies), model%elements%elements), source=.false.)
-    self%failed_when_factored = self%failed
+    self%onset = new_ply_onset(model)
+    self%onset_when_factored = self%onset
   end function new_ply_failure
 
-  !> Finds new failures in an accepted state, takes their stiffness away and books the energy lost.
-  subroutine grow(self, model, state)
+  !> Finds new failures in an accepted state, takes away what stiffness goes until the end of the next step and books
+  !> the energy lost.
+  subroutine grow(self, model, old, new)
     !> The failures
     class(ply_failure_t), intent(inout) :: self
     !> The model, whose failed elements lose stiffness
     type(model_t), intent(inout) :: model
-    !> The state
-    type(state_t), intent(inout) :: state
-    real(wp) :: strains(lanes, 8), energy
-    real(wp), allocatable :: motion(:, :)
-    logical :: any_new, new
-    integer :: b, lane
+    !> The state before the step
+    type(state_t), intent(in) :: old
+    !> The state after it
+    type(state_t), intent(inout) :: new
+    real(wp) :: energy
+    logical, allocatable :: changing(:)
+    integer :: element
 
-    if (.not. allocated(self%failed)) return
-    any_new = .false.
-    motion = model%motion_of(state%motion%displacement)
-    do b = 1, model%elements%batches
-      call mean_strains(model%elements, b, model%scene%kinematics, motion, strains)
-      do lane = 1, model%elements%lanes_used(b)
-        call fail_element(self, model, first_element(b) + lane - 1, strains(lane, :), new)
-        any_new = any_new .or. new
-      end do
+    if (.not. model%scene%has_ply_damage) return
+    changing = self%onset%fading()
+    call self%onset%find(model, old, new, changing)
+    call self%onset%go_on(old, new)
+    if (.not. model%communicator%any(any(changing))) return
+    do element = 1, size(changing)
+      if (changing(element)) call soften(self, model, element)
     end do
-    if (.not. model%communicator%any(any_new)) return
-    call model%internal(state%motion%displacement, state%motion%internal, energy)
+    call model%internal(new%motion%displacement, new%motion%internal, energy)
     call model%communicator%sum(energy)
     energy = energy*model%mesh%multiplicity
-    state%ledger%ply_damage = state%ledger%ply_damage + state%ledger%strain - energy
-    state%ledger%strain = energy
+    new%ledger%ply_damage = new%ledger%ply_damage + new%ledger%strain - energy
+    new%ledger%strain = energy
   end subroutine grow
-
-  !> Fails the plies of one element whose criteria are met.
-  subroutine fail_element(self, model, element, strains, new)
-    !> The failures
-    type(ply_failure_t), intent(inout) :: self
-    !> The model
-    type(model_t), intent(inout) :: model
-    !> Element of this rank
-    integer, intent(in) :: element
-    !> Mean strains of the element
-    real(wp), intent(in) :: strains(8)
-    !> True if a ply failed anew
-    logical, intent(out) :: new
-    type(elasticity_t), allocatable :: elasticity(:)
-    real(wp) :: local(8)
-    logical :: modes(failure_modes)
-    integer :: ply, first
-
-    first = model%mesh%element_plies(1, model%distribution%elements(element))
-    elasticity = self%elasticities(model, element)
-    local = strains_of_plies(model, element, elasticity, strains)
-    new = .false.
-    associate (plies => model%plies(first:first + size(elasticity) - 1))
-      do ply = 1, size(elasticity)
-        if (all(self%failed(:, first + ply - 1, element))) cycle
-        modes = failing(model, plies(ply)%material, ply, elasticity(ply), local)
-        if (.not. any(modes .and. .not. self%failed(:, first + ply - 1, element))) cycle
-        self%failed(:, first + ply - 1, element) = self%failed(:, first + ply - 1, element) .or. modes
-        new = .true.
-      end do
-    end associate
-    if (new) call soften(self, model, element)
-
-  contains
-
-    !> Modes whose criterion a ply meets.
-    function failing(model, material, ply, constants, strains) result(modes)
-      !> The model
-      type(model_t), intent(in) :: model
-      !> Index of the ply's material
-      integer, intent(in) :: material
-      !> Ply of the element
-      integer, intent(in) :: ply
-      !> Its present constants
-      type(elasticity_t), intent(in) :: constants
-      !> Strains
-      real(wp), intent(in) :: strains(8)
-      !> True where the criterion is met
-      logical :: modes(failure_modes)
-
-      associate (strength => model%scene%materials(material), place => model%plies(first + ply - 1))
-        if (model%scene%ply_damage%stress == stress_at_faces) then
-          modes = largest_failure_indices(strength, face_stresses(place, constants, strains)) >= 1
-        else
-          modes = failure_indices(strength, middle_stress(place, constants, strains)) >= 1
-        end if
-      end associate
-    end function failing
-  end subroutine fail_element
-
-  !> Strains of an element that the stresses of its plies follow from: its own, but for one transverse shear strain
-  !> whose stresses add up to the shear force.
-  pure function strains_of_plies(model, element, elasticity, strains) result(local)
-    !> The model
-    type(model_t), intent(in) :: model
-    !> Element of this rank
-    integer, intent(in) :: element
-    !> Present elastic constants of its plies
-    type(elasticity_t), intent(in) :: elasticity(:)
-    !> Mean strains of the element
-    real(wp), intent(in) :: strains(8)
-    !> Strains for ply_stress
-    real(wp) :: local(8)
-
-    local = strains
-    associate (range => model%mesh%element_plies(:, model%distribution%elements(element)), &
-               b => 1 + (element - 1)/lanes, lane => 1 + modulo(element - 1, lanes))
-      local(7:8) = mean_shear_strain(model%plies(range(1):range(2)), elasticity, &
-                                     model%elements%stiffness(lane, :, b), strains(7:8))
-    end associate
-  end function strains_of_plies
-
-  !> Elastic constants left in a ply of an element.
-  pure function elasticity(self, model, ply, element)
-    !> The failures
-    class(ply_failure_t), intent(in) :: self
-    !> The model
-    type(model_t), intent(in) :: model
-    !> Ply of the laminate
-    integer, intent(in) :: ply
-    !> Element of this rank
-    integer, intent(in) :: element
-    !> Constants of the ply
-    type(elasticity_t) :: elasticity
-
-    elasticity = model%plies(ply)%elasticity
-    if (allocated(self%failed)) elasticity = degraded(elasticity, self%failed(:, ply, element), model%scene%ply_damage)
-  end function elasticity
-
-  !> Elastic constants left in the plies of an element.
-  pure function elasticities(self, model, element) result(elasticity)
-    !> The failures
-    class(ply_failure_t), intent(in) :: self
-    !> The model
-    type(model_t), intent(in) :: model
-    !> Element of this rank
-    integer, intent(in) :: element
-    !> Constants of the element's plies
-    type(elasticity_t), allocatable :: elasticity(:)
-    integer :: ply
-
-    associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
-      allocate (elasticity(range(2) - range(1) + 1))
-      do ply = range(1), range(2)
-        elasticity(ply - range(1) + 1) = self%elasticity(model, ply, element)
-      end do
-    end associate
-  end function elasticities
 
   !> Gives one element the stiffness that failures have left.
   subroutine soften(self, model, element)
@@ -212,23 +88,48 @@ contains
     associate (range => model%mesh%element_plies(:, model%distribution%elements(element)), &
                b => 1 + (element - 1)/lanes, lane => 1 + modulo(element - 1, lanes))
       model%elements%stiffness(lane, :, b) = section_stiffness(model%plies(range(1):range(2)), &
-        self%elasticities(model, element), model%scene%laminate%shear_correction)
+        self%onset%elasticities(model, element), model%scene%laminate%shear_correction)
     end associate
   end subroutine soften
 
-  !> Gives all elements the stiffness that failures have left.
+  !> Gives all failed elements the stiffness that is left. The others are left alone: the same sums made in another
+  !> place may differ in the last digit, and a restart is to go on bit by bit.
   subroutine apply(self, model)
     !> The failures
     class(ply_failure_t), intent(in) :: self
     !> The model
     type(model_t), intent(inout) :: model
-    integer :: element
+    logical, allocatable :: cut(:)
+    integer :: ply, element
 
-    if (.not. allocated(self%failed)) return
-    do element = 1, model%elements%elements
-      call soften(self, model, element)
+    if (.not. model%scene%has_ply_damage) return
+    allocate (cut(model%elements%elements), source=.false.)
+    do ply = 1, size(model%plies)
+      cut = cut .or. any(self%onset%failed(ply), dim=1)
+    end do
+    do element = 1, size(cut)
+      if (cut(element)) call soften(self, model, element)
     end do
   end subroutine apply
+
+  !> Notes that the operator was factored with the present stiffness.
+  pure subroutine note_factored(self)
+    !> The failures
+    class(ply_failure_t), intent(inout) :: self
+
+    self%onset_when_factored = self%onset
+  end subroutine note_factored
+
+  !> Exchanges the failures with those of the last factorisation.
+  pure subroutine swap(self)
+    !> The failures
+    class(ply_failure_t), intent(inout) :: self
+    type(ply_onset_t) :: kept
+
+    kept = self%onset
+    self%onset = self%onset_when_factored
+    self%onset_when_factored = kept
+  end subroutine swap
 
   !> Number of ply elements failed in each mode, of the whole plate.
   function counts(self, model)
@@ -238,12 +139,14 @@ contains
     type(model_t), intent(in) :: model
     !> Fibre failure, matrix cracking, matrix crushing
     integer :: counts(failure_modes)
-    integer :: mode
+    integer :: ply, mode
 
     counts = 0
-    if (.not. allocated(self%failed)) return
+    if (.not. model%scene%has_ply_damage) return
+    do ply = 1, size(model%plies)
+      counts = counts + count(self%onset%failed(ply), dim=2)*model%mesh%multiplicity
+    end do
     do mode = 1, failure_modes
-      counts(mode) = count(self%failed(mode, :, :))*model%mesh%multiplicity
       call model%communicator%sum(counts(mode))
     end do
   end function counts
@@ -257,23 +160,7 @@ contains
     !> The model
     type(model_t), intent(in) :: model
 
-    if (.not. allocated(self%failed)) return
-    call visit_flags('ply_failure/failed', self%failed)
-    call visit_flags('ply_failure/failed_when_factored', self%failed_when_factored)
-
-  contains
-
-    !> Saves or loads flags as a field over the elements.
-    subroutine visit_flags(name, flags)
-      !> Name of the item
-      character(len=*), intent(in) :: name
-      !> The flags
-      logical, intent(inout) :: flags(:, :, :)
-      real(wp), allocatable :: values(:, :)
-
-      values = reshape(merge(1.0_wp, 0.0_wp, flags), [size(flags, 1)*size(flags, 2), size(flags, 3)])
-      call archive%field(name, model%distribution%elements, model%mesh%elements(), values)
-      flags = reshape(values > 0.5_wp, shape(flags))
-    end subroutine visit_flags
+    call self%onset%visit(archive, model, 'ply_failure/onset/')
+    call self%onset_when_factored%visit(archive, model, 'ply_failure/onset_when_factored/')
   end subroutine visit
 end module ply_failures

@@ -30,6 +30,7 @@ contains
       deck%has_ply_damage = s%has_group('ply_damage')
       damage%d = s%real_of('ply_damage', 'd')
       damage%e = s%real_of('ply_damage', 'e')
+      damage%fade = s%real_of('ply_damage', 'fade')
       damage%criteria = code_of(s%text_of('ply_damage', 'criteria'), 'hou', [criteria_hou])
       damage%stress = code_of(s%text_of('ply_damage', 'stress'), 'middle faces', [stress_at_middle, stress_at_faces])
       if (deck%has_ply_damage) call check_strengths(deck, problems)

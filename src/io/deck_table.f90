@@ -139,6 +139,8 @@ module deck_table
       &Divisor of the elastic constants that a mode of failure takes away (Table 2).', &
     'ply_damage | e | real | 1 | - | 0.001 | > 0, <= 1 | &
       &Least value left of an elastic constant, as a fraction of the undamaged one.', &
+    'ply_damage | fade | real | 1 | time | 0 | >= 0 | &
+      &Time over which a failure takes its stiffness away, in proportion; 0: at once.', &
     'ply_damage | criteria | choice | 1 | - | ''hou'' | hou | &
       &Set of failure criteria: those of Hou et al. (Table 1).', &
     'ply_damage | stress | choice | 1 | - | ''middle'' | middle faces | &

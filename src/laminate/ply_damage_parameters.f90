@@ -19,6 +19,8 @@ module ply_damage_parameters
     real(wp) :: d = 100
     !> Least value left of an elastic constant, as a fraction of the undamaged one
     real(wp) :: e = 1.0e-3_wp
+    !> Time over which a failure takes its stiffness away
+    real(wp) :: fade = 0
     !> criteria_hou
     integer :: criteria = criteria_hou
     !> stress_at_middle or stress_at_faces
@@ -39,6 +41,8 @@ contains
       objection = 'the divisor d must be at least 1'
     else if (.not. (damage%e > 0 .and. damage%e <= 1)) then
       objection = 'the least fraction e must be positive and at most 1'
+    else if (.not. (damage%fade >= 0 .and. damage%fade <= huge(damage%fade))) then
+      objection = 'the time fade must not be negative'
     end if
   end function ply_damage_objection
 end module ply_damage_parameters

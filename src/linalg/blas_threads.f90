@@ -1,7 +1,7 @@
 !> Threads of the linear algebra library. Ranks share the work out already; threads beside them wait more than they do.
 module blas_threads
-  use, intrinsic :: iso_c_binding, only: c_int, c_char, c_ptr, c_funptr, c_null_ptr, c_null_char, c_associated, &
-                                         c_f_procpointer
+  use, intrinsic :: iso_c_binding, only: c_int, c_funptr, c_associated, c_f_procpointer
+  use found_procedures, only: address_of
   implicit none
   private
   public :: use_one_thread
@@ -15,19 +15,6 @@ module blas_threads
     end subroutine set_threads
   end interface
 
-  interface
-    !> Address of a procedure that the program may or may not have.
-    function find_procedure(library, name) result(address) bind(c, name='dlsym')
-      import :: c_ptr, c_char, c_funptr
-      !> Library, null for all that are loaded
-      type(c_ptr), value :: library
-      !> Name, ended by a null character
-      character(kind=c_char), intent(in) :: name(*)
-      !> Address, null where there is none
-      type(c_funptr) :: address
-    end function find_procedure
-  end interface
-
 contains
 
   !> Lets OpenBLAS work with one thread, unless the environment says how many; other libraries are left as they are.
@@ -36,7 +23,7 @@ contains
     type(c_funptr) :: address
 
     if (is_set('OMP_NUM_THREADS') .or. is_set('OPENBLAS_NUM_THREADS')) return
-    address = find_procedure(c_null_ptr, 'openblas_set_num_threads'//c_null_char)
+    address = address_of('openblas_set_num_threads')
     if (.not. c_associated(address)) return
     call c_f_procpointer(address, set)
     call set(1_c_int)

@@ -23,7 +23,7 @@ contains
   subroutine prepare_mumps(factorization, room, ierr)
     !> What is to make the factor
     type(tPC), intent(in) :: factorization
-    !> Room beyond MUMPS' estimate in %, 0 for its own choice
+    !> Room beyond MUMPS' estimate in %, negative for its own choice
     integer, intent(in) :: room
     !> First code of PETSc that isn't zero
     integer, intent(out) :: ierr
@@ -36,7 +36,7 @@ contains
     ierr = maxval(codes)
     if (ierr /= 0) return
     call MatMumpsSetIcntl(factor, control_root, 1, codes(3))
-    if (room > 0) call MatMumpsSetIcntl(factor, control_room, room, codes(4))
+    if (room >= 0) call MatMumpsSetIcntl(factor, control_room, room, codes(4))
     ierr = maxval(codes)
   end subroutine prepare_mumps
 

@@ -9,6 +9,7 @@ module petsc_solvers
   use errors, only: error_t, fail, exit_convergence, exit_internal, exit_usage
   use factor_packages, only: prepare_mumps, prepare_cholmod, mumps_report, why_not_factored, mumps_outcome, &
                              mumps_negative, mumps_memory, mumps_entries, mumps_singular, mumps_short_of_room
+  use freed_memory, only: give_back_freed, keep_freed
   use kinds, only: wp
   use linear_solvers, only: linear_solver_t
   use petsc_matrices, only: petsc_matrix_t, put, take
@@ -38,6 +39,8 @@ module petsc_solvers
     logical, private :: by_mumps = .false.
     !> Number of rows that this rank owns
     integer, private :: rows = 0
+    !> Room beyond MUMPS' estimate at first, in %, negative for its own choice
+    integer, private :: usual_room = -1
     !> The matrix
     type(petsc_matrix_t), private :: matrix
     !> Eigenvector of the least eigenvalue of the scaled matrix, roughly; its greatest item is 1
@@ -86,6 +89,7 @@ contains
     type(error_t), allocatable, intent(inout) :: error
 
     call self%release()
+    call give_back_freed()
     if (self%package == 'cholmod' .and. (communicator%size > 1 .or. .not. positive_definite)) then
       call fail(error, exit_usage, 'CHOLMOD works on one rank and positive definite matrices only: choose MUMPS.')
       return
@@ -93,6 +97,8 @@ contains
     self%communicator = communicator
     self%rows = size(row_start) - 1
     self%defined = .true.
+    ! Without pivoting, and with nothing to share out, the factor is as large as MUMPS says beforehand.
+    self%usual_room = merge(0, -1, positive_definite .and. communicator%size == 1)
     call self%matrix%define(communicator, first_row, total_rows, row_start, columns, positive_definite, error)
     if (.not. allocated(error)) call self%create_solver(error)
     call communicator%agree(error)
@@ -120,13 +126,13 @@ contains
     package = ''
     call PCFactorGetMatSolverType(self%factorization, package, unasked)
     self%by_mumps = unasked == 0 .and. package == 'mumps'
-    call self%renew_factor(0, error)
+    call self%renew_factor(self%usual_room, error)
   end subroutine create_solver
 
   !> Gives the package a new factor to fill and sets its controls.
   subroutine renew_factor(self, room, error)
     class(petsc_solver_t), intent(inout) :: self
-    !> Room beyond MUMPS' estimate in %, 0 for its own choice
+    !> Room beyond MUMPS' estimate in %, negative for its own choice
     integer, intent(in) :: room
     !> Raised when PETSc fails
     type(error_t), allocatable, intent(inout) :: error
@@ -183,13 +189,15 @@ contains
     end do
     if (singular .or. outcome < 0) then
       ! After a failure the packages refuse to go on with the factor that they have.
-      call self%renew_factor(0, error)
+      call self%renew_factor(self%usual_room, error)
       call fail(error, exit_convergence, why_not_factored(self%by_mumps, outcome))
     end if
     call self%communicator%agree(error)
     self%factorisations = self%factorisations + 1
     self%factored = .not. allocated(error)
     if (.not. self%factored) return
+    ! Ordering and pattern are done: the same blocks are needed from now on.
+    call keep_freed()
     ! The factor stays, whatever is assembled, until the next call of this procedure.
     call KSPSetReusePreconditioner(self%solver, PETSC_TRUE, ierr)
   end subroutine factorize

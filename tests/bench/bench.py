@@ -61,6 +61,10 @@ class Run:
         self.factor_numbers, self.working_megabytes, self.matrix_numbers = (
             float(n) for n in re.search(r'Factor: (\S+) numbers, (\S+) MB; matrix: (\d+) numbers', log).groups())
 
+        # The upper triangle: a number of eight bytes and a column of four each.
+        self.matrix_megabytes = 12*(self.matrix_numbers + self.unknowns)/2/1e6
+        self.factor_megabytes = 8*self.factor_numbers/1e6
+
     def mean(self, phase):
         """Seconds of the processor of one run of a phase."""
         times, seconds = self.phases[phase]
@@ -92,14 +96,29 @@ def step_cost(program, arguments):
         before = run.seconds - seconds - run.phases['results'][1]
         print(f'  before the first step: {before:.2f} s of {run.seconds:.2f} s, {100*before/run.seconds:.1f} %; with '
               f'the first factor {100*(before + factoring/factors)/run.seconds:.1f} % (at most 10 % of 500 steps)')
-        # The upper triangle: a number of eight bytes and a column of four each.
-        matrix = 12*(run.matrix_numbers + run.unknowns)/2/1e6
-        factor = 8*run.factor_numbers/1e6
         print(f'  peak memory {run.peak_megabytes:.0f} MB, {bare:.0f} MB of it with four elements')
-        for name, size in (('factor', factor), ("MUMPS' own memory", run.working_megabytes)):
-            both = matrix + size
-            print(f'    over matrix {matrix:.0f} MB and {name} {size:.0f} MB: {run.peak_megabytes/both:.2f}, '
-                  f'{(run.peak_megabytes - bare)/both:.2f} without those (at most 1.5)')
+        for name, size in (('factor', run.factor_megabytes), ("the package's own memory", run.working_megabytes)):
+            both = run.matrix_megabytes + size
+            print(f'    over matrix {run.matrix_megabytes:.0f} MB and {name} {size:.0f} MB: '
+                  f'{run.peak_megabytes/both:.2f}, {(run.peak_megabytes - bare)/both:.2f} without those (at most 1.5)')
+
+
+def memory(program, arguments):
+    """Peak memory over matrix and factor for several sizes; how large a model keeps it to 1.5 times."""
+    more = f"&solver factorization='{arguments.factorization}' petsc_options='{arguments.petsc_options}' /"
+    bare = Run(program, 'linear', 2, 1e-6, 1e-6, more).peak_megabytes
+    print(f'MB; {bare:.0f} MB of each peak with four elements; in brackets the ratio without those')
+    print("| strains | unknowns | matrix | factor | package | peak | over matrix, factor | over matrix, package | "
+          'processor, s |')
+    print('|---|---|---|---|---|---|---|---|---|')
+    for kinematics, elements in (('linear', arguments.linear), ('von_karman', arguments.von_karman)):
+        for count in elements:
+            run = Run(program, kinematics, count, 1e-6, arguments.steps*1e-6, more)
+            ratios = ' | '.join(f'{run.peak_megabytes/both:.2f} ({(run.peak_megabytes - bare)/both:.2f})' for both in
+                                (run.matrix_megabytes + run.factor_megabytes,
+                                 run.matrix_megabytes + run.working_megabytes))
+            print(f'| {kinematics} | {run.unknowns} | {run.matrix_megabytes:.0f} | {run.factor_megabytes:.0f} | '
+                  f'{run.working_megabytes:.0f} | {run.peak_megabytes:.0f} | {ratios} | {run.seconds:.1f} |', flush=True)
 
 
 def speed(program, arguments):
@@ -238,6 +257,13 @@ def main():
     part.add_argument('--steps', type=int, default=500)
     part.add_argument('--finer', type=float, default=1, help='factor of the number of elements along a side')
     part.set_defaults(act=step_cost)
+    part = parts.add_parser('memory', help=memory.__doc__)
+    part.add_argument('--linear', type=int, nargs='*', default=[71, 100, 142, 205], help='elements along a side')
+    part.add_argument('--von-karman', type=int, nargs='*', default=[55, 77, 110, 159], help='likewise')
+    part.add_argument('--steps', type=int, default=5)
+    part.add_argument('--factorization', default='mumps')
+    part.add_argument('--petsc-options', default='')
+    part.set_defaults(act=memory)
     part = parts.add_parser('speed', help=speed.__doc__)
     part.add_argument('--elements', type=int, nargs='+', default=[8, 12, 16, 24])
     part.add_argument('--step', type=float, nargs='+', default=[8, 4, 2, 1], help='us')

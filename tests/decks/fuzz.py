@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Spoils valid decks at random and holds `implam check` against them: it must pass or refuse each, with exit
-code 0 or 2, never crash, hang or print a backtrace.
+code 0 or 2, never crash, hang or print a backtrace. Keys and groups that `implam explain` lists are put in at random.
 
 usage: fuzz.py IMPLAM [--count N] [--seed S] [--keep FOLDER] [DECK ...]
 
@@ -20,16 +20,58 @@ EXTREMES = [b"0", b"-0.0", b"1", b"-1", b"1e-300", b"1e300", b"1e999", b"1e-999"
             b"-Infinity", b"2147483647", b"2147483648", b"-2147483648", b"99999999999999999999", b"1.5", b".", b"1e",
             b"+", b"1e+", b"0x7f", b"1e99999999999999999999", b"3*", b"0*1", b"10000*1", b"9999999999*1", b"'1'", b"",
             b"1" * 500]
+PLAUSIBLE = [b"0", b"1", b"2", b"3", b"0.5", b"0.1", b"1e-3", b"0.02", b"1e-6", b"10", b"1e3", b"1e9", b"4, 4", b"0.02, 0.01",
+             b"'a'"]
 PIECES = [b"&", b"/", b"'", b'"', b"!", b"=", b",", b"(", b")", b"%", b"*", b"\n", b"\r", b"\0", b"\t", b"&end",
           b"&plate ", b"&material ", b"&time /", b"$", b";", b"2*'a'", b"'\n", b"//", b"\xff\xfe", b"\xc3\xa9",
           b" a=1 ", b".true.", b".false.", b"name='x'", b"T", b"-", b"e", b"x" * 5000, b"a=1 " * 300, b"'" * 301]
 
 
-def spoil(deck, chance):
+def vocabulary(program):
+    """Every key that `implam explain` lists, with its group and the words it takes."""
+    def explained(*words):
+        return subprocess.run([program, "explain", *words], stdout=subprocess.PIPE, timeout=60, check=True).stdout
+
+    known = []
+    for group in re.findall(rb"^  &(\w+)", explained(), re.MULTILINE):
+        for key, line in re.findall(rb"^  (\w+) .*\n +allowed: (.*)$", explained(group.decode()), re.MULTILINE):
+            known.append((group, key, re.findall(rb"'[^']*'|\.true\.|\.false\.", line)))
+    return known
+
+
+def entry(known, chance):
+    """A key with a value that suits it, or not; now and then in a group of its own."""
+    group, key, words = chance.choice(known)
+    values = chance.choices(words or PLAUSIBLE, k=chance.choice([1, 1, 1, 2, 3]))
+    if chance.randrange(4) == 0:
+        values = chance.choices(EXTREMES + PLAUSIBLE + [b"'x'", b".true."], k=chance.choice([1, 2]))
+    text = b" " + key + b"=" + b", ".join(values) + b" "
+    return b"\n&" + group + text + b"/\n" if chance.randrange(4) == 0 else text
+
+
+def enter(deck, known, chance):
+    """The deck with one more key, most often in the group it belongs to, in place of what is there or not."""
+    text = entry(known, chance)
+    if text.startswith(b"\n"):
+        return deck + text
+    key = text.split(b"=")[0].strip()
+    if chance.randrange(4):
+        deck = re.sub(rb"\b" + key + rb"\s*=[^=/\n]*(?=\s\w+\s*=|/|\n)", b"", deck)
+    groups = [group for group, name, _ in known if name == key]
+    places = [match.end() for match in re.finditer(rb"&(\w+)", deck) if match[1] in groups or chance.randrange(20) == 0]
+    if not places:
+        return deck + b"\n&" + groups[0] + text + b"/\n"
+    place = chance.choice(places)
+    return deck[:place] + text + deck[place:]
+
+
+def spoil(deck, known, chance):
     """The deck with one thing changed."""
     start = chance.randrange(len(deck) + 1)
     end = min(len(deck), start + int(chance.expovariate(1 / 12)) + 1)
-    kind = chance.randrange(9)
+    kind = chance.randrange(12)
+    if kind > 8:
+        return enter(deck, known, chance)
     if kind == 0:
         flipped = bytearray(deck)
         for _ in range(chance.randint(1, 8)):
@@ -89,13 +131,16 @@ def main():
         with open(path, "rb") as deck:
             seeds.append(deck.read())
     chance = random.Random(asked.seed)
+    known = vocabulary(os.path.abspath(asked.program))
+    if not known:
+        sys.exit("`implam explain` lists no keys.")
     broken = 0
     with tempfile.TemporaryDirectory() as work:
         path = os.path.join(work, "fuzz.nml")
         for number in range(asked.count):
             deck = chance.choice(seeds)
             for _ in range(chance.choice([1, 1, 2, 4, 10])):
-                deck = spoil(deck or b"&", chance)
+                deck = spoil(deck or b"&", known, chance)
             with open(path, "wb") as file:
                 file.write(deck[:500000])
             wrong = fault(os.path.abspath(asked.program), path)

@@ -4,7 +4,8 @@ Usage: restart_growth.py TRIAL IMPLAM FOLDER [LAUNCHER...]     (LAUNCHER takes t
 splits   just before and just after a step with the most growth, by every rule of growth and of energy release: bitwise
 moments  SIGTERM and SIGKILL while a step with several releases is being computed: bitwise, the same cells apart
 ranks    from 2 ranks to 1, from 1 to 2: to 1e-9
-rejected from checkpoints next to rejected steps, while delaminations grow: bitwise"""
+rejected from checkpoints next to rejected steps, while delaminations grow: bitwise
+fading   while failed plies lose their stiffness, with an operator factored before: bitwise"""
 
 import signal
 import sys
@@ -69,6 +70,31 @@ def check_splits(implam, folder, _):
                 later = history["delaminated_area"][-1] - history["delaminated_area"][step - 1]
                 require(later > 0, f"{name}: nothing grew after the split, the trial proves nothing.")
                 print(f"{name} split after step {step}: {1e6 * later:.0f} mm^2 grow after it, the same to the last bit")
+
+
+def steps_of_fading(history):
+    """Return the steps after which plies go on losing stiffness that failed before, and whose operator is older."""
+    failed = [sum(modes) for modes in zip(history["matrix_cracks"], history["matrix_crushings"],
+                                          history["fibre_failures"], strict=True)]
+    lost, factors = history["energy_ply_damage"], history["refactorisations"]
+    return [step for step in range(2, len(failed) - 1)
+            if failed[step] == failed[step - 2] > 0 and lost[step] > lost[step - 1] > lost[step - 2]
+            and factors[step - 1] == factors[step - 2]]
+
+
+def check_fading(implam, folder, _):
+    """Where the stiffness is half gone, and other than that of the lagging operator."""
+    settings = [*GROWING, f"ply_damage%fade={8 * STEP!r}"]
+    scout = run_deck(implam, write_deck(folder / "scout", DECK, [*settings, f"time%end={20 * STEP!r}"]))
+    steps = [step for step in steps_of_fading(read_history(scout)) if step > 2]
+    require(steps, "No plies fade while none fails: the trial proves nothing.")
+    for step in {steps[0], steps[-1]}:
+        deck = write_deck(folder / f"fading_{step}", DECK, split_after(step, settings))
+        reference = run_deck(implam, deck)
+        again = go_on(implam, copy_run(deck.parent, folder / "again"))
+        require_same(again, reference, f"split after step {step}")
+        require(damage_of(again) == damage_of(reference), "Other cells came apart or plies failed.")
+        print(f"Split after step {step}, while plies fade: the same to the last bit")
 
 
 def rows_written(folder):
@@ -141,7 +167,8 @@ def check_rejected(implam, folder, _):
     require(max(growth(read_history(histories[-1]))) > 0, "Nothing grew: the trial proves nothing.")
 
 
-TRIALS = {"splits": check_splits, "moments": check_moments, "ranks": check_ranks, "rejected": check_rejected}
+TRIALS = {"splits": check_splits, "moments": check_moments, "ranks": check_ranks, "rejected": check_rejected,
+          "fading": check_fading}
 
 
 if __name__ == "__main__":
