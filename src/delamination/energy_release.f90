@@ -45,9 +45,9 @@ contains
     end do
   end function two_state_release
 
-  !> Strains that a layer would have beyond a straight border to plies of another stiffness. Across the border the forces
-  !> and moments that act on it and the strains along it are the same; the strains across it differ. So a jump of
-  !> stiffness alone leaves no jump between states carried to one stiffness.
+  !> Strains that a layer would have beyond a straight border to plies of another stiffness. Across the border the
+  !> forces and moments that act on it and the strains along it are the same; the strains across it differ. So a
+  !> jump of stiffness alone leaves no jump between states carried to one stiffness.
   function carried_over(strains, from, to, direction) result(carried)
     !> Membrane strains, curvatures, transverse shear strains of the layer
     real(wp), intent(in) :: strains(8)
