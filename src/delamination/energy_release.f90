@@ -14,18 +14,20 @@
 !> between them; what both together release is found by `over_outside_cells`.
 module energy_release
   use delamination_fronts, only: front_segment_t
+  use dense_systems, only: solve_dense
   use kinds, only: wp
   use packed_matrices, only: unpacked
   implicit none
   private
-  public :: two_state_release, segment_mean, vcct_release, over_outside_cells
+  public :: two_state_release, carried_over, segment_mean, vcct_release, over_outside_cells
 
 contains
 
   !> Energy release rate at a node of the front from the strains on both of its sides, Eq. 11 with the
   !> sign of Eq. 9 put right: with the same stiffness on both sides, sum of N'(E' - E) - (N'E' - NE)/2
   !> is half the square of the jump of strain. The stiffness is that of the plies as they are, damaged or
-  !> not, on both sides: two different ones would count the damage as released.
+  !> not, and one for both sides: two different ones would count the damage as released. Strains found in cells of
+  !> another stiffness are first `carried_over`.
   pure real(wp) function two_state_release(stiffness, delaminated, intact) result(rate)
     !> Section stiffness of the layers above and below the interface, (21, layers)
     real(wp), intent(in) :: stiffness(:, :)
@@ -43,23 +45,58 @@ contains
     end do
   end function two_state_release
 
+  !> Strains that a layer would have beyond a straight border to plies of another stiffness. Across the border the
+  !> forces and moments that act on it and the strains along it are the same; the strains across it differ. So a
+  !> jump of stiffness alone leaves no jump between states carried to one stiffness.
+  function carried_over(strains, from, to, direction) result(carried)
+    !> Membrane strains, curvatures, transverse shear strains of the layer
+    real(wp), intent(in) :: strains(8)
+    !> Section stiffness where they were found and beyond the border
+    real(wp), intent(in) :: from(21), to(21)
+    !> Normal of the border: x (1) or y (2)
+    integer, intent(in) :: direction
+    !> The strains beyond the border
+    real(wp) :: carried(8)
+    integer, parameter :: across(5, 2) = reshape([1, 3, 4, 6, 7, 2, 3, 5, 6, 8], [5, 2])
+    real(wp) :: matrix(8, 8), force(8), change(5)
+    logical :: singular
+
+    carried = strains
+    if (all(abs(to - from) <= 0)) return
+    matrix = full_stiffness(to)
+    force = matmul(full_stiffness(from) - matrix, strains)
+    associate (n => across(:, direction))
+      change = force(n)
+      ! Positive definite, as every section stiffness is.
+      call solve_dense(matrix(n, n), change, singular)
+      carried(n) = strains(n) + change
+    end associate
+  end function carried_over
+
+  !> Section stiffness as a full matrix.
+  pure function full_stiffness(packed) result(full)
+    !> Section stiffness
+    real(wp), intent(in) :: packed(21)
+    !> Forces, moments and transverse shear forces of unit strains
+    real(wp) :: full(8, 8)
+
+    full = 0
+    full(1:3, 1:3) = unpacked(packed(1:6))
+    full(1:3, 4:6) = unpacked(packed(7:12))
+    full(4:6, 1:3) = full(1:3, 4:6)
+    full(4:6, 4:6) = unpacked(packed(13:18))
+    full(7, 7:8) = packed(19:20)
+    full(8, 7:8) = packed(20:21)
+  end function full_stiffness
+
   !> Elastic energy per area of generalised strains.
   pure real(wp) function strain_energy(stiffness, strains) result(energy)
     !> Section stiffness
     real(wp), intent(in) :: stiffness(21)
     !> Membrane strains, curvatures, transverse shear strains
     real(wp), intent(in) :: strains(8)
-    real(wp) :: stretching(3, 3), coupling(3, 3), bending(3, 3), force(3), moment(3)
 
-    stretching = unpacked(stiffness(1:6))
-    coupling = unpacked(stiffness(7:12))
-    bending = unpacked(stiffness(13:18))
-    associate (membrane => strains(1:3), curvature => strains(4:6), shear => strains(7:8))
-      force = matmul(stretching, membrane) + matmul(coupling, curvature)
-      moment = matmul(coupling, membrane) + matmul(bending, curvature)
-      energy = (dot_product(force, membrane) + dot_product(moment, curvature) + &
-                stiffness(19)*shear(1)**2 + stiffness(21)*shear(2)**2)/2 + stiffness(20)*shear(1)*shear(2)
-    end associate
+    energy = dot_product(strains, matmul(full_stiffness(stiffness), strains))/2
   end function strain_energy
 
   !> Energy release rate of a segment from those of its three nodes (step 3 of section 3.3.3).

@@ -60,8 +60,14 @@ module lagrange9
   real(wp), parameter, public :: row_samples(6, 9) = lines2(p6, i9)*values3(line6, j9)
   !> The same sampled at xi = -1, 0, 1, eta = -+1/sqrt(3) (sample p + 2 i, point).
   real(wp), parameter, public :: column_samples(6, 9) = lines2(p6, j9)*values3(line6, i9)
-  !> Extrapolation from the 3x3 Gauss points to the nodes (point, node).
-  real(wp), parameter, public :: extrapolation(9, 9) = extrapolation3(i9, i9)*extrapolation3(j9, j9)
+  !> Values at the three nodes of a line of the straight line that fits best at its Gauss points (point, node). It
+  !> meets the parabola through them at the 2-point rule.
+  real(wp), parameter :: fitted3(3, 3) = reshape( &
+    [5.0_wp/18.0_wp + gauss3/1.2_wp, 4.0_wp/9.0_wp, 5.0_wp/18.0_wp - gauss3/1.2_wp, &
+     5.0_wp/18.0_wp, 4.0_wp/9.0_wp, 5.0_wp/18.0_wp, &
+     5.0_wp/18.0_wp - gauss3/1.2_wp, 4.0_wp/9.0_wp, 5.0_wp/18.0_wp + gauss3/1.2_wp], [3, 3])
+  !> From the 3x3 Gauss points to the nodes by way of the 2x2 Gauss points, bilinear through these (point, node).
+  real(wp), parameter, public :: superconvergent_nodes(9, 9) = fitted3(i9, i9)*fitted3(j9, j9)
 
 contains
 

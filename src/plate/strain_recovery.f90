@@ -2,7 +2,7 @@
 !> carried to the nodes from inside each element (one-sided), and as means.
 module strain_recovery
   use kinds, only: wp
-  use lagrange9, only: extrapolation, gauss2_to_gauss3
+  use lagrange9, only: superconvergent_nodes, gauss2_to_gauss3
   use plate_options, only: shear_selective
   use element_batches, only: element_batches_t, lanes
   use reference_fields, only: gather
@@ -40,7 +40,9 @@ contains
     end if
   end subroutine gauss_strains
 
-  !> Strains at the nodes of a batch, from the parabolas through the Gauss points of each element.
+  !> Strains at the nodes of a batch, bilinear through the 2x2 Gauss points of each element, where strains of nine-node
+  !> elements are most accurate. Parabolas through the 3x3 points carry errors of the quadratic part to the nodes: at
+  !> the front of a square delamination of four cells a side they left 8 % of the energy release rate out.
   subroutine nodal_strains(batches, b, kinematics, u, strains)
     !> The elements
     type(element_batches_t), intent(in) :: batches
@@ -57,7 +59,7 @@ contains
 
     call gauss_strains(batches, b, kinematics, u, at_gauss)
     do component = 1, 8
-      strains(:, :, component) = matmul(at_gauss(:, :, component), extrapolation)
+      strains(:, :, component) = matmul(at_gauss(:, :, component), superconvergent_nodes)
     end do
   end subroutine nodal_strains
 

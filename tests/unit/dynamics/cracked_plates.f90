@@ -5,6 +5,7 @@ module cracked_plates
   use mpi_f08, only: MPI_COMM_SELF
   use communicators, only: communicator_from_handle
   use plate_options, only: kinematics_linear
+  use element_batches, only: lanes
   use mesh_parameters, only: edge_free, edge_clamped, symmetry_none, symmetry_quarter
   use material_parameters, only: material_t
   use delamination_parameters, only: contact_none
@@ -36,6 +37,8 @@ module cracked_plates
     procedure :: pull
     !> Adds a force on the patch, half of it on the lower layer.
     procedure :: strike
+    !> Softens the layers of all cells of some columns.
+    procedure :: soften
     !> Finds equilibrium.
     procedure :: settle
     !> Strain energy of the modelled part.
@@ -193,6 +196,28 @@ contains
       end do
     end associate
   end subroutine strike
+
+  !> Softens the layers of all cells of some columns.
+  subroutine soften(self, columns, factor)
+    class(cracked_plate_t), intent(inout) :: self
+    integer, intent(in) :: columns(2)
+    !> New stiffness over that before
+    real(wp), intent(in) :: factor
+    integer :: e, column, row
+
+    associate (model => self%model)
+      do e = 1, size(model%distribution%elements)
+        do column = columns(1), columns(2)
+          do row = 1, model%mesh%cells(2)
+            if (model%mesh%element_cell(model%distribution%elements(e)) /= model%mesh%cell_at(column, row)) cycle
+            associate (values => model%elements%stiffness(1 + modulo(e - 1, lanes), :, 1 + (e - 1)/lanes))
+              values = factor*values
+            end associate
+          end do
+        end do
+      end do
+    end associate
+  end subroutine soften
 
   !> Finds equilibrium from rest.
   subroutine settle(self)
