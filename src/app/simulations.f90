@@ -261,7 +261,7 @@ contains
   subroutine warn(self)
     !> The run
     class(simulation_t), intent(inout) :: self
-    real(wp) :: energy, owed
+    real(wp) :: energy, created
     real(wp), parameter :: much = 0.01_wp
 
     associate (now => self%march%now)
@@ -271,9 +271,9 @@ contains
         self%warned_of_border = .true.
       end if
       energy = max(now%ledger%initial, now%ledger%kinetic + now%ledger%strain)
-      ! What fracture has been booked to take but has not set free yet is owed by the fronts, and no one's creation.
-      owed = sum(max(0.0_wp, now%ties%asked - now%ties%set_free))
-      if (-(now%ledger%algorithmic + owed) > much*energy .and. .not. self%warned_of_energy .and. .not. self%deck%has_static) then
+      ! What has been booked as fracture but not been set free yet is owed by the fronts: no integrator made it.
+      created = -now%ledger%algorithmic - sum(now%ties%debt())
+      if (created > much*energy .and. .not. self%warned_of_energy .and. .not. self%deck%has_static) then
         call self%log%warning('The time integrators have created more than 1 % of the energy by time '// &
                               to_text(now%time)//': take smaller steps, or more damping (rho_inf) with delamination.')
         self%warned_of_energy = .true.

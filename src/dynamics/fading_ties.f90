@@ -41,6 +41,8 @@ module fading_ties
     procedure :: act
     !> Books the work against the forces in a step.
     procedure :: book
+    !> Energy that each interface owes.
+    procedure :: debt
     !> Times its toughness that a front must offer for the next cell.
     procedure :: demand
     !> Saves or loads.
@@ -202,18 +204,30 @@ contains
     self%set_free = self%set_free + sums(2:)
   end subroutine book
 
+  !> Energy that each interface owes: what the toughness of its cells asks for beyond what they set free.
+  pure function debt(self)
+    !> The ties
+    class(fading_ties_t), intent(in) :: self
+    !> Energy, none negative: what is set free beyond what is asked for went into the motion, (zones)
+    real(wp) :: debt(size(self%asked))
+
+    debt = max(0.0_wp, self%asked - self%set_free)
+  end function debt
+
   !> Times its toughness that a front must offer for the next cell.
   pure real(wp) function demand(self, zone, energy)
     !> The ties
     class(fading_ties_t), intent(in) :: self
     !> Index of the zone
     integer, intent(in) :: zone
-    !> Energy that the toughness of the cell asks for
+    !> Energy that the toughness of the cell asks for, of this one cell also under symmetry
     real(wp), intent(in) :: energy
-    !> Cells whose debt doubles what is asked: a debt of more than two or three cells does not last
-    real(wp), parameter :: patience = 10
+    !> Cells all around whose debt doubles what is asked: ten in each quarter
+    real(wp), parameter :: patience = 40
 
-    demand = 1 + max(0.0_wp, self%asked(zone) - self%set_free(zone))/(patience*energy)
+    associate (debt => self%debt())
+      demand = 1 + debt(zone)/(patience*energy)
+    end associate
   end function demand
 
   !> Saves or loads.

@@ -67,7 +67,7 @@ contains
         if (segment%at_border .or. front%ratio(s) < enough) cycle
         if (region%is_delaminated(segment%outside(1), segment%outside(2))) cycle
         call region%release(segment%outside)
-        energy = cell_energy(s)
+        energy = cell_energy(s)*model%mesh%multiplicity
         ! The integrators cannot tell the energy that fracture takes from their own losses.
         state%ledger%delamination = state%ledger%delamination + energy
         state%ledger%algorithmic = state%ledger%algorithmic - energy
@@ -79,13 +79,13 @@ contains
 
   contains
 
-    !> Energy that the toughness of the cell ahead of a segment asks for, of the whole plate.
+    !> Energy that the toughness of the cell ahead of a segment asks for.
     pure real(wp) function cell_energy(s)
       !> Segment
       integer, intent(in) :: s
 
       cell_energy = critical_release_rate(model%scene%delaminations(zone), front%modes(:, s)) &
-                    *model%mesh%cell_area(front%segments(s)%outside)*model%mesh%multiplicity
+                    *model%mesh%cell_area(front%segments(s)%outside)
     end function cell_energy
   end subroutine release_cells
 

@@ -118,7 +118,8 @@ def memory(program, arguments):
                                 (run.matrix_megabytes + run.factor_megabytes,
                                  run.matrix_megabytes + run.working_megabytes))
             print(f'| {kinematics} | {run.unknowns} | {run.matrix_megabytes:.0f} | {run.factor_megabytes:.0f} | '
-                  f'{run.working_megabytes:.0f} | {run.peak_megabytes:.0f} | {ratios} | {run.seconds:.1f} |', flush=True)
+                  f'{run.working_megabytes:.0f} | {run.peak_megabytes:.0f} | {ratios} | {run.seconds:.1f} |',
+                  flush=True)
 
 
 def speed(program, arguments):
