@@ -4,6 +4,8 @@ module front_releases
   use delamination_parameters, only: release_two_state
   use delamination_fronts, only: front_segment_t, find_front
   use energy_release, only: vcct_release, over_outside_cells
+  use front_smoothing, only: smoothed_along_front
+  use mesh_parameters, only: symmetry_quarter
   use fracture_criteria, only: release_ratio
   use plate_integrators, only: motion_t
   use separations, only: separation_t
@@ -50,7 +52,7 @@ contains
     front%ratio = [(release_ratio(model%scene%delaminations(zone), front%modes(:, s)), s=1, size(front%segments))]
   end function release_along_front
 
-  !> Rates by virtual crack closure, those of the edges into the same cell put together.
+  !> Rates by virtual crack closure, smoothed along the front, those of the edges into the same cell put together.
   function vcct_rates(model, motion, zone, segments) result(modes)
     !> The model
     type(model_t), intent(in) :: model
@@ -83,7 +85,8 @@ contains
       modes(:, s) = vcct_release(segments(s), reshape(values(36*s - 35:36*s - 18), [3, 2, 3]), &
                                  reshape(values(36*s - 17:36*s), [3, 2, 3]))
     end do
-    modes = over_outside_cells(segments, modes)
+    modes = over_outside_cells(segments, smoothed_along_front(segments, model%thickness, &
+      model%scene%plate%symmetry == symmetry_quarter, modes))
   end function vcct_rates
 
   !> Force that holds the jump at a node, on the rank that owns it: external less internal and inertia forces.
