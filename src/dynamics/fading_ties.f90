@@ -13,6 +13,7 @@
 module fading_ties
   use kinds, only: wp
   use archives, only: archive_t
+  use delamination_parameters, only: contact_none
   use models, only: model_t
   implicit none
   private
@@ -88,7 +89,8 @@ contains
     end function mean_length
   end function new_fading_ties
 
-  !> Lets the ties go whose jumps have become free; where the faces press on each other contact takes over at once.
+  !> Lets the ties go whose jumps have become free; where the faces press on each other contact takes over at once, if
+  !> there is any.
   pure subroutine let_go(self, model, free_before, free, forces)
     !> The ties
     class(fading_ties_t), intent(inout) :: self
@@ -102,7 +104,8 @@ contains
 
     do i = 1, model%distribution%owned
       if (free_before(i) .or. .not. free(i)) cycle
-      self%force(:, i) = [forces(1:2, i), min(0.0_wp, forces(3, i))]
+      self%force(:, i) = forces(:, i)
+      if (model%scene%delaminations(model%zone(i))%contact /= contact_none) self%force(3, i) = min(0.0_wp, forces(3, i))
       self%share(i) = 1
     end do
     self%left = maxval(self%duration)

@@ -1,7 +1,7 @@
 !> Growth of delaminations: which cells come apart in a state, and what that costs.
 module front_growth
   use kinds, only: wp
-  use delamination_parameters, only: growth_one_per_step
+  use delamination_parameters, only: growth_one_per_step, unloading_glued
   use fracture_criteria, only: critical_release_rate
   use front_releases, only: front_release_t, release_along_front
   use states, only: state_t
@@ -52,13 +52,17 @@ contains
     !> Set true if cells came apart
     logical, intent(inout) :: grown
     real(wp) :: largest, enough, energy, demand
-    integer :: s
+    integer :: s, foremost
 
     ! Where the layers end, virtual crack closure finds no force to close: a rate cannot tell that growth is barred.
     state%border_reached = state%border_reached .or. any(front%segments%at_border)
-    largest = maxval(front%ratio, mask=.not. front%segments%at_border)
+    foremost = maxloc(front%ratio, mask=.not. front%segments%at_border, dim=1)
+    ! A delamination that fills its zone has no front but the border; faces that are glued cannot come apart.
+    if (foremost == 0) return
+    if (state%separation%glued .and. model%scene%delaminations(zone)%unloading == unloading_glued) return
+    largest = front%ratio(foremost)
     state%growth_ratio = max(state%growth_ratio, largest)
-    demand = state%ties%demand(zone, cell_energy(findloc(front%ratio, largest, dim=1)))
+    demand = state%ties%demand(zone, cell_energy(foremost))
     if (.not. largest > demand) return
     enough = max(demand, together*largest)
     if (model%scene%delaminations(zone)%growth == growth_one_per_step) enough = largest

@@ -82,7 +82,7 @@ contains
 
     changes = model%scene%kinematics /= kinematics_linear
     if (changes .or. .not. model%map%layered) return
-    ! Cells may have come apart since the step before; later only contacts change.
+    ! Plies may have failed since the step before; later only contacts change.
     changes = iterations == 0 .or. any(model%scene%delaminations%contact /= contact_none)
   end function changes
 
