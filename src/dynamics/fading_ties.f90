@@ -34,8 +34,8 @@ module fading_ties
   contains
     !> Lets ties go.
     procedure :: let_go
-    !> Accounts for the first opening of ties just let go.
-    procedure :: open
+    !> Energy that ties just let go set free as they first open.
+    procedure :: first_opening
     !> Fades the forces over a step.
     procedure :: fade
     !> Adds the forces to a residual.
@@ -111,30 +111,31 @@ contains
     self%left = maxval(self%duration)
   end subroutine let_go
 
-  !> Accounts for the first opening of ties just let go, once the step has been computed again without them. What cells
-  !> let go later in the same step make of the opening is theirs.
-  subroutine open(self, model, free_before, free, opening)
+  !> Energy that ties just let go set free as they first open, once the step has been computed again without them. What
+  !> cells let go later in the same step make of the opening is theirs.
+  function first_opening(self, model, free_before, free, opening) result(energy)
     !> The ties at the end of the step
-    class(fading_ties_t), intent(inout) :: self
+    class(fading_ties_t), intent(in) :: self
     !> The model
     type(model_t), intent(in) :: model
     !> True where jumps were free and where they are now, (local points)
     logical, intent(in) :: free_before(:), free(:)
     !> Jumps, (5, points)
     real(wp), intent(in) :: opening(:, :)
-    real(wp) :: sums(size(self%asked))
+    !> The energy, of the whole plate, (zones)
+    real(wp) :: energy(size(self%asked))
     integer :: i
 
-    sums = 0
+    energy = 0
     do i = 1, model%distribution%owned
       if (free_before(i) .or. .not. free(i)) cycle
       associate (zone => model%zone(i))
-        sums(zone) = sums(zone) - (1 - self%share(i))/2*dot_product(self%force(:, i), opening(1:3, i))
+        energy(zone) = energy(zone) - (1 - self%share(i))/2*dot_product(self%force(:, i), opening(1:3, i))
       end associate
     end do
-    call model%communicator%sum(sums)
-    self%set_free = self%set_free + sums*model%mesh%multiplicity
-  end subroutine open
+    call model%communicator%sum(energy)
+    energy = energy*model%mesh%multiplicity
+  end function first_opening
 
   !> Fades the forces over a step.
   pure subroutine fade(self, model, step)
@@ -175,7 +176,7 @@ contains
 
   !> Books the work against the forces in a step: as the step had it, the force at its end acting throughout, and as
   !> the account has it, with the mean of the forces at its start and end. Of ties let go in this step the difference
-  !> is what `open` accounts for.
+  !> is that of `first_opening`.
   subroutine book(self, model, old, change, taken)
     !> The ties at the end of the step
     class(fading_ties_t), intent(inout) :: self

@@ -181,7 +181,7 @@ contains
     type(error_t), allocatable, intent(inout) :: error
     type(state_t) :: start
     type(fading_ties_t) :: ties
-    real(wp), allocatable :: guess(:, :), before(:)
+    real(wp), allocatable :: guess(:, :), opened(:)
     logical, allocatable :: free(:)
     logical :: grown
 
@@ -207,9 +207,9 @@ contains
                         guess)
       if (.not. converged .or. allocated(error)) return
       associate (trial => self%trial)
-        before = trial%ties%set_free
-        call trial%ties%open(model, free, trial%separation%free, trial%motion%displacement)
-        ties%set_free = ties%set_free + (trial%ties%set_free - before)
+        opened = trial%ties%first_opening(model, free, trial%separation%free, trial%motion%displacement)
+        trial%ties%set_free = trial%ties%set_free + opened
+        ties%set_free = ties%set_free + opened
       end associate
     end do
   end subroutine let_grow

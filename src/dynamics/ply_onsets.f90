@@ -69,25 +69,47 @@ contains
     logical, intent(inout) :: found(:)
     real(wp) :: before(lanes, 8), after(lanes, 8)
     real(wp), allocatable :: motion_before(:, :), motion_after(:, :)
+    logical, allocatable :: failing(:, :)
     integer :: b, lane
 
     motion_before = model%motion_of(old%motion%displacement)
     motion_after = model%motion_of(new%motion%displacement)
     do b = 1, model%elements%batches
-      call mean_strains(model%elements, b, model%scene%kinematics, motion_before, before)
       call mean_strains(model%elements, b, model%scene%kinematics, motion_after, after)
       do lane = 1, model%elements%lanes_used(b)
         associate (element => first_element(b) + lane - 1)
-          call find_in_element(self, model, element, before(lane, :), after(lane, :), [old%time, new%time], &
-                               found(element))
+          failing = failing_anew(self, model, element, after(lane, :))
+          if (.not. any(failing)) cycle
+          found(element) = .true.
+          call mean_strains(model%elements, b, model%scene%kinematics, motion_before, before)
+          call note_start(self, model, element, before(lane, :), after(lane, :), [old%time, new%time], failing)
         end associate
       end do
     end do
   end subroutine find
 
-  !> Finds the new failures of one element. What a criterion measures is taken to go straight through the step, so
+  !> Modes of an element's plies whose criteria are met for the first time.
+  function failing_anew(self, model, element, strains) result(failing)
+    !> The onsets
+    type(ply_onset_t), intent(in) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Element of this rank
+    integer, intent(in) :: element
+    !> Its mean strains after the step
+    real(wp), intent(in) :: strains(8)
+    !> True where that is so, (modes, plies of the element)
+    logical, allocatable :: failing(:, :)
+
+    associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
+      failing = failure_measures(model, element, self%elasticities(model, element), strains) >= 1 .and. &
+                self%start(:, range(1):range(2), element) >= never
+    end associate
+  end function failing_anew
+
+  !> Notes when within a step modes were met. What a criterion measures is taken to go straight through the step, so
   !> that the time found hardly depends on the length of the step.
-  subroutine find_in_element(self, model, element, before, after, times, found)
+  subroutine note_start(self, model, element, before, after, times, failing)
     !> The onsets
     type(ply_onset_t), intent(inout) :: self
     !> The model
@@ -98,24 +120,20 @@ contains
     real(wp), intent(in) :: before(8), after(8)
     !> The times of both
     real(wp), intent(in) :: times(2)
-    !> Set to true if there are any
-    logical, intent(inout) :: found
+    !> The modes, (modes, plies of the element)
+    logical, intent(in) :: failing(:, :)
     type(elasticity_t), allocatable :: elasticity(:)
     real(wp), allocatable :: first(:, :), last(:, :)
-    logical, allocatable :: new(:, :)
 
     elasticity = self%elasticities(model, element)
+    first = min(failure_measures(model, element, elasticity, before), 1.0_wp)
     last = failure_measures(model, element, elasticity, after)
     associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
       associate (start => self%start(:, range(1):range(2), element))
-        new = last >= 1 .and. start >= never
-        if (.not. any(new)) return
-        found = .true.
-        first = min(failure_measures(model, element, elasticity, before), 1.0_wp)
-        where (new) start = times(2) - (times(2) - times(1))*(last - 1)/max(last - first, tiny(1.0_wp))
+        where (failing) start = times(2) - (times(2) - times(1))*(last - 1)/max(last - first, tiny(1.0_wp))
       end associate
     end associate
-  end subroutine find_in_element
+  end subroutine note_start
 
   !> Lets time go on to the end of a step like the last one. It never goes back, also where steps become shorter.
   pure subroutine go_on(self, old, new)

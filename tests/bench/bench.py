@@ -183,15 +183,56 @@ def spread(program, arguments):
     runs = {}
     for side in arguments.cell:
         runs[side, 1] = Peanut(program, side, 1)
-    if arguments.halved:
-        runs[arguments.halved, 2] = Peanut(program, arguments.halved, 2)
+    for parts in arguments.parts:
+        runs[arguments.halved, parts] = Peanut(program, arguments.halved, parts)
     finest = sorted(arguments.cell)[:2]
     pairs = [('finest two meshes', runs[finest[1], 1], runs[finest[0], 1])] if len(finest) > 1 else []
     if (arguments.halved, 1) in runs:
-        pairs.append(('half the step', runs[arguments.halved, 1], runs[arguments.halved, 2]))
+        pairs += [(f'step over {parts}', runs[arguments.halved, 1], runs[arguments.halved, parts])
+                  for parts in arguments.parts]
     for name, rough, fine in pairs:
         print(f'{name}: first growth {100*(fine.growth/rough.growth - 1):+.1f} %, peak force '
               f'{100*(fine.peak/rough.peak - 1):+.1f} %, area {100*(fine.area/rough.area - 1):+.1f} %')
+
+
+def run_deck(program, deck, folder):
+    """Runs a deck given as text into a folder; seconds of the processor."""
+    folder.joinpath('deck.nml').write_text(deck)
+    process = subprocess.Popen([program, folder/'deck.nml', '--output', folder], stdout=subprocess.DEVNULL,
+                               env=ENVIRONMENT)
+    _, status, usage = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    if process.returncode:
+        sys.exit(f'The run failed with exit code {process.returncode}.')
+    return usage.ru_utime + usage.ru_stime
+
+
+def history(folder):
+    """Rows of the only history in a folder."""
+    with next(folder.glob('*_history.csv')).open() as lines:
+        return [{key: float(value) for key, value in row.items()} for row in
+                csv.DictReader(line for line in lines if not line.startswith('#'))]
+
+
+def growth(program, arguments):
+    """Forces at which fronts grow and the energy they release: the threshold deck, and steps of a cross-ply."""
+    decks = pathlib.Path(__file__).parents[2]/'input'
+    crossply = decks.joinpath('reference/crossply_2mm.nml').read_text()
+    crossply = crossply.replace("'two_state'", "'vcct'").replace("'one_per_step'", "'equilibrium'")
+    runs = [('crossply_threshold', decks.joinpath('crossply_threshold.nml').read_text())]
+    runs += [('crossply_2mm', re.sub(r'step=\S+', f'step={step}e-6', crossply)) for step in arguments.step]
+    print('| deck | step, us | force in steps with growth, N | area, mm^2 | released over booked | algorithmic, J |')
+    print('|---|---|---|---|---|---|')
+    for name, deck in runs:
+        with tempfile.TemporaryDirectory() as folder:
+            run_deck(program, deck, pathlib.Path(folder))
+            rows = history(pathlib.Path(folder))
+        force = statistics.mean(later['force'] for row, later in itertools.pairwise(rows)
+                                if later['delaminated_area'] > row['delaminated_area'])
+        step = 1e6*float(re.search(r'step=(\S+)', deck)[1])
+        print(f'| {name} | {step:g} | {force:.0f} | {1e6*rows[-1]["delaminated_area"]:.0f} | '
+              f'{rows[-1]["energy_released"]/rows[-1]["energy_delamination"]:.3f} | '
+              f'{rows[-1]["energy_algorithmic"]:.4f} |', flush=True)
 
 
 class Peanut:
@@ -209,22 +250,11 @@ class Peanut:
         deck = deck.replace(re.search(r'cell=\S+', deck)[0], f'cell={1e-3*side}')
         deck = deck.replace(re.search(r'step=\S+', deck)[0], f'step={step/finer_steps}')
         with tempfile.TemporaryDirectory() as folder:
-            seconds = self.run(program, deck, pathlib.Path(folder))
+            seconds = run_deck(program, deck, pathlib.Path(folder))
             self.read(pathlib.Path(folder))
         print(f'| {side:g} | {1e6*step/finer_steps:g} | {self.unknowns} | {self.growth:.0f} | {self.peak:.0f} | '
               f'{self.area:.0f} | {self.along:.1f} x {self.across:.1f} | {self.waist:.1f} | {self.cracks} | '
               f'{self.fibres} | {seconds:.0f} |', flush=True)
-
-    def run(self, program, deck, folder):
-        """Seconds of the processor."""
-        folder.joinpath('peanut.nml').write_text(deck)
-        process = subprocess.Popen([program, folder/'peanut.nml', '--output', folder], stdout=subprocess.DEVNULL,
-                                   env=ENVIRONMENT)
-        _, status, usage = os.wait4(process.pid, 0)
-        process.returncode = os.waitstatus_to_exitcode(status)
-        if process.returncode:
-            sys.exit(f'The run failed with exit code {process.returncode}.')
-        return usage.ru_utime + usage.ru_stime
 
     def read(self, folder):
         """What the table shows."""
@@ -232,9 +262,7 @@ class Peanut:
         sys.path.insert(0, str(pathlib.Path(__file__).parents[2]/'postproc'))
         from implam_post.fields import extents, read_fields
         self.unknowns = int(re.search(r'(\d+) unknowns', folder.joinpath('peanut.log').read_text())[1])
-        with open(folder/'peanut_history.csv') as lines:
-            rows = [{key: float(value) for key, value in row.items()} for row in
-                    csv.DictReader(line for line in lines if not line.startswith('#'))]
+        rows = history(folder)
         self.peak = max(row['force'] for row in rows)
         # In the last step before growth G is short of its critical value by a little, and goes with the force squared.
         still = next(row for row, later in itertools.pairwise(rows)
@@ -277,9 +305,13 @@ def main():
     part.add_argument('--repeat', type=int, default=10)
     part.set_defaults(act=absent_physics)
     part = parts.add_parser('mesh-study', help=spread.__doc__)
-    part.add_argument('--cell', type=float, nargs='+', default=[1.2, 0.8, 0.6], help='mm; a divisor of 2.4')
-    part.add_argument('--halved', type=float, default=0.8, help='the mesh that is also run with half the step')
+    part.add_argument('--cell', type=float, nargs='+', default=[1.2, 0.8, 0.6, 0.48], help='mm; a divisor of 2.4')
+    part.add_argument('--halved', type=float, default=0.8, help='the mesh that is also run with shorter steps')
+    part.add_argument('--parts', type=int, nargs='*', default=[2, 4], help='into which its steps are divided')
     part.set_defaults(act=spread)
+    part = parts.add_parser('growth', help=growth.__doc__)
+    part.add_argument('--step', type=float, nargs='*', default=[16, 8, 4, 2, 1], help='us')
+    part.set_defaults(act=growth)
     arguments = parser.parse_args()
     arguments.act(os.path.abspath(arguments.program), arguments)
 
