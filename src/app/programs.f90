@@ -4,6 +4,7 @@ module programs
   use errors, only: error_t, exit_done
   use text, only: line_t
   use communicators, only: communicator_t, start_mpi, finish_mpi
+  use launchers, only: launched
   use petsc_session, only: start_petsc, finish_petsc
   use dynamics_parameters, only: factorization_cholmod
   use deck_contents, only: deck_t
@@ -23,7 +24,8 @@ module programs
 
 contains
 
-  !> Does what the command line asks.
+  !> Does what the command line asks. Without a launcher MPI starts only when there is something to compute: what
+  !> reads or explains decks then answers at once, also on machines where MPI must not start.
   subroutine run_program(code)
     !> Exit code
     integer, intent(out) :: code
@@ -32,7 +34,7 @@ contains
     type(error_t), allocatable :: error
 
     code = exit_done
-    call start_mpi(communicator)
+    if (launched()) call start_mpi(communicator)
     call read_command_line(command, error)
     if (.not. allocated(error)) then
       select case (command%verb)
@@ -138,8 +140,8 @@ contains
   subroutine compute(command, communicator, code, error)
     !> What is asked
     type(command_t), intent(in) :: command
-    !> The ranks
-    type(communicator_t), intent(in) :: communicator
+    !> The ranks; MPI is started here if it was not before
+    type(communicator_t), intent(inout) :: communicator
     !> Exit code
     integer, intent(inout) :: code
     !> Set if the run fails
@@ -148,7 +150,9 @@ contains
     type(problems_t) :: problems
     type(simulation_t), allocatable :: simulation
 
+    ! A checkpoint is read through MPI.
     if (command%verb == verb_restart) then
+      call start_mpi(communicator)
       call read_checkpoint_deck(command%target, communicator, deck, problems, error)
       if (allocated(error)) return
     else
@@ -160,6 +164,7 @@ contains
     call print_lines(communicator, problems%lines())
     if (code /= exit_done) return
     if (allocated(command%output)) deck%output%directory = command%output
+    call start_mpi(communicator)
     call start_petsc(communicator, deck%solver%petsc_options//command%petsc_options, error)
     if (allocated(error)) return
     call catch_stop_signals()

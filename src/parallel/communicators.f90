@@ -33,7 +33,7 @@ module communicators
 
 contains
 
-  !> Starts MPI and hands over the communicator of all ranks.
+  !> Starts MPI, unless it runs, and hands over the communicator of all ranks.
   subroutine start_mpi(communicator)
     !> All ranks of the run
     type(communicator_t), intent(out) :: communicator
@@ -65,9 +65,12 @@ contains
     status = setenv('OMPI_MCA_sharedfp'//c_null_char, '^sm'//c_null_char, 0_c_int)
   end subroutine avoid_named_semaphores
 
-  !> Ends MPI; nothing may be said between ranks afterwards.
+  !> Ends MPI if it was started; nothing may be said between ranks afterwards.
   subroutine finish_mpi()
-    call MPI_Finalize()
+    logical :: running
+
+    call MPI_Initialized(running)
+    if (running) call MPI_Finalize()
   end subroutine finish_mpi
 
   !> The communicator behind an integer handle.
