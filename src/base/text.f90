@@ -55,7 +55,8 @@ contains
     real(wp) :: again
     integer :: places, status
 
-    do places = 0, 16
+    ! What fewer digits give ends in zeros here, so that only these have to be tried.
+    do places = 14, 16
       write (form, '(a,i0,a)') '(es40.', places, ')'
       write (buffer, form) value
       read (buffer, *, iostat=status) again
@@ -64,7 +65,7 @@ contains
     digits = plain_decimal(trim(adjustl(buffer)))
   end function real_to_text
 
-  !> A number in scientific form without its exponent where that is easier to read.
+  !> A number in scientific form without trailing zeros, and without its exponent where that is easier to read.
   pure function plain_decimal(scientific) result(plain)
     !> Such as -2.50E-01
     character(len=*), intent(in) :: scientific
@@ -79,8 +80,8 @@ contains
     read (plain(mark + 1:), *) exponent
     sign = ''
     if (plain(1:1) == '-') sign = '-'
-    digits = plain(len(sign) + 1:len(sign) + 1)
-    if (mark > len(sign) + 3) digits = digits//plain(len(sign) + 3:mark - 1)
+    digits = plain(len(sign) + 1:len(sign) + 1)//plain(len(sign) + 3:mark - 1)
+    digits = digits(:max(1, verify(digits, '0', back=.true.)))
     if (exponent < -4 .or. exponent > 6) then
       plain = sign//digits(1:1)
       if (len(digits) > 1) plain = plain//'.'//digits(2:)

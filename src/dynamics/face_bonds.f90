@@ -131,6 +131,7 @@ contains
     real(wp), intent(inout) :: correction(:, :)
     integer :: i
 
+    if (.not. model%map%layered) return
     do i = 1, size(correction, 2)
       if (self%bond(model, i) == bond_held) correction(1:3, i) = 0
     end do

@@ -25,7 +25,7 @@ module marches
   !> All that evolves during a run.
   type :: march_t
     !> The state reached
-    type(state_t) :: now
+    type(state_t), allocatable :: now
     !> The factored operator
     type(tangent_operator_t) :: operator
     !> The step controller
@@ -39,7 +39,7 @@ module marches
     !> Steps that were tried in vain
     integer :: rejected = 0
     !> Room for the state that is being tried
-    type(state_t), private :: trial
+    type(state_t), allocatable, private :: trial
   contains
     !> The plate at rest.
     procedure :: start
@@ -60,8 +60,8 @@ contains
     !> Set if the solver cannot be set up
     type(error_t), allocatable, intent(out) :: error
 
-    self%now = new_state(model)
-    self%trial = self%now
+    allocate (self%now, source=new_state(model))
+    allocate (self%trial, source=self%now)
     self%controller%wanted = 1.0_wp/model%scene%static_steps
     self%failures = new_ply_failure(model)
     call self%operator%create(model, error)
@@ -266,6 +266,7 @@ contains
     type(model_t), intent(inout) :: model
     !> Step taken
     real(wp), intent(in) :: step
+    type(state_t), allocatable :: before
     real(wp) :: change
     logical :: extended
 
@@ -279,7 +280,9 @@ contains
     self%trial%separation%glued = self%trial%separation%glued .or. model%scene%has_impactor .and. &
                                   self%trial%impactor%velocity <= 0 .and. self%trial%force < self%now%force
     extended = self%trial%ledger%delamination > self%now%ledger%delamination
-    self%now = self%trial
+    call move_alloc(self%now, before)
+    call move_alloc(self%trial, self%now)
+    call move_alloc(before, self%trial)
     if (model%scene%has_static) then
       self%controller%wanted = 1.0_wp/model%scene%static_steps
     else

@@ -73,6 +73,7 @@ contains
     real(wp), intent(inout) :: residual(:, :)
     integer :: i
 
+    if (.not. model%map%layered) return
     do i = 1, model%distribution%owned
       associate (zone => model%zone(i))
         if (zone == 0) cycle
