@@ -153,6 +153,20 @@ def cost(program, text):
         return usage.ru_utime + usage.ru_stime, counts
 
 
+def instructions(program, text):
+    """Instructions of one run of a deck, as valgrind counts them: the same whatever else the machine does."""
+    with tempfile.TemporaryDirectory() as folder:
+        deck = pathlib.Path(folder, 'bench.nml')
+        deck.write_text(text)
+        counter = ['valgrind', '--tool=callgrind', f'--callgrind-out-file={folder}/counts']
+        # The newest instructions of a processor, which OpenBLAS would take, are not known to valgrind.
+        done = subprocess.run([*counter, program, deck, '--output', folder], stdout=subprocess.DEVNULL,
+                              stderr=subprocess.PIPE, text=True, env=dict(ENVIRONMENT, OPENBLAS_CORETYPE='HASWELL'))
+        if done.returncode:
+            sys.exit(f'{program} failed under valgrind ({done.returncode}); was it built with IMPLAM_NATIVE off?')
+        return int(re.search(r'Collected : (\d+)', done.stderr)[1])
+
+
 def absent_physics(program, arguments):
     """What an elastic scene costs with this program against an older one, run in turns; least and median times."""
     old = os.path.abspath(arguments.old)
@@ -160,6 +174,12 @@ def absent_physics(program, arguments):
     decks = {'linear': text, 'von_karman': text.replace("kinematics='linear'", "kinematics='von_karman'")}
     if decks['von_karman'] == text:
         sys.exit(f"{arguments.deck} has no kinematics='linear' to change.")
+    if arguments.instructions:
+        for kinematics, deck in decks.items():
+            before, after = instructions(old, deck), instructions(program, deck)
+            print(f'{kinematics}: {before/1e9:.3f} and {after/1e9:.3f} thousand million instructions, '
+                  f'{after/before:.3f} (at most 1.02)', flush=True)
+        return
     print('| strains | old, s | new, s | new/old, least | new/old, median of pairs | old and new iterations, factors |')
     print('|---|---|---|---|---|---|')
     for kinematics, deck in decks.items():
@@ -303,6 +323,7 @@ def main():
     part.add_argument('old', help='path of the implam to compare with')
     part.add_argument('--deck', type=pathlib.Path, default=SUN_CHEN, help='elastic deck with linear strains')
     part.add_argument('--repeat', type=int, default=10)
+    part.add_argument('--instructions', action='store_true', help='count them by valgrind instead of taking times')
     part.set_defaults(act=absent_physics)
     part = parts.add_parser('mesh-study', help=spread.__doc__)
     part.add_argument('--cell', type=float, nargs='+', default=[1.2, 0.8, 0.6, 0.48], help='mm; a divisor of 2.4')
