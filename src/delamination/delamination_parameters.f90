@@ -18,6 +18,9 @@ module delamination_parameters
   !> While the impactor rebounds: real contact, or both faces glued together (Eq. 13b).
   integer, parameter, public :: unloading_contact = 1, unloading_glued = 2
 
+  !> What a front's account of energy counts: debts only, or what was set free in excess too.
+  integer, parameter, public :: account_debts = 1, account_balance = 2
+
   !> One interface that may delaminate.
   type :: delamination_t
     !> The interface lies below this ply
@@ -46,6 +49,8 @@ module delamination_parameters
     real(wp) :: contact_exponent = 1
     !> unloading_contact or unloading_glued
     integer :: unloading = unloading_contact
+    !> account_debts or account_balance
+    integer :: account = account_debts
   end type delamination_t
 
 contains

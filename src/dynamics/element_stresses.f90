@@ -1,10 +1,9 @@
 !> Stresses of the plies in every element, averaged over its nine points as the failure criteria take them.
 module element_stresses
   use kinds, only: wp
-  use element_batches, only: lanes, first_element
-  use strain_recovery, only: mean_strains
   use plies, only: elasticity_t
   use ply_stresses, only: middle_stress, face_stresses
+  use criterion_strains, only: mean_strains_of_elements
   use ply_criteria, only: strains_of_plies
   use ply_failures, only: ply_failure_t
   use models, only: model_t
@@ -24,19 +23,12 @@ contains
     real(wp), intent(in) :: displacement(:, :)
     !> Membrane exx, eyy, gxy; curvature kxx, kyy, kxy; shear gxz, gyz of the plies, (8, elements)
     real(wp), allocatable :: strains(:, :)
-    real(wp) :: means(lanes, 8)
-    real(wp), allocatable :: motion(:, :)
-    integer :: b, lane, element
+    integer :: element
 
-    allocate (strains(8, model%elements%elements))
-    motion = model%motion_of(displacement)
-    do b = 1, model%elements%batches
-      call mean_strains(model%elements, b, model%scene%kinematics, motion, means)
-      do lane = 1, model%elements%lanes_used(b)
-        element = first_element(b) + lane - 1
-        strains(:, element) = strains_of_plies(model, element, failures%onset%elasticities(model, element), &
-                                               means(lane, :))
-      end do
+    strains = mean_strains_of_elements(model, displacement)
+    do element = 1, size(strains, 2)
+      strains(:, element) = strains_of_plies(model, element, failures%onset%elasticities(model, element), &
+                                             strains(:, element))
     end do
   end function element_strains
 

@@ -10,10 +10,14 @@
 !> front, and those that are let go first are the overestimated ones: on a circle that grows cell by cell their cells
 !> set free some 0.84 of G_c times their area. A front that owes energy therefore has to offer more than G_c for the
 !> next cell, in proportion to its debt.
+!>
+!> The other way round, a row of cells that comes apart one after the other at the kinks of its ends sets free more than
+!> its toughness asks for, and how much is a matter of the mesh: a front that moved on as a whole would have used it
+!> up. If the deck says so, energy in excess is therefore credited, and the next cell may offer less.
 module fading_ties
   use kinds, only: wp
   use archives, only: archive_t
-  use delamination_parameters, only: contact_none
+  use delamination_parameters, only: contact_none, account_balance
   use models, only: model_t
   implicit none
   private
@@ -29,6 +33,8 @@ module fading_ties
     real(wp), allocatable :: duration(:)
     !> Energy that the toughness of cells let go asks for, and what their faces set free, whole plate, (zones)
     real(wp), allocatable :: asked(:), set_free(:)
+    !> True: energy in excess is credited, (zones)
+    logical, allocatable :: credited(:)
     !> Time until the last of them is gone, the same on every rank
     real(wp) :: left = 0
   contains
@@ -66,6 +72,8 @@ contains
 
     zones = size(model%mesh%zones)
     allocate (self%asked(zones), self%set_free(zones), self%duration(zones), source=0.0_wp)
+    allocate (self%credited(zones), source=.false.)
+    if (zones > 0) self%credited = model%scene%delaminations%account == account_balance
     if (.not. model%map%layered) return
     points = size(model%zone)
     allocate (self%force(3, points), self%share(points), source=0.0_wp)
@@ -226,12 +234,15 @@ contains
     integer, intent(in) :: zone
     !> Energy that the toughness of the cell asks for, of this one cell also under symmetry
     real(wp), intent(in) :: energy
-    !> Cells all around whose debt doubles what is asked: ten in each quarter
+    !> Cells all around whose debt doubles what is asked, and whose credit halves it: ten in each quarter
     real(wp), parameter :: patience = 40
+    real(wp) :: owed
 
-    associate (debt => self%debt())
-      demand = 1 + debt(zone)/(patience*energy)
-    end associate
+    owed = (self%asked(zone) - self%set_free(zone))/(patience*energy)
+    if (.not. self%credited(zone)) owed = max(0.0_wp, owed)
+    demand = 1 + owed
+    ! However much is credited, something must be offered.
+    if (owed < 0) demand = 1/(1 - owed)
   end function demand
 
   !> Saves or loads.

@@ -14,6 +14,7 @@ module model_building
   use delaminated_regions, only: cells_within
   use face_contact, only: create_contact_law
   use distributions, only: distribute
+  use neighbourhoods, only: neighbourhood_of
   use supports, only: held_unknowns
   use dynamics_parameters, only: distribution_sine
   use models, only: model_t
@@ -56,6 +57,8 @@ contains
     call build_loads(self)
     call build_interfaces(self)
     call find_struck_point(self)
+    if (scene%has_ply_damage .and. scene%ply_damage%average > 0) &
+      self%surroundings = neighbourhood_of(self%mesh, self%distribution%elements, scene%ply_damage%average)
   end subroutine create_model
 
   !> True if membrane and bending do not act on each other.

@@ -13,6 +13,7 @@ module models
   use layer_maps, only: layer_map_t
   use face_contact, only: contact_law_t
   use distributions, only: distribution_t
+  use neighbourhoods, only: neighbourhood_t
   use scenes, only: scene_t
   implicit none
   private
@@ -56,6 +57,8 @@ module models
     integer, allocatable :: zone(:)
     !> Position of the struck node's first point on the rank that owns it; 0 elsewhere
     integer :: struck = 0
+    !> Surroundings of this rank's elements that ply criteria average over; unallocated: the element alone
+    type(neighbourhood_t), allocatable :: surroundings
     !> This rank's elements around the struck node
     integer, allocatable :: struck_elements(:)
     !> Elements around the struck node on all ranks

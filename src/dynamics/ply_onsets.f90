@@ -2,13 +2,12 @@
 module ply_onsets
   use kinds, only: wp
   use archives, only: archive_t
-  use element_batches, only: lanes, first_element
-  use strain_recovery, only: mean_strains
   use plies, only: elasticity_t
   use ply_damage_parameters, only: failure_modes
   use degradation, only: degraded
   use states, only: state_t
   use models, only: model_t
+  use criterion_strains, only: mean_strains_of_elements
   use ply_criteria, only: failure_measures
   implicit none
   private
@@ -67,24 +66,18 @@ contains
     type(state_t), intent(in) :: old, new
     !> Set to true for elements with a new failure, (elements)
     logical, intent(inout) :: found(:)
-    real(wp) :: before(lanes, 8), after(lanes, 8)
-    real(wp), allocatable :: motion_before(:, :), motion_after(:, :)
-    logical, allocatable :: failing(:, :)
-    integer :: b, lane
+    real(wp), allocatable :: before(:, :), after(:, :)
+    logical, allocatable :: failing(:)
+    integer :: element
 
-    motion_before = model%motion_of(old%motion%displacement)
-    motion_after = model%motion_of(new%motion%displacement)
-    do b = 1, model%elements%batches
-      call mean_strains(model%elements, b, model%scene%kinematics, motion_after, after)
-      do lane = 1, model%elements%lanes_used(b)
-        associate (element => first_element(b) + lane - 1)
-          failing = failing_anew(self, model, element, after(lane, :))
-          if (.not. any(failing)) cycle
-          found(element) = .true.
-          call mean_strains(model%elements, b, model%scene%kinematics, motion_before, before)
-          call note_start(self, model, element, before(lane, :), after(lane, :), [old%time, new%time], failing)
-        end associate
-      end do
+    after = mean_strains_of_elements(model, new%motion%displacement)
+    failing = [(any(failing_anew(self, model, element, after(:, element))), element=1, size(after, 2))]
+    if (.not. model%communicator%any(any(failing))) return
+    found = found .or. failing
+    before = mean_strains_of_elements(model, old%motion%displacement)
+    do element = 1, size(failing)
+      if (failing(element)) call note_start(self, model, element, before(:, element), after(:, element), &
+                                            [old%time, new%time])
     end do
   end subroutine find
 
@@ -109,7 +102,7 @@ contains
 
   !> Notes when within a step modes were met. What a criterion measures is taken to go straight through the step, so
   !> that the time found hardly depends on the length of the step.
-  subroutine note_start(self, model, element, before, after, times, failing)
+  subroutine note_start(self, model, element, before, after, times)
     !> The onsets
     type(ply_onset_t), intent(inout) :: self
     !> The model
@@ -120,11 +113,11 @@ contains
     real(wp), intent(in) :: before(8), after(8)
     !> The times of both
     real(wp), intent(in) :: times(2)
-    !> The modes, (modes, plies of the element)
-    logical, intent(in) :: failing(:, :)
     type(elasticity_t), allocatable :: elasticity(:)
     real(wp), allocatable :: first(:, :), last(:, :)
+    logical, allocatable :: failing(:, :)
 
+    failing = failing_anew(self, model, element, after)
     elasticity = self%elasticities(model, element)
     first = min(failure_measures(model, element, elasticity, before), 1.0_wp)
     last = failure_measures(model, element, elasticity, after)

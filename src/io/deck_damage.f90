@@ -10,7 +10,8 @@ module deck_damage
   use delamination_parameters, only: delamination_t, delamination_objection, default_starter, release_two_state, &
                                      release_vcct, growth_equilibrium, growth_one_per_step, tie_eliminate, &
                                      tie_penalty, contact_augmented_lagrangian, contact_continuous_penalty, &
-                                     contact_none, unloading_contact, unloading_glued
+                                     contact_none, unloading_contact, unloading_glued, account_debts, &
+                                     account_balance
   use failure_criteria, only: missing_strengths
   implicit none
   private
@@ -31,6 +32,7 @@ contains
       damage%d = s%real_of('ply_damage', 'd')
       damage%e = s%real_of('ply_damage', 'e')
       damage%fade = s%real_of('ply_damage', 'fade')
+      damage%average = s%real_of('ply_damage', 'average')
       damage%criteria = code_of(s%text_of('ply_damage', 'criteria'), 'hou', [criteria_hou])
       damage%stress = code_of(s%text_of('ply_damage', 'stress'), 'middle faces', [stress_at_middle, stress_at_faces])
       if (deck%has_ply_damage) call check_strengths(deck, problems)
@@ -103,6 +105,7 @@ contains
       d%contact = code_of(s%text_of(group, 'contact', place), 'augmented_lagrangian continuous_penalty none', &
                           [contact_augmented_lagrangian, contact_continuous_penalty, contact_none])
       d%unloading = code_of(s%text_of(group, 'unloading', place), 'contact glued', [unloading_contact, unloading_glued])
+      d%account = code_of(s%text_of(group, 'account', place), 'debts balance', [account_debts, account_balance])
     end associate
   end subroutine fill_choices
 
@@ -170,6 +173,7 @@ contains
       if (d%tie /= tie_penalty) call idle('penalty', 'without tie = ''penalty''')
       if (d%contact /= contact_continuous_penalty) &
         call idle('contact_exponent', 'without contact = ''continuous_penalty''')
+      if (d%growth /= growth_equilibrium) call idle('account', 'without growth = ''equilibrium''')
     end associate
 
   contains

@@ -141,6 +141,8 @@ module deck_table
       &Least value left of an elastic constant, as a fraction of the undamaged one.', &
     'ply_damage | fade | real | 1 | time | 0 | >= 0 | &
       &Time over which a failure takes its stiffness away, in proportion; 0: at once.', &
+    'ply_damage | average | real | 1 | length | 0 | >= 0 | &
+      &Distance over which the strains for the criteria are averaged; 0: over each element alone.', &
     'ply_damage | criteria | choice | 1 | - | ''hou'' | hou | &
       &Set of failure criteria: those of Hou et al. (Table 1).', &
     'ply_damage | stress | choice | 1 | - | ''middle'' | middle faces | &
@@ -173,6 +175,8 @@ module deck_table
       &Exponent q of the continuous penalty (Eq. 12).', &
     'delamination | unloading | choice | 1 | - | ''contact'' | contact glued | &
       &While the impactor rebounds: real contact, or separated faces move together (Eq. 13b).', &
+    'delamination | account | choice | 1 | - | ''debts'' | debts balance | &
+      &Energy owed raises what the next cell must offer; with balance, energy in excess lowers it.', &
     'time | end | real | 1 | time | required | > 0 | &
       &End of the run.', &
     'time | step | real | 1 | time | required | > 0 | &

@@ -21,6 +21,8 @@ module ply_damage_parameters
     real(wp) :: e = 1.0e-3_wp
     !> Time over which a failure takes its stiffness away
     real(wp) :: fade = 0
+    !> Distance over which the strains for the criteria are averaged; 0: over each element alone
+    real(wp) :: average = 0
     !> criteria_hou
     integer :: criteria = criteria_hou
     !> stress_at_middle or stress_at_faces
@@ -43,6 +45,8 @@ contains
       objection = 'the least fraction e must be positive and at most 1'
     else if (.not. (damage%fade >= 0 .and. damage%fade <= huge(damage%fade))) then
       objection = 'the time fade must not be negative'
+    else if (.not. (damage%average >= 0 .and. damage%average <= huge(damage%average))) then
+      objection = 'the length average must not be negative'
     end if
   end function ply_damage_objection
 end module ply_damage_parameters
