@@ -81,9 +81,10 @@ contains
     integer, intent(in) :: iterations
 
     changes = model%scene%kinematics /= kinematics_linear
-    if (changes .or. .not. model%map%layered) return
     ! Plies may have failed since the step before; later only contacts change.
-    changes = iterations == 0 .or. any(model%scene%delaminations%contact /= contact_none)
+    if (.not. changes) changes = iterations == 0 .and. (model%scene%has_ply_damage .or. model%map%layered)
+    if (changes .or. .not. model%map%layered) return
+    changes = any(model%scene%delaminations%contact /= contact_none)
   end function changes
 
   !> Completes an accepted load step.
@@ -96,16 +97,22 @@ contains
     real(wp), intent(in) :: energy
     !> State at this load
     type(state_t), intent(inout) :: new
-    real(wp) :: sums(4)
+    real(wp) :: sums(5), faces
     real(wp), allocatable :: change(:, :)
 
     change = new%motion%displacement - old%motion%displacement
     sums(1) = energy
     sums(2) = model%product(change, new%motion%internal + old%motion%internal)/2
     sums(3) = (new%time + old%time)/2*model%product(change, model%pressure)
-    sums(4) = 0
-    if (model%map%layered) sums(4) = (old%separation%work(model, old%motion%displacement, change) &
-                                      + new%separation%work(model, new%motion%displacement, change))/2
+    sums(4:5) = 0
+    if (model%map%layered) then
+      faces = old%separation%work(model, old%motion%displacement, change)
+      sums(4) = (faces + new%separation%work(model, new%motion%displacement, change))/2
+      sums(5) = faces/2
+    end if
+    ! Plies that failed left the state before out of equilibrium. What that sets free would go into motion.
+    sums(5) = sums(5) + model%product(change, old%time*model%pressure - old%motion%internal)/2
+    if (.not. model%scene%has_ply_damage) sums(5) = 0
     call model%communicator%sum(sums)
     sums = sums*model%mesh%multiplicity
     new%step = old%step + 1
@@ -116,6 +123,6 @@ contains
     new%ledger%strain = sums(1)
     new%ledger%external_work = old%ledger%external_work + sums(3)
     new%ledger%contact = old%ledger%contact - sums(4)
-    new%ledger%algorithmic = old%ledger%algorithmic - (sums(1) - old%ledger%strain - sums(2))
+    new%ledger%algorithmic = old%ledger%algorithmic - (sums(1) - old%ledger%strain - sums(2)) + sums(5)
   end subroutine finish
 end module static_steps
