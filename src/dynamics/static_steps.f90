@@ -36,6 +36,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     real(wp), allocatable :: residual(:, :), correction(:, :)
     real(wp) :: energy, norm
+    logical :: pressures_new
 
     new = old
     new%time = load_factor
@@ -43,6 +44,7 @@ contains
     new%contact_iterations = 0
     allocate (residual, correction, mold=old%motion%displacement)
     correction = 0
+    pressures_new = .false.
     do
       call model%internal(new%motion%displacement, new%motion%internal, energy)
       residual = load_factor*model%pressure - new%motion%internal
@@ -51,11 +53,14 @@ contains
                                load_factor*model%pressure, 0.0_wp, &
                                operator%diagonal*new%motion%displacement, model%scene%solver%tolerance, &
                                model%thickness, new%largest_forces)
-      converged = norm <= model%scene%solver%tolerance
+      ! New pressures may be too little a change for the tolerance; only a correction can make them fit the gaps.
+      converged = norm <= model%scene%solver%tolerance .and. .not. pressures_new
+      pressures_new = .false.
       if (converged) then
         call new%separation%settle(model, new%motion%displacement, contact_tolerance, new%contact_iterations, &
                                    converged)
         if (converged) exit
+        pressures_new = .true.
         if (new%contact_iterations < model%scene%solver%max_iterations) cycle
       end if
       if (.not. norm <= huge(norm) .or. new%iterations >= model%scene%solver%max_iterations) exit
