@@ -83,11 +83,9 @@ contains
       command%markdown = .true.
     case ('--output')
       i = i + 1
-      if (i > command_argument_count()) then
-        call fail(error, exit_usage, '--output needs a folder.')
-      else
-        command%output = argument(i)
-      end if
+      command%output = ''
+      if (i <= command_argument_count()) command%output = argument(i)
+      if (command%output == '') call fail(error, exit_usage, '--output needs a folder.')
     case default
       call fail(error, exit_usage, 'Unknown option "'//word//'"; see implam --help.')
     end select

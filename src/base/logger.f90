@@ -78,14 +78,13 @@ contains
     call system_clock(self%flushed)
   end subroutine open
 
-  !> Says what ends the run.
+  !> Keeps what ends the run; on the terminal the program says it last of all.
   subroutine error(self, text)
     !> The log
     class(log_t), intent(inout) :: self
     !> One sentence
     character(len=*), intent(in) :: text
 
-    call self%to_terminal(error_unit, 'implam: error: '//text)
     call self%to_file('error: '//text, at_once=.true.)
   end subroutine error
 

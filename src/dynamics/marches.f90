@@ -123,7 +123,29 @@ contains
     end do
     if (abs(self%trial%time - event) <= 1.0e-9_wp*step) self%trial%time = event
     call accept(self, model, step)
+    if (model%scene%has_static .and. self%failures%softened) call settle(self, model, error)
   end subroutine advance
+
+  !> Brings a plate whose plies have failed under a load back into equilibrium with it, until no more of them fail.
+  subroutine settle(self, model, error)
+    !> The march
+    class(march_t), intent(inout) :: self
+    !> The model
+    type(model_t), intent(inout) :: model
+    !> Set if what is left of the plate does not bear the load
+    type(error_t), allocatable, intent(out) :: error
+    logical :: converged
+
+    do while (self%failures%softened)
+      call attempt_load(model, self%operator, self%now, self%now%time, self%trial, converged, error)
+      if (.not. (allocated(error) .or. converged)) &
+        call fail(error, exit_convergence, 'No equilibrium at '//to_text(self%now%time)// &
+                  ' of the load: what is left of the plate after failures of plies does not bear it.')
+      if (allocated(error)) return
+      self%trial%step = self%now%step
+      call accept(self, model, 0.0_wp)
+    end do
+  end subroutine settle
 
   !> Smallest step worth trying.
   pure real(wp) function smallest_step(model) result(step)

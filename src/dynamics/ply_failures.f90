@@ -18,6 +18,8 @@ module ply_failures
     type(ply_onset_t) :: onset
     !> The same when the operator was last factored, which a restart must make again
     type(ply_onset_t), private :: onset_when_factored
+    !> True if plies took stiffness away after the last step
+    logical :: softened = .false.
   contains
     !> Finds new failures in an accepted state and takes stiffness away.
     procedure :: grow
@@ -65,7 +67,8 @@ contains
     changing = self%onset%fading()
     call self%onset%find(model, old, new, changing)
     call self%onset%go_on(old, new)
-    if (.not. model%communicator%any(any(changing))) return
+    self%softened = model%communicator%any(any(changing))
+    if (.not. self%softened) return
     do element = 1, size(changing)
       if (changing(element)) call soften(self, model, element)
     end do

@@ -36,6 +36,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     real(wp), allocatable :: residual(:, :), correction(:, :)
     real(wp) :: energy, norm
+    logical :: pressures_new
 
     new = old
     new%time = load_factor
@@ -43,6 +44,7 @@ contains
     new%contact_iterations = 0
     allocate (residual, correction, mold=old%motion%displacement)
     correction = 0
+    pressures_new = .false.
     do
       call model%internal(new%motion%displacement, new%motion%internal, energy)
       residual = load_factor*model%pressure - new%motion%internal
@@ -51,11 +53,14 @@ contains
                                load_factor*model%pressure, 0.0_wp, &
                                operator%diagonal*new%motion%displacement, model%scene%solver%tolerance, &
                                model%thickness, new%largest_forces)
-      converged = norm <= model%scene%solver%tolerance
+      ! New pressures may be too little a change for the tolerance; only a correction can make them fit the gaps.
+      converged = norm <= model%scene%solver%tolerance .and. .not. pressures_new
+      pressures_new = .false.
       if (converged) then
         call new%separation%settle(model, new%motion%displacement, contact_tolerance, new%contact_iterations, &
                                    converged)
         if (converged) exit
+        pressures_new = .true.
         if (new%contact_iterations < model%scene%solver%max_iterations) cycle
       end if
       if (.not. norm <= huge(norm) .or. new%iterations >= model%scene%solver%max_iterations) exit
@@ -81,9 +86,10 @@ contains
     integer, intent(in) :: iterations
 
     changes = model%scene%kinematics /= kinematics_linear
-    if (changes .or. .not. model%map%layered) return
     ! Plies may have failed since the step before; later only contacts change.
-    changes = iterations == 0 .or. any(model%scene%delaminations%contact /= contact_none)
+    if (.not. changes) changes = iterations == 0 .and. (model%scene%has_ply_damage .or. model%map%layered)
+    if (changes .or. .not. model%map%layered) return
+    changes = any(model%scene%delaminations%contact /= contact_none)
   end function changes
 
   !> Completes an accepted load step.
@@ -96,16 +102,22 @@ contains
     real(wp), intent(in) :: energy
     !> State at this load
     type(state_t), intent(inout) :: new
-    real(wp) :: sums(4)
+    real(wp) :: sums(5), faces
     real(wp), allocatable :: change(:, :)
 
     change = new%motion%displacement - old%motion%displacement
     sums(1) = energy
     sums(2) = model%product(change, new%motion%internal + old%motion%internal)/2
     sums(3) = (new%time + old%time)/2*model%product(change, model%pressure)
-    sums(4) = 0
-    if (model%map%layered) sums(4) = (old%separation%work(model, old%motion%displacement, change) &
-                                      + new%separation%work(model, new%motion%displacement, change))/2
+    sums(4:5) = 0
+    if (model%map%layered) then
+      faces = old%separation%work(model, old%motion%displacement, change)
+      sums(4) = (faces + new%separation%work(model, new%motion%displacement, change))/2
+      sums(5) = faces/2
+    end if
+    ! Plies that failed left the state before out of equilibrium. What that sets free would go into motion.
+    sums(5) = sums(5) + model%product(change, old%time*model%pressure - old%motion%internal)/2
+    if (.not. model%scene%has_ply_damage) sums(5) = 0
     call model%communicator%sum(sums)
     sums = sums*model%mesh%multiplicity
     new%step = old%step + 1
@@ -116,6 +128,6 @@ contains
     new%ledger%strain = sums(1)
     new%ledger%external_work = old%ledger%external_work + sums(3)
     new%ledger%contact = old%ledger%contact - sums(4)
-    new%ledger%algorithmic = old%ledger%algorithmic - (sums(1) - old%ledger%strain - sums(2))
+    new%ledger%algorithmic = old%ledger%algorithmic - (sums(1) - old%ledger%strain - sums(2)) + sums(5)
   end subroutine finish
 end module static_steps

@@ -122,12 +122,7 @@ contains
     longer = maxval(deck%plate%length)
     if (longer > most_oblong*shorter) call tell(deck, problems, 'plate', 'length', 'one side is more than '// &
       to_text(most_oblong)//' times the other; such a strip is no plate.')
-    if (deck%mesh%patch > shorter) then
-      call tell(deck, problems, 'mesh', 'patch', 'is larger than the plate; allowed: up to '//to_text(shorter)//'.')
-    else if (deck%mesh%patch > 0 .and. deck%mesh%patch < least_patch*shorter) then
-      call tell(deck, problems, 'mesh', 'patch', 'is too small for the plate; allowed: from '// &
-                to_text(least_patch*shorter)//'.')
-    end if
+    call check_patch(deck, problems)
     call check_core(deck, problems)
     if (.not. allocated(deck%laminate%thickness)) return
     thickness = sum(deck%laminate%thickness)
@@ -142,6 +137,31 @@ contains
                   ' thicknesses wide; plate theory is inaccurate there.')
     end if
   end subroutine check_size
+
+  !> Loaded patch: not larger than the plate nor next to nothing, and with elements left for the rest.
+  subroutine check_patch(deck, problems)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    real(wp) :: shorter
+
+    shorter = minval(deck%plate%length)
+    associate (patch => deck%mesh%patch)
+      if (patch <= 0) return
+      if (patch > shorter) then
+        call tell(deck, problems, 'mesh', 'patch', 'is larger than the plate; allowed: up to '//to_text(shorter)//'.')
+      else if (patch < least_patch*shorter) then
+        call tell(deck, problems, 'mesh', 'patch', 'is too small for the plate; allowed: from '// &
+                  to_text(least_patch*shorter)//'.')
+      else if (deck%plate%symmetry /= symmetry_quarter .and. any(deck%mesh%elements == 2 .and. &
+               patch < deck%plate%length) .and. .not. (problems%concern('mesh', 'elements') .or. &
+                                                       problems%concern('plate', 'symmetry'))) then
+        call tell(deck, problems, 'mesh', 'elements', 'a loaded patch with plate around it takes at least 3 '// &
+                  'elements each way.')
+      end if
+    end associate
+  end subroutine check_patch
 
   !> Core of equal elements: in the plate, and with elements left for the rest.
   subroutine check_core(deck, problems)
