@@ -56,6 +56,7 @@ contains
     if (model%scene%has_impactor) strike = begin_strike(model, integrator, old, step)
     call predict_motion(model, integrator, old, step, new, guess)
     call operator%mixing%forget()
+    operator%switches = 0
     converged = .false.
     do
       call operator%timers%start('element forces')

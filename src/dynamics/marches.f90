@@ -36,6 +36,8 @@ module marches
     type(ply_failure_t) :: failures
     !> Factorisations when the failures were last noted
     integer, private :: factorizations_noted = 0
+    !> Factorisations when the present step was begun
+    integer, private :: factorizations_begun = 0
     !> Steps that were tried in vain
     integer :: rejected = 0
     !> Room for the state that is being tried
@@ -184,6 +186,7 @@ contains
       if (allocated(error)) return
       call self%controller%renewed()
     end if
+    self%factorizations_begun = self%operator%factorizations
     call attempt_step(model, self%integrator, self%operator, self%now, step, self%trial, converged, error)
     if (converged .and. model%map%layered) call let_grow(self, model, step, converged, error)
   end subroutine try_step
@@ -308,7 +311,10 @@ contains
     if (model%scene%has_static) then
       self%controller%wanted = 1.0_wp/model%scene%static_steps
     else
-      call self%controller%accept(model%scene, step, self%now%iterations, change)
+      call self%controller%accept(model%scene, step, self%now%iterations, &
+                                  self%now%iterations - self%operator%switches, change)
+      ! What a step took until it renewed the operator itself does not speak against the new one.
+      if (self%operator%factorizations /= self%factorizations_begun) call self%controller%renewed()
       if (grows_by_steps(model)) call self%controller%heed_fronts(model%scene, self%now%growth_ratio, extended)
     end if
   end subroutine accept

@@ -6,6 +6,7 @@
 module separations
   use kinds, only: wp
   use archives, only: archive_t
+  use delamination_parameters, only: contact_augmented_lagrangian
   use face_bonds, only: face_bonds_t, create_bonds, tie_stiffness, bond_held, bond_penalty, bond_contact
   use face_contact, only: contact_pressure, unmet_contact, updated_decay, updated_multiplier
   use models, only: model_t
@@ -241,12 +242,29 @@ contains
       select case (self%bond(model, i))
       case (bond_held)
         added(:, i) = held_stiffness*maxval(diagonal(1:3, i))
+        added(3, i) = tie_like_contact(i)
       case (bond_penalty)
         added(:, i) = tie_stiffness(model, i)
       case (bond_contact)
         added(3, i) = -model%contact_area(i)*self%slope(i)
       end select
     end do
+
+  contains
+
+    !> Stiffness of a held opening: that of contact where this is as hard, so that letting go of faces that press on
+    !> each other leaves the operator as it is.
+    pure real(wp) function tie_like_contact(i) result(stiffness)
+      !> Point of this rank
+      integer, intent(in) :: i
+
+      stiffness = added(3, i)
+      associate (law => model%contact_laws(model%zone(i)))
+        if (law%method /= contact_augmented_lagrangian) return
+        if (model%contact_area(i)*law%stiffness >= held_stiffness*diagonal(3, i)) &
+          stiffness = model%contact_area(i)*law%stiffness
+      end associate
+    end function tie_like_contact
   end subroutine added_stiffness
 
   !> Saves or loads.

@@ -13,7 +13,7 @@ module step_controllers
   !> Energy release rate over its critical value from which fronts that grow a cell a step shorten the step.
   real(wp), parameter :: nearing = 0.8_wp
   !> Ratios of the mass factor between which a lagged operator still serves well.
-  real(wp), parameter :: lag_low = 0.6_wp, lag_high = 1.7_wp
+  real(wp), parameter :: lag_low = 0.3_wp, lag_high = 1.7_wp
 
   !> What is remembered from step to step.
   type :: step_controller_t
@@ -67,22 +67,22 @@ contains
   end function ceiling_of
 
   !> Learns from an accepted step.
-  pure subroutine accept(self, scene, step, iterations, stress_change)
+  pure subroutine accept(self, scene, step, iterations, lasting, stress_change)
     !> The controller
     class(step_controller_t), intent(inout) :: self
     !> The scene
     type(scene_t), intent(in) :: scene
     !> Step taken
     real(wp), intent(in) :: step
-    !> Its iterations
-    integer, intent(in) :: iterations
+    !> Its iterations, and those of them that a fresh operator might have spared
+    integer, intent(in) :: iterations, lasting
     !> Change of the stress at the struck point over its largest value so far
     real(wp), intent(in) :: stress_change
     real(wp) :: room
 
     self%last = step
-    self%fewest = min(self%fewest, iterations)
-    self%excess = self%excess + iterations - self%fewest
+    self%fewest = min(self%fewest, lasting)
+    self%excess = self%excess + lasting - self%fewest
     room = 2
     if (scene%adapt%on) then
       room = scene%adapt%stress_change/max(stress_change, tiny(room)**0.5_wp)

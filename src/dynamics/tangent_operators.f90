@@ -20,10 +20,12 @@ module tangent_operators
   private
   public :: tangent_operator_t
 
-  !> Changes that are followed before a factorisation is cheaper.
-  integer, parameter :: most_changes = 200
-  !> Columns found at once before that is so.
-  integer, parameter :: most_columns = 100
+  !> Changes that are followed before a factorisation is cheaper: each adds to every correction.
+  integer, parameter :: most_changes = 500
+  !> Columns kept since a factorisation: each takes the memory of a field.
+  integer, parameter :: most_columns = 800
+  !> Columns found at once: more no longer are found faster.
+  integer, parameter :: columns_at_once = 64
 
   !> A factor of `stiffness_factor * tangent stiffness + mass_factor * mass`.
   type :: tangent_operator_t
@@ -53,6 +55,8 @@ module tangent_operators
     real(wp) :: deflection = 0
     !> Mean deflection of the patch under that force
     real(wp) :: compliance = 0
+    !> Iterations of the present step before which ties or contacts had changed
+    integer :: switches = 0
     !> Factorisations, and corrections solved for, so far
     integer :: factorizations = 0, solves = 0
     !> Time spent in the parts of a step
@@ -183,7 +187,7 @@ contains
     integer, allocatable :: equations(:)
     real(wp), allocatable :: stiffness(:)
     logical, allocatable :: missing(:)
-    integer :: k
+    integer :: k, first
 
     possible = .true.
     if (.not. model%map%layered) return
@@ -191,18 +195,23 @@ contains
     call separation%added_stiffness(model, self%diagonal, wanted)
     call list_changes(model%communicator, self%numbering, self%diagonal, self%added, wanted, equations, stiffness)
     missing = [(self%changes%column_of(equations(k)) == 0, k=1, size(equations))]
-    possible = size(equations) <= most_changes .and. count(missing) <= most_columns
+    possible = size(equations) <= most_changes .and. self%changes%kept + count(missing) <= most_columns
     if (.not. possible .or. self%changes%same(equations, stiffness)) return
-    call find_columns(self, model, pack(equations, missing), error)
-    if (allocated(error)) return
-    call self%changes%set(model%communicator, self%numbering, equations, stiffness)
+    associate (wanting => pack(equations, missing))
+      do first = 1, size(wanting), columns_at_once
+        call find_columns(self, model, wanting(first:min(first + columns_at_once - 1, size(wanting))), error)
+        if (allocated(error)) return
+      end do
+    end associate
+    call self%changes%set(equations, stiffness)
+    self%switches = self%switches + 1
     call self%mixing%forget()
     self%response = self%fresh_response
-    call self%changes%correct(model%communicator, self%numbering, self%response)
+    call follow_changes(self, model, self%response)
     self%compliance = model%patch_mean(self%response)
   end subroutine follow
 
-  !> Finds columns, all at once.
+  !> Finds columns together.
   subroutine find_columns(self, model, equations, error)
     !> The operator
     type(tangent_operator_t), intent(inout) :: self
@@ -212,13 +221,12 @@ contains
     integer, intent(in) :: equations(:)
     !> Set if a solve fails
     type(error_t), allocatable, intent(inout) :: error
-    real(wp), allocatable :: forces(:, :), values(:, :), column(:, :)
+    real(wp), allocatable :: forces(:, :), values(:, :), fields(:, :, :)
     integer :: k
 
-    if (size(equations) == 0) return
     allocate (forces(self%numbering%rows, size(equations)), source=0.0_wp)
     allocate (values, mold=forces)
-    allocate (column, mold=self%response)
+    allocate (fields(5, size(self%response, 2), size(equations)), source=0.0_wp)
     do k = 1, size(equations)
       if (self%numbering%owns(equations(k))) forces(equations(k) - self%numbering%first_row + 1, k) = 1
     end do
@@ -226,12 +234,11 @@ contains
     call self%solver%solve_many(forces, values, error)
     call self%timers%stop('solve')
     if (allocated(error)) return
-    column = 0
     do k = 1, size(equations)
-      call self%numbering%scatter(values(:, k), column)
-      call model%halo%update(column)
-      call self%changes%keep(equations(k), size(equations), column)
+      call self%numbering%scatter(values(:, k), fields(:, :, k))
+      call model%halo%update(fields(:, :, k))
     end do
+    call self%changes%keep(model%communicator, self%numbering, equations, fields)
   end subroutine find_columns
 
   !> Correction of the displacement for a residual, ghosts included.
@@ -249,8 +256,22 @@ contains
 
     call solve_factor(self, model, residual, correction, error)
     self%solves = self%solves + 1
-    if (.not. allocated(error)) call self%changes%correct(model%communicator, self%numbering, correction)
+    if (.not. allocated(error)) call follow_changes(self, model, correction)
   end subroutine correct
+
+  !> Turns a solution of the operator as it was factored into one of the operator as it is now.
+  subroutine follow_changes(self, model, solution)
+    !> The operator
+    type(tangent_operator_t), intent(in) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Solution, ghosts included, (5, points)
+    real(wp), intent(inout) :: solution(:, :)
+
+    if (size(self%changes%equations) == 0) return
+    call self%changes%correct(model%communicator, self%numbering, solution)
+    call model%halo%update(solution)
+  end subroutine follow_changes
 
   !> Solution of the operator as it was factored, ghosts included.
   subroutine solve_factor(self, model, force, solution, error)
