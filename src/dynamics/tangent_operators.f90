@@ -22,8 +22,9 @@ module tangent_operators
 
   !> Changes that are followed before a factorisation is cheaper: each adds to every correction.
   integer, parameter :: most_changes = 500
-  !> Columns kept since a factorisation: each takes the memory of a field.
+  !> Columns kept since a factorisation, and numbers in all of them together: 0.8 GB however large the model.
   integer, parameter :: most_columns = 800
+  real(wp), parameter :: most_numbers = 1.0e8_wp
   !> Columns found at once: more no longer are found faster.
   integer, parameter :: columns_at_once = 64
 
@@ -195,7 +196,8 @@ contains
     call separation%added_stiffness(model, self%diagonal, wanted)
     call list_changes(model%communicator, self%numbering, self%diagonal, self%added, wanted, equations, stiffness)
     missing = [(self%changes%column_of(equations(k)) == 0, k=1, size(equations))]
-    possible = size(equations) <= most_changes .and. self%changes%kept + count(missing) <= most_columns
+    possible = size(equations) <= most_changes .and. self%changes%kept + count(missing) &
+               <= min(most_columns, int(most_numbers/self%numbering%total))
     if (.not. possible .or. self%changes%same(equations, stiffness)) return
     associate (wanting => pack(equations, missing))
       do first = 1, size(wanting), columns_at_once
