@@ -1,7 +1,7 @@
 !> Failure criteria of the plies of one element, from stresses averaged over its nine points (section 3.2 of the paper).
 module ply_criteria
   use kinds, only: wp
-  use element_batches, only: lanes
+  use element_batches, only: batch_of, lane_of
   use plies, only: elasticity_t
   use ply_damage_parameters, only: failure_modes, stress_at_faces
   use ply_stresses, only: middle_stress, face_stresses, mean_shear_strain
@@ -61,10 +61,9 @@ contains
     real(wp) :: local(8)
 
     local = strains
-    associate (range => model%mesh%element_plies(:, model%distribution%elements(element)), &
-               b => 1 + (element - 1)/lanes, lane => 1 + modulo(element - 1, lanes))
+    associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
       local(7:8) = mean_shear_strain(model%plies(range(1):range(2)), elasticity, &
-                                     model%elements%stiffness(lane, :, b), strains(7:8))
+                                     model%elements%stiffness(lane_of(element), :, batch_of(element)), strains(7:8))
     end associate
   end function strains_of_plies
 end module ply_criteria

@@ -2,7 +2,7 @@
 module ply_failures
   use kinds, only: wp
   use archives, only: archive_t
-  use element_batches, only: lanes
+  use element_batches, only: batch_of, lane_of
   use ply_damage_parameters, only: failure_modes
   use stacking, only: section_stiffness
   use states, only: state_t
@@ -88,10 +88,10 @@ contains
     !> Element of this rank
     integer, intent(in) :: element
 
-    associate (range => model%mesh%element_plies(:, model%distribution%elements(element)), &
-               b => 1 + (element - 1)/lanes, lane => 1 + modulo(element - 1, lanes))
-      model%elements%stiffness(lane, :, b) = section_stiffness(model%plies(range(1):range(2)), &
-        self%onset%elasticities(model, element), model%scene%laminate%shear_correction)
+    associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
+      model%elements%stiffness(lane_of(element), :, batch_of(element)) = &
+        section_stiffness(model%plies(range(1):range(2)), self%onset%elasticities(model, element), &
+                          model%scene%laminate%shear_correction)
     end associate
   end subroutine soften
 

@@ -1,7 +1,7 @@
 !> The bending stress at the struck point, by whose rate the time step is chosen (section 3.4).
 module struck_stresses
   use kinds, only: wp
-  use element_batches, only: lanes
+  use element_batches, only: lanes, batch_of, lane_of
   use strain_recovery, only: mean_strains
   use models, only: model_t
   implicit none
@@ -18,14 +18,15 @@ contains
     real(wp), intent(in) :: displacement(:, :)
     real(wp) :: curvature(3), moment(3), strains(lanes, 8)
     real(wp), allocatable :: motion(:, :)
-    integer :: i, batch
+    integer :: i
 
     curvature = 0
     motion = model%motion_of(displacement)
     do i = 1, size(model%struck_elements)
-      batch = 1 + (model%struck_elements(i) - 1)/lanes
-      call mean_strains(model%elements, batch, model%scene%kinematics, motion, strains)
-      curvature = curvature + strains(1 + modulo(model%struck_elements(i) - 1, lanes), 4:6)/model%struck_count
+      associate (element => model%struck_elements(i))
+        call mean_strains(model%elements, batch_of(element), model%scene%kinematics, motion, strains)
+        curvature = curvature + strains(lane_of(element), 4:6)/model%struck_count
+      end associate
     end do
     call model%communicator%sum(curvature)
     ! The twist vanishes at the struck point, but not in the mean over the elements of one quarter.

@@ -12,7 +12,7 @@
 !> though the cell ahead is short: up to 18 times G_c for a step or two after each crack.
 module two_state_fronts
   use kinds, only: wp
-  use element_batches, only: lanes
+  use element_batches, only: lanes, batch_of, lane_of
   use mesh_parameters, only: symmetry_quarter
   use strain_recovery, only: nodal_strains
   use delamination_fronts, only: front_segment_t
@@ -196,14 +196,14 @@ contains
     real(wp) :: at_nodes(lanes, 9, 8)
     integer :: batches(size(elements)), e, same, s, lane, line, nodes(9)
 
-    batches = merge(1 + (elements - 1)/lanes, 0, elements > 0)
+    batches = merge(batch_of(elements), 0, elements > 0)
     do e = 1, size(elements)
       if (batches(e) == 0 .or. any(batches(:e - 1) == batches(e))) cycle
       call nodal_strains(model%elements, batches(e), model%scene%kinematics, field, at_nodes)
       do same = e, size(elements)
         if (batches(same) /= batches(e)) cycle
         s = 1 + (same - 1)/4
-        lane = 1 + modulo(elements(same) - 1, lanes)
+        lane = lane_of(elements(same))
         nodes = model%mesh%cell_nodes(model%mesh%element_cell(model%distribution%elements(elements(same))))
         do line = 1, 3
           strains(:, line, same) = at_nodes(lane, findloc(nodes, segments(s)%edge(line), dim=1), :)

@@ -8,7 +8,7 @@ module element_batches
   use plate_options, only: shear_assumed, shear_full, shear_selective
   implicit none
   private
-  public :: first_element
+  public :: first_element, batch_of, lane_of
 
   !> Elements of a batch. Eight doubles fill a cache line and one or two vector registers.
   integer, parameter, public :: lanes = 8
@@ -16,7 +16,7 @@ module element_batches
   !> Shear samples of the assumed strains: six for gamma_xi, then six for gamma_eta.
   integer, parameter, public :: shear_samples = 12
 
-  !> A set of 9-node elements. Element e sits in batch 1 + (e-1)/lanes, lane 1 + mod(e-1, lanes);
+  !> A set of 9-node elements. Element e sits in batch `batch_of(e)`, lane `lane_of(e)`;
   !> the lanes left over in the last batch repeat the last element with no weight and no section.
   type, public :: element_batches_t
     !> Number of elements
@@ -91,12 +91,9 @@ contains
     integer, intent(in) :: element
     !> Section stiffness and mass, as in the components of the type
     real(wp), intent(in) :: stiffness(21), mass(3)
-    integer :: b, lane
 
-    b = 1 + (element - 1)/lanes
-    lane = 1 + mod(element - 1, lanes)
-    self%stiffness(lane, :, b) = stiffness
-    self%mass(lane, :, b) = mass
+    self%stiffness(lane_of(element), :, batch_of(element)) = stiffness
+    self%mass(lane_of(element), :, batch_of(element)) = mass
   end subroutine set_section
 
   !> Lanes of a batch that hold elements: all but in the last batch.
@@ -108,6 +105,22 @@ contains
 
     lanes_used = min(lanes, self%elements - (b - 1)*lanes)
   end function lanes_used
+
+  !> Batch that holds an element.
+  elemental integer function batch_of(element)
+    !> Number of the element
+    integer, intent(in) :: element
+
+    batch_of = 1 + (element - 1)/lanes
+  end function batch_of
+
+  !> Lane of its batch that holds an element.
+  elemental integer function lane_of(element)
+    !> Number of the element
+    integer, intent(in) :: element
+
+    lane_of = 1 + mod(element - 1, lanes)
+  end function lane_of
 
   !> Element in the first lane of a batch; the others follow.
   pure integer function first_element(b)

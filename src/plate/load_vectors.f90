@@ -2,7 +2,7 @@
 module load_vectors
   use kinds, only: wp
   use lagrange9, only: gauss_shapes
-  use element_batches, only: element_batches_t, lanes, first_element
+  use element_batches, only: element_batches_t, lanes, first_element, batch_of, lane_of
   implicit none
   private
   public :: add_uniform_pressure, add_pressure, gauss_coordinates, add_patch_weights, element_areas
@@ -68,8 +68,8 @@ contains
     real(wp) :: loads(9)
     integer :: b, lane, a, point
 
-    b = 1 + (element - 1)/lanes
-    lane = 1 + mod(element - 1, lanes)
+    b = batch_of(element)
+    lane = lane_of(element)
     loads = values*batches%weight(lane, :, b)
     do a = 1, 9
       point = batches%points(lane, a, b)
