@@ -2,14 +2,19 @@
 """Spoils valid decks at random and holds `implam check` against them: it must pass or refuse each, with exit
 code 0 or 2, never crash, hang or print a backtrace. Keys and groups that `implam explain` lists are put in at random.
 
-usage: fuzz.py IMPLAM [--count N] [--seed S] [--keep FOLDER] [DECK ...]
+usage: fuzz.py IMPLAM [DECK ...] [--count N] [--seed S] [--keep FOLDER] [--run]
 
-Without decks those in good/ are spoilt. Decks that break the program are kept in FOLDER.
+Without decks those in good/ are spoilt. Decks that break the program are kept in FOLDER. With --run decks stay decks:
+numbers and keys change, and those that pass the check are run. They must end with exit code 0 or 3 within a minute of
+processor time, with finite numbers only and a ledger that closes to a thousandth of the largest energy.
 """
 import argparse
+import csv
+import math
 import os
 import random
 import re
+import resource
 import subprocess
 import sys
 import tempfile
@@ -117,6 +122,46 @@ def fault(program, path):
     return None
 
 
+def alter(deck, known, chance):
+    """The deck with one number or key changed to something that may make sense."""
+    if chance.randrange(2):
+        return enter(deck, known, chance)
+    number = chance.choice(list(NUMBER.finditer(deck)))
+    value = float(number[0].lower().replace(b"d", b"e"))*chance.choice([0, 0.01, 0.1, 0.5, 0.9, 2, 3, 10, 100, 1e4, -1])
+    text = str(int(value)) if re.fullmatch(rb"[-+]?\d+", number[0]) else repr(value)
+    return deck[:number.start()] + text.encode() + deck[number.end():]
+
+
+def fault_of_run(program, path):
+    """What is wrong with the run of a deck, or nothing; nothing if the check refuses the deck or its mesh is large."""
+    if fault(program, path) or subprocess.run([program, "check", path], stdout=subprocess.DEVNULL).returncode:
+        return fault(program, path)
+    with open(path, "rb") as deck:
+        counts = re.findall(rb"elements\s*=\s*(\d+)(?:\s*,\s*(\d+))?", deck.read())
+    if counts and int(counts[-1][0])*int(counts[-1][1] or counts[-1][0]) > 900:
+        return None
+    with tempfile.TemporaryDirectory() as folder:
+        done = subprocess.run([program, path, "--output", folder], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (60, 60)))
+        if done.returncode not in (0, 3) or b"backtrace" in done.stdout.lower():
+            return f"exit code {done.returncode}: {done.stdout[-300:]!r}"
+        for name in os.listdir(folder):
+            if name.endswith("_history.csv"):
+                with open(os.path.join(folder, name)) as lines:
+                    return fault_of_history(list(csv.DictReader(line for line in lines if not line.startswith("#"))))
+    return None
+
+
+def fault_of_history(rows):
+    """What is wrong with the numbers of a run, or nothing."""
+    values = [{key: float(text) for key, text in row.items()} for row in rows]
+    if not all(math.isfinite(value) for row in values for value in row.values()):
+        return "numbers that are not finite"
+    largest = max((abs(row[key]) for row in values for key in row if key.startswith("energy_")), default=0)
+    unaccounted = max((abs(row["energy_error"]) for row in values), default=0)
+    return f"{unaccounted:.2e} of {largest:.2e} unaccounted for" if unaccounted > 1e-3*largest else None
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("program")
@@ -124,6 +169,7 @@ def main():
     parser.add_argument("--count", type=int, default=200)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--keep", default=".")
+    parser.add_argument("--run", action="store_true")
     asked = parser.parse_args()
     folder = os.path.join(HERE, "good")
     seeds = []
@@ -140,10 +186,10 @@ def main():
         for number in range(asked.count):
             deck = chance.choice(seeds)
             for _ in range(chance.choice([1, 1, 2, 4, 10])):
-                deck = spoil(deck or b"&", known, chance)
+                deck = alter(deck, known, chance) if asked.run else spoil(deck or b"&", known, chance)
             with open(path, "wb") as file:
                 file.write(deck[:500000])
-            wrong = fault(os.path.abspath(asked.program), path)
+            wrong = (fault_of_run if asked.run else fault)(os.path.abspath(asked.program), path)
             if wrong:
                 broken += 1
                 kept = os.path.join(asked.keep, f"fuzz-{asked.seed}-{number}.nml")
