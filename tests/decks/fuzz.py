@@ -128,7 +128,7 @@ def alter(deck, known, chance):
         return enter(deck, known, chance)
     number = chance.choice(list(NUMBER.finditer(deck)))
     value = float(number[0].lower().replace(b"d", b"e"))*chance.choice([0, 0.01, 0.1, 0.5, 0.9, 2, 3, 10, 100, 1e4, -1])
-    text = str(int(value)) if re.fullmatch(rb"[-+]?\d+", number[0]) else repr(value)
+    text = str(int(value)) if re.fullmatch(rb"[-+]?\d{1,18}", number[0]) else repr(value)
     return deck[:number.start()] + text.encode() + deck[number.end():]
 
 
