@@ -12,6 +12,7 @@ module simulations
   use marches, only: march_t
   use deck_contents, only: deck_t
   use deck_echo, only: echo
+  use deck_extents, only: extent_lines
   use run_provenance, only: provenance_t, this_run
   use run_progress, only: progress_t
   use history_file, only: history_file_t
@@ -123,7 +124,7 @@ contains
     call self%progress%start(0.0_wp)
   end subroutine prepare
 
-  !> Lists every key in effect in the log.
+  !> Lists every key in effect in the log, and zones and starters as they are.
   subroutine log_echo(self)
     !> The run
     class(simulation_t), intent(inout) :: self
@@ -131,6 +132,7 @@ contains
     integer :: i
 
     call echo(self%deck, lines)
+    lines = [lines, extent_lines(self%deck)]
     do i = 1, size(lines)
       call self%log%detail(lines(i)%text)
     end do

@@ -36,7 +36,8 @@ from solver_runs import (
 
 DECK = "../small/damage.nml"
 STEP = 10e-6
-GROWING = ["mesh%elements=10,10", "impactor%velocity=3", "delamination%G_c=200"]
+GROWING = ["mesh%elements=10,10", "impactor%velocity=3", "delamination%G_c=200", "delamination%zone=28.3e-3,20.6e-3",
+           "delamination%starter=8.9e-3"]
 # Steps of a second, with several releases each.
 RUNNING = ["mesh%elements=20,20", "impactor%velocity=3", "delamination%G_c=100", f"time%end={11 * STEP!r}",
            f"output%checkpoint_every={STEP!r}", f"output%fields_every={STEP!r}"]
