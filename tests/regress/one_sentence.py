@@ -51,16 +51,17 @@ def check_one_writer(implam, folder):
     run_deck(implam, deck)
 
 
-def check_broken_fields(implam, folder):
-    """A field file that can be neither written nor closed: the exit code and the sentence, no crash."""
-    deck = write_deck(folder, DECK)
-    (folder / "ply_damage.h5").symlink_to("/dev/full")
-    ended = subprocess.run([implam, deck, "--output", folder], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
-                           stderr=subprocess.PIPE, text=True, timeout=60, check=False)
-    require(ended.returncode == EXIT_FILES, f"A full disk ended with {ended.returncode}: {ended.stderr}")
-    told = [line for line in ended.stderr.splitlines() if line.startswith("implam: ")]
-    require(len(told) == 1 and "ply_damage.h5" in told[0], f"A full disk told {told}.")
-    require((folder / "ply_damage_history.csv").stat().st_size > 0, "The history was lost.")
+def check_broken_files(implam, folder):
+    """A field file or checkpoint that can be neither written nor closed: exit code and sentence, no crash."""
+    for name, told_of in (("ply_damage.h5", "ply_damage.h5"), ("ply_damage_restart.h5.tmp", "ply_damage_restart.h5")):
+        deck = write_deck(folder, DECK, ["output%checkpoint_every=10e-6"])
+        (folder / name).symlink_to("/dev/full")
+        ended = subprocess.run([implam, deck, "--output", folder], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                               stderr=subprocess.PIPE, text=True, timeout=60, check=False)
+        require(ended.returncode == EXIT_FILES, f"A full {name} ended with {ended.returncode}: {ended.stderr}")
+        told = [line for line in ended.stderr.splitlines() if line.startswith("implam: ")]
+        require(len(told) == 1 and told_of in told[0], f"A full {name} told {told}.")
+        require((folder / "ply_damage_history.csv").stat().st_size > 0, "The history was lost.")
 
 
 def main(implam, folder):
@@ -81,7 +82,7 @@ def main(implam, folder):
              if "error: " in line]
     require(len(error) == 1, f"The log holds the sentence {len(error)} times.")
     check_one_writer(implam, folder / "writer")
-    check_broken_fields(implam, folder / "broken")
+    check_broken_files(implam, folder / "broken")
 
 
 if __name__ == "__main__":
