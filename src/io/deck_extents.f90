@@ -5,6 +5,7 @@ module deck_extents
   use deck_problems, only: problems_t
   use deck_remarks, only: remark
   use delaminated_regions, only: extent_of_cells
+  use delamination_parameters, only: delamination_t
   use kinds, only: wp
   use text, only: line_t, to_text
   implicit none
@@ -13,8 +14,6 @@ module deck_extents
 
   !> Difference from the size asked for, relative to it, that a user is warned of.
   real(wp), parameter :: noticeable = 0.05_wp
-  !> Most elements along a side for which a check works the mesh out.
-  integer, parameter :: most_along = 10000
 
 contains
 
@@ -24,13 +23,16 @@ contains
     type(deck_t), intent(in) :: deck
     !> Receives the warnings
     type(problems_t), intent(inout) :: problems
+    real(wp), allocatable :: x_edges(:), y_edges(:)
     real(wp) :: zone(2), starter(2)
     integer :: place
 
-    if (problems%errors() > 0 .or. any(deck%mesh%elements > most_along)) return
+    if (problems%errors() > 0 .or. size(deck%delaminations) == 0) return
+    x_edges = cell_edges(deck%plate, deck%mesh, 1)
+    y_edges = cell_edges(deck%plate, deck%mesh, 2)
     do place = 1, size(deck%delaminations)
       associate (d => deck%delaminations(place))
-        call extents_of(deck, place, zone, starter)
+        call extents_of(x_edges, y_edges, deck%delaminations(place), zone, starter)
         if (differs(zone, d%zone)) call remark(deck, problems, 'delamination', 'zone', &
           'a zone is whole cells; this mesh makes it '//shown(zone)//'.', place)
         if (deck%settings%is_given('delamination', 'starter', place) .and. differs(starter, [d%starter, d%starter])) &
@@ -46,33 +48,33 @@ contains
     type(deck_t), intent(in) :: deck
     !> One line an interface
     type(line_t), allocatable :: lines(:)
+    real(wp), allocatable :: x_edges(:), y_edges(:)
     real(wp) :: zone(2), starter(2)
     integer :: place
 
     allocate (lines(size(deck%delaminations)))
+    if (size(lines) == 0) return
+    x_edges = cell_edges(deck%plate, deck%mesh, 1)
+    y_edges = cell_edges(deck%plate, deck%mesh, 2)
     do place = 1, size(lines)
-      call extents_of(deck, place, zone, starter)
+      call extents_of(x_edges, y_edges, deck%delaminations(place), zone, starter)
       lines(place)%text = 'Interface below ply '//to_text(deck%delaminations(place)%below_ply)//': the mesh makes '// &
                           'the zone '//shown(zone)//' and the starter '//shown(starter)//'.'
     end do
   end function extent_lines
 
   !> Sizes of zone and starter on the mesh.
-  pure subroutine extents_of(deck, place, zone, starter)
-    !> The deck
-    type(deck_t), intent(in) :: deck
-    !> Which of the interfaces
-    integer, intent(in) :: place
+  pure subroutine extents_of(x_edges, y_edges, delamination, zone, starter)
+    !> Edges of the cells along x and y, the struck point at 0
+    real(wp), intent(in) :: x_edges(:), y_edges(:)
+    !> The interface as the deck gives it
+    type(delamination_t), intent(in) :: delamination
     !> Extents along x and y on the whole plate
     real(wp), intent(out) :: zone(2), starter(2)
-    integer :: direction
 
-    do direction = 1, 2
-      associate (edges => cell_edges(deck%plate, deck%mesh, direction), d => deck%delaminations(place))
-        zone(direction) = extent_of_cells(edges, d%zone(direction))
-        starter(direction) = min(extent_of_cells(edges, d%starter), zone(direction))
-      end associate
-    end do
+    zone = [extent_of_cells(x_edges, delamination%zone(1)), extent_of_cells(y_edges, delamination%zone(2))]
+    starter = [extent_of_cells(x_edges, delamination%starter), extent_of_cells(y_edges, delamination%starter)]
+    starter = min(starter, zone)
   end subroutine extents_of
 
   !> True if a size differs from what was asked for by more than a user would overlook.
