@@ -3,8 +3,10 @@ program implam
   use programs, only: run_program
   implicit none
   integer :: code
+  logical :: broken
 
-  call run_program(code)
+  call run_program(code, broken)
+  if (broken) call leave_at_once(code)
   if (code /= 0) call quit(code)
 
 contains
@@ -25,4 +27,32 @@ contains
 
     call exit_process(int(code, c_int))
   end subroutine quit
+
+  !> Ends the process without what libraries have left for the end; what was written so far is kept.
+  subroutine leave_at_once(code)
+    use, intrinsic :: iso_c_binding, only: c_int, c_null_ptr, c_ptr
+    use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
+    !> The exit code
+    integer, intent(in) :: code
+    interface
+      !> C library: hands what was written to the operating system.
+      integer(c_int) function flush_streams(stream) bind(c, name='fflush')
+        import :: c_int, c_ptr
+        !> Null: all streams
+        type(c_ptr), value :: stream
+      end function flush_streams
+      !> C library: the way out past the libraries' own ends.
+      subroutine leave_process(status) bind(c, name='_exit')
+        import :: c_int
+        !> Exit code
+        integer(c_int), value :: status
+      end subroutine leave_process
+    end interface
+    integer(c_int) :: ignored
+
+    flush (output_unit)
+    flush (error_unit)
+    ignored = flush_streams(c_null_ptr)
+    call leave_process(int(code, c_int))
+  end subroutine leave_at_once
 end program implam

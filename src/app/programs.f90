@@ -1,7 +1,7 @@
 !> What the program does for each verb of the command line.
 module programs
   use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
-  use errors, only: error_t, exit_done
+  use errors, only: error_t, exit_done, exit_files
   use text, only: line_t
   use communicators, only: communicator_t, start_mpi, finish_mpi
   use launchers, only: launched
@@ -12,6 +12,7 @@ module programs
   use deck_reader, only: read_deck, read_deck_text
   use deck_remarks, only: tell
   use deck_explain, only: explain, explain_table
+  use hdf5_file, only: files_left_open
   use checkpoints, only: checkpoint_archive_t
   use build_information, only: version, commit, compiler, petsc_version
   use command_lines, only: command_t, read_command_line, usage, verb_run, verb_check, verb_explain, verb_restart, &
@@ -26,9 +27,11 @@ contains
 
   !> Does what the command line asks. Without a launcher MPI starts only when there is something to compute: what
   !> reads or explains decks then answers at once, also on machines where MPI must not start.
-  subroutine run_program(code)
+  subroutine run_program(code, broken)
     !> Exit code
     integer, intent(out) :: code
+    !> True: a file could not be closed and the libraries' own ends, MPI's too, would crash on it; leave without them
+    logical, intent(out) :: broken
     type(command_t) :: command
     type(communicator_t) :: communicator
     type(error_t), allocatable :: error
@@ -56,7 +59,9 @@ contains
       code = error%code
       if (communicator%is_root()) write (error_unit, '(2a)') 'implam: ', error%message
     end if
-    call finish_mpi()
+    broken = .false.
+    if (code == exit_files) broken = communicator%any(files_left_open())
+    if (.not. broken) call finish_mpi()
   end subroutine run_program
 
   !> Prints lines on the root rank.

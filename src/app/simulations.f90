@@ -12,6 +12,7 @@ module simulations
   use marches, only: march_t
   use deck_contents, only: deck_t
   use deck_echo, only: echo
+  use deck_extents, only: extent_lines
   use run_provenance, only: provenance_t, this_run
   use run_progress, only: progress_t
   use history_file, only: history_file_t
@@ -19,6 +20,8 @@ module simulations
   use checkpoints, only: checkpoint_archive_t
   use queue_signals, only: stop_signal
   use output_clocks, only: clock_t
+  use pressure_histories, only: pressure_amplitude
+  use energy_watches, only: energy_watch_t
   use result_rows, only: row_of, column_names, column_whole
   use field_results, only: write_mesh, write_fields
   implicit none
@@ -49,8 +52,10 @@ module simulations
     type(fields_file_t) :: fields
     !> Clocks of history, fields and checkpoints
     type(clock_t) :: history_clock, fields_clock, checkpoint_clock
-    !> Warnings already given
-    logical, private :: warned_of_border = .false., warned_of_energy = .false.
+    !> The warning of a border reached was given
+    logical, private :: warned_of_border = .false.
+    !> Looks after the energy that integrators create
+    type(energy_watch_t), private :: energy_watch
     !> Folder and name that all results share
     character(len=:), allocatable :: base
   contains
@@ -123,7 +128,7 @@ contains
     call self%progress%start(0.0_wp)
   end subroutine prepare
 
-  !> Lists every key in effect in the log.
+  !> Lists every key in effect in the log, and zones and starters as they are.
   subroutine log_echo(self)
     !> The run
     class(simulation_t), intent(inout) :: self
@@ -131,6 +136,7 @@ contains
     integer :: i
 
     call echo(self%deck, lines)
+    lines = [lines, extent_lines(self%deck)]
     do i = 1, size(lines)
       call self%log%detail(lines(i)%text)
     end do
@@ -261,8 +267,7 @@ contains
   subroutine warn(self)
     !> The run
     class(simulation_t), intent(inout) :: self
-    real(wp) :: energy, created
-    real(wp), parameter :: much = 0.01_wp
+    real(wp) :: amplitude
 
     associate (now => self%march%now)
       if (now%border_reached .and. .not. self%warned_of_border) then
@@ -270,14 +275,12 @@ contains
                               ' and cannot grow on there: if it would, make the zone larger.')
         self%warned_of_border = .true.
       end if
-      energy = max(now%ledger%initial, now%ledger%kinetic + now%ledger%strain)
-      ! What has been booked as fracture but not been set free yet is owed by the fronts: no integrator made it.
-      created = -now%ledger%algorithmic - sum(now%ties%debt())
-      if (created > much*energy .and. .not. self%warned_of_energy .and. .not. self%deck%has_static) then
+      if (self%deck%has_static) return
+      amplitude = 1
+      if (.not. self%deck%has_impactor) amplitude = pressure_amplitude(self%model%scene, now%time)
+      if (self%energy_watch%alarms(now%ledger, sum(now%ties%debt()), amplitude)) &
         call self%log%warning('The time integrators have created more than 1 % of the energy by time '// &
                               to_text(now%time)//': take smaller steps, or more damping (rho_inf) with delamination.')
-        self%warned_of_energy = .true.
-      end if
     end associate
   end subroutine warn
 

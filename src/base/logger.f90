@@ -5,6 +5,7 @@ module logger
   use, intrinsic :: iso_c_binding, only: c_int
   use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
   use errors, only: error_t, exit_files, fail
+  use file_locks, only: file_lock_t
   use kinds, only: long, wp
   use output_streams, only: output_stream_t
   implicit none
@@ -28,6 +29,8 @@ module logger
     logical, private :: writes = .false.
     !> The file
     type(output_stream_t), private :: file
+    !> Keeps other runs from writing the same log, and with it the results beside it
+    type(file_lock_t), private :: lock
     !> Length of the transient line on the terminal now
     integer, private :: transient = 0
     !> Clock at the last flush
@@ -66,13 +69,21 @@ contains
     logical, intent(in) :: writes
     !> Go on with the file that is there (restart)
     logical, intent(in) :: append
-    !> Raised, on the rank that writes, if the file can't be opened
+    !> Raised, on the rank that writes, if the file can't be opened or another run writes it
     type(error_t), allocatable, intent(inout) :: error
+    logical :: refused
 
     self%writes = writes
     if (.not. writes) return
     self%interactive = c_isatty(standard_output) == 1
     if (len_trim(path) == 0) return
+    ! Opening may empty the file, so the lock comes first.
+    call self%lock%take(path, refused)
+    if (refused) then
+      call fail(error, exit_files, 'Another run is writing '//trim(path)//' and the results beside it; wait '// &
+                'until it has ended, or give another folder (--output).')
+      return
+    end if
     call self%file%open(path, merge('a', 'w', append))
     if (self%file%failed) call fail(error, exit_files, "Can't open the log "//trim(path)//' for writing.')
     call system_clock(self%flushed)
@@ -144,6 +155,7 @@ contains
 
     call self%clear_status()
     call self%file%close()
+    call self%lock%release()
   end subroutine close
 
   !> Writes a line to the terminal; one that can't be written there is no reason to stop.

@@ -5,7 +5,7 @@ module delaminated_regions
   use layered_meshes, only: layered_mesh_t
   implicit none
   private
-  public :: delaminated_region_t, create_region, cells_within
+  public :: delaminated_region_t, create_region, cells_within, extent_of_cells
 
   !> The cells of a zone, intact or delaminated. Only ever grows.
   type :: delaminated_region_t
@@ -79,6 +79,20 @@ contains
       if (taken(cell)) range(2) = cell
     end do
   end function cells_within
+
+  !> What the cells within an extent really extend over on the whole plate, as they are taken whole.
+  pure real(wp) function extent_of_cells(edges, extent) result(taken)
+    !> Edges of the cells along one direction, the struck point at 0
+    real(wp), intent(in) :: edges(:)
+    !> Full extent asked for
+    real(wp), intent(in) :: extent
+    integer :: range(2)
+
+    range = cells_within(edges, extent)
+    taken = edges(range(2) + 1) - edges(range(1))
+    ! A model that begins at the struck point is half of the line.
+    if (edges(1) > -1.0e-9_wp*edges(size(edges))) taken = 2*taken
+  end function extent_of_cells
 
   !> True for a cell of the zone.
   pure logical function in_zone(self, column, row)

@@ -70,7 +70,7 @@ contains
 
     starter = default_starter(deck%plate%length)
     if (.not. deck%settings%is_given(group, 'starter', place)) &
-      call deck%settings%derive(group, 'starter', to_text(starter), .false.)
+      call deck%settings%derive(group, 'starter', to_text(starter), .false., place)
     associate (s => deck%settings, d => deck%delaminations(place))
       d%below_ply = s%integer_of(group, 'below_ply', place)
       d%toughness = s%real_of(group, 'G_c', place)

@@ -2,6 +2,7 @@
 module deck_reader
   use deck_checks, only: check_deck
   use deck_contents, only: deck_t
+  use deck_extents, only: check_extents
   use deck_filling, only: fill_case, fill_plate, fill_loads, fill_control
   use deck_damage, only: fill_damage
   use deck_laminate, only: fill_materials, fill_laminate
@@ -70,5 +71,6 @@ contains
     call fill_damage(deck, problems)
     call fill_output(deck, problems)
     call check_deck(deck, problems)
+    call check_extents(deck, problems)
   end subroutine read_deck_text
 end module deck_reader

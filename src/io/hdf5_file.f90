@@ -2,8 +2,8 @@
 !> by all ranks, and once there is some the routines do nothing: whoever owns the file asks at the end.
 module hdf5_file
   use communicators, only: communicator_t
-  use hdf5, only: h5eset_auto_f, h5f_acc_rdonly_f, h5f_acc_rdwr_f, h5f_acc_trunc_f, h5fclose_f, &
-    h5fcreate_f, h5fd_mpio_collective_f, h5fopen_f, h5gclose_f, h5gcreate_f, &
+  use hdf5, only: h5eset_auto_f, h5f_acc_rdonly_f, h5f_acc_rdwr_f, h5f_acc_trunc_f, h5f_obj_all_f, h5f_obj_file_f, &
+    h5fclose_f, h5fcreate_f, h5fd_mpio_collective_f, h5fopen_f, h5gclose_f, h5gcreate_f, &
     h5gget_obj_info_idx_f, h5gn_members_f, h5iis_valid_f, h5ldelete_f, h5lexists_f, h5open_f, &
     h5p_dataset_create_f, h5p_dataset_xfer_f, h5p_file_access_f, h5p_file_create_f, h5p_link_create_f, &
     h5pclose_f, h5pcreate_f, h5pset_create_inter_group_f, h5pset_dxpl_mpio_f, h5pset_fapl_mpio_f, &
@@ -13,7 +13,7 @@ module hdf5_file
   use text, only: line_t
   implicit none
   private
-  public :: hdf5_file_t
+  public :: hdf5_file_t, files_left_open
 
   !> Bytes held in reserve on the disk while data is written, and given up before the file is closed: there is room then
   !> for what HDF5 has to write about the data. It crashes or hangs when it can't close a file.
@@ -186,6 +186,26 @@ contains
     self%together = -1
     call self%settle(status, 'the file could not be closed')
   end subroutine close
+
+  !> Whether the library still holds a file on this rank: it could not close it, and crashes when it tries again at its
+  !> end, which is part of MPI's.
+  logical function files_left_open()
+    use, intrinsic :: iso_c_binding, only: c_int, c_int64_t, c_size_t
+    interface
+      !> HDF5 in C; the Fortran one takes the objects off that the library began with, of whatever kind is counted.
+      integer(c_size_t) function count_objects(file, kinds) bind(c, name='H5Fget_obj_count')
+        import :: c_int, c_int64_t, c_size_t
+        !> Which file, or all
+        integer(c_int64_t), value :: file
+        !> Kinds of objects to count
+        integer(c_int), value :: kinds
+      end function count_objects
+    end interface
+    integer :: status
+
+    call h5iis_valid_f(h5t_native_integer, files_left_open, status)
+    if (files_left_open) files_left_open = count_objects(int(h5f_obj_all_f, c_int64_t), int(h5f_obj_file_f, c_int)) > 0
+  end function files_left_open
 
   !> Agrees on whether the last step failed on any rank.
   subroutine settle(self, status, trouble)

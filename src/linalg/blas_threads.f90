@@ -22,7 +22,8 @@ contains
     procedure(set_threads), pointer :: set
     type(c_funptr) :: address
 
-    if (is_set('OMP_NUM_THREADS') .or. is_set('OPENBLAS_NUM_THREADS')) return
+    if (is_set('OMP_NUM_THREADS')) return
+    if (is_set('OPENBLAS_NUM_THREADS')) return
     address = address_of('openblas_set_num_threads')
     if (.not. c_associated(address)) return
     call c_f_procpointer(address, set)

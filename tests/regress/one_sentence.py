@@ -1,11 +1,13 @@
 """A run that cannot go on ends with the documented exit code and one sentence on the error output, nothing else.
 Usage: one_sentence.py IMPLAM FOLDER"""
 
+import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
-from solver_runs import require, write_deck
+from solver_runs import EXIT_FILES, require, run_deck, write_deck
 
 DECK = "../small/ply_damage.nml"
 
@@ -19,6 +21,47 @@ def say(command, expected):
     require(len(lines) == 1 and lines[0].startswith("implam: ") and lines[0].endswith((".", "?")),
             f"{command} did not end with one sentence: {lines}")
     print(lines[0])
+
+
+def contents(folder):
+    """Return the files of a folder with what is in them."""
+    return {path.name: path.read_bytes() for path in folder.iterdir()}
+
+
+def check_one_writer(implam, folder):
+    """A second run of the same case is refused before it touches a file; a killed one leaves nothing that blocks."""
+    deck = write_deck(folder, DECK, ["output%checkpoint_every=10e-6"])
+    run_deck(implam, deck)
+    checkpoint = folder / "ply_damage_restart.h5"
+    long_deck = write_deck(folder.with_name("writer_of_long"), DECK, ["time%end=1", "time%step=1e-6", "output%history_every=1"])
+    log = folder / "ply_damage.log"
+    before = log.read_bytes()
+    with subprocess.Popen([implam, str(long_deck), "--output", str(folder)], stdout=subprocess.DEVNULL) as first:
+        try:
+            deadline = time.monotonic() + 60
+            while (log.read_bytes() == before or b"Model: " not in log.read_bytes()) and time.monotonic() < deadline:
+                time.sleep(0.05)
+            first.send_signal(signal.SIGSTOP)
+            held = contents(folder)
+            say([implam, deck, "--output", folder], EXIT_FILES)
+            say([implam, "restart", checkpoint], EXIT_FILES)
+            require(contents(folder) == held, "A run that was refused has touched the files of the other one.")
+        finally:
+            first.kill()
+    run_deck(implam, deck)
+
+
+def check_broken_files(implam, folder):
+    """A field file or checkpoint that can be neither written nor closed: exit code and sentence, no crash."""
+    for name, told_of in (("ply_damage.h5", "ply_damage.h5"), ("ply_damage_restart.h5.tmp", "ply_damage_restart.h5")):
+        deck = write_deck(folder, DECK, ["output%checkpoint_every=10e-6"])
+        (folder / name).symlink_to("/dev/full")
+        ended = subprocess.run([implam, deck, "--output", folder], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                               stderr=subprocess.PIPE, text=True, timeout=60, check=False)
+        require(ended.returncode == EXIT_FILES, f"A full {name} ended with {ended.returncode}: {ended.stderr}")
+        told = [line for line in ended.stderr.splitlines() if line.startswith("implam: ")]
+        require(len(told) == 1 and told_of in told[0], f"A full {name} told {told}.")
+        require((folder / "ply_damage_history.csv").stat().st_size > 0, "The history was lost.")
 
 
 def main(implam, folder):
@@ -38,6 +81,8 @@ def main(implam, folder):
     error = [line for line in (deck.parent / "ply_damage.log").read_text(encoding="utf-8").splitlines()
              if "error: " in line]
     require(len(error) == 1, f"The log holds the sentence {len(error)} times.")
+    check_one_writer(implam, folder / "writer")
+    check_broken_files(implam, folder / "broken")
 
 
 if __name__ == "__main__":

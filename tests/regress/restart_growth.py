@@ -36,7 +36,9 @@ from solver_runs import (
 
 DECK = "../small/damage.nml"
 STEP = 10e-6
-GROWING = ["mesh%elements=10,10", "impactor%velocity=3", "delamination%G_c=200"]
+GROWING = ["mesh%elements=10,10", "impactor%velocity=3", "delamination%G_c=200", "delamination%zone=28.3e-3,20.6e-3",
+           "delamination%starter=8.9e-3"]
+AVERAGES = ["ply_damage%average=2e-3", f"ply_damage%fade={4 * STEP!r}", "delamination%account='balance'"]
 # Steps of a second, with several releases each.
 RUNNING = ["mesh%elements=20,20", "impactor%velocity=3", "delamination%G_c=100", f"time%end={11 * STEP!r}",
            f"output%checkpoint_every={STEP!r}", f"output%fields_every={STEP!r}"]
@@ -57,19 +59,29 @@ def check_splits(implam, folder, _):
     """Before and after the step with the most growth."""
     for rule in ("equilibrium", "one_per_step"):
         for release in ("vcct", "two_state"):
-            name = f"{rule}_{release}"
-            settings = [*GROWING, f"delamination%growth='{rule}'", f"delamination%energy_release='{release}'"]
-            scout = write_deck(folder / name, DECK, [*settings, f"time%end={20 * STEP!r}"])
-            grown = growth(read_history(run_deck(implam, scout)))
-            most = 1 + max(range(len(grown)), key=grown.__getitem__)
-            for step in (most - 1, most):
-                reference, again = run_split(implam, folder / f"{name}_{step}", DECK, split_after(step, settings))
-                require_same(again, reference, f"{name} split after step {step}")
-                require(damage_of(again) == damage_of(reference), f"{name}: other cells came apart.")
-                history = read_history(reference)
-                later = history["delaminated_area"][-1] - history["delaminated_area"][step - 1]
-                require(later > 0, f"{name}: nothing grew after the split, the trial proves nothing.")
-                print(f"{name} split after step {step}: {1e6 * later:.0f} mm^2 grow after it, the same to the last bit")
+            split_around_growth(implam, folder, f"{rule}_{release}",
+                                [f"delamination%growth='{rule}'", f"delamination%energy_release='{release}'"])
+
+
+def check_averages(implam, folder, _):
+    """Plies that fade and fail by averaged strains, beside fronts that keep both sides of their account."""
+    split_around_growth(implam, folder, "averages", AVERAGES)
+
+
+def split_around_growth(implam, folder, name, choices):
+    """Split before and after the step with the most growth."""
+    settings = [*GROWING, *choices]
+    scout = write_deck(folder / name, DECK, [*settings, f"time%end={20 * STEP!r}"])
+    grown = growth(read_history(run_deck(implam, scout)))
+    most = 1 + max(range(len(grown)), key=grown.__getitem__)
+    for step in (most - 1, most):
+        reference, again = run_split(implam, folder / f"{name}_{step}", DECK, split_after(step, settings))
+        require_same(again, reference, f"{name} split after step {step}")
+        require(damage_of(again) == damage_of(reference), f"{name}: other cells came apart.")
+        history = read_history(reference)
+        later = history["delaminated_area"][-1] - history["delaminated_area"][step - 1]
+        require(later > 0, f"{name}: nothing grew after the split, the trial proves nothing.")
+        print(f"{name} split after step {step}: {1e6 * later:.0f} mm^2 grow after it, the same to the last bit")
 
 
 def steps_of_fading(history):
@@ -167,7 +179,7 @@ def check_rejected(implam, folder, _):
 
 
 TRIALS = {"splits": check_splits, "moments": check_moments, "ranks": check_ranks, "rejected": check_rejected,
-          "fading": check_fading}
+          "fading": check_fading, "averages": check_averages}
 
 
 if __name__ == "__main__":

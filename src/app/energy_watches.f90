@@ -1,0 +1,46 @@
+!> Watches over a run whether its time integrators create energy.
+module energy_watches
+  use kinds, only: wp
+  use ledgers, only: ledger_t
+  implicit none
+  private
+  public :: energy_watch_t
+
+  !> Part of the energy that must not have been created.
+  real(wp), parameter :: much = 0.01_wp
+
+  !> What was seen so far.
+  type :: energy_watch_t
+    private
+    !> Largest energy of the plate and at the start, so far
+    real(wp) :: largest = 0
+    !> Too much had been created after the step before
+    logical :: doubtful = .false.
+    !> The user has been told
+    logical :: told = .false.
+  contains
+    procedure :: alarms
+  end type energy_watch_t
+
+contains
+
+  !> True, once, if more than 1 % of the energy has been created. What an integrator creates in the first step of a
+  !> load that is there at once it takes out in the next: two steps in a row must say so.
+  logical function alarms(self, ledger, debt, amplitude)
+    !> The watch
+    class(energy_watch_t), intent(inout) :: self
+    !> The ledger after an accepted step
+    type(ledger_t), intent(in) :: ledger
+    !> Energy booked as fracture that the fronts have not set free yet: no integrator made it
+    real(wp), intent(in) :: debt
+    !> Load over its full value: the energies to come are larger by its square, which small ones are judged by
+    real(wp), intent(in) :: amplitude
+    logical :: before
+
+    before = self%doubtful
+    self%largest = max(self%largest, ledger%initial, ledger%kinetic + ledger%strain)
+    self%doubtful = (-ledger%algorithmic - debt)*amplitude**2 > much*self%largest
+    alarms = self%doubtful .and. before .and. .not. self%told
+    self%told = self%told .or. alarms
+  end function alarms
+end module energy_watches

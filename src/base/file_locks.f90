@@ -1,0 +1,61 @@
+!> A lock that tells other runs that a file is being written. It ends with the process, however that ends.
+module file_locks
+  use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char
+  implicit none
+  private
+  public :: file_lock_t
+
+  !> What the C side answers if another process holds the lock.
+  integer(c_int), parameter :: taken_by_another = -2
+
+  !> A lock on one file.
+  type :: file_lock_t
+    private
+    !> The descriptor that holds it; negative: none
+    integer(c_int) :: descriptor = -1
+  contains
+    procedure :: take
+    procedure :: release
+  end type file_lock_t
+
+  interface
+    !> Locks a file, which is made if need be: a descriptor, or a negative number.
+    integer(c_int) function implam_lock_file(path) bind(c)
+      import :: c_char, c_int
+      !> Zero-terminated path
+      character(kind=c_char), intent(in) :: path(*)
+    end function implam_lock_file
+
+    !> Ends a lock.
+    subroutine implam_unlock_file(descriptor) bind(c)
+      import :: c_int
+      !> What implam_lock_file returned
+      integer(c_int), value :: descriptor
+    end subroutine implam_unlock_file
+  end interface
+
+contains
+
+  !> Takes the lock without waiting. Where the file system knows no locks there is none, and all goes on.
+  subroutine take(self, path, refused)
+    !> The lock
+    class(file_lock_t), intent(inout) :: self
+    !> Path of the file
+    character(len=*), intent(in) :: path
+    !> True: another run holds it
+    logical, intent(out) :: refused
+
+    call self%release()
+    self%descriptor = implam_lock_file(path//c_null_char)
+    refused = self%descriptor == taken_by_another
+  end subroutine take
+
+  !> Lets the file go.
+  subroutine release(self)
+    !> The lock
+    class(file_lock_t), intent(inout) :: self
+
+    if (self%descriptor >= 0) call implam_unlock_file(self%descriptor)
+    self%descriptor = -1
+  end subroutine release
+end module file_locks

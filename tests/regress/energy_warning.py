@@ -1,0 +1,41 @@
+"""Whether the warning of created energy comes where it must and stays away where it must.
+Usage: energy_warning.py IMPLAM FOLDER"""
+
+import sys
+from pathlib import Path
+
+from solver_runs import require, run
+
+WARNING = "created more than 1 %"
+BEGINNING = """&case name='pressed' /
+&plate length=0.04, 0.04  edges='clamped'  symmetry='quarter' /
+&mesh elements=6, 6  grading=1 /
+&material name='ply' density=1580  E1=139e9  E2=9.4e9  G12=4.5e9  G23=2.98e9  nu12=0.309 /
+&laminate materials='ply'  angles=0, 90, 0  thicknesses=0.6666667e-3 /
+&delamination below_ply=2  G_c=400  zone=33e-3, 20e-3  starter=13e-3 /
+"""
+
+
+def warnings_of(implam, folder, history, time):
+    """Return how often a run under pressure warns of created energy."""
+    folder.mkdir(parents=True, exist_ok=True)
+    deck = folder / "pressed.nml"
+    deck.write_text(f"{BEGINNING}&pressure value=2e6 history='{history}' /\n&time end=1e-3 {time} /\n", "utf-8")
+    return run([implam, deck, "--output", folder]).count(WARNING)
+
+
+def main(implam, folder):
+    """Loads that set in, gradually or at once, and steps that are too long."""
+    folder = Path(folder)
+    # Up to 10 % of the energy in the first step, which is a millionth of that at the end.
+    for step in ("2e-6", "10e-6", "50e-6"):
+        told = warnings_of(implam, folder / f"ramp_{step}", "ramp", f"step={step}")
+        require(told == 0, f"A ramp with steps of {step} s warns although it creates no energy.")
+    # The first step creates 4 %, the second takes out more.
+    require(warnings_of(implam, folder / "step", "step", "step=10e-6") == 0, "A load at once warns in its first step.")
+    # Half a period a step and no damping.
+    require(warnings_of(implam, folder / "long", "step", "step=50e-6 rho_inf=1") == 1, "Long steps do not warn once.")
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
