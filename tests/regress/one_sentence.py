@@ -33,7 +33,8 @@ def check_one_writer(implam, folder):
     deck = write_deck(folder, DECK, ["output%checkpoint_every=10e-6"])
     run_deck(implam, deck)
     checkpoint = folder / "ply_damage_restart.h5"
-    long_deck = write_deck(folder.with_name("writer_of_long"), DECK, ["time%end=1", "time%step=1e-6", "output%history_every=1"])
+    settings = ["time%end=1", "time%step=1e-6", "output%history_every=1"]
+    long_deck = write_deck(folder.with_name("writer_of_long"), DECK, settings)
     log = folder / "ply_damage.log"
     before = log.read_bytes()
     with subprocess.Popen([implam, str(long_deck), "--output", str(folder)], stdout=subprocess.DEVNULL) as first:
