@@ -42,14 +42,19 @@ contains
     real(wp), allocatable :: weight(:, :)
     integer :: element
 
-    allocate (self%start(size(elements) + 1), self%member(0), self%weight(4, 0))
+    allocate (self%start(size(elements) + 1))
+    self%start(1) = 1
     do element = 1, size(elements)
-      self%start(element) = size(self%member) + 1
       call find_members(mesh, elements(element), length, member, weight)
-      self%member = [self%member, member]
-      self%weight = reshape([self%weight, weight], [4, size(self%member)])
+      self%start(element + 1) = self%start(element) + size(member)
     end do
-    self%start(size(elements) + 1) = size(self%member) + 1
+    ! Found twice, since lists that grew with each element would be copied as often.
+    allocate (self%member(self%start(size(elements) + 1) - 1), self%weight(4, self%start(size(elements) + 1) - 1))
+    do element = 1, size(elements)
+      call find_members(mesh, elements(element), length, member, weight)
+      self%member(self%start(element):self%start(element + 1) - 1) = member
+      self%weight(:, self%start(element):self%start(element + 1) - 1) = weight
+    end do
   end function neighbourhood_of
 
   !> Elements around one element.

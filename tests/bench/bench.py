@@ -202,9 +202,9 @@ def spread(program, arguments):
     print('|---|---|---|---|---|---|---|---|---|---|---|')
     runs = {}
     for side in arguments.cell:
-        runs[side, 1] = Peanut(program, side, 1)
+        runs[side, 1] = Peanut(program, side, 1, arguments.velocity)
     for parts in arguments.parts:
-        runs[arguments.halved, parts] = Peanut(program, arguments.halved, parts)
+        runs[arguments.halved, parts] = Peanut(program, arguments.halved, parts, arguments.velocity)
     finest = sorted(arguments.cell)[:2]
     pairs = [('finest two meshes', runs[finest[1], 1], runs[finest[0], 1])] if len(finest) > 1 else []
     if (arguments.halved, 1) in runs:
@@ -258,7 +258,7 @@ def growth(program, arguments):
 class Peanut:
     """input/peanut.nml on a mesh of its own; prints a row of the table."""
 
-    def __init__(self, program, side, finer_steps):
+    def __init__(self, program, side, finer_steps, velocity=None):
         deck = pathlib.Path(__file__).parents[2].joinpath('input/peanut.nml').read_text()
         core = [float(n) for n in re.search(r'core=(\S+), (\S+)', deck).groups()]
         cell, step = (float(re.search(key + r'=([\d.e+-]+)', deck)[1]) for key in ('cell', 'step'))
@@ -269,6 +269,8 @@ class Peanut:
         deck = re.sub(r'elements=\d+, \d+', 'elements={}, {}'.format(*counts), deck)
         deck = deck.replace(re.search(r'cell=\S+', deck)[0], f'cell={1e-3*side}')
         deck = deck.replace(re.search(r'step=\S+', deck)[0], f'step={step/finer_steps}')
+        if velocity:
+            deck = re.sub(r'velocity=\S+', f'velocity={velocity}', deck)
         with tempfile.TemporaryDirectory() as folder:
             seconds = run_deck(program, deck, pathlib.Path(folder))
             self.read(pathlib.Path(folder))
@@ -329,6 +331,7 @@ def main():
     part.add_argument('--cell', type=float, nargs='+', default=[1.2, 0.8, 0.6, 0.48], help='mm; a divisor of 2.4')
     part.add_argument('--halved', type=float, default=0.8, help='the mesh that is also run with shorter steps')
     part.add_argument('--parts', type=int, nargs='*', default=[2, 4], help='into which its steps are divided')
+    part.add_argument('--velocity', type=float, help="m/s, in place of the deck's")
     part.set_defaults(act=spread)
     part = parts.add_parser('growth', help=growth.__doc__)
     part.add_argument('--step', type=float, nargs='*', default=[16, 8, 4, 2, 1], help='us')
