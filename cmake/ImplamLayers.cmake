@@ -1,43 +1,47 @@
 # One OBJECT library a folder, each with its own module directory.
 
-# implam_add_layers(<layer>...): layers in order; a layer sees the modules of those before it.
+# implam_add_layers(<layer>... [/ <layer>...]...): layers in order. A slash begins a new tier: a layer sees the
+# modules of the tiers before its own and none of its neighbours.
 function(implam_add_layers)
   set(lower "")
   set(stamps "")
+  set(tier "")
+  set(tier_stamps "")
   foreach(layer IN LISTS ARGN)
+    if(layer STREQUAL "/")
+      list(APPEND lower ${tier})
+      list(APPEND stamps ${tier_stamps})
+      set(tier "")
+      set(tier_stamps "")
+      continue()
+    endif()
     file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/src/${layer}/*.f90
                                         ${CMAKE_CURRENT_SOURCE_DIR}/src/${layer}/*.c
                                         ${CMAKE_CURRENT_SOURCE_DIR}/src/${layer}/*.F90)
-    if(sources)
-      add_library(implam_${layer} OBJECT ${sources})
-      set_target_properties(implam_${layer} PROPERTIES
-        Fortran_MODULE_DIRECTORY ${CMAKE_BINARY_DIR}/modules/${layer})
-      foreach(name IN LISTS lower)
-        target_include_directories(implam_${layer} PRIVATE ${CMAKE_BINARY_DIR}/modules/${name})
-        add_dependencies(implam_${layer} implam_${name})
-      endforeach()
-      target_link_libraries(implam_${layer} PRIVATE implam_flags)
-      # CMake follows modules within a target only: a stamp renews the layers after a changed one.
-      set_property(SOURCE ${sources} APPEND PROPERTY OBJECT_DEPENDS ${stamps})
-      add_custom_command(OUTPUT ${CMAKE_BINARY_DIR}/${layer}.stamp DEPENDS $<TARGET_OBJECTS:implam_${layer}>
-        COMMAND ${CMAKE_COMMAND} -E touch ${CMAKE_BINARY_DIR}/${layer}.stamp VERBATIM)
-      list(APPEND stamps ${CMAKE_BINARY_DIR}/${layer}.stamp)
-      list(APPEND lower ${layer})
-    endif()
+    add_library(implam_${layer} OBJECT ${sources})
+    set_target_properties(implam_${layer} PROPERTIES
+      Fortran_MODULE_DIRECTORY ${CMAKE_BINARY_DIR}/modules/${layer})
+    foreach(name IN LISTS lower)
+      target_include_directories(implam_${layer} PRIVATE ${CMAKE_BINARY_DIR}/modules/${name})
+      add_dependencies(implam_${layer} implam_${name})
+    endforeach()
+    target_link_libraries(implam_${layer} PRIVATE implam_flags)
+    # CMake follows modules within a target only: a stamp renews the layers after a changed one.
+    set_property(SOURCE ${sources} APPEND PROPERTY OBJECT_DEPENDS ${stamps})
+    add_custom_command(OUTPUT ${CMAKE_BINARY_DIR}/${layer}.stamp DEPENDS $<TARGET_OBJECTS:implam_${layer}>
+      COMMAND ${CMAKE_COMMAND} -E touch ${CMAKE_BINARY_DIR}/${layer}.stamp VERBATIM)
+    list(APPEND tier ${layer})
+    list(APPEND tier_stamps ${CMAKE_BINARY_DIR}/${layer}.stamp)
   endforeach()
   implam_give_library(parallel MPI::MPI_Fortran)
   implam_give_library(linalg PkgConfig::PETSC MPI::MPI_Fortran)
-  implam_give_library(io hdf5::hdf5_fortran MPI::MPI_Fortran)
-  if(TARGET implam_io)
-    target_include_directories(implam_io PRIVATE ${HDF5_Fortran_INCLUDE_DIRS})
-  endif()
+  implam_give_library(results hdf5::hdf5_fortran MPI::MPI_Fortran)
+  target_include_directories(implam_results PRIVATE ${HDF5_Fortran_INCLUDE_DIRS})
 endfunction()
 
 # implam_give_library(<layer> <library>...): the only layer that may use a library sees it.
 function(implam_give_library layer)
-  if(TARGET implam_${layer})
-    target_link_libraries(implam_${layer} PRIVATE ${ARGN})
-  endif()
+  target_link_libraries(implam_${layer} PRIVATE ${ARGN})
 endfunction()
 
 # implam_link_layers(<target> <layer>...): links the objects of these layers and their libraries; an

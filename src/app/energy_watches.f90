@@ -1,7 +1,7 @@
 !> Watches over a run whether its time integrators create energy.
 module energy_watches
   use kinds, only: wp
-  use ledgers, only: ledger_t
+  use energy_ledgers, only: ledger_t
   implicit none
   private
   public :: energy_watch_t

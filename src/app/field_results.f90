@@ -5,7 +5,7 @@ module field_results
   use text, only: to_text
   use element_stresses, only: element_strains, stresses_of_ply
   use models, only: model_t
-  use marches, only: march_t
+  use time_stepping, only: time_stepper_t
   use output_parameters, only: output_t
   use fields_file, only: fields_file_t
   use interface_results, only: jumps, delaminated_above, release_ahead
@@ -64,11 +64,11 @@ contains
   end function heights
 
   !> Writes the fields of the state reached that are wanted and whose physics is modelled.
-  subroutine write_fields(model, march, output, fields, error)
+  subroutine write_fields(model, stepper, output, fields, error)
     !> The model
     type(model_t), intent(in) :: model
     !> The march
-    type(march_t), intent(in) :: march
+    type(time_stepper_t), intent(in) :: stepper
     !> Which fields
     type(output_t), intent(in) :: output
     !> The file
@@ -77,7 +77,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     real(wp), allocatable :: motion(:, :)
 
-    associate (now => march%now)
+    associate (now => stepper%now)
       call fields%begin(now%time, now%step, error)
       motion = model%motion_of(now%motion%displacement)
       if (output%wants('displacement')) call fields%write_point_field('displacement', motion(1:3, :), error)
@@ -87,24 +87,24 @@ contains
       if (model%map%layered) then
         if (output%wants('gap')) call fields%write_point_field('jump', jumps(model, now), error)
         if (output%wants('contact_pressure')) call fields%write_point_field( &
-          'contact_pressure', reshape(now%separation%pressure, [1, size(now%separation%pressure)]), error)
+          'contact_pressure', reshape(now%interfaces%faces%pressure, [1, size(now%interfaces%faces%pressure)]), error)
         if (output%wants('delamination')) &
           call fields%write_cell_field('delaminated_above', delaminated_above(model, now), error)
         if (output%wants('energy_release')) &
           call fields%write_cell_field('energy_release_above', release_ahead(model, now), error)
       end if
     end associate
-    call write_plies(model, march, output, fields, error)
+    call write_plies(model, stepper, output, fields, error)
     call fields%finish(error)
   end subroutine write_fields
 
   !> Writes the failures of every ply, 1 for fibre failure, 2 for matrix cracking, 4 for crushing, added up, and its
   !> stresses in its own axes: all in its mid-plane, and those in the plane on its faces.
-  subroutine write_plies(model, march, output, fields, error)
+  subroutine write_plies(model, stepper, output, fields, error)
     !> The model
     type(model_t), intent(in) :: model
     !> The march
-    type(march_t), intent(in) :: march
+    type(time_stepper_t), intent(in) :: stepper
     !> Which fields
     type(output_t), intent(in) :: output
     !> The file
@@ -118,12 +118,12 @@ contains
     integer :: ply, place, i
 
     wanted = [output%wants('stress'), output%wants('face_stress'), output%wants('face_stress')]
-    if (any(wanted)) strains = element_strains(model, march%failures, march%now%motion%displacement)
+    if (any(wanted)) strains = element_strains(model, stepper%failures, stepper%now%motion%displacement)
     do ply = 1, size(model%plies)
       associate (name => 'ply_'//to_text(ply)//'_')
         if (output%wants('ply_damage') .and. model%scene%has_ply_damage) &
-          call fields%write_cell_field(name//'failure', failure_code(march%failures%onset%failed(ply)), error)
-        if (any(wanted)) stresses = stresses_of_ply(model, march%failures, strains, ply)
+          call fields%write_cell_field(name//'failure', failure_code(stepper%failures%onset%failed(ply)), error)
+        if (any(wanted)) stresses = stresses_of_ply(model, stepper%failures, strains, ply)
         do place = 1, 3
           if (.not. wanted(place)) cycle
           do i = 1, merge(5, 3, place == 1)

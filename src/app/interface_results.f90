@@ -1,7 +1,7 @@
 !> What the results hold of the interfaces. What belongs to an interface stands in the layer below it.
 module interface_results
   use kinds, only: wp
-  use front_releases, only: front_release_t, release_along_front
+  use front_energy_release, only: front_energy_release_t, release_along_front
   use models, only: model_t
   use states, only: state_t
   implicit none
@@ -38,7 +38,7 @@ contains
         cell = mesh%element_cell(element) - 1
         do zone = 1, size(mesh%zones)
           if (mesh%zones(zone)%below_ply /= mesh%element_plies(1, element) - 1) cycle
-          if (now%separation%regions(zone)%is_delaminated(1 + modulo(cell, mesh%cells(1)), &
+          if (now%interfaces%faces%regions(zone)%is_delaminated(1 + modulo(cell, mesh%cells(1)), &
                                                                 1 + cell/mesh%cells(1))) delaminated(1, i) = 1
         end do
       end associate
@@ -54,12 +54,12 @@ contains
     type(state_t), intent(in) :: now
     !> G/G_c of the interface above, (1, elements)
     real(wp), allocatable :: ratio(:, :)
-    type(front_release_t) :: front
+    type(front_energy_release_t) :: front
     integer :: zone, s, element, place(2)
 
     allocate (ratio(1, model%elements%elements), source=0.0_wp)
     do zone = 1, size(model%mesh%zones)
-      front = release_along_front(model, now%separation, now%motion, zone, &
+      front = release_along_front(model, now%interfaces%faces, now%motion, zone, &
                                   model%scene%delaminations(zone)%energy_release)
       do s = 1, size(front%segments)
         place = merge(front%segments(s)%inside, front%segments(s)%outside, front%segments(s)%at_border)

@@ -11,7 +11,7 @@ module output_clocks
     !> Interval; 0: the clock never strikes
     real(wp) :: interval = 0
     !> Strikes so far
-    integer :: strikes = 0
+    integer :: impact_coupling = 0
   contains
     !> Time of the next strike.
     procedure :: next
@@ -29,7 +29,7 @@ contains
     class(clock_t), intent(in) :: self
 
     next = huge(next)
-    if (self%interval > 0) next = self%interval*(self%strikes + 1)
+    if (self%interval > 0) next = self%interval*(self%impact_coupling + 1)
   end function next
 
   !> True if the next strike has been reached, which is then past.
@@ -40,7 +40,7 @@ contains
     real(wp), intent(in) :: time
 
     strikes_at = time >= self%next()*(1 - 1.0e-12_wp)
-    if (strikes_at) self%strikes = self%strikes + 1
+    if (strikes_at) self%impact_coupling = self%impact_coupling + 1
   end function strikes_at
 
   !> Saves or loads the clock.
@@ -52,6 +52,6 @@ contains
     !> Name of the clock
     character(len=*), intent(in) :: name
 
-    call archive%item('clock/'//name, self%strikes)
+    call archive%item('clock/'//name, self%impact_coupling)
   end subroutine visit
 end module output_clocks

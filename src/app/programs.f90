@@ -6,11 +6,13 @@ module programs
   use communicators, only: communicator_t, start_mpi, finish_mpi
   use launchers, only: launched
   use petsc_session, only: start_petsc, finish_petsc
-  use dynamics_parameters, only: factorization_cholmod
+  use linear_solver_parameters, only: factorization_cholmod
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
   use deck_reader, only: read_deck, read_deck_text
   use deck_remarks, only: tell
+  use deck_table, only: load_deck_table
+  use deck_vocabulary, only: vocabulary_t
   use deck_explain, only: explain, explain_table
   use hdf5_file, only: files_left_open
   use checkpoints, only: checkpoint_archive_t
@@ -94,12 +96,14 @@ contains
     type(communicator_t), intent(in) :: communicator
     !> Set (usage) if there is no such group or key
     type(error_t), allocatable, intent(out) :: error
+    type(vocabulary_t) :: vocabulary
     type(line_t), allocatable :: lines(:)
 
+    call load_deck_table(vocabulary)
     if (command%markdown) then
-      call explain_table(command%target, lines, error)
+      call explain_table(vocabulary, command%target, lines, error)
     else
-      call explain(command%target, lines, error)
+      call explain(vocabulary, command%target, lines, error)
     end if
     if (.not. allocated(error)) call print_lines(communicator, lines)
   end subroutine explain_topic
@@ -163,14 +167,14 @@ contains
     else
       call read_deck_everywhere(command%target, communicator, deck, problems)
     end if
-    if (deck%solver%factorization == factorization_cholmod .and. communicator%size > 1) call tell(deck, problems, &
+    if (deck%linear_solver%factorization == factorization_cholmod .and. communicator%size > 1) call tell(deck%settings, problems, &
       'solver', 'factorization', 'works on one rank only; run on one rank, or take ''mumps''.')
     code = problems%exit_code()
     call print_lines(communicator, problems%lines())
     if (code /= exit_done) return
     if (allocated(command%output)) deck%output%directory = command%output
     call start_mpi(communicator)
-    call start_petsc(communicator, deck%solver%petsc_options//command%petsc_options, error)
+    call start_petsc(communicator, deck%linear_solver%petsc_options//command%petsc_options, error)
     if (allocated(error)) return
     call catch_stop_signals()
     allocate (simulation)

@@ -2,7 +2,7 @@
 module result_rows
   use kinds, only: wp
   use models, only: model_t
-  use marches, only: march_t
+  use time_stepping, only: time_stepper_t
   implicit none
   private
   public :: row_of
@@ -26,28 +26,28 @@ module result_rows
 contains
 
   !> Row of the state reached.
-  function row_of(model, march) result(row)
+  function row_of(model, stepper) result(row)
     !> The model
     type(model_t), intent(in) :: model
     !> The march
-    type(march_t), intent(in) :: march
+    type(time_stepper_t), intent(in) :: stepper
     !> Values in the order of the columns
     real(wp) :: row(columns)
 
-    associate (now => march%now, ledger => march%now%ledger)
+    associate (now => stepper%now, ledger => stepper%now%ledger)
       row(1:7) = [now%time, real(now%step, wp), now%force, now%indentation%alpha, now%impactor%displacement, &
                   now%impactor%velocity, now%deflection]
-      row(8) = now%separation%area(model)
+      row(8) = now%interfaces%faces%area(model)
       row(9:12) = [ledger%impactor, ledger%kinetic, ledger%strain, ledger%indentation]
       row(13:15) = [ledger%delamination, ledger%ply_damage, ledger%contact]
       row(16:25) = [ledger%algorithmic, ledger%error(), now%patch_mean, ledger%external_work, &
-                    march%controller%last, now%stress, now%release_ratio, sum(now%ties%set_free), &
-                    now%separation%penetration(model, now%motion%displacement), &
-                    now%separation%complementarity(model, now%motion%displacement)]
+                    stepper%controller%last, now%stress, now%interfaces%release_ratio, sum(now%interfaces%ties%set_free), &
+                    now%interfaces%faces%penetration(model, now%motion%displacement), &
+                    now%interfaces%faces%complementarity(model, now%motion%displacement)]
       row(26:37) = real([now%iterations, now%force_iterations, now%contact_iterations, now%all_iterations, &
-                         now%all_force_iterations, now%all_contact_iterations, march%rejected, &
-                         march%operator%factorizations, march%operator%solves, march%failures%counts(model)], wp)
-      row(38) = merge(1.0_wp, 0.0_wp, now%border_reached)
+                         now%all_force_iterations, now%all_contact_iterations, stepper%rejected, &
+                         stepper%operator%factorizations, stepper%operator%solves, stepper%failures%counts(model)], wp)
+      row(38) = merge(1.0_wp, 0.0_wp, now%interfaces%border_reached)
     end associate
   end function row_of
 end module result_rows

@@ -2,17 +2,20 @@
 module simulations
   use kinds, only: wp
   use errors, only: error_t, fail, exit_stopped
-  use text, only: to_text, line_t
+  use text, only: to_text, line_t, append
   use files, only: make_directory
   use logger, only: log_t
   use timers, only: timer_set_t
   use communicators, only: communicator_t
   use models, only: model_t
   use model_building, only: create_model
-  use marches, only: march_t
+  use time_stepping, only: time_stepper_t
   use deck_contents, only: deck_t
   use deck_echo, only: echo
+  use deck_table, only: load_deck_table
+  use deck_vocabulary, only: vocabulary_t
   use deck_extents, only: extent_lines
+  use build_information, only: this_build
   use run_provenance, only: provenance_t, this_run
   use run_progress, only: progress_t
   use history_file, only: history_file_t
@@ -20,7 +23,6 @@ module simulations
   use checkpoints, only: checkpoint_archive_t
   use queue_signals, only: stop_signal
   use output_clocks, only: clock_t
-  use pressure_histories, only: pressure_amplitude
   use energy_watches, only: energy_watch_t
   use result_rows, only: row_of, column_names, column_whole
   use field_results, only: write_mesh, write_fields
@@ -37,7 +39,7 @@ module simulations
     !> What does not change
     type(model_t) :: model
     !> What evolves
-    type(march_t) :: march
+    type(time_stepper_t) :: stepper
     !> Log, progress and result files
     type(log_t) :: log
     !> Time spent in set-up, steps and results
@@ -115,15 +117,15 @@ contains
     if (.not. allocated(error)) call self%log%open(self%base//'.log', communicator%is_root(), append, error)
     call communicator%agree(error)
     if (allocated(error)) return
-    self%provenance = this_run(deck%text, communicator%size)
+    self%provenance = this_run(this_build(), deck%text, communicator%size)
     call self%provenance%report(self%log)
     call log_echo(self)
     call create_model(deck%scene_t, communicator, self%model, error)
     if (allocated(error)) return
-    call self%march%start(self%model, error)
+    call self%stepper%start(self%model, deck%stepping, deck%linear_solver, error)
     if (allocated(error)) return
     call self%log%note('Model: '//to_text(self%model%mesh%elements())//' elements, '// &
-                       to_text(self%march%operator%numbering%total)//' unknowns, '// &
+                       to_text(self%stepper%operator%numbering%total)//' unknowns, '// &
                        to_text(communicator%size)//' rank(s).')
     call self%progress%start(0.0_wp)
   end subroutine prepare
@@ -132,10 +134,16 @@ contains
   subroutine log_echo(self)
     !> The run
     class(simulation_t), intent(inout) :: self
+    type(vocabulary_t) :: vocabulary
     type(line_t), allocatable :: lines(:)
     integer :: i
 
-    call echo(self%deck, lines)
+    call load_deck_table(vocabulary)
+    call echo(vocabulary, self%deck%settings, lines)
+    if (self%deck%has_impactor .and. .not. self%deck%has_indentation) then
+      call append(lines, '&indentation law = ''hertz'' [default]')
+      call append(lines, '&indentation k = '//to_text(self%deck%indentation%k)//' [default]')
+    end if
     lines = [lines, extent_lines(self%deck)]
     do i = 1, size(lines)
       call self%log%detail(lines(i)%text)
@@ -176,15 +184,15 @@ contains
     if (allocated(error)) return
     call archive%close(error)
     if (allocated(error)) return
-    self%warned_of_border = self%march%now%border_reached
+    self%warned_of_border = self%stepper%now%interfaces%border_reached
     call self%history%resume(communicator, self%base//'_history.csv', column_names, column_whole, rows, error)
     if (allocated(error)) return
     if (self%history%rows /= rows) &
       call self%log%warning('The history before the checkpoint is not there; it goes on from here.')
-    call self%fields%resume(communicator, self%base, self%provenance, part_of(self), self%march%now%time, error)
+    call self%fields%resume(communicator, self%base, self%provenance, part_of(self), self%stepper%now%time, error)
     if (allocated(error)) return
     call write_mesh(self%model, self%fields, error)
-    call self%progress%start(self%march%now%time/end_of(self))
+    call self%progress%start(self%stepper%now%time/end_of(self))
   end subroutine resume
 
   !> Saves or loads all that evolves.
@@ -198,7 +206,7 @@ contains
     !> Set if the factored operator cannot be made again
     type(error_t), allocatable, intent(out) :: error
 
-    call self%march%visit(archive, self%model, error)
+    call self%stepper%visit(archive, self%model, error)
     call self%history_clock%visit(archive, 'history')
     call self%fields_clock%visit(archive, 'fields')
     call self%checkpoint_clock%visit(archive, 'checkpoint')
@@ -211,7 +219,7 @@ contains
     class(simulation_t), intent(in) :: self
 
     end_of = 1
-    if (.not. self%deck%has_static) end_of = self%deck%time%end
+    if (.not. self%deck%has_static) end_of = self%deck%stepping%time%end
   end function end_of
 
   !> Steps until the end, or until a queue's signal.
@@ -223,21 +231,21 @@ contains
     real(wp) :: event
 
     call self%timers%stop('set-up')
-    do while (self%march%now%time < end_of(self))
+    do while (self%stepper%now%time < end_of(self))
       event = min(end_of(self), self%history_clock%next(), self%fields_clock%next(), self%checkpoint_clock%next())
       call self%timers%start('steps')
-      call self%march%advance(self%model, event, error)
+      call self%stepper%advance(self%model, event, error)
       call self%timers%stop('steps')
       if (allocated(error)) return
       call self%timers%start('results')
       call write_results(self, error)
       call self%timers%stop('results')
       if (allocated(error)) return
-      call self%progress%update(self%log, self%march%now%time/end_of(self), 'step '//to_text(self%march%now%step)// &
-                                ', time '//to_text(self%march%now%time))
+      call self%progress%update(self%log, self%stepper%now%time/end_of(self), 'step '//to_text(self%stepper%now%step)// &
+                                ', time '//to_text(self%stepper%now%time))
       if (.not. self%communicator%any(stop_signal() /= 0)) cycle
       call save_checkpoint(self, error)
-      call fail(error, exit_stopped, 'Stopped by a signal at time '//to_text(self%march%now%time)// &
+      call fail(error, exit_stopped, 'Stopped by a signal at time '//to_text(self%stepper%now%time)// &
                 '; go on with: implam restart '//self%base//'_restart.h5')
       return
     end do
@@ -253,14 +261,14 @@ contains
     logical :: row_due
 
     call warn(self)
-    row_due = self%history_clock%interval <= 0 .or. self%march%now%time >= end_of(self)
-    if (self%history_clock%strikes_at(self%march%now%time)) row_due = .true.
-    if (row_due) call self%history%write_row(row_of(self%model, self%march), error)
+    row_due = self%history_clock%interval <= 0 .or. self%stepper%now%time >= end_of(self)
+    if (self%history_clock%strikes_at(self%stepper%now%time)) row_due = .true.
+    if (row_due) call self%history%write_row(row_of(self%model, self%stepper), error)
     if (allocated(error)) return
-    if (self%fields_clock%strikes_at(self%march%now%time)) &
-      call write_fields(self%model, self%march, self%deck%output, self%fields, error)
+    if (self%fields_clock%strikes_at(self%stepper%now%time)) &
+      call write_fields(self%model, self%stepper, self%deck%output, self%fields, error)
     if (allocated(error)) return
-    if (self%checkpoint_clock%strikes_at(self%march%now%time)) call save_checkpoint(self, error)
+    if (self%checkpoint_clock%strikes_at(self%stepper%now%time)) call save_checkpoint(self, error)
   end subroutine write_results
 
   !> Warns, once each, of what a user must not overlook.
@@ -269,16 +277,16 @@ contains
     class(simulation_t), intent(inout) :: self
     real(wp) :: amplitude
 
-    associate (now => self%march%now)
-      if (now%border_reached .and. .not. self%warned_of_border) then
+    associate (now => self%stepper%now)
+      if (now%interfaces%border_reached .and. .not. self%warned_of_border) then
         call self%log%warning('A delamination has reached the border of its zone at time '//to_text(now%time)// &
                               ' and cannot grow on there: if it would, make the zone larger.')
         self%warned_of_border = .true.
       end if
       if (self%deck%has_static) return
       amplitude = 1
-      if (.not. self%deck%has_impactor) amplitude = pressure_amplitude(self%model%scene, now%time)
-      if (self%energy_watch%alarms(now%ledger, sum(now%ties%debt()), amplitude)) &
+      if (.not. self%deck%has_impactor) amplitude = self%deck%pressure%amplitude(now%time)
+      if (self%energy_watch%alarms(now%ledger, sum(now%interfaces%ties%debt()), amplitude)) &
         call self%log%warning('The time integrators have created more than 1 % of the energy by time '// &
                               to_text(now%time)//': take smaller steps, or more damping (rho_inf) with delamination.')
     end associate
@@ -311,13 +319,13 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     if (self%deck%output%fields_every <= 0) &
-      call write_fields(self%model, self%march, self%deck%output, self%fields, error)
+      call write_fields(self%model, self%stepper, self%deck%output, self%fields, error)
     if (allocated(error)) return
     call self%history%close(error)
     call self%progress%finish(self%log, summary(self))
     call log_costs(self)
     call self%log%note('Results: '//self%base//'_history.csv, '//self%base//'.xdmf, '//self%base//'.log')
-    call self%march%operator%solver%release()
+    call self%stepper%operator%solver%release()
   end subroutine finalize
 
   !> Lists in the log where time and memory went; the second part of the list is contained in the steps.
@@ -327,7 +335,7 @@ contains
     real(wp) :: factor_entries, megabytes
     integer :: matrix_entries, i
 
-    associate (operator => self%march%operator)
+    associate (operator => self%stepper%operator)
       call operator%solver%statistics(factor_entries, megabytes)
       matrix_entries = operator%numbering%row_start(operator%numbering%rows + 1) - 1
       call self%log%detail('Factor: '//to_text(factor_entries)//' numbers, '//to_text(megabytes)//' MB; matrix: '// &
@@ -348,10 +356,10 @@ contains
     !> The line
     character(len=:), allocatable :: line
 
-    associate (now => self%march%now, operator => self%march%operator)
-      line = to_text(now%step)//' steps ('//to_text(self%march%rejected)//' rejected), '// &
+    associate (now => self%stepper%now, operator => self%stepper%operator)
+      line = to_text(now%step)//' steps ('//to_text(self%stepper%rejected)//' rejected), '// &
              to_text(now%all_iterations)//' iterations of equilibrium, '//to_text(now%all_force_iterations)// &
-             ' of the force, '//to_text(operator%factorizations)//' factorisations, '// &
+             ' of the force, '//to_text(operator%factorizations)//' factorizations, '// &
              to_text(operator%solves)//' solves.'
     end associate
   end function summary

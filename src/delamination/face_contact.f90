@@ -16,8 +16,8 @@ module face_contact
   public :: contact_law_t, create_contact_law, contact_pressure, updated_multiplier, updated_decay, unmet_contact
 
   !> Stiffness of the contact over the transverse stiffness of the layers. On random and plate-like
-  !> compliances of 40 nodes a factor of 1 left 40 to over 80 factorisations, 100 about 5 multiplier updates
-  !> and 10 factorisations, 1000 to 1e6 2 to 5 updates and 4 to 10 (augmented Lagrangian; the continuous
+  !> compliances of 40 nodes a factor of 1 left 40 to over 80 factorizations, 100 about 5 multiplier updates
+  !> and 10 factorizations, 1000 to 1e6 2 to 5 updates and 4 to 10 (augmented Lagrangian; the continuous
   !> penalty with q = 1 the same updates and 4 to 14, with q = 1.5 2 to 4 updates and 15 to 30).
   real(wp), parameter :: usual_stiffness = 1.0e3_wp
   !> The same for the augmented Lagrangian between the steps of a motion, whose pressures change little: it leaves

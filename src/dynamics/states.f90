@@ -4,12 +4,11 @@ module states
   use kinds, only: wp
   use archives, only: archive_t
   use impactors, only: impactor_t, new_impactor, impactor_energy
-  use indentations, only: indentation_t
-  use ledgers, only: ledger_t
-  use plate_integrators, only: motion_t
+  use tan_sun_hertz_indentation, only: indentation_t
+  use energy_ledgers, only: ledger_t
+  use motions, only: motion_t
   use models, only: model_t
-  use separations, only: separation_t, new_separation
-  use fading_ties, only: fading_ties_t, new_fading_ties
+  use interface_states, only: interface_state_t, new_interface_state
   implicit none
   private
   public :: state_t, new_state
@@ -26,16 +25,8 @@ module states
     type(impactor_t) :: impactor
     !> Memory of the indentation
     type(indentation_t) :: indentation
-    !> Ties and contacts of the interfaces
-    type(separation_t) :: separation
-    !> Ties let go that still fade, and what they set free
-    type(fading_ties_t) :: ties
-    !> Largest energy release rate on the fronts over its critical value
-    real(wp) :: release_ratio = 0
-    !> The same of those fronts that can grow, not at the border of their zone
-    real(wp) :: growth_ratio = 0
-    !> True once a front has reached the border of its zone, where it cannot grow on
-    logical :: border_reached = .false.
+    !> The interfaces
+    type(interface_state_t) :: interfaces
     !> Impact force at this time
     real(wp) :: force = 0
     !> Mean deflection of the patch, and deflection of the struck point
@@ -69,8 +60,7 @@ contains
     allocate (self%motion%displacement(5, points), self%motion%velocity(5, points), &
               self%motion%acceleration(5, points), self%motion%internal(5, points), &
               self%motion%inertia(5, points), source=0.0_wp)
-    self%separation = new_separation(model)
-    self%ties = new_fading_ties(model)
+    self%interfaces = new_interface_state(model)
     if (.not. model%scene%has_impactor) return
     self%impactor = new_impactor(model%scene%impactor)
     self%ledger%impactor = impactor_energy(model%scene%impactor, self%impactor)
@@ -91,16 +81,12 @@ contains
     call visit_motion(self%motion, archive, model)
     call self%impactor%visit(archive)
     call self%indentation%visit(archive)
-    call archive%item('release_ratio', self%release_ratio)
-    call archive%item('growth_ratio', self%growth_ratio)
-    call archive%item('border_reached', self%border_reached)
     call archive%item('force', self%force)
     call archive%item('patch_mean', self%patch_mean)
     call archive%item('deflection', self%deflection)
     call archive%item('stress', self%stress)
     call archive%item('largest_stress', self%largest_stress)
-    call self%separation%visit(archive, model)
-    call self%ties%visit(archive, model)
+    call self%interfaces%visit(archive, model)
     call self%ledger%visit(archive)
     call archive%item('iterations', self%iterations)
     call archive%item('force_iterations', self%force_iterations)

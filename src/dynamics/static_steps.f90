@@ -5,6 +5,7 @@ module static_steps
   use errors, only: error_t, exit_convergence
   use plate_options, only: kinematics_linear
   use delamination_parameters, only: contact_none
+  use stepping_parameters, only: equilibrium_t
   use models, only: model_t
   use states, only: state_t
   use residual_norms, only: relative_residual
@@ -19,9 +20,11 @@ module static_steps
 contains
 
   !> Tries to reach a load factor. On return either `converged` and `new` is the state there, or nothing of it counts.
-  subroutine attempt_load(model, operator, old, load_factor, new, converged, error)
+  subroutine attempt_load(model, equilibrium, operator, old, load_factor, new, converged, error)
     !> The model
     type(model_t), intent(in) :: model
+    !> Convergence asked for
+    type(equilibrium_t), intent(in) :: equilibrium
     !> The factored operator
     type(tangent_operator_t), intent(inout) :: operator
     !> State at the load before
@@ -48,30 +51,30 @@ contains
     do
       call model%internal(new%motion%displacement, new%motion%internal, energy)
       residual = load_factor*model%pressure - new%motion%internal
-      call new%separation%act(model, new%motion%displacement, residual)
+      call new%interfaces%faces%act(model, new%motion%displacement, residual)
       norm = relative_residual(model%communicator, operator%numbering, residual, new%motion%internal, &
                                load_factor*model%pressure, 0.0_wp, &
-                               operator%diagonal*new%motion%displacement, model%scene%solver%tolerance, &
+                               operator%diagonal*new%motion%displacement, equilibrium%tolerance, &
                                model%thickness, new%largest_forces)
       ! New pressures may be too little a change for the tolerance; only a correction can make them fit the gaps.
-      converged = norm <= model%scene%solver%tolerance .and. .not. pressures_new
+      converged = norm <= equilibrium%tolerance .and. .not. pressures_new
       pressures_new = .false.
       if (converged) then
-        call new%separation%settle(model, new%motion%displacement, contact_tolerance, new%contact_iterations, &
+        call new%interfaces%faces%settle(model, new%motion%displacement, contact_tolerance, new%contact_iterations, &
                                    converged)
         if (converged) exit
         pressures_new = .true.
-        if (new%contact_iterations < model%scene%solver%max_iterations) cycle
+        if (new%contact_iterations < equilibrium%max_iterations) cycle
       end if
-      if (.not. norm <= huge(norm) .or. new%iterations >= model%scene%solver%max_iterations) exit
+      if (.not. norm <= huge(norm) .or. new%iterations >= equilibrium%max_iterations) exit
       if (.not. operator%ready .or. changes(model, new%iterations)) &
-        call operator%renew(model, new%separation, new%motion%displacement, 1.0_wp, 0.0_wp, error)
+        call operator%renew(model, new%interfaces%faces, new%motion%displacement, 1.0_wp, 0.0_wp, error)
       if (.not. allocated(error)) call operator%correct(model, residual, correction, error)
       if (allocated(error)) then
         if (error%code == exit_convergence .and. model%scene%kinematics /= kinematics_linear) deallocate (error)
         return
       end if
-      call new%separation%hold(model, correction)
+      call new%interfaces%faces%hold(model, correction)
       new%motion%displacement = new%motion%displacement + correction
       new%iterations = new%iterations + 1
     end do
@@ -111,8 +114,8 @@ contains
     sums(3) = (new%time + old%time)/2*model%product(change, model%pressure)
     sums(4:5) = 0
     if (model%map%layered) then
-      faces = old%separation%work(model, old%motion%displacement, change)
-      sums(4) = (faces + new%separation%work(model, new%motion%displacement, change))/2
+      faces = old%interfaces%faces%work(model, old%motion%displacement, change)
+      sums(4) = (faces + new%interfaces%faces%work(model, new%motion%displacement, change))/2
       sums(5) = faces/2
     end if
     ! Plies that failed left the state before out of equilibrium. What that sets free would go into motion.

@@ -3,9 +3,7 @@ module step_controllers
   use kinds, only: wp
   use archives, only: archive_t
   use impactors, only: largest_growth_ratio
-  use plate_options, only: kinematics_von_karman
-  use dynamics_parameters, only: refactor_deflection
-  use scenes, only: scene_t
+  use stepping_parameters, only: stepping_t, adapt_t, refactor_deflection
   implicit none
   private
   public :: step_controller_t
@@ -67,11 +65,11 @@ contains
   end function ceiling_of
 
   !> Learns from an accepted step.
-  pure subroutine accept(self, scene, step, iterations, lasting, stress_change)
+  pure subroutine accept(self, stepping, step, iterations, lasting, stress_change)
     !> The controller
     class(step_controller_t), intent(inout) :: self
-    !> The scene
-    type(scene_t), intent(in) :: scene
+    !> How steps are taken
+    type(stepping_t), intent(in) :: stepping
     !> Step taken
     real(wp), intent(in) :: step
     !> Its iterations, and those of them that a fresh operator might have spared
@@ -84,34 +82,34 @@ contains
     self%fewest = min(self%fewest, lasting)
     self%excess = self%excess + lasting - self%fewest
     room = 2
-    if (scene%adapt%on) then
-      room = scene%adapt%stress_change/max(stress_change, tiny(room)**0.5_wp)
-      if (4*iterations > 3*scene%solver%max_iterations) room = min(room, 0.7_wp)
+    if (stepping%adapt%on) then
+      room = stepping%adapt%stress_change/max(stress_change, tiny(room)**0.5_wp)
+      if (4*iterations > 3*stepping%equilibrium%max_iterations) room = min(room, 0.7_wp)
     end if
     if (room < 0.8_wp) then
       self%wanted = self%wanted*max(room, 0.5_wp)
     else if (room > 1.5_wp) then
       self%wanted = self%wanted*largest_growth_ratio
     end if
-    self%wanted = min(max(self%wanted, scene%time%step_min), scene%time%step_max)
+    self%wanted = min(max(self%wanted, stepping%time%step_min), stepping%time%step_max)
   end subroutine accept
 
   !> Shortens the step where delaminations that grow one cell a step are about to grow or have grown (section 3.3.3
   !> of the paper, step 5): as their energy release rate nears the critical one, the step is halved at 0.9 of it, again
   !> at 0.95 and so on in proportion to what is left, down to twice the smallest part; after an extension the smallest
   !> part is taken. Then it doubles from step to step, as far as the steps may grow.
-  pure subroutine heed_fronts(self, scene, ratio, extended)
+  pure subroutine heed_fronts(self, stepping, ratio, extended)
     !> The controller, after `accept`
     class(step_controller_t), intent(inout) :: self
-    !> The scene
-    type(scene_t), intent(in) :: scene
+    !> How steps are taken
+    type(stepping_t), intent(in) :: stepping
     !> Largest energy release rate over its critical value of the step
     real(wp), intent(in) :: ratio
     !> True if a front grew in it
     logical, intent(in) :: extended
     real(wp) :: smallest, allowed
 
-    smallest = min(1.0_wp, max(scene%adapt%growth_step, scene%time%step_min/self%wanted))
+    smallest = min(1.0_wp, max(stepping%adapt%growth_step, stepping%time%step_min/self%wanted))
     allowed = 1
     do while (allowed/2 >= max(2*smallest, (1 - ratio)/(1 - nearing)))
       allowed = allowed/2
@@ -134,12 +132,14 @@ contains
   end subroutine reject
 
   !> True if the operator should be renewed before a step: by the paper's rule, or once the iterations
-  !> that its age has cost add up to about the price of a factorisation.
-  pure logical function renewal_due(self, scene, mass_ratio, deflection_change, thickness) result(due)
+  !> that its age has cost add up to about the price of a factorization.
+  pure logical function renewal_due(self, adapt, nonlinear, mass_ratio, deflection_change, thickness) result(due)
     !> The controller
     class(step_controller_t), intent(in) :: self
-    !> The scene
-    type(scene_t), intent(in) :: scene
+    !> The rule
+    type(adapt_t), intent(in) :: adapt
+    !> True: the stiffness changes with the deflection
+    logical, intent(in) :: nonlinear
     !> Mass factor of the step over that of the operator
     real(wp), intent(in) :: mass_ratio
     !> Change of the struck point's deflection since the operator was made
@@ -147,12 +147,12 @@ contains
     !> Thickness of the laminate
     real(wp), intent(in) :: thickness
 
-    if (scene%adapt%refactor == refactor_deflection) then
+    if (adapt%refactor == refactor_deflection) then
       due = abs(mass_ratio - 1) > 0.01_wp
-      if (scene%kinematics == kinematics_von_karman) &
-        due = due .or. abs(deflection_change) > scene%adapt%stiffness_update*thickness
+      if (nonlinear) &
+        due = due .or. abs(deflection_change) > adapt%stiffness_update*thickness
     else
-      due = mass_ratio < lag_low .or. mass_ratio > lag_high .or. self%excess >= scene%adapt%iterations
+      due = mass_ratio < lag_low .or. mass_ratio > lag_high .or. self%excess >= adapt%iterations
     end if
   end function renewal_due
 

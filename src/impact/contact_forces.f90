@@ -3,7 +3,7 @@ module contact_forces
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use errors, only: error_t, fail, exit_internal
   use impact_parameters, only: indentation_law_t
-  use indentations, only: indentation_t, touch_indentation, indentation_force, indentation_stiffness, &
+  use tan_sun_hertz_indentation, only: indentation_t, touch_indentation, indentation_force, indentation_stiffness, &
                          mean_indentation_force, indentation_work
   use kinds, only: wp
   implicit none

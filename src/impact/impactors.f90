@@ -8,7 +8,7 @@ module impactors
   use archives, only: archive_t
   use impact_parameters, only: impactor_parameters_t, indentation_law_t, integrator_gear4, &
                                integrator_trapezoidal, integrator_central, integrator_conserving
-  use indentations, only: indentation_t, stiffening
+  use tan_sun_hertz_indentation, only: indentation_t, stiffening
   use kinds, only: wp
   implicit none
   private

@@ -170,7 +170,7 @@ contains
     if (info == 0) call dsycon('L', n, self%factor, n, self%pivots, maxval(sum(abs(self%matrix), 1)), condition, &
                                work, integer_work, info)
     if (condition < epsilon(condition)) call fail(error, exit_convergence, 'The dense matrix is singular.')
-    self%factorisations = self%factorisations + 1
+    self%factorizations = self%factorizations + 1
   end subroutine factorize
 
   !> Solves for one right-hand side with the factor.

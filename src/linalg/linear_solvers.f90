@@ -11,8 +11,8 @@ module linear_solvers
   !> A symmetric matrix and its factor. The factor stays what it was until `factorize` is called again,
   !> whatever values are assembled meanwhile.
   type, abstract :: linear_solver_t
-    !> Number of factorisations so far
-    integer :: factorisations = 0
+    !> Number of factorizations so far
+    integer :: factorizations = 0
     !> Number of right-hand sides solved so far
     integer :: solves = 0
   contains
@@ -131,7 +131,7 @@ module linear_solvers
       class(linear_solver_t), intent(in) :: self
       !> Numbers stored in the factor
       real(wp), intent(out) :: factor_entries
-      !> Memory of the factorisation on all ranks, in MB
+      !> Memory of the factorization on all ranks, in MB
       real(wp), intent(out) :: megabytes
     end subroutine statistics
   end interface

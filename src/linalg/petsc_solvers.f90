@@ -193,7 +193,7 @@ contains
       call fail(error, exit_convergence, why_not_factored(self%by_mumps, outcome))
     end if
     call self%communicator%agree(error)
-    self%factorisations = self%factorisations + 1
+    self%factorizations = self%factorizations + 1
     self%factored = .not. allocated(error)
     if (.not. self%factored) return
     ! Ordering and pattern are done: the same blocks are needed from now on.
@@ -364,7 +364,7 @@ contains
     class(petsc_solver_t), intent(in) :: self
     !> Numbers stored in the factor
     real(wp), intent(out) :: factor_entries
-    !> Memory of the factorisation on all ranks, in MB
+    !> Memory of the factorization on all ranks, in MB
     real(wp), intent(out) :: megabytes
     type(tMat) :: factor
     double precision :: info(MAT_INFO_SIZE)

@@ -82,16 +82,16 @@ def step_cost(program, arguments):
         run = Run(program, kinematics, round(elements*arguments.finer), 1e-6, arguments.steps*1e-6)
         steps, seconds = run.phases['steps']
         solve = run.mean('solve')
-        factors, factoring = run.phases['factorisation']
+        factors, factoring = run.phases['factorization']
         factoring += run.phases['assembly'][1]
         print(f'{kinematics}: {run.unknowns} unknowns, {steps} steps, {run.phases["solve"][0]} solves of '
-              f'{1e3*solve:.1f} ms, {factors} factorisations of {1e3*factoring/factors:.0f} ms')
+              f'{1e3*solve:.1f} ms, {factors} factorizations of {1e3*factoring/factors:.0f} ms')
         print(f'  a step over a solve, on the wall: {run.wall["steps"]/run.wall["solve"]:.2f} (at most {target}); '
-              f'of the processor {seconds/steps/solve:.2f}; without factorisations '
+              f'of the processor {seconds/steps/solve:.2f}; without factorizations '
               f'{(seconds - factoring)/steps/solve:.2f}')
-        for phase in ('solve', 'factorisation', 'assembly', 'element forces'):
+        for phase in ('solve', 'factorization', 'assembly', 'element forces'):
             print(f'    {phase}: {100*run.phases[phase][1]/seconds:.1f} % of the steps')
-        rest = seconds - sum(run.phases[p][1] for p in ('solve', 'factorisation', 'assembly', 'element forces'))
+        rest = seconds - sum(run.phases[p][1] for p in ('solve', 'factorization', 'assembly', 'element forces'))
         print(f'    all else: {100*rest/seconds:.1f} % of the steps')
         before = run.seconds - seconds - run.phases['results'][1]
         print(f'  before the first step: {before:.2f} s of {run.seconds:.2f} s, {100*before/run.seconds:.1f} %; with '
@@ -139,7 +139,7 @@ def speed(program, arguments):
 
 
 def cost(program, text):
-    """Seconds of the processor of one run of a deck, its iterations of equilibrium and its factorisations."""
+    """Seconds of the processor of one run of a deck, its iterations of equilibrium and its factorizations."""
     with tempfile.TemporaryDirectory() as folder:
         deck = pathlib.Path(folder, 'bench.nml')
         deck.write_text(text)
@@ -149,7 +149,7 @@ def cost(program, text):
         if process.returncode:
             sys.exit(f'{program} failed with exit code {process.returncode}.')
         log = next(pathlib.Path(folder).glob('*.log')).read_text()
-        counts = re.search(r'(\d+) iterations of equilibrium.*?(\d+) factorisations', log).groups()
+        counts = re.search(r'(\d+) iterations of equilibrium.*?(\d+) factorizations', log).groups()
         return usage.ru_utime + usage.ru_stime, counts
 
 

@@ -9,6 +9,7 @@ program write_samples
   use fields_file, only: fields_file_t
   use kinds, only: wp
   use run_provenance, only: this_run
+  use sample_builds, only: sample_build
   implicit none
 
   !> Elements along x and y, and layers
@@ -46,12 +47,12 @@ contains
 
     points = dealt(points_across*points_along*layers)
     cells = dealt(across*along*layers)
-    call fields%create(communicator, base, this_run(deck, communicator%size), 'quarter', error)
+    call fields%create(communicator, base, this_run(sample_build(), deck, communicator%size), 'quarter', error)
     call write_mesh(fields, points, cells, error)
     call write_time(fields, 0.0_wp, 0, points, cells, error)
     call write_time(fields, 1.0_wp, 1, points, cells, error)
     call write_time(fields, 2.0_wp, 2, points, cells, error)
-    call again%resume(communicator, base, this_run(deck, communicator%size), 'quarter', 1.0_wp, error)
+    call again%resume(communicator, base, this_run(sample_build(), deck, communicator%size), 'quarter', 1.0_wp, error)
     call write_mesh(again, points, cells, error)
     call write_time(again, 1.5_wp, 2, points, cells, error)
   end subroutine write_fields
@@ -155,7 +156,7 @@ contains
     do while (.not. allocated(error))
       n = n + 1
       numbers = n
-      call archive%open_for_saving(communicator, path, this_run(deck, communicator%size), error)
+      call archive%open_for_saving(communicator, path, this_run(sample_build(), deck, communicator%size), error)
       call archive%item('n', n)
       call archive%item('numbers', numbers)
       call archive%close(error)

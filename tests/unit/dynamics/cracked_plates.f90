@@ -9,7 +9,7 @@ module cracked_plates
   use mesh_parameters, only: edge_free, edge_clamped, symmetry_none, symmetry_quarter
   use material_parameters, only: material_t
   use delamination_parameters, only: contact_none
-  use front_releases, only: front_release_t, release_along_front
+  use front_energy_release, only: front_energy_release_t, release_along_front
   use scenes, only: scene_t
   use models, only: model_t
   use model_building, only: create_model
@@ -36,7 +36,7 @@ module cracked_plates
     !> Adds a force along a line of nodes across the strip.
     procedure :: pull
     !> Adds a force on the patch, half of it on the lower layer.
-    procedure :: strike
+    procedure :: coupling
     !> Softens the layers of all cells of some columns.
     procedure :: soften
     !> Finds equilibrium.
@@ -143,7 +143,7 @@ contains
     integer, allocatable :: nodes(:)
     integer :: i, j
 
-    associate (mesh => self%model%mesh, region => self%state%separation%regions(1))
+    associate (mesh => self%model%mesh, region => self%state%interfaces%faces%regions(1))
       do j = rows(1), rows(2)
         do i = columns(1), columns(2)
           nodes = mesh%cell_nodes(mesh%cell_at(i, j))
@@ -151,7 +151,7 @@ contains
         end do
       end do
     end associate
-    call self%state%separation%free_jumps(self%model)
+    call self%state%interfaces%faces%free_jumps(self%model)
   end subroutine release
 
   !> Adds a force along a line of nodes across the strip.
@@ -181,7 +181,7 @@ contains
   end subroutine pull
 
   !> Adds a force on the patch, half of it on the lower layer so that the faces neither part nor meet.
-  subroutine strike(self, force)
+  subroutine coupling(self, force)
     class(cracked_plate_t), intent(inout) :: self
     real(wp), intent(in) :: force
     integer :: node, upper, lower
@@ -195,7 +195,7 @@ contains
         model%pressure(3, lower) = model%pressure(3, upper)/2
       end do
     end associate
-  end subroutine strike
+  end subroutine coupling
 
   !> Softens the layers of all cells of some columns.
   subroutine soften(self, columns, factor)
@@ -227,7 +227,7 @@ contains
     logical :: converged
 
     rest = new_state(self%model)
-    rest%separation = self%state%separation
+    rest%faces = self%state%interfaces%faces
     call attempt_load(self%model, self%operator, rest, 1.0_wp, self%state, converged, error)
     if (allocated(error) .or. .not. converged) error stop 'no equilibrium'
   end subroutine settle
@@ -243,14 +243,14 @@ contains
   function rates(self, method) result(front)
     class(cracked_plate_t), intent(in) :: self
     integer, intent(in) :: method
-    type(front_release_t) :: front
+    type(front_energy_release_t) :: front
 
-    front = release_along_front(self%model, self%state%separation, self%state%motion, 1, method)
+    front = release_along_front(self%model, self%state%interfaces%faces, self%state%motion, 1, method)
   end function rates
 
   !> Mean rate over the length of a front.
   pure real(wp) function front_mean(front) result(mean)
-    type(front_release_t), intent(in) :: front
+    type(front_energy_release_t), intent(in) :: front
 
     mean = sum(sum(front%modes, dim=1)*front%segments%width)/sum(front%segments%width)
   end function front_mean

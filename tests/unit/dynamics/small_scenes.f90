@@ -7,15 +7,15 @@ module small_scenes
   use mesh_parameters, only: edge_simple, symmetry_none, symmetry_quarter
   use material_parameters, only: material_t
   use impact_parameters, only: law_hertz, integrator_conserving
-  use dynamics_parameters, only: distribution_sine
+  use pressure_loads, only: distribution_sine
   use scenes, only: scene_t
   use models, only: model_t
-  use separations, only: new_separation
+  use contact_and_ties, only: new_contact_and_ties
   use tangent_operators, only: tangent_operator_t
-  use marches, only: march_t
+  use time_stepping, only: time_stepper_t
   implicit none
   private
-  public :: isotropic, cross_ply_material, unit_plate, press, strike, factor, find_mode, shaped_like, let_go
+  public :: isotropic, cross_ply_material, unit_plate, press, coupling, factor, find_mode, shaped_like, let_go
 
   real(wp), parameter, public :: pi = acos(-1.0_wp)
 
@@ -94,7 +94,7 @@ contains
   end subroutine press
 
   !> Adds an impactor that falls on a patch a fifth of the side wide.
-  pure subroutine strike(scene, mass, velocity, k)
+  pure subroutine coupling(scene, mass, velocity, k)
     !> The scene
     type(scene_t), intent(inout) :: scene
     !> Mass and velocity of the impactor, contact stiffness
@@ -107,7 +107,7 @@ contains
     scene%impactor%integrator = integrator_conserving
     scene%indentation%law = law_hertz
     scene%indentation%k = k
-  end subroutine strike
+  end subroutine coupling
 
   !> Factors an operator of a model without separated layers.
   subroutine factor(model, displacement, stiffness_factor, mass_factor, operator, error)
@@ -124,7 +124,7 @@ contains
 
     call operator%create(model, error)
     if (allocated(error)) return
-    call operator%renew(model, new_separation(model), displacement, stiffness_factor, mass_factor, error)
+    call operator%renew(model, new_contact_and_ties(model), displacement, stiffness_factor, mass_factor, error)
   end subroutine factor
 
   !> Deflection of m half-waves along x and n along y of a simply supported plate.
@@ -183,9 +183,9 @@ contains
   end subroutine find_mode
 
   !> Puts a plate that has been started into a shape from which it is let go.
-  subroutine let_go(march, model, displacement, error)
+  subroutine let_go(stepper, model, displacement, error)
     !> The march, started
-    type(march_t), intent(inout) :: march
+    type(time_stepper_t), intent(inout) :: stepper
     !> The model
     type(model_t), intent(in) :: model
     !> The shape, (5, points)
@@ -195,7 +195,7 @@ contains
     type(tangent_operator_t) :: mass
     real(wp) :: energy
 
-    associate (motion => march%now%motion)
+    associate (motion => stepper%now%motion)
       motion%displacement = displacement
       call model%internal(displacement, motion%internal, energy)
       call factor(model, 0*displacement, 0.0_wp, 1.0_wp, mass, error)
@@ -204,7 +204,7 @@ contains
       call mass%solver%release()
       call model%inertia(motion%acceleration, motion%inertia)
     end associate
-    march%now%ledger%strain = energy*model%mesh%multiplicity
-    march%now%ledger%initial = march%now%ledger%strain
+    stepper%now%ledger%strain = energy*model%mesh%multiplicity
+    stepper%now%ledger%initial = stepper%now%ledger%strain
   end subroutine let_go
 end module small_scenes

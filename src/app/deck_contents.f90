@@ -1,0 +1,33 @@
+!> What a deck says, as plain parameters together with the text they came from.
+module deck_contents
+  use deck_settings, only: settings_t
+  use stepping_parameters, only: stepping_t
+  use linear_solver_parameters, only: linear_solver_parameters_t
+  use output_parameters, only: output_t
+  use scenes, only: scene_t
+  implicit none
+  private
+  public :: deck_t
+
+  !> A deck that was read: the scene to model, and what is around it.
+  type, extends(scene_t) :: deck_t
+    !> Path or name it was read from
+    character(len=:), allocatable :: source
+    !> Text as it was read, kept for the results and a restart
+    character(len=:), allocatable :: text
+    !> Name of the case, which names its files
+    character(len=:), allocatable :: name
+    !> Title of the case
+    character(len=:), allocatable :: title
+    !> Which groups on the steps the deck has
+    logical :: has_time = .false., has_adapt = .false.
+    !> How steps are taken
+    type(stepping_t) :: stepping
+    !> The linear solver
+    type(linear_solver_parameters_t) :: linear_solver
+    !> What is written
+    type(output_t) :: output
+    !> Every key in effect, for the echo
+    type(settings_t) :: settings
+  end type deck_t
+end module deck_contents

@@ -1,0 +1,52 @@
+!> Tells every key in effect and whether it is from the deck or by default, for the log.
+module deck_echo
+  use deck_entries, only: written_values
+  use deck_settings, only: settings_t, setting_t
+  use deck_vocabulary, only: vocabulary_t
+  use text, only: line_t, append
+  implicit none
+  private
+  public :: echo
+
+contains
+
+  !> Lines such as `&plate edges = 'clamped' [deck]`.
+  subroutine echo(vocabulary, settings, lines)
+    !> The table
+    type(vocabulary_t), intent(in) :: vocabulary
+    !> Keys in effect of a deck without errors
+    type(settings_t), intent(in) :: settings
+    !> One line a key
+    type(line_t), allocatable, intent(out) :: lines(:)
+    character(len=:), allocatable :: words
+    integer :: i
+
+    allocate (lines(0))
+    do i = 1, size(settings%items)
+      associate (item => settings%items(i))
+        words = value_in_effect(vocabulary, item)
+        if (words == '') cycle
+        call append(lines, '&'//item%group//' '//item%key//' = '//words// &
+                    trim(merge(' [deck]   ', ' [default]', item%given)))
+      end associate
+    end do
+  end subroutine echo
+
+  !> Values of a key as they would stand in a deck, or what the absence of one means; empty if it means nothing.
+  pure function value_in_effect(vocabulary, item) result(words)
+    !> The table
+    type(vocabulary_t), intent(in) :: vocabulary
+    !> The key
+    type(setting_t), intent(in) :: item
+    !> A value or a word
+    character(len=:), allocatable :: words
+
+    if (size(item%values) > 0) then
+      words = written_values(item%values)
+    else
+      words = vocabulary%keys(vocabulary%key_index(item%group, item%key))%default
+      if (words == 'none') words = ''
+      if (index(words, '=') == 1) words = words(3:)
+    end if
+  end function value_in_effect
+end module deck_echo

@@ -1,0 +1,38 @@
+!> When an interface gives way: energy release rate against toughness (Eq. 7 of the paper), with one
+!> toughness or with the mixed-mode one of M. L. Benzeggagh and M. Kenane, Composites Science and
+!> Technology 56 (1996) 439-449.
+module benzeggagh_kenane
+  use delamination_parameters, only: delamination_t
+  use kinds, only: wp
+  implicit none
+  private
+  public :: critical_release_rate, release_ratio
+
+contains
+
+  !> Critical energy release rate of a mixture of modes: G_c, or G_Ic + (G_IIc - G_Ic) (G_shear/G)**eta.
+  pure real(wp) function critical_release_rate(delamination, modes) result(critical)
+    !> Toughnesses of the interface
+    type(delamination_t), intent(in) :: delamination
+    !> Energy release rates G_I, G_II, G_III, none negative; only their ratios matter, and nothing
+    !> released counts as opening
+    real(wp), intent(in) :: modes(3)
+    real(wp) :: shear
+
+    critical = delamination%toughness
+    if (critical > 0) return
+    shear = 0
+    if (sum(modes) > 0) shear = sum(modes(2:3))/sum(modes)
+    critical = delamination%toughness_opening + &
+               (delamination%toughness_shear - delamination%toughness_opening)*shear**delamination%mixing_exponent
+  end function critical_release_rate
+
+  !> Energy release rate over the critical one: growth above 1.
+  pure real(wp) function release_ratio(delamination, modes) result(ratio)
+    !> Toughnesses of the interface
+    type(delamination_t), intent(in) :: delamination
+    !> Energy release rates G_I, G_II, G_III, none negative
+    real(wp), intent(in) :: modes(3)
+    ratio = sum(modes)/critical_release_rate(delamination, modes)
+  end function release_ratio
+end module benzeggagh_kenane

@@ -1,0 +1,149 @@
+!> Books the energies of a step. What the integrators take out of the motion is computed from their
+!> own algebra, not as the remainder, so that the ledger's error shows every other mistake.
+module energy_balance
+  use kinds, only: wp
+  use impactors, only: impactor_energy
+  use motions, only: motion_t
+  use newmark_integrators, only: plate_integrator_t
+  use models, only: model_t
+  use states, only: state_t
+  implicit none
+  private
+  public :: book_step
+
+  !> Products of the step's fields that the energies are made of, summed over the modelled part.
+  type :: products_t
+    !> v.Mv at the end; strain energy at the end
+    real(wp) :: kinetic = 0, strain = 0
+    !> Change of displacement times: mean internal force, change of internal force, nodal force of full pressure,
+    !> change of inertia force
+    real(wp) :: mean_internal = 0, internal_change = 0, pressure = 0, inertia_change = 0
+    !> a.Ma at the end and at the start; change of a times change of Ma
+    real(wp) :: jerk_new = 0, jerk_old = 0, jerk_change = 0
+    !> Work of the forces between faces
+    real(wp) :: faces = 0
+  end type products_t
+
+contains
+
+  !> Books a step.
+  subroutine book_step(model, integrator, old, step, force, energy, new)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Integrator of the plate
+    type(plate_integrator_t), intent(in) :: integrator
+    !> State at the start
+    type(state_t), intent(in) :: old
+    !> Time step
+    real(wp), intent(in) :: step
+    !> Force of the impactor in the plate's equation of motion
+    real(wp), intent(in) :: force
+    !> Strain energy of this rank's elements
+    real(wp), intent(in) :: energy
+    !> State at the end; receives its ledger
+    type(state_t), intent(inout) :: new
+    type(products_t) :: products
+    real(wp) :: amplitudes(2), gain, impactor, taken
+
+    products = step_products(model, old, energy, new)
+    amplitudes = model%scene%pressure%amplitude([old%time, new%time])
+    new%ledger%kinetic = products%kinetic/2
+    new%ledger%strain = products%strain
+    new%ledger%contact = old%ledger%contact - products%faces
+    new%ledger%external_work = old%ledger%external_work + sum(amplitudes)/2*products%pressure
+    gain = integrator_gain(integrator, step, products, amplitudes(2) - amplitudes(1)) &
+           + (products%strain - old%ledger%strain - products%mean_internal)
+    new%ledger%algorithmic = old%ledger%algorithmic - gain
+    if (model%map%layered) then
+      ! What fracture takes has been booked, and taken off here, when the ties were let go.
+      call new%interfaces%ties%book(model, old%interfaces%ties, new%motion%displacement - old%motion%displacement, taken)
+      new%ledger%algorithmic = new%ledger%algorithmic + taken
+    end if
+    if (.not. model%scene%has_impactor) return
+    impactor = impactor_energy(model%scene%impactor, new%impactor)
+    new%ledger%impactor = impactor
+    new%ledger%indentation = new%indentation%work
+    new%ledger%algorithmic = new%ledger%algorithmic - (force*(new%patch_mean - old%patch_mean) &
+      + impactor - old%ledger%impactor + new%ledger%indentation - old%ledger%indentation)
+  end subroutine book_step
+
+  !> Energy that the plate's integrator adds to a linear plate in a step: the Newmark formulas and the
+  !> weighted equation of motion combined. Zero for alpha_m = alpha_f = gamma = 1/2, beta = 1/4.
+  pure real(wp) function integrator_gain(integrator, step, products, pressure_change) result(gain)
+    !> Integrator of the plate
+    type(plate_integrator_t), intent(in) :: integrator
+    !> Time step
+    real(wp), intent(in) :: step
+    !> Products of the step's fields
+    type(products_t), intent(in) :: products
+    !> Change of the pressure over its full value
+    real(wp), intent(in) :: pressure_change
+
+    associate (m => integrator%alpha_m, f => integrator%alpha_f, beta => integrator%beta, gamma => integrator%gamma)
+      gain = (0.5_wp - f)*(pressure_change*products%pressure - products%internal_change) &
+             + (gamma - 1 + m)*products%inertia_change &
+             - step**2*(beta - gamma/2)*((products%jerk_new - products%jerk_old)/2 &
+                                         + (gamma - 0.5_wp)*products%jerk_change)
+    end associate
+  end function integrator_gain
+
+  !> Products of the step's fields, of the whole plate.
+  function step_products(model, old, energy, new) result(products)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> State at the start
+    type(state_t), intent(in) :: old
+    !> Strain energy of this rank's elements
+    real(wp), intent(in) :: energy
+    !> State at the end
+    type(state_t), intent(in) :: new
+    !> The products
+    type(products_t) :: products
+    real(wp), allocatable :: momentum(:, :)
+    real(wp) :: sums(10)
+
+    allocate (momentum, mold=old%motion%displacement)
+    call model%inertia(new%motion%velocity, momentum)
+    sums = 0
+    sums(:7) = field_products(model%distribution%owned, old%motion, new%motion, momentum)
+    sums(8) = energy
+    if (allocated(model%pressure)) &
+      sums(9) = model%product(new%motion%displacement - old%motion%displacement, model%pressure)
+    if (model%map%layered) sums(10) = new%interfaces%faces%work(model, new%motion%displacement, &
+                                                          new%motion%displacement - old%motion%displacement)
+    call model%communicator%sum(sums)
+    sums = sums*model%mesh%multiplicity
+    products = products_t(kinetic=sums(1), mean_internal=sums(2)/2, internal_change=sums(3), inertia_change=sums(4), &
+                          jerk_new=sums(5), jerk_old=sums(6), jerk_change=sums(7), strain=sums(8), pressure=sums(9), &
+                          faces=sums(10))
+  end function step_products
+
+  !> Products of fields over this rank's points, in one pass over them: v.Mv at the end; change of displacement times
+  !> sum and change of internal force and times change of inertia force; a.Ma at the end and at the start; change of a
+  !> times change of Ma.
+  pure function field_products(owned, old, new, momentum) result(sums)
+    !> Number of points that this rank owns
+    integer, intent(in) :: owned
+    !> Motion at the start and at the end of the step
+    type(motion_t), intent(in) :: old, new
+    !> Mass times velocity at the end, (5, points)
+    real(wp), intent(in) :: momentum(:, :)
+    !> The products
+    real(wp) :: sums(7)
+    real(wp) :: change(5), inertia(5)
+    integer :: i
+
+    sums = 0
+    do i = 1, owned
+      change = new%displacement(:, i) - old%displacement(:, i)
+      inertia = new%inertia(:, i) - old%inertia(:, i)
+      sums = sums + [dot_product(new%velocity(:, i), momentum(:, i)), &
+                     dot_product(change, new%internal(:, i) + old%internal(:, i)), &
+                     dot_product(change, new%internal(:, i) - old%internal(:, i)), &
+                     dot_product(change, inertia), &
+                     dot_product(new%acceleration(:, i), new%inertia(:, i)), &
+                     dot_product(old%acceleration(:, i), old%inertia(:, i)), &
+                     dot_product(new%acceleration(:, i) - old%acceleration(:, i), inertia)]
+    end do
+  end function field_products
+end module energy_balance

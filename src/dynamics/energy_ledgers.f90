@@ -1,0 +1,64 @@
+!> Where the energy is. Every entry is of the whole plate, also under symmetry.
+module energy_ledgers
+  use kinds, only: wp
+  use archives, only: archive_t
+  implicit none
+  private
+  public :: ledger_t
+
+  !> The energy ledger.
+  type :: ledger_t
+    !> Kinetic energy of the impactor and its height's potential
+    real(wp) :: impactor = 0
+    !> Kinetic and strain energy of the plate
+    real(wp) :: kinetic = 0, strain = 0
+    !> Work done on the indentation, stored and lost
+    real(wp) :: indentation = 0
+    !> Energy that new delaminated faces have taken, and that plies lost by damage
+    real(wp) :: delamination = 0, ply_damage = 0
+    !> Energy lost where faces meet, and held by penalty ties
+    real(wp) :: contact = 0
+    !> Energy that the time integrators have taken out of the motion
+    real(wp) :: algorithmic = 0
+    !> Work of the pressure
+    real(wp) :: external_work = 0
+    !> Energy at the start
+    real(wp) :: initial = 0
+  contains
+    !> Energy that no entry accounts for.
+    procedure :: error
+    !> Saves or loads the ledger.
+    procedure :: visit
+  end type ledger_t
+
+contains
+
+  !> Energy that no entry accounts for: zero up to the residual of equilibrium.
+  pure real(wp) function error(self)
+    !> The ledger
+    class(ledger_t), intent(in) :: self
+
+    error = self%impactor + self%kinetic + self%strain + self%indentation + self%delamination &
+            + self%ply_damage + self%contact + self%algorithmic &
+            - self%external_work - self%initial
+  end function error
+
+  !> Saves or loads every entry.
+  subroutine visit(self, archive)
+    !> The ledger
+    class(ledger_t), intent(inout) :: self
+    !> Where to or where from
+    class(archive_t), intent(inout) :: archive
+
+    call archive%item('ledger/impactor', self%impactor)
+    call archive%item('ledger/kinetic', self%kinetic)
+    call archive%item('ledger/strain', self%strain)
+    call archive%item('ledger/indentation', self%indentation)
+    call archive%item('ledger/delamination', self%delamination)
+    call archive%item('ledger/ply_damage', self%ply_damage)
+    call archive%item('ledger/contact', self%contact)
+    call archive%item('ledger/algorithmic', self%algorithmic)
+    call archive%item('ledger/external_work', self%external_work)
+    call archive%item('ledger/initial', self%initial)
+  end subroutine visit
+end module energy_ledgers

@@ -1,0 +1,99 @@
+!> The impactor's side of a step of plate and impactor together.
+module impact_coupling
+  use kinds, only: wp
+  use errors, only: error_t
+  use contact_forces, only: solve_contact_force
+  use impactors, only: predict, takes_mean_force
+  use newmark_integrators, only: plate_integrator_t
+  use models, only: model_t
+  use states, only: state_t
+  use tangent_operators, only: tangent_operator_t
+  implicit none
+  private
+  public :: impact_coupling_t, begin_coupling
+
+  !> The motion of the impactor and the indentation are affine in one unknown force.
+  type :: impact_coupling_t
+    !> Displacement of the impactor at the end of the step without force, and its fall per unit of force
+    real(wp) :: free_displacement = 0, compliance = 0
+    !> True: the unknown is the mean force over the step; false: the force at its end
+    logical :: mean = .false.
+    !> The unknown force, and the force at the end of the step
+    real(wp) :: unknown = 0, force_end = 0
+    !> Share of the unknown in the plate's load, and the rest of the load
+    real(wp) :: share = 0, inherited = 0
+  contains
+    !> Force on the plate in its equation of motion.
+    procedure :: load
+    !> Solves for the force.
+    procedure :: solve
+  end type impact_coupling_t
+
+contains
+
+  !> The impactor's part in a step.
+  pure function begin_coupling(model, integrator, old, step) result(coupling)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Integrator of the plate
+    type(plate_integrator_t), intent(in) :: integrator
+    !> State at the start
+    type(state_t), intent(in) :: old
+    !> Time step
+    real(wp), intent(in) :: step
+    !> The strike
+    type(impact_coupling_t) :: coupling
+
+    call predict(model%scene%impactor, old%impactor, step, coupling%free_displacement, coupling%compliance)
+    coupling%mean = takes_mean_force(model%scene%impactor)
+    coupling%unknown = old%force
+    coupling%force_end = old%force
+    coupling%share = 1
+    if (coupling%mean) return
+    coupling%share = 1 - integrator%alpha_f
+    coupling%inherited = integrator%alpha_f*old%force
+  end function begin_coupling
+
+  !> Force on the plate in its equation of motion.
+  pure real(wp) function load(self)
+    !> The strike
+    class(impact_coupling_t), intent(in) :: self
+
+    load = self%share*self%unknown + self%inherited
+  end function load
+
+  !> Solves for the impact force, given the correction of the plate for the force assumed, and adds the
+  !> plate's response to the change of the force.
+  subroutine solve(self, model, integrator, operator, old, new, correction, error)
+    !> The strike
+    class(impact_coupling_t), intent(inout) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Integrator of the plate
+    type(plate_integrator_t), intent(in) :: integrator
+    !> Holds the response to a unit force
+    type(tangent_operator_t), intent(in) :: operator
+    !> State at the start
+    type(state_t), intent(in) :: old
+    !> State at the end, before the correction
+    type(state_t), intent(inout) :: new
+    !> Correction of the displacement, (5, points)
+    real(wp), intent(inout) :: correction(:, :)
+    !> Set if numbers are not finite
+    type(error_t), allocatable, intent(inout) :: error
+    real(wp) :: alpha_free, alpha_end, compliance, before
+    integer :: iterations
+
+    before = self%unknown
+    compliance = self%share*operator%compliance
+    new%patch_mean = model%patch_mean(new%motion%displacement) + model%patch_mean(correction)
+    alpha_free = self%free_displacement - new%patch_mean + before*compliance
+    call solve_contact_force(model%scene%indentation, old%indentation, old%indentation%alpha, alpha_free, &
+                             self%compliance + compliance, self%mean, self%unknown, alpha_end, &
+                             self%force_end, iterations, error)
+    correction = correction + (self%share*(self%unknown - before))*operator%response
+    new%force_iterations = new%force_iterations + iterations
+    ! The plate wants the force at 1 - alpha_f of the step, which is the mean force for alpha_f = 1/2 only.
+    if (self%mean) self%inherited = (0.5_wp - integrator%alpha_f)*(self%force_end - old%force)
+  end subroutine solve
+end module impact_coupling

@@ -1,0 +1,91 @@
+!> One-step time integration of the plate: Newmark's method and the generalised-alpha method are one
+!> family with four coefficients (Chung and Hulbert, J. Appl. Mech. 60 (1993) 371).
+module newmark_integrators
+  use kinds, only: wp
+  use motions, only: motion_t
+  use stepping_parameters, only: time_t, integrator_generalized_alpha
+  implicit none
+  private
+  public :: plate_integrator_t, plate_integrator
+
+  !> Coefficients of the family. Inertia is taken at 1 - alpha_m and forces at 1 - alpha_f of the step.
+  type :: plate_integrator_t
+    !> Weights of the old state in inertia and in the other forces
+    real(wp) :: alpha_m = 0, alpha_f = 0
+    !> Newmark's parameters
+    real(wp) :: beta = 0.25_wp, gamma = 0.5_wp
+  contains
+    !> Velocity and acceleration at the end of a step from the displacement there.
+    procedure :: complete
+    !> Factor of the mass in the operator that maps a residual to a correction of the displacement.
+    procedure :: mass_factor
+    !> Factor of the tangent stiffness in that operator.
+    procedure :: stiffness_factor
+  end type plate_integrator_t
+
+contains
+
+  !> The integrator that the deck chose.
+  pure function plate_integrator(time) result(self)
+    !> Parameters of the deck
+    type(time_t), intent(in) :: time
+    !> Coefficients
+    type(plate_integrator_t) :: self
+    real(wp) :: rho
+
+    if (time%integrator == integrator_generalized_alpha) then
+      rho = time%rho_infinity
+      self%alpha_m = (2*rho - 1)/(rho + 1)
+      self%alpha_f = rho/(rho + 1)
+      self%gamma = 0.5_wp - self%alpha_m + self%alpha_f
+      self%beta = (1 - self%alpha_m + self%alpha_f)**2/4
+    else
+      self%beta = time%beta
+      self%gamma = time%gamma
+    end if
+  end function plate_integrator
+
+  !> Velocity and acceleration at the end of a step from the displacement there (Newmark's formulas).
+  pure subroutine complete(self, step, old, displacement, velocity, acceleration)
+    !> Coefficients
+    class(plate_integrator_t), intent(in) :: self
+    !> Time step
+    real(wp), intent(in) :: step
+    !> Motion at the start
+    type(motion_t), intent(in) :: old
+    !> Displacement at the end, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> Velocity and acceleration at the end, (5, points)
+    real(wp), intent(inout) :: velocity(:, :), acceleration(:, :)
+    real(wp) :: per_square, per_step, kept
+    integer :: point
+
+    per_square = 1/(self%beta*step**2)
+    per_step = 1/(self%beta*step)
+    kept = 0.5_wp/self%beta - 1
+    do point = 1, size(displacement, 2)
+      acceleration(:, point) = per_square*(displacement(:, point) - old%displacement(:, point)) &
+                               - per_step*old%velocity(:, point) - kept*old%acceleration(:, point)
+      velocity(:, point) = old%velocity(:, point) + step*((1 - self%gamma)*old%acceleration(:, point) &
+                                                          + self%gamma*acceleration(:, point))
+    end do
+  end subroutine complete
+
+  !> Factor of the mass in the effective operator, 1/time**2.
+  elemental real(wp) function mass_factor(self, step) result(factor)
+    !> Coefficients
+    class(plate_integrator_t), intent(in) :: self
+    !> Time step
+    real(wp), intent(in) :: step
+
+    factor = (1 - self%alpha_m)/(self%beta*step**2)
+  end function mass_factor
+
+  !> Factor of the tangent stiffness in the effective operator.
+  elemental real(wp) function stiffness_factor(self) result(factor)
+    !> Coefficients
+    class(plate_integrator_t), intent(in) :: self
+
+    factor = 1 - self%alpha_f
+  end function stiffness_factor
+end module newmark_integrators

@@ -1,0 +1,63 @@
+!> Time integration of the plate, load steps, adaptivity and convergence of equilibrium, as the deck gives them.
+module stepping_parameters
+  use kinds, only: wp
+  implicit none
+  private
+  public :: time_t, adapt_t, equilibrium_t, stepping_t
+
+  !> Time integrators of the plate.
+  integer, parameter, public :: integrator_newmark = 1, integrator_generalized_alpha = 2
+  !> Rules for renewing the factored operator.
+  integer, parameter, public :: refactor_deflection = 1, refactor_iterations = 2
+  !> Time integration of the plate.
+  type :: time_t
+    !> End of the run
+    real(wp) :: end = 0
+    !> First time step
+    real(wp) :: step = 0
+    !> Smallest step tried before giving up, and largest step taken
+    real(wp) :: step_min = 0, step_max = 0
+    !> integrator_newmark or integrator_generalized_alpha
+    integer :: integrator = integrator_generalized_alpha
+    !> Newmark's parameters
+    real(wp) :: beta = 0.25_wp, gamma = 0.5_wp
+    !> Spectral radius at infinite frequency of generalised-alpha, 0 (most damping) to 1 (none)
+    real(wp) :: rho_infinity = 1
+  end type time_t
+
+  !> Adaptive rules of the paper's section 3.4.
+  type :: adapt_t
+    !> True: the time step follows the stress rate at the struck point
+    logical :: on = .false.
+    !> refactor_deflection (the paper's) or refactor_iterations
+    integer :: refactor = refactor_iterations
+    !> Growth of the struck point's deflection that renews the operator, fraction of the thickness
+    real(wp) :: stiffness_update = 0.003_wp
+    !> Change of the stress at the struck point wanted in one step, fraction of its largest value so far
+    real(wp) :: stress_change = 0.05_wp
+    !> Iterations of a step above which the operator is renewed (refactor_iterations)
+    integer :: iterations = 16
+    !> Smallest part of the step left to a delamination that grows one cell a step; 1: it takes whole steps
+    real(wp) :: growth_step = 0.25_wp
+  end type adapt_t
+
+  !> Convergence of equilibrium.
+  type :: equilibrium_t
+    !> Residual of equilibrium accepted, relative to the forces in play
+    real(wp) :: tolerance = 1.0e-6_wp
+    !> Iterations of equilibrium before a step is tried again with half its length
+    integer :: max_iterations = 30
+  end type equilibrium_t
+
+  !> All that steps are taken by.
+  type :: stepping_t
+    !> Time integration
+    type(time_t) :: time
+    !> Load steps of a static analysis
+    integer :: static_steps = 1
+    !> Adaptivity
+    type(adapt_t) :: adapt
+    !> Convergence of equilibrium
+    type(equilibrium_t) :: equilibrium
+  end type stepping_t
+end module stepping_parameters

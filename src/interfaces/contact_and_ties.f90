@@ -1,0 +1,296 @@
+!> Joined, separated and touching faces: the forces that ties and contact put on the jumps.
+!>
+!> The pressure acts as one constant force over a step while its gap is judged at the end of the step.
+!> Its work is then minus the pressure times the gap that closed: contact never creates energy,
+!> whatever the integrator of the plate.
+module contact_and_ties
+  use kinds, only: wp
+  use archives, only: archive_t
+  use delamination_parameters, only: contact_augmented_lagrangian
+  use interface_ties, only: interface_ties_t, create_interface_ties, tie_stiffness, bond_held, bond_penalty, bond_contact
+  use face_contact, only: contact_pressure, unmet_contact, updated_decay, updated_multiplier
+  use models, only: model_t
+  implicit none
+  private
+  public :: contact_and_ties_t, new_contact_and_ties
+
+  !> State of all interfaces: their bonds, and the pressure where faces touch.
+  type, extends(interface_ties_t) :: contact_and_ties_t
+    !> Estimate of the contact pressure and the pressure found, (local points)
+    real(wp), allocatable :: multiplier(:), pressure(:)
+    !> Slope of the pressure by the gap, not positive, (local points)
+    real(wp), allocatable :: slope(:)
+    !> Decay of the pressure with an open gap (beta of Eq. 12), 1/length, (zones), the same on every rank
+    real(wp), allocatable :: decay(:)
+    !> Largest pressure so far
+    real(wp) :: peak = 0
+  contains
+    !> Adds the contact and penalty forces to a residual and takes the residual of held jumps out.
+    procedure :: act
+    !> Takes the pressures found as the next estimates; they have settled once they go with the gaps.
+    procedure :: settle
+    !> How far pressures and gaps are from contact.
+    procedure :: complementarity
+    !> Work of contact and penalty ties in a step.
+    procedure :: work
+    !> Keeps touching faces together in a first guess, and open ones from passing through each other.
+    procedure :: keep_touching
+    !> Stiffness that ties and contact add to the diagonal.
+    procedure :: added_stiffness
+    !> Saves or loads.
+    procedure :: visit
+  end type contact_and_ties_t
+
+  !> Stiffness that stands for a held jump, over the diagonal of the operator: hard enough to hold it to five
+  !> digits in a preconditioner, soft enough to be taken out again without a factorization.
+  real(wp), parameter, public :: held_stiffness = 1.0e5_wp
+
+contains
+
+  !> All interfaces with their starters.
+  pure function new_contact_and_ties(model) result(self)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> The state
+    type(contact_and_ties_t) :: self
+    integer :: points
+
+    call create_interface_ties(model, self)
+    allocate (self%decay(size(self%regions)), source=0.0_wp)
+    if (.not. model%map%layered) return
+    points = size(model%zone)
+    allocate (self%multiplier(points), self%pressure(points), self%slope(points), source=0.0_wp)
+  end function new_contact_and_ties
+
+  !> Adds the contact and penalty forces to a residual and takes the residual of held jumps out of it.
+  subroutine act(self, model, displacement, residual)
+    !> The state; receives pressures and slopes
+    class(contact_and_ties_t), intent(inout) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Unknowns, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> Residual at the owned points, (5, points)
+    real(wp), intent(inout) :: residual(:, :)
+    integer :: i
+
+    if (.not. model%map%layered) return
+    do i = 1, model%distribution%owned
+      associate (zone => model%zone(i))
+        if (zone == 0) cycle
+        self%pressure(i) = 0
+        self%slope(i) = 0
+        select case (self%bond(model, i))
+        case (bond_held)
+          residual(1:3, i) = 0
+        case (bond_contact)
+          call contact_pressure(model%contact_laws(zone), self%decay(zone), displacement(3, i), self%multiplier(i), &
+                                self%pressure(i), self%slope(i))
+        end select
+        residual(1:3, i) = residual(1:3, i) + force(self, model, i, displacement(1:3, i))
+      end associate
+    end do
+  end subroutine act
+
+  !> Force of contact or a penalty tie on the jumps at a point. Pressures are those of the last residual.
+  pure function force(self, model, i, jumps)
+    !> The state
+    type(contact_and_ties_t), intent(in) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Point of this rank
+    integer, intent(in) :: i
+    !> The jumps
+    real(wp), intent(in) :: jumps(3)
+    !> The force
+    real(wp) :: force(3)
+
+    force = 0
+    select case (self%bond(model, i))
+    case (bond_penalty)
+      force = -tie_stiffness(model, i)*jumps
+    case (bond_contact)
+      force(3) = model%contact_area(i)*self%pressure(i)
+    end select
+  end function force
+
+  !> Takes the pressures found as the next estimates; they have settled once they go with the gaps.
+  subroutine settle(self, model, displacement, tolerance, rounds, settled)
+    !> The state
+    class(contact_and_ties_t), intent(inout) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Unknowns, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> Complementarity at which they have settled
+    real(wp), intent(in) :: tolerance
+    !> Counts the times that there was something to settle
+    integer, intent(inout) :: rounds
+    !> True if they have
+    logical, intent(out) :: settled
+    real(wp) :: unmet
+
+    unmet = self%complementarity(model, displacement)
+    settled = unmet <= tolerance
+    call update_multipliers(self, model, displacement, settled)
+    rounds = rounds + merge(1, 0, unmet > 0)
+  end subroutine settle
+
+  !> Takes the pressures found as the next estimates, and the decay that suits the gaps. Pressures are those of
+  !> the last residual.
+  subroutine update_multipliers(self, model, displacement, settled)
+    !> The state
+    type(contact_and_ties_t), intent(inout) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Unknowns, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> True: the pressures go with the gaps, the step is done
+    logical, intent(in) :: settled
+    real(wp) :: sums(2, size(self%decay)), largest(size(self%decay))
+    integer, allocatable :: points(:), zones(:)
+    real(wp), allocatable :: gaps(:), forces(:)
+    integer :: zone
+
+    if (.not. model%map%layered) return
+    points = self%in_contact(model)
+    zones = model%zone(points)
+    gaps = displacement(3, points)
+    forces = model%contact_area(points)*self%pressure(points)
+    do zone = 1, size(largest)
+      sums(:, zone) = [sum(forces*abs(gaps), mask=zones == zone), sum(forces, mask=zones == zone)]
+      largest(zone) = maxval([0.0_wp, self%pressure(pack(points, zones == zone))])
+      call model%communicator%sum(sums(:, zone))
+      call model%communicator%maximum(largest(zone))
+    end do
+    self%multiplier(points) = updated_multiplier(model%contact_laws(zones), gaps, self%pressure(points))
+    self%decay = updated_decay(model%contact_laws, sums(1, :), sums(2, :), largest, settled)
+    self%peak = max(self%peak, maxval(largest))
+  end subroutine update_multipliers
+
+  !> How far pressures and gaps are from contact, where faces with a gap have no pressure and none is negative:
+  !> the largest part of the pressure that is unmet over the largest pressure so far. The same on every rank.
+  real(wp) function complementarity(self, model, displacement)
+    !> The state
+    class(contact_and_ties_t), intent(in) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Unknowns, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    integer, allocatable :: points(:)
+    real(wp) :: peak
+
+    complementarity = 0
+    if (.not. model%map%layered) return
+    points = self%in_contact(model)
+    peak = maxval([self%peak, self%pressure(points)])
+    complementarity = maxval([0.0_wp, unmet_contact(model%contact_laws(model%zone(points)), displacement(3, points), &
+                                                    self%pressure(points))])
+    call model%communicator%maximum(complementarity)
+    call model%communicator%maximum(peak)
+    complementarity = merge(complementarity/max(peak, tiny(peak)), 0.0_wp, peak > 0)
+  end function complementarity
+
+  !> Work of contact and penalty ties in a step, of this rank's points.
+  pure real(wp) function work(self, model, displacement, change)
+    !> The state
+    class(contact_and_ties_t), intent(in) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Unknowns at the end of the step and their change, (5, points)
+    real(wp), intent(in) :: displacement(:, :), change(:, :)
+    integer :: i
+
+    work = 0
+    do i = 1, model%distribution%owned
+      work = work + dot_product(force(self, model, i, displacement(1:3, i)), change(1:3, i))
+    end do
+  end function work
+
+  !> Keeps touching faces together in a first guess, and open ones from passing through each other: the stiff
+  !> law would answer small errors of a guess with large pressures.
+  subroutine keep_touching(self, model, guess)
+    !> The state
+    class(contact_and_ties_t), intent(in) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Guess of the unknowns at its end, (5, points)
+    real(wp), intent(inout) :: guess(:, :)
+    integer, allocatable :: points(:)
+
+    if (.not. model%map%layered) return
+    ! Pressures are known to a point's owner only.
+    points = self%in_contact(model)
+    guess(3, points) = merge(0.0_wp, max(0.0_wp, guess(3, points)), self%multiplier(points) > 0)
+    call model%halo%update(guess)
+  end subroutine keep_touching
+
+  !> Stiffness that ties and contact add to the diagonal of the operator.
+  pure subroutine added_stiffness(self, model, diagonal, added)
+    !> The state
+    class(contact_and_ties_t), intent(in) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Diagonal of the operator without it, (5, points)
+    real(wp), intent(in) :: diagonal(:, :)
+    !> Stiffness added to the three jumps, (3, points); ghosts zero
+    real(wp), intent(out) :: added(:, :)
+    integer :: i
+
+    added = 0
+    do i = 1, model%distribution%owned
+      select case (self%bond(model, i))
+      case (bond_held)
+        added(:, i) = held_stiffness*maxval(diagonal(1:3, i))
+        added(3, i) = tie_like_contact(i)
+      case (bond_penalty)
+        added(:, i) = tie_stiffness(model, i)
+      case (bond_contact)
+        added(3, i) = -model%contact_area(i)*self%slope(i)
+      end select
+    end do
+
+  contains
+
+    !> Stiffness of a held opening: that of contact where this is as hard, so that letting go of faces that press on
+    !> each other leaves the operator as it is.
+    pure real(wp) function tie_like_contact(i) result(stiffness)
+      !> Point of this rank
+      integer, intent(in) :: i
+
+      stiffness = added(3, i)
+      associate (law => model%contact_laws(model%zone(i)))
+        if (law%method /= contact_augmented_lagrangian) return
+        if (model%contact_area(i)*law%stiffness >= held_stiffness*diagonal(3, i)) &
+          stiffness = model%contact_area(i)*law%stiffness
+      end associate
+    end function tie_like_contact
+  end subroutine added_stiffness
+
+  !> Saves or loads.
+  subroutine visit(self, archive, model)
+    !> The state
+    class(contact_and_ties_t), intent(inout) :: self
+    !> Where to or where from
+    class(archive_t), intent(inout) :: archive
+    !> The model
+    type(model_t), intent(in) :: model
+    real(wp), allocatable :: fields(:, :)
+
+    call self%interface_ties_t%visit(archive, model)
+    if (.not. model%map%layered) return
+    call archive%item('faces/peak', self%peak)
+    call archive%item('faces/decay', self%decay)
+    allocate (fields(3, size(self%free)))
+    fields(1, :) = self%multiplier
+    fields(2, :) = self%pressure
+    fields(3, :) = self%slope
+    associate (share => model%distribution)
+      call archive%field('faces/pressures', share%points(:share%owned), model%mesh%points(), fields)
+    end associate
+    if (.not. archive%loading) return
+    self%multiplier = fields(1, :)
+    self%pressure = fields(2, :)
+    self%slope = fields(3, :)
+  end subroutine visit
+end module contact_and_ties

@@ -1,0 +1,120 @@
+!> Growth of delaminations: which cells come apart in a state, and what that costs.
+module front_growth
+  use kinds, only: wp
+  use delamination_parameters, only: growth_one_per_step, unloading_glued
+  use benzeggagh_kenane, only: critical_release_rate
+  use front_energy_release, only: front_energy_release_t, release_along_front
+  use motions, only: motion_t
+  use interface_states, only: interface_state_t
+  use models, only: model_t
+  implicit none
+  private
+  public :: grow_fronts
+
+  !> Segments within this part of the largest ratio come apart together, so that a symmetric front stays so.
+  real(wp), parameter :: together = 0.95_wp
+
+contains
+
+  !> Takes cells apart where the energy release rate of a state is above its critical value.
+  subroutine grow_fronts(model, motion, state, fracture, grown)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Motion with its forces
+    type(motion_t), intent(in) :: motion
+    !> The interfaces; receive new delaminated cells and the largest ratio
+    type(interface_state_t), intent(inout) :: state
+    !> Energy that fracture has taken from the whole plate; what the new faces take is added
+    real(wp), intent(inout) :: fracture
+    !> True if cells came apart
+    logical, intent(out) :: grown
+    type(front_energy_release_t) :: front
+    integer :: zone
+
+    grown = .false.
+    state%release_ratio = 0
+    state%growth_ratio = 0
+    do zone = 1, size(model%mesh%zones)
+      front = release_along_front(model, state%faces, motion, zone, &
+                                  model%scene%delaminations(zone)%energy_release)
+      if (size(front%segments) == 0) cycle
+      state%release_ratio = max(state%release_ratio, maxval(front%ratio))
+      call release_cells(model, state, zone, front, fracture, grown)
+    end do
+    if (grown) call open_faces(model, motion, state)
+  end subroutine grow_fronts
+
+  !> Takes the cells ahead of the most loaded segments of one front apart.
+  subroutine release_cells(model, state, zone, front, fracture, grown)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> The interfaces
+    type(interface_state_t), intent(inout) :: state
+    !> Index of the zone
+    integer, intent(in) :: zone
+    !> The front
+    type(front_energy_release_t), intent(in) :: front
+    !> Energy that fracture has taken from the whole plate; what the new faces take is added
+    real(wp), intent(inout) :: fracture
+    !> Set true if cells came apart
+    logical, intent(inout) :: grown
+    real(wp) :: largest, enough, energy, demand
+    integer :: s, foremost
+
+    ! Where the layers end, virtual crack closure finds no force to close: a rate cannot tell that growth is barred.
+    state%border_reached = state%border_reached .or. any(front%segments%at_border)
+    foremost = maxloc(front%ratio, mask=.not. front%segments%at_border, dim=1)
+    ! A delamination that fills its zone has no front but the border; faces that are glued cannot come apart.
+    if (foremost == 0) return
+    if (state%faces%glued .and. model%scene%delaminations(zone)%unloading == unloading_glued) return
+    largest = front%ratio(foremost)
+    state%growth_ratio = max(state%growth_ratio, largest)
+    demand = state%ties%demand(zone, cell_energy(foremost))
+    if (.not. largest > demand) return
+    enough = max(demand, together*largest)
+    if (model%scene%delaminations(zone)%growth == growth_one_per_step) enough = largest
+    do s = 1, size(front%segments)
+      associate (segment => front%segments(s), region => state%faces%regions(zone))
+        if (segment%at_border .or. front%ratio(s) < enough) cycle
+        if (region%is_delaminated(segment%outside(1), segment%outside(2))) cycle
+        call region%release(segment%outside)
+        energy = cell_energy(s)*model%mesh%multiplicity
+        fracture = fracture + energy
+        grown = .true.
+        if (model%scene%delaminations(zone)%growth == growth_one_per_step) return
+        state%ties%asked(zone) = state%ties%asked(zone) + energy
+      end associate
+    end do
+
+  contains
+
+    !> Energy that the toughness of the cell ahead of a segment asks for.
+    pure real(wp) function cell_energy(s)
+      !> Segment
+      integer, intent(in) :: s
+
+      cell_energy = critical_release_rate(model%scene%delaminations(zone), front%modes(:, s)) &
+                    *model%mesh%cell_area(front%segments(s)%outside)
+    end function cell_energy
+  end subroutine release_cells
+
+  !> Frees the jumps of the new delamination; faces that were pressed together start in contact.
+  subroutine open_faces(model, motion, state)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Motion with its forces
+    type(motion_t), intent(in) :: motion
+    !> The interfaces
+    type(interface_state_t), intent(inout) :: state
+    logical, allocatable :: before(:)
+    integer :: i
+
+    before = state%faces%free
+    call state%faces%free_jumps(model)
+    do i = 1, model%distribution%owned
+      if (before(i) .or. .not. state%faces%free(i)) cycle
+      state%faces%multiplier(i) = max(0.0_wp, (motion%internal(3, i) + motion%inertia(3, i)) &
+                                           /model%contact_area(i))
+    end do
+  end subroutine open_faces
+end module front_growth

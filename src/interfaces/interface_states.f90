@@ -1,0 +1,57 @@
+!> What evolves of all interfaces: ties, contact, the release of ties and how near the fronts are to growth.
+module interface_states
+  use kinds, only: wp
+  use archives, only: archive_t
+  use models, only: model_t
+  use contact_and_ties, only: contact_and_ties_t, new_contact_and_ties
+  use tie_release, only: tie_release_t, new_tie_release
+  implicit none
+  private
+  public :: interface_state_t, new_interface_state
+
+  !> State of all interfaces.
+  type :: interface_state_t
+    !> Ties and contacts of the faces
+    type(contact_and_ties_t) :: faces
+    !> Released ties whose forces fade, and the energy they released
+    type(tie_release_t) :: ties
+    !> Largest energy release rate on the fronts over its critical value
+    real(wp) :: release_ratio = 0
+    !> The same of those fronts that can grow, not at the border of their zone
+    real(wp) :: growth_ratio = 0
+    !> True once a front has reached the border of its zone, where it cannot grow on
+    logical :: border_reached = .false.
+  contains
+    !> Saves or loads the state.
+    procedure :: visit
+  end type interface_state_t
+
+contains
+
+  !> All interfaces with their starters.
+  pure function new_interface_state(model) result(self)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> The state
+    type(interface_state_t) :: self
+
+    self%faces = new_contact_and_ties(model)
+    self%ties = new_tie_release(model)
+  end function new_interface_state
+
+  !> Saves or loads the state.
+  subroutine visit(self, archive, model)
+    !> The state
+    class(interface_state_t), intent(inout) :: self
+    !> Where to or where from
+    class(archive_t), intent(inout) :: archive
+    !> The model
+    type(model_t), intent(in) :: model
+
+    call archive%item('release_ratio', self%release_ratio)
+    call archive%item('growth_ratio', self%growth_ratio)
+    call archive%item('border_reached', self%border_reached)
+    call self%faces%visit(archive, model)
+    call self%ties%visit(archive, model)
+  end subroutine visit
+end module interface_states

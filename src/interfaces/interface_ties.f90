@@ -1,0 +1,193 @@
+!> What holds the faces of all interfaces together: which cells have come apart, and which jumps are free by that.
+module interface_ties
+  use kinds, only: wp
+  use archives, only: archive_t
+  use delamination_parameters, only: contact_none, tie_penalty, unloading_glued
+  use delaminated_regions, only: delaminated_region_t, create_region
+  use models, only: model_t
+  implicit none
+  private
+  public :: interface_ties_t, create_interface_ties, tie_stiffness
+
+  !> What acts on the jumps of a point: nothing, ties that hold them exactly, penalty ties, contact.
+  integer, parameter, public :: bond_none = 0, bond_held = 1, bond_penalty = 2, bond_contact = 3
+
+  !> Bonds of all interfaces.
+  type :: interface_ties_t
+    !> Delaminated cells of each zone, the same on every rank
+    type(delaminated_region_t), allocatable :: regions(:)
+    !> True where a lower point's jumps are free, (local points); allocated only with layers
+    logical, allocatable :: free(:)
+    !> True: separated faces move together (the paper's shortcut for unloading)
+    logical :: glued = .false.
+  contains
+    !> Finds which jumps are free, after a growth.
+    procedure :: free_jumps
+    !> What acts on the jumps of a point.
+    procedure :: bond
+    !> Owned points whose faces press on each other where they meet.
+    procedure :: in_contact
+    !> Keeps held jumps as they are.
+    procedure :: hold
+    !> Largest penetration.
+    procedure :: penetration
+    !> Delaminated area of the whole plate.
+    procedure :: area
+    !> Saves or loads.
+    procedure :: visit
+  end type interface_ties_t
+
+contains
+
+  !> Bonds of all interfaces with their starters.
+  pure subroutine create_interface_ties(model, self)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> The bonds
+    class(interface_ties_t), intent(inout) :: self
+    integer :: zone
+
+    allocate (self%regions(size(model%mesh%zones)))
+    do zone = 1, size(self%regions)
+      self%regions(zone) = create_region(model%mesh, zone, model%scene%delaminations(zone)%starter)
+    end do
+    if (.not. model%map%layered) return
+    allocate (self%free(size(model%zone)), source=.false.)
+    call self%free_jumps(model)
+  end subroutine create_interface_ties
+
+  !> Finds which jumps are free: those at nodes around which all cells have come apart.
+  pure subroutine free_jumps(self, model)
+    !> The bonds
+    class(interface_ties_t), intent(inout) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    integer :: i, line(2), node
+
+    do i = 1, size(self%free)
+      if (model%zone(i) == 0) cycle
+      node = model%mesh%point_node(model%distribution%points(i)) - 1
+      line = [modulo(node, 2*model%mesh%cells(1) + 1), node/(2*model%mesh%cells(1) + 1)]
+      self%free(i) = self%regions(model%zone(i))%released(line(1), line(2))
+    end do
+  end subroutine free_jumps
+
+  !> What acts on the jumps of a point.
+  pure integer function bond(self, model, i)
+    !> The bonds
+    class(interface_ties_t), intent(in) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Point of this rank
+    integer, intent(in) :: i
+
+    bond = bond_none
+    if (model%zone(i) == 0) return
+    associate (interface => model%scene%delaminations(model%zone(i)))
+      if (.not. self%free(i)) then
+        bond = merge(bond_penalty, bond_held, interface%tie == tie_penalty)
+      else if (self%glued .and. interface%unloading == unloading_glued) then
+        bond = bond_held
+      else if (interface%contact /= contact_none) then
+        bond = bond_contact
+      end if
+    end associate
+  end function bond
+
+  !> Stiffness of a penalty tie at a point.
+  pure real(wp) function tie_stiffness(model, i) result(stiffness)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Point of this rank
+    integer, intent(in) :: i
+
+    stiffness = model%scene%delaminations(model%zone(i))%penalty_stiffness
+    if (stiffness <= 0) stiffness = 1.0e6_wp*model%contact_laws(model%zone(i))%layer_stiffness
+    stiffness = stiffness*model%contact_area(i)
+  end function tie_stiffness
+
+  !> Owned points whose faces press on each other where they meet.
+  pure function in_contact(self, model) result(points)
+    !> The bonds
+    class(interface_ties_t), intent(in) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Points of this rank, ascending
+    integer, allocatable :: points(:)
+    integer :: i
+
+    associate (owned => model%distribution%owned)
+      points = pack([(i, i=1, owned)], [(self%bond(model, i) == bond_contact, i=1, owned)])
+    end associate
+  end function in_contact
+
+  !> Keeps held jumps as they are.
+  pure subroutine hold(self, model, correction)
+    !> The bonds
+    class(interface_ties_t), intent(in) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Correction of the unknowns, (5, points)
+    real(wp), intent(inout) :: correction(:, :)
+    integer :: i
+
+    if (.not. model%map%layered) return
+    do i = 1, size(correction, 2)
+      if (self%bond(model, i) == bond_held) correction(1:3, i) = 0
+    end do
+  end subroutine hold
+
+  !> Largest penetration of separated faces, the same on every rank.
+  real(wp) function penetration(self, model, displacement)
+    !> The bonds
+    class(interface_ties_t), intent(in) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Unknowns, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+
+    penetration = 0
+    if (.not. model%map%layered) return
+    associate (owned => model%distribution%owned)
+      penetration = max(0.0_wp, -minval(displacement(3, :owned), mask=self%free(:owned)))
+    end associate
+    call model%communicator%maximum(penetration)
+  end function penetration
+
+  !> Delaminated area of all interfaces of the whole plate.
+  pure real(wp) function area(self, model)
+    !> The bonds
+    class(interface_ties_t), intent(in) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    integer :: zone, i, j
+
+    area = 0
+    do zone = 1, size(self%regions)
+      do j = self%regions(zone)%rows(1), self%regions(zone)%rows(2)
+        do i = self%regions(zone)%columns(1), self%regions(zone)%columns(2)
+          if (self%regions(zone)%is_delaminated(i, j)) area = area + model%mesh%cell_area([i, j])
+        end do
+      end do
+    end do
+    area = area*model%mesh%multiplicity
+  end function area
+
+  !> Saves or loads.
+  subroutine visit(self, archive, model)
+    !> The bonds
+    class(interface_ties_t), intent(inout) :: self
+    !> Where to or where from
+    class(archive_t), intent(inout) :: archive
+    !> The model
+    type(model_t), intent(in) :: model
+    integer :: zone
+
+    do zone = 1, size(self%regions)
+      call self%regions(zone)%visit(archive, 'zone'//achar(iachar('0') + zone))
+    end do
+    if (.not. model%map%layered) return
+    call archive%item('faces/glued', self%glued)
+    if (archive%loading) call self%free_jumps(model)
+  end subroutine visit
+end module interface_ties

@@ -1,0 +1,272 @@
+!> Ties that have been let go: their forces fade, and what the faces set free meanwhile is held against what their
+!> toughness asks for.
+!>
+!> A tie that vanished at once would be a blow: the energy that it set free would stay in the motion and, the shorter
+!> the steps, the less of it would show as work against the tie. Its force therefore fades, in proportion to time,
+!> while waves of shear cross a few elements; where a step is longer than that it is gone at the end of the step. The
+!> work against the fading force is the energy that is really released.
+!>
+!> That account also corrects the growth of stepped fronts. The rates of single cells scatter around the mean of the
+!> front, and those that are let go first are the overestimated ones: on a circle that grows cell by cell their cells
+!> set free some 0.84 of G_c times their area. A front that owes energy therefore has to offer more than G_c for the
+!> next cell, in proportion to its debt.
+!>
+!> The other way round, a row of cells that comes apart one after the other at the kinks of its ends sets free more than
+!> its toughness asks for, and how much is a matter of the mesh: a front that moved on as a whole would have used it
+!> up. If the deck says so, energy in excess is therefore credited, and the next cell may offer less.
+module tie_release
+  use kinds, only: wp
+  use archives, only: archive_t
+  use delamination_parameters, only: contact_none, account_balance
+  use models, only: model_t
+  implicit none
+  private
+  public :: tie_release_t, new_tie_release
+
+  !> Forces of ties let go, and the energy accounts of all interfaces.
+  type :: tie_release_t
+    !> Forces on the jumps when the ties were let go, (3, local points)
+    real(wp), allocatable :: force(:, :)
+    !> Part of them that is still there, (local points)
+    real(wp), allocatable :: share(:)
+    !> Time in which they fade, (zones)
+    real(wp), allocatable :: duration(:)
+    !> Energy that the toughness of cells let go asks for, and what their faces set free, whole plate, (zones)
+    real(wp), allocatable :: asked(:), set_free(:)
+    !> True: energy in excess is credited, (zones)
+    logical, allocatable :: credited(:)
+    !> Time until the last of them is gone, the same on every rank
+    real(wp) :: left = 0
+  contains
+    !> Lets ties go.
+    procedure :: let_go
+    !> Energy that ties just let go set free as they first open.
+    procedure :: first_opening
+    !> Fades the forces over a step.
+    procedure :: fade
+    !> Adds the forces to a residual.
+    procedure :: act
+    !> Books the work against the forces in a step.
+    procedure :: book
+    !> Energy that each interface owes.
+    procedure :: debt
+    !> Times its toughness that a front must offer for the next cell.
+    procedure :: demand
+    !> Saves or loads.
+    procedure :: visit
+  end type tie_release_t
+
+contains
+
+  !> No tie has been let go.
+  pure function new_tie_release(model) result(self)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> The ties
+    type(tie_release_t) :: self
+    !> Elements that waves of shear cross while a tie fades. With 10 the energy set free is the same to some percent
+    !> for all shorter steps.
+    real(wp), parameter :: elements_crossed = 10
+    real(wp) :: slowness
+    integer :: points, zones, zone
+
+    zones = size(model%mesh%zones)
+    allocate (self%asked(zones), self%set_free(zones), self%duration(zones), source=0.0_wp)
+    allocate (self%credited(zones), source=.false.)
+    if (zones > 0) self%credited = model%scene%delaminations%account == account_balance
+    if (.not. model%map%layered) return
+    points = size(model%zone)
+    allocate (self%force(3, points), self%share(points), source=0.0_wp)
+    slowness = sqrt(minval(model%plies%density/max(model%plies%elasticity%g13, model%plies%elasticity%g23)))
+    do zone = 1, zones
+      self%duration(zone) = elements_crossed*mean_length(zone)*slowness
+    end do
+
+  contains
+
+    !> Length of the mean cell of a zone.
+    pure real(wp) function mean_length(zone)
+      !> Index of the zone
+      integer, intent(in) :: zone
+
+      associate (range => model%mesh%zones(zone))
+        mean_length = sqrt((model%mesh%x_edges(range%columns(2) + 1) - model%mesh%x_edges(range%columns(1))) &
+                           *(model%mesh%y_edges(range%rows(2) + 1) - model%mesh%y_edges(range%rows(1))) &
+                           /product([range%columns(2) - range%columns(1), range%rows(2) - range%rows(1)] + 1))
+      end associate
+    end function mean_length
+  end function new_tie_release
+
+  !> Lets the ties go whose jumps have become free; where the faces press on each other contact takes over at once, if
+  !> there is any.
+  pure subroutine let_go(self, model, free_before, free, forces)
+    !> The ties
+    class(tie_release_t), intent(inout) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> True where jumps were free and where they are now, (local points)
+    logical, intent(in) :: free_before(:), free(:)
+    !> Forces that held the jumps, (3, local points)
+    real(wp), intent(in) :: forces(:, :)
+    integer :: i
+
+    do i = 1, model%distribution%owned
+      if (free_before(i) .or. .not. free(i)) cycle
+      self%force(:, i) = forces(:, i)
+      if (model%scene%delaminations(model%zone(i))%contact /= contact_none) self%force(3, i) = min(0.0_wp, forces(3, i))
+      self%share(i) = 1
+    end do
+    self%left = maxval(self%duration)
+  end subroutine let_go
+
+  !> Energy that ties just let go set free as they first open, once the step has been computed again without them. What
+  !> cells let go later in the same step make of the opening is theirs.
+  function first_opening(self, model, free_before, free, opening) result(energy)
+    !> The ties at the end of the step
+    class(tie_release_t), intent(in) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> True where jumps were free and where they are now, (local points)
+    logical, intent(in) :: free_before(:), free(:)
+    !> Jumps, (5, points)
+    real(wp), intent(in) :: opening(:, :)
+    !> The energy, of the whole plate, (zones)
+    real(wp) :: energy(size(self%asked))
+    integer :: i
+
+    energy = 0
+    do i = 1, model%distribution%owned
+      if (free_before(i) .or. .not. free(i)) cycle
+      associate (zone => model%zone(i))
+        energy(zone) = energy(zone) - (1 - self%share(i))/2*dot_product(self%force(:, i), opening(1:3, i))
+      end associate
+    end do
+    call model%communicator%sum(energy)
+    energy = energy*model%mesh%multiplicity
+  end function first_opening
+
+  !> Fades the forces over a step.
+  pure subroutine fade(self, model, step)
+    !> The ties
+    class(tie_release_t), intent(inout) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Time step
+    real(wp), intent(in) :: step
+    integer :: i
+
+    if (.not. self%left > 0) return
+    do i = 1, model%distribution%owned
+      if (.not. self%share(i) > 0) cycle
+      associate (duration => self%duration(model%zone(i)))
+        self%share(i) = merge(self%share(i) - step/max(duration, tiny(step)), 0.0_wp, step < self%share(i)*duration)
+      end associate
+    end do
+    self%left = max(0.0_wp, self%left - step)
+    if (.not. self%left > 0) self%share = 0
+  end subroutine fade
+
+  !> Adds the forces to a residual.
+  pure subroutine act(self, model, residual)
+    !> The ties
+    class(tie_release_t), intent(in) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Residual at the owned points, (5, points)
+    real(wp), intent(inout) :: residual(:, :)
+    integer :: i
+
+    if (.not. self%left > 0) return
+    do i = 1, model%distribution%owned
+      if (self%share(i) > 0) residual(1:3, i) = residual(1:3, i) + self%share(i)*self%force(:, i)
+    end do
+  end subroutine act
+
+  !> Books the work against the forces in a step: as the step had it, the force at its end acting throughout, and as
+  !> the account has it, with the mean of the forces at its start and end. Of ties let go in this step the difference
+  !> is that of `first_opening`.
+  subroutine book(self, model, old, change, taken)
+    !> The ties at the end of the step
+    class(tie_release_t), intent(inout) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> The ties at its start
+    type(tie_release_t), intent(in) :: old
+    !> Change of the unknowns, (5, points)
+    real(wp), intent(in) :: change(:, :)
+    !> Energy that the forces took from the whole plate
+    real(wp), intent(out) :: taken
+    real(wp) :: sums(size(self%asked) + 1), work, mean
+    integer :: i
+
+    taken = 0
+    if (.not. old%left > 0) return
+    sums = 0
+    do i = 1, model%distribution%owned
+      if (.not. old%share(i) > 0) cycle
+      work = -dot_product(self%force(:, i), change(1:3, i))
+      sums(1) = sums(1) + self%share(i)*work
+      mean = (old%share(i) + self%share(i))/2
+      if (old%share(i) >= 1) mean = self%share(i)
+      sums(1 + model%zone(i)) = sums(1 + model%zone(i)) + mean*work
+    end do
+    call model%communicator%sum(sums)
+    sums = sums*model%mesh%multiplicity
+    taken = sums(1)
+    self%set_free = self%set_free + sums(2:)
+  end subroutine book
+
+  !> Energy that each interface owes: what the toughness of its cells asks for beyond what they set free.
+  pure function debt(self)
+    !> The ties
+    class(tie_release_t), intent(in) :: self
+    !> Energy, none negative: what is set free beyond what is asked for went into the motion, (zones)
+    real(wp) :: debt(size(self%asked))
+
+    debt = max(0.0_wp, self%asked - self%set_free)
+  end function debt
+
+  !> Times its toughness that a front must offer for the next cell.
+  pure real(wp) function demand(self, zone, energy)
+    !> The ties
+    class(tie_release_t), intent(in) :: self
+    !> Index of the zone
+    integer, intent(in) :: zone
+    !> Energy that the toughness of the cell asks for, of this one cell also under symmetry
+    real(wp), intent(in) :: energy
+    !> Cells all around whose debt doubles what is asked, and whose credit halves it: ten in each quarter
+    real(wp), parameter :: patience = 40
+    real(wp) :: owed
+
+    owed = (self%asked(zone) - self%set_free(zone))/(patience*energy)
+    if (.not. self%credited(zone)) owed = max(0.0_wp, owed)
+    demand = 1 + owed
+    ! However much is credited, something must be offered.
+    if (owed < 0) demand = 1/(1 - owed)
+  end function demand
+
+  !> Saves or loads.
+  subroutine visit(self, archive, model)
+    !> The ties
+    class(tie_release_t), intent(inout) :: self
+    !> Where to or where from
+    class(archive_t), intent(inout) :: archive
+    !> The model
+    type(model_t), intent(in) :: model
+    real(wp), allocatable :: fields(:, :)
+
+    if (.not. model%map%layered) return
+    call archive%item('ties/asked', self%asked)
+    call archive%item('ties/set_free', self%set_free)
+    call archive%item('ties/left', self%left)
+    allocate (fields(4, size(self%share)))
+    fields(:3, :) = self%force
+    fields(4, :) = self%share
+    associate (share => model%distribution)
+      call archive%field('ties/forces', share%points(:share%owned), model%mesh%points(), fields)
+    end associate
+    if (.not. archive%loading) return
+    self%force = fields(:3, :)
+    self%share = fields(4, :)
+  end subroutine visit
+end module tie_release

@@ -1,0 +1,92 @@
+!> Stress criteria of ply failure after Hou et al. (Table 1 of the paper).
+module hou_criteria
+  use kinds, only: wp
+  use material_parameters, only: material_t
+  use ply_damage_parameters, only: failure_modes, fibre_failure, matrix_cracking, matrix_crushing
+  implicit none
+  private
+  public :: failure_indices, largest_failure_indices, missing_strengths
+
+contains
+
+  !> Value of each criterion; a ply fails where it reaches 1. The strengths must be there (see missing_strengths).
+  pure function failure_indices(material, stress) result(indices)
+    !> Material of the ply
+    type(material_t), intent(in) :: material
+    !> s11, s22, s12, s13, s23
+    real(wp), intent(in) :: stress(5)
+    !> Values in the order of the modes; the matrix criterion of the other sign of s22 is zero
+    real(wp) :: indices(failure_modes)
+
+    indices = 0
+    associate (s11 => stress(1), s22 => stress(2), s12 => stress(3), s13 => stress(4), s23 => stress(5))
+      indices(fibre_failure) = (s11/fibre_strength(material, s11))**2 + (s12**2 + s13**2)/material%sf**2
+      if (s22 >= 0) then
+        indices(matrix_cracking) = (s22/material%yt)**2 + (s12/material%s12)**2 + (s23/material%sm23)**2
+      else
+        indices(matrix_crushing) = crushing_index(-s22, s12, material%yc, material%s12)
+      end if
+    end associate
+  end function failure_indices
+
+  !> Largest value of each criterion over several points of a ply, such as its two faces.
+  pure function largest_failure_indices(material, stresses) result(indices)
+    !> Material of the ply
+    type(material_t), intent(in) :: material
+    !> Stresses of the points, shape (5, points)
+    real(wp), intent(in) :: stresses(:, :)
+    !> Values in the order of the modes
+    real(wp) :: indices(failure_modes)
+    integer :: point
+
+    indices = failure_indices(material, stresses(:, 1))
+    do point = 2, size(stresses, 2)
+      indices = max(indices, failure_indices(material, stresses(:, point)))
+    end do
+  end function largest_failure_indices
+
+  !> Strength along the fibres: XC under compression if the deck gives it, else XT for both signs as in the paper.
+  pure real(wp) function fibre_strength(material, s11)
+    !> Material of the ply
+    type(material_t), intent(in) :: material
+    !> Stress along the fibres
+    real(wp), intent(in) :: s11
+
+    fibre_strength = material%xt
+    if (s11 < 0 .and. material%xc > 0) fibre_strength = material%xc
+  end function fibre_strength
+
+  !> Crushing, Table 1 with its printed terms. It is 1 at s22 = -Yc; where Yc > 2 S12, moderate compression makes it
+  !> negative, which raises the shear stress that the ply bears.
+  pure real(wp) function crushing_index(pressure, s12, yc, strength)
+    !> -s22, positive
+    real(wp), intent(in) :: pressure
+    !> In-plane shear stress
+    real(wp), intent(in) :: s12
+    !> Compressive strength across the fibres
+    real(wp), intent(in) :: yc
+    !> In-plane shear strength
+    real(wp), intent(in) :: strength
+
+    crushing_index = (pressure/strength)**2/4 - yc*pressure/(4*strength**2) + pressure/yc + (s12/strength)**2
+  end function crushing_index
+
+  !> Names of the strengths that the criteria need and the material lacks, separated by commas; empty: none.
+  pure function missing_strengths(material) result(names)
+    !> The material
+    type(material_t), intent(in) :: material
+    !> For example `XT, Sf`
+    character(len=:), allocatable :: names
+    character(len=4), parameter :: labels(6) = [character(len=4) :: 'XT', 'YT', 'YC', 'S12', 'Sf', 'Sm23']
+    real(wp) :: strengths(6)
+    integer :: i
+
+    strengths = [material%xt, material%yt, material%yc, material%s12, material%sf, material%sm23]
+    names = ''
+    do i = 1, size(labels)
+      if (strengths(i) > 0) cycle
+      if (len(names) > 0) names = names//', '
+      names = names//trim(labels(i))
+    end do
+  end function missing_strengths
+end module hou_criteria

@@ -1,0 +1,17 @@
+!> Linear algebra, as the deck gives it.
+module linear_solver_parameters
+  implicit none
+  private
+  public :: linear_solver_parameters_t
+
+  !> Factorizations.
+  integer, parameter, public :: factorization_mumps = 1, factorization_cholmod = 2
+
+  !> Factorization and options of the linear solver.
+  type :: linear_solver_parameters_t
+    !> factorization_mumps or factorization_cholmod (one rank only)
+    integer :: factorization = factorization_mumps
+    !> Handed to PETSc as they are
+    character(len=:), allocatable :: petsc_options
+  end type linear_solver_parameters_t
+end module linear_solver_parameters

@@ -1,0 +1,238 @@
+!> Makes a scene ready for computing: mesh, elements, loads and interfaces of this rank's share.
+module model_building
+  use kinds, only: wp
+  use errors, only: error_t
+  use communicators, only: communicator_t
+  use plate_options, only: kinematics_linear, mass_lumped
+  use inertia_forces, only: add_lumped_mass
+  use load_vectors, only: add_pressure, gauss_coordinates, add_patch_weights
+  use stacking, only: section_t, stacked_plies, section_of
+  use mesh_parameters, only: edge_free, symmetry_none
+  use cell_grids, only: cell_edges
+  use layered_meshes, only: zone_t, create_mesh
+  use layer_maps, only: create_layer_map
+  use delaminated_regions, only: cells_within
+  use face_contact, only: create_contact_law
+  use distributions, only: distribute
+  use neighbourhoods, only: neighbourhood_of
+  use supports, only: held_unknowns
+  use pressure_loads, only: distribution_sine
+  use models, only: model_t
+  use scenes, only: scene_t
+  implicit none
+  private
+  public :: create_model
+
+contains
+
+  !> Makes a scene ready.
+  subroutine create_model(scene, communicator, self, error)
+    !> The scene; it has passed the deck's checks
+    type(scene_t), intent(in) :: scene
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> The model
+    type(model_t), intent(out) :: self
+    !> Set if the mesh can't be dealt out or an element is ill-shaped; the same on every rank
+    type(error_t), allocatable, intent(out) :: error
+    type(zone_t), allocatable :: zones(:)
+
+    self%scene = scene
+    self%communicator = communicator
+    self%plies = stacked_plies(scene%laminate, scene%materials)
+    self%thickness = sum(scene%laminate%thickness)
+    self%section = section_of(self%plies, scene%laminate%shear_correction)
+    zones = zones_of(scene)
+    self%mesh = create_mesh(scene%plate, scene%mesh, size(self%plies), zones)
+    self%membrane_idle = scene%kinematics == kinematics_linear .and. size(zones) == 0 .and. &
+                         .not. scene%has_ply_damage .and. uncoupled(self%section)
+    self%held = held_unknowns(self%mesh, scene%plate, self%membrane_idle, adrift(scene))
+    call distribute(self%mesh, communicator, self%distribution, error)
+    if (.not. allocated(error)) call build_elements(self, error)
+    call communicator%agree(error)
+    if (allocated(error)) return
+    call self%halo%define(communicator, self%distribution%owned, 1 + self%distribution%number( &
+                          self%distribution%points(self%distribution%owned + 1:)), error)
+    if (allocated(error)) return
+    call build_loads(self)
+    call build_interfaces(self)
+    call find_struck_point(self)
+    if (scene%has_ply_damage .and. scene%ply_damage%average > 0) &
+      self%surroundings = neighbourhood_of(self%mesh, self%distribution%elements, scene%ply_damage%average)
+  end subroutine create_model
+
+  !> True if membrane and bending do not act on each other.
+  pure logical function uncoupled(section)
+    !> The laminate's section
+    type(section_t), intent(in) :: section
+    real(wp) :: scale
+
+    scale = sqrt(maxval(abs(section%stiffness(1:6)))*maxval(abs(section%stiffness(13:18))))
+    uncoupled = all(abs(section%stiffness(7:12)) <= 1.0e-12_wp*scale) .and. &
+                abs(section%mass(2)) <= 1.0e-12_wp*sqrt(section%mass(1)*section%mass(3))
+  end function uncoupled
+
+  !> True if nothing holds a static plate in its own plane.
+  pure logical function adrift(scene)
+    !> The scene
+    type(scene_t), intent(in) :: scene
+
+    adrift = scene%has_static .and. scene%plate%symmetry == symmetry_none .and. &
+             (.not. scene%plate%in_plane_fixed .or. all(scene%plate%edges == edge_free))
+  end function adrift
+
+  !> Batches of this rank's elements, with their sections.
+  subroutine build_elements(self, error)
+    !> The model, with its mesh dealt out
+    type(model_t), intent(inout) :: self
+    !> Set if an element is ill-shaped
+    type(error_t), allocatable, intent(inout) :: error
+    integer :: element, first, last
+    type(section_t) :: section
+
+    associate (mesh => self%mesh, share => self%distribution)
+      call self%elements%create(mesh%node_coordinates(:, mesh%point_node(share%points)), share%connectivity, &
+                                self%scene%mesh%shear, error)
+      if (allocated(error)) return
+      do element = 1, size(share%elements)
+        first = mesh%element_plies(1, share%elements(element))
+        last = mesh%element_plies(2, share%elements(element))
+        section = self%section
+        if (last - first + 1 < size(self%plies)) &
+          section = section_of(self%plies(first:last), self%scene%laminate%shear_correction)
+        call self%elements%set_section(element, section%stiffness, section%mass)
+      end do
+    end associate
+    if (self%scene%mesh%mass == mass_lumped) allocate (self%lumped(3, size(self%distribution%points)), source=0.0_wp)
+  end subroutine build_elements
+
+  !> Nodal loads of pressure and patch, and the lumped mass.
+  subroutine build_loads(self)
+    !> The model, with its elements and halo
+    type(model_t), intent(inout) :: self
+    real(wp), allocatable :: weights(:, :)
+    real(wp) :: area
+
+    allocate (weights(1, size(self%distribution%points)), source=0.0_wp)
+    call add_patch_weights(self%elements, patch_elements(self), weights(1, :))
+    call self%halo%accumulate(weights)
+    area = sum(weights)
+    call self%communicator%sum(area)
+    if (area > 0) weights = weights/area
+    self%patch = weights(1, :)
+    if (self%scene%has_pressure) call build_pressure(self)
+    if (allocated(self%lumped)) then
+      call add_lumped_mass(self%elements, self%lumped)
+      call self%halo%accumulate(self%lumped)
+    end if
+  end subroutine build_loads
+
+  !> This rank's elements under the patch, of the struck layer only.
+  pure function patch_elements(self) result(elements)
+    !> The model
+    type(model_t), intent(in) :: self
+    !> Positions among this rank's elements
+    integer, allocatable :: elements(:)
+    integer :: i
+
+    associate (mesh => self%mesh, mine => self%distribution%elements)
+      elements = pack([(i, i=1, size(mine))], [(mesh%in_patch(mesh%element_cell(mine(i)), self%scene%mesh%patch) &
+                                                .and. mesh%element_plies(1, mine(i)) == 1, i=1, size(mine))])
+    end associate
+  end function patch_elements
+
+  !> Nodal forces of the pressure on the struck face.
+  subroutine build_pressure(self)
+    !> The model
+    type(model_t), intent(inout) :: self
+    real(wp), allocatable :: x(:, :, :), pressure(:, :)
+    real(wp), parameter :: pi = acos(-1.0_wp)
+    integer :: element
+
+    allocate (self%pressure(5, size(self%distribution%points)), source=0.0_wp)
+    allocate (x(2, 9, self%elements%elements), pressure(9, self%elements%elements))
+    associate (mesh => self%mesh, share => self%distribution, value => self%scene%pressure%value)
+      call gauss_coordinates(self%elements, mesh%node_coordinates(:, mesh%point_node(share%points)), x)
+      pressure = value
+      if (self%scene%pressure%distribution == distribution_sine) &
+        pressure = value*cos(pi*x(1, :, :)/self%scene%plate%length(1))*cos(pi*x(2, :, :)/self%scene%plate%length(2))
+      do element = 1, size(share%elements)
+        if (mesh%element_plies(1, share%elements(element)) /= 1) pressure(:, element) = 0
+      end do
+    end associate
+    call add_pressure(self%elements, pressure, self%pressure)
+    call self%halo%accumulate(self%pressure)
+  end subroutine build_pressure
+
+  !> Finds the struck node's first point if this rank owns it, and the elements around it.
+  subroutine find_struck_point(self)
+    !> The model
+    type(model_t), intent(inout) :: self
+    integer :: i, first
+
+    first = self%mesh%first_point(self%mesh%struck_node)
+    associate (mesh => self%mesh, mine => self%distribution%elements)
+      self%struck_elements = pack([(i, i=1, size(mine))], &
+                                  [(any(mesh%connectivity(:, mine(i)) == first), i=1, size(mine))])
+    end associate
+    self%struck_count = size(self%struck_elements)
+    call self%communicator%sum(self%struck_count)
+    self%struck = self%distribution%local(self%mesh%first_point(self%mesh%struck_node))
+    if (self%struck > self%distribution%owned) self%struck = 0
+  end subroutine find_struck_point
+
+  !> The cells of each interface's layered rectangle.
+  pure function zones_of(scene) result(zones)
+    !> The scene
+    type(scene_t), intent(in) :: scene
+    !> One zone an interface
+    type(zone_t), allocatable :: zones(:)
+    integer :: i
+
+    if (.not. allocated(scene%delaminations)) then
+      allocate (zones(0))
+      return
+    end if
+    allocate (zones(size(scene%delaminations)))
+    do i = 1, size(zones)
+      associate (interface => scene%delaminations(i))
+        zones(i)%below_ply = interface%below_ply
+        zones(i)%columns = cells_within(cell_edges(scene%plate, scene%mesh, 1), interface%zone(1))
+        zones(i)%rows = cells_within(cell_edges(scene%plate, scene%mesh, 2), interface%zone(2))
+      end associate
+    end do
+  end function zones_of
+
+  !> Heights, areas and contact laws of the interfaces.
+  subroutine build_interfaces(self)
+    !> The model, with its elements and halo
+    type(model_t), intent(inout) :: self
+    real(wp), allocatable :: areas(:, :)
+    real(wp) :: thickness
+    integer :: zone, i
+
+    associate (mesh => self%mesh, share => self%distribution)
+      self%map = create_layer_map(mesh, share, self%plies(mesh%zones%below_ply)%z_bottom)
+      self%zone = mesh%point_zone(share%points)
+      allocate (areas(1, size(share%points)), source=0.0_wp)
+      if (self%map%layered) then
+        call add_patch_weights(self%elements, pack([(i, i=1, self%elements%elements)], &
+                                                   mesh%element_plies(1, share%elements) > 1), areas(1, :))
+        call self%halo%accumulate(areas)
+        call self%halo%update(areas)
+        where (self%zone == 0) areas(1, :) = 0
+      end if
+      self%contact_area = areas(1, :)
+      allocate (self%contact_laws(size(mesh%zones)))
+      do zone = 1, size(mesh%zones)
+        associate (below => mesh%zones(zone)%below_ply, interface => self%scene%delaminations(zone))
+          thickness = min(self%plies(below)%z_bottom - self%plies(1)%z_top, &
+                          self%plies(size(self%plies))%z_bottom - self%plies(below)%z_bottom)
+          self%contact_laws(zone) = create_contact_law(interface%contact, interface%contact_exponent, &
+                                                       self%plies(below)%elasticity%e2/thickness, thickness, &
+                                                       moving=.not. self%scene%has_static)
+        end associate
+      end do
+    end associate
+  end subroutine build_interfaces
+end module model_building

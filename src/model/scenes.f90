@@ -1,0 +1,41 @@
+!> All that a deck asks to be modelled, as plain parameters. What a scene does not have costs nothing.
+module scenes
+  use plate_options, only: kinematics_von_karman
+  use mesh_parameters, only: plate_t, mesh_t
+  use material_parameters, only: material_t
+  use laminate_parameters, only: laminate_t
+  use ply_damage_parameters, only: ply_damage_t
+  use delamination_parameters, only: delamination_t
+  use impact_parameters, only: impactor_parameters_t, indentation_law_t
+  use pressure_loads, only: pressure_t
+  implicit none
+  private
+  public :: scene_t
+
+  !> One scene.
+  type :: scene_t
+    !> kinematics_von_karman or kinematics_linear
+    integer :: kinematics = kinematics_von_karman
+    !> Plate, mesh, materials and stacking
+    type(plate_t) :: plate
+    !> Mesh and element
+    type(mesh_t) :: mesh
+    !> Materials
+    type(material_t), allocatable :: materials(:)
+    !> Stacking
+    type(laminate_t) :: laminate
+    !> Which groups the deck has
+    logical :: has_impactor = .false., has_indentation = .false., has_pressure = .false., has_static = .false., &
+               has_ply_damage = .false.
+    !> Impactor
+    type(impactor_parameters_t) :: impactor
+    !> Indentation law
+    type(indentation_law_t) :: indentation
+    !> Pressure
+    type(pressure_t) :: pressure
+    !> Damage of the plies
+    type(ply_damage_t) :: ply_damage
+    !> Interfaces that may delaminate, from the struck face downwards; unallocated: none
+    type(delamination_t), allocatable :: delaminations(:)
+  end type scene_t
+end module scenes

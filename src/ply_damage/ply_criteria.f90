@@ -1,0 +1,69 @@
+!> Failure criteria of the plies of one element, from stresses averaged over its nine points (section 3.2 of the paper).
+module ply_criteria
+  use kinds, only: wp
+  use element_batches, only: batch_of, lane_of
+  use plies, only: elasticity_t
+  use ply_damage_parameters, only: failure_modes, stress_at_faces
+  use ply_stresses, only: middle_stress, face_stresses, mean_shear_strain
+  use hou_criteria, only: failure_indices, largest_failure_indices
+  use models, only: model_t
+  implicit none
+  private
+  public :: failure_measures, strains_of_plies
+
+contains
+
+  !> How near the plies of an element are to each mode of failure, whether or not they failed so before: 1 where the
+  !> criterion is met. Roots of the criteria's values, so that they grow with the load.
+  function failure_measures(model, element, elasticity, strains) result(measures)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Element of this rank
+    integer, intent(in) :: element
+    !> Present elastic constants of its plies
+    type(elasticity_t), intent(in) :: elasticity(:)
+    !> Mean strains of the element
+    real(wp), intent(in) :: strains(8)
+    !> The measures
+    real(wp) :: measures(failure_modes, size(elasticity))
+    real(wp) :: local(8)
+    integer :: i
+
+    local = strains_of_plies(model, element, elasticity, strains)
+    associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
+      do i = 1, size(elasticity)
+        associate (ply => model%plies(range(1) + i - 1))
+          associate (strength => model%scene%materials(ply%material))
+            if (model%scene%ply_damage%stress == stress_at_faces) then
+              measures(:, i) = largest_failure_indices(strength, face_stresses(ply, elasticity(i), local))
+            else
+              measures(:, i) = failure_indices(strength, middle_stress(ply, elasticity(i), local))
+            end if
+          end associate
+        end associate
+      end do
+    end associate
+    measures = sqrt(max(measures, 0.0_wp))
+  end function failure_measures
+
+  !> Strains of an element that the stresses of its plies follow from: its own, but for one transverse shear strain
+  !> whose stresses add up to the shear force.
+  pure function strains_of_plies(model, element, elasticity, strains) result(local)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Element of this rank
+    integer, intent(in) :: element
+    !> Present elastic constants of its plies
+    type(elasticity_t), intent(in) :: elasticity(:)
+    !> Mean strains of the element
+    real(wp), intent(in) :: strains(8)
+    !> Strains for ply_stress
+    real(wp) :: local(8)
+
+    local = strains
+    associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
+      local(7:8) = mean_shear_strain(model%plies(range(1):range(2)), elasticity, &
+                                     model%elements%stiffness(lane_of(element), :, batch_of(element)), strains(7:8))
+    end associate
+  end function strains_of_plies
+end module ply_criteria

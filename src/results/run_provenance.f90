@@ -1,0 +1,70 @@
+!> Where a result comes from: every output carries it, so that it can be traced and repeated.
+module run_provenance
+  use logger, only: log_t
+  use text, only: to_text
+  implicit none
+  private
+  public :: build_t, provenance_t, this_run
+
+  !> What a program was built from.
+  type :: build_t
+    !> Version of Implam
+    character(len=:), allocatable :: version
+    !> Commit of its source
+    character(len=:), allocatable :: commit
+    !> Compiler it was built with
+    character(len=:), allocatable :: compiler
+    !> Version of PETSc it was built with
+    character(len=:), allocatable :: petsc_version
+  end type build_t
+
+  !> What a run is made of.
+  type, extends(build_t) :: provenance_t
+    !> Text of the deck, as the user wrote it
+    character(len=:), allocatable :: deck
+    !> Date and time the run started, local time with its distance from UTC, ISO 8601
+    character(len=:), allocatable :: started
+    !> Number of ranks
+    integer :: ranks = 0
+  contains
+    procedure :: report
+  end type provenance_t
+
+contains
+
+  !> Provenance of the run that is starting.
+  function this_run(build, deck, ranks) result(run)
+    !> What this program was built from
+    type(build_t), intent(in) :: build
+    !> Text of the deck
+    character(len=*), intent(in) :: deck
+    !> Number of ranks
+    integer, intent(in) :: ranks
+    !> The provenance
+    type(provenance_t) :: run
+    character(len=8) :: date
+    character(len=10) :: time
+    character(len=5) :: zone
+
+    call date_and_time(date, time, zone)
+    run%deck = deck
+    run%build_t = build
+    run%started = date(1:4)//'-'//date(5:6)//'-'//date(7:8)//'T'//time(1:2)//':'//time(3:4)//':'//time(5:6) &
+      //zone(1:3)//':'//zone(4:5)
+    run%ranks = ranks
+  end function this_run
+
+  !> Writes the provenance to the log; the deck goes to the log file only.
+  subroutine report(self, log)
+    !> The provenance
+    class(provenance_t), intent(in) :: self
+    !> The log
+    type(log_t), intent(inout) :: log
+
+    call log%note('Implam '//self%version//' (commit '//self%commit//'), '//self%compiler//', PETSc ' &
+                  //self%petsc_version//', '//to_text(self%ranks)//trim(merge(' rank ', ' ranks', self%ranks == 1)) &
+                  //', started '//self%started)
+    call log%detail('deck:'//new_line('a')//self%deck)
+    call log%detail('end of the deck')
+  end subroutine report
+end module run_provenance

@@ -1,0 +1,360 @@
+!> The factored operator that turns a residual of equilibrium into a correction of the displacement.
+!> It is a preconditioner that may lag behind the state: with the exact internal force in the residual
+!> its age changes the number of iterations, never the converged answer.
+module tangent_operators
+  use kinds, only: wp
+  use errors, only: error_t
+  use archives, only: archive_t
+  use timers, only: timer_set_t
+  use linear_solvers, only: linear_solver_t
+  use petsc_solvers, only: petsc_solver_t
+  use plate_options, only: kinematics_linear
+  use linear_solver_parameters, only: factorization_cholmod
+  use numberings, only: numbering_t, number_equations
+  use models, only: model_t
+  use contact_and_ties, only: contact_and_ties_t
+  use anderson_acceleration, only: anderson_t
+  use operator_assembly, only: assemble_elements, assemble_diagonal
+  use woodbury_updates, only: woodbury_updates_t, list_changes
+  implicit none
+  private
+  public :: tangent_operator_t
+
+  !> Changes that are followed before a factorization is cheaper: each adds to every correction.
+  integer, parameter :: most_changes = 500
+  !> Columns kept since a factorization, and numbers in all of them together: 0.8 GB however large the model.
+  integer, parameter :: most_columns = 800
+  real(wp), parameter :: most_numbers = 1.0e8_wp
+  !> Columns found at once: more no longer are found faster.
+  integer, parameter :: columns_at_once = 64
+
+  !> A factor of `stiffness_factor * tangent stiffness + mass_factor * mass`.
+  type :: tangent_operator_t
+    !> Equations of the unknowns that are not held
+    type(numbering_t) :: numbering
+    !> The linear solver that holds the factor
+    class(linear_solver_t), allocatable :: solver
+    !> True once there is a factor
+    logical :: ready = .false.
+    !> Factors of stiffness and mass in the factored operator
+    real(wp) :: stiffness_factor = 0, mass_factor = 0
+    !> Displacement at which the tangent was taken, (5, points)
+    real(wp), allocatable :: displacement(:, :)
+    !> Diagonal of the operator, (5, points)
+    real(wp), allocatable :: diagonal(:, :)
+    !> Displacement under a unit force of the impactor, (5, points)
+    real(wp), allocatable :: response(:, :)
+    !> That response without the changes since the factorization, (5, points)
+    real(wp), allocatable :: fresh_response(:, :)
+    !> Stiffness added to the three jumps of each point when factored, (3, points)
+    real(wp), allocatable :: added(:, :)
+    !> Changes of ties and contacts since then
+    type(woodbury_updates_t) :: changes
+    !> What the iterations of the present step have shown
+    type(anderson_t) :: anderson
+    !> Deflection of the struck point at which the tangent was taken
+    real(wp) :: deflection = 0
+    !> Mean deflection of the patch under that force
+    real(wp) :: compliance = 0
+    !> Iterations of the present step before which ties or contacts had changed
+    integer :: switches = 0
+    !> Factorizations, and corrections solved for, so far
+    integer :: factorizations = 0, solves = 0
+    !> Time spent in the parts of a step
+    type(timer_set_t) :: timers
+  contains
+    !> Numbers the equations and sets the solver up.
+    procedure :: create
+    !> Assembles and factors the operator at a displacement.
+    procedure :: renew
+    !> Follows changes of ties and contacts without a factorization.
+    procedure :: follow
+    !> Correction of the displacement for a residual.
+    procedure :: correct
+    !> Saves what is needed to make the same factor again, or loads it and makes it.
+    procedure :: visit
+  end type tangent_operator_t
+
+contains
+
+  !> Numbers the equations of a model and sets the solver up.
+  subroutine create(self, model, factorization, error)
+    !> The operator
+    class(tangent_operator_t), intent(out) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> factorization_mumps or factorization_cholmod
+    integer, intent(in) :: factorization
+    !> Set if the solver cannot be set up
+    type(error_t), allocatable, intent(out) :: error
+    type(petsc_solver_t) :: solver
+    integer :: points
+
+    points = size(model%distribution%points)
+    allocate (self%displacement(5, points), self%response(5, points), self%diagonal(5, points), source=0.0_wp)
+    allocate (self%added(3, points), source=0.0_wp)
+    call number_equations(model%mesh, model%distribution, model%held, self%numbering)
+    if (factorization == factorization_cholmod) solver%package = 'cholmod'
+    allocate (self%solver, source=solver)
+    call self%solver%define(model%communicator, self%numbering%first_row, self%numbering%total, &
+                            self%numbering%row_start, self%numbering%columns, .not. model%scene%has_static .or. &
+                            model%scene%kinematics == kinematics_linear, error)
+    ! The solver has its own copy of this large list.
+    deallocate (self%numbering%columns)
+  end subroutine create
+
+  !> Assembles and factors the operator at a displacement, and finds the response to a unit force.
+  subroutine renew(self, model, faces, displacement, stiffness_factor, mass_factor, error)
+    !> The operator
+    class(tangent_operator_t), intent(inout) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Ties and contacts
+    type(contact_and_ties_t), intent(in) :: faces
+    !> Displacement, ghosts up to date, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> Factors of stiffness and mass
+    real(wp), intent(in) :: stiffness_factor, mass_factor
+    !> Set if the operator is singular
+    type(error_t), allocatable, intent(out) :: error
+
+    self%displacement = displacement
+    self%deflection = model%deflection(displacement)
+    self%stiffness_factor = stiffness_factor
+    self%mass_factor = mass_factor
+    call self%timers%start('assembly')
+    call self%solver%clear()
+    call assemble_elements(model, self%numbering, displacement, stiffness_factor, mass_factor, self%solver, &
+                           self%diagonal)
+    call faces%added_stiffness(model, self%diagonal, self%added)
+    call self%timers%stop('assembly')
+    call factorize(self, model, error)
+  end subroutine renew
+
+  !> Factors what has been assembled, the stiffness added to the jumps included, and finds the response
+  !> to a unit force.
+  subroutine factorize(self, model, error)
+    !> The operator
+    type(tangent_operator_t), intent(inout) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Set if the operator is singular
+    type(error_t), allocatable, intent(inout) :: error
+
+    if (model%map%layered) call assemble_diagonal(model, self%numbering, self%added, self%solver)
+    call self%solver%finish_assembly(error)
+    call self%timers%start('factorization')
+    if (.not. allocated(error)) call self%solver%factorize(error)
+    call self%timers%stop('factorization')
+    self%ready = .not. allocated(error)
+    if (.not. self%ready) return
+    self%factorizations = self%factorizations + 1
+    call self%changes%clear()
+    call self%anderson%forget()
+    self%response = 0
+    self%compliance = 0
+    if (model%scene%has_impactor) call find_response(self, model, error)
+    self%fresh_response = self%response
+  end subroutine factorize
+
+  !> Finds the response to a unit force of the impactor.
+  subroutine find_response(self, model, error)
+    !> The operator
+    type(tangent_operator_t), intent(inout) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Set if the solve fails
+    type(error_t), allocatable, intent(inout) :: error
+    real(wp), allocatable :: force(:, :)
+
+    allocate (force, mold=self%response)
+    force = 0
+    force(3, :) = model%patch/model%mesh%multiplicity
+    call solve_factor(self, model, force, self%response, error)
+    self%compliance = model%patch_mean(self%response)
+  end subroutine find_response
+
+  !> Follows changes of ties and contacts since the factorization.
+  subroutine follow(self, model, faces, possible, error)
+    !> The operator
+    class(tangent_operator_t), intent(inout) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Ties and contacts now
+    type(contact_and_ties_t), intent(in) :: faces
+    !> False: they are too many, the operator has to be renewed
+    logical, intent(out) :: possible
+    !> Set if a solve fails
+    type(error_t), allocatable, intent(inout) :: error
+    real(wp), allocatable :: wanted(:, :)
+    integer, allocatable :: equations(:)
+    real(wp), allocatable :: stiffness(:)
+    logical, allocatable :: missing(:)
+    integer :: k, first
+
+    possible = .true.
+    if (.not. model%map%layered) return
+    allocate (wanted, mold=self%added)
+    call faces%added_stiffness(model, self%diagonal, wanted)
+    call list_changes(model%communicator, self%numbering, self%diagonal, self%added, wanted, equations, stiffness)
+    missing = [(self%changes%column_of(equations(k)) == 0, k=1, size(equations))]
+    possible = size(equations) <= most_changes .and. self%changes%kept + count(missing) &
+               <= min(most_columns, int(most_numbers/self%numbering%total))
+    if (.not. possible .or. self%changes%same(equations, stiffness)) return
+    associate (wanting => pack(equations, missing))
+      do first = 1, size(wanting), columns_at_once
+        call find_columns(self, model, wanting(first:min(first + columns_at_once - 1, size(wanting))), error)
+        if (allocated(error)) return
+      end do
+    end associate
+    call self%changes%set(equations, stiffness)
+    self%switches = self%switches + 1
+    call self%anderson%forget()
+    self%response = self%fresh_response
+    call follow_changes(self, model, self%response)
+    self%compliance = model%patch_mean(self%response)
+  end subroutine follow
+
+  !> Finds columns together.
+  subroutine find_columns(self, model, equations, error)
+    !> The operator
+    type(tangent_operator_t), intent(inout) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Equations wanted, none of which has its column yet, the same on every rank
+    integer, intent(in) :: equations(:)
+    !> Set if a solve fails
+    type(error_t), allocatable, intent(inout) :: error
+    real(wp), allocatable :: forces(:, :), values(:, :), fields(:, :, :)
+    integer :: k
+
+    allocate (forces(self%numbering%rows, size(equations)), source=0.0_wp)
+    allocate (values, mold=forces)
+    allocate (fields(5, size(self%response, 2), size(equations)), source=0.0_wp)
+    do k = 1, size(equations)
+      if (self%numbering%owns(equations(k))) forces(equations(k) - self%numbering%first_row + 1, k) = 1
+    end do
+    call self%timers%start('solve')
+    call self%solver%solve_many(forces, values, error)
+    call self%timers%stop('solve')
+    if (allocated(error)) return
+    do k = 1, size(equations)
+      call self%numbering%scatter(values(:, k), fields(:, :, k))
+      call model%halo%update(fields(:, :, k))
+    end do
+    call self%changes%keep(model%communicator, self%numbering, equations, fields)
+  end subroutine find_columns
+
+  !> Correction of the displacement for a residual, ghosts included.
+  subroutine correct(self, model, residual, correction, error)
+    !> The operator
+    class(tangent_operator_t), intent(inout) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Residual at the owned points, (5, points)
+    real(wp), intent(in) :: residual(:, :)
+    !> Correction, (5, points)
+    real(wp), intent(inout) :: correction(:, :)
+    !> Set if the solution is not finite
+    type(error_t), allocatable, intent(out) :: error
+
+    call solve_factor(self, model, residual, correction, error)
+    self%solves = self%solves + 1
+    if (.not. allocated(error)) call follow_changes(self, model, correction)
+  end subroutine correct
+
+  !> Turns a solution of the operator as it was factored into one of the operator as it is now.
+  subroutine follow_changes(self, model, solution)
+    !> The operator
+    type(tangent_operator_t), intent(in) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Solution, ghosts included, (5, points)
+    real(wp), intent(inout) :: solution(:, :)
+
+    if (size(self%changes%equations) == 0) return
+    call self%changes%correct(model%communicator, self%numbering, solution)
+    call model%halo%update(solution)
+  end subroutine follow_changes
+
+  !> Solution of the operator as it was factored, ghosts included.
+  subroutine solve_factor(self, model, force, solution, error)
+    !> The operator
+    type(tangent_operator_t), intent(inout) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Force at the owned points, (5, points)
+    real(wp), intent(in) :: force(:, :)
+    !> Solution, (5, points)
+    real(wp), intent(inout) :: solution(:, :)
+    !> Set if the solution is not finite
+    type(error_t), allocatable, intent(inout) :: error
+    real(wp), allocatable :: right_hand_side(:), values(:)
+
+    allocate (right_hand_side(self%numbering%rows), values(self%numbering%rows))
+    call self%numbering%gather(force, right_hand_side)
+    call self%timers%start('solve')
+    call self%solver%solve(right_hand_side, values, error)
+    call self%timers%stop('solve')
+    if (allocated(error)) return
+    call self%numbering%scatter(values, solution)
+    call model%halo%update(solution)
+  end subroutine solve_factor
+
+  !> Saves what is needed to make the same factor again, or loads it and makes it: a lagged factor
+  !> shapes the iterations, so a restart must go on with the very same one.
+  subroutine visit(self, archive, model, error)
+    !> The operator
+    class(tangent_operator_t), intent(inout) :: self
+    !> Where to or where from
+    class(archive_t), intent(inout) :: archive
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Set if the factor cannot be made again
+    type(error_t), allocatable, intent(out) :: error
+    integer, allocatable :: columns(:)
+
+    call archive%item('operator/ready', self%ready)
+    call archive%item('operator/stiffness_factor', self%stiffness_factor)
+    call archive%item('operator/mass_factor', self%mass_factor)
+    call archive%item('operator/factorizations', self%factorizations)
+    call archive%item('operator/solves', self%solves)
+    associate (share => model%distribution)
+      call archive%field('operator/displacement', share%points(:share%owned), model%mesh%points(), self%displacement)
+      if (model%map%layered) &
+        call archive%field('operator/added', share%points(:share%owned), model%mesh%points(), self%added)
+    end associate
+    columns = self%changes%list()
+    call archive%item('operator/columns', columns)
+    if (archive%loading .and. self%ready) call remake(self, model, columns, error)
+  end subroutine visit
+
+  !> Makes the factor again from what was loaded.
+  subroutine remake(self, model, columns, error)
+    !> The operator
+    type(tangent_operator_t), intent(inout) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Equation and company of each column found since, (2 columns)
+    integer, intent(in) :: columns(:)
+    !> Set if it cannot be made
+    type(error_t), allocatable, intent(inout) :: error
+    integer :: factorizations, solves, k
+
+    factorizations = self%factorizations
+    solves = self%solves
+    call model%halo%update(self%displacement)
+    self%deflection = model%deflection(self%displacement)
+    call self%solver%clear()
+    call assemble_elements(model, self%numbering, self%displacement, self%stiffness_factor, self%mass_factor, &
+                           self%solver, self%diagonal)
+    call factorize(self, model, error)
+    k = 1
+    do while (k < size(columns) .and. .not. allocated(error))
+      call find_columns(self, model, columns(k:k + 2*columns(k + 1) - 2:2), error)
+      k = k + 2*columns(k + 1)
+    end do
+    self%factorizations = factorizations
+    self%solves = solves
+  end subroutine remake
+end module tangent_operators
