@@ -118,12 +118,12 @@ contains
     integer :: ply, place, i
 
     wanted = [output%wants('stress'), output%wants('face_stress'), output%wants('face_stress')]
-    if (any(wanted)) strains = element_strains(model, stepper%failures, stepper%now%motion%displacement)
+    if (any(wanted)) strains = element_strains(model, stepper%now%plies, stepper%now%motion%displacement)
     do ply = 1, size(model%plies)
       associate (name => 'ply_'//to_text(ply)//'_')
         if (output%wants('ply_damage') .and. model%scene%has_ply_damage) &
-          call fields%write_cell_field(name//'failure', failure_code(stepper%failures%onset%failed(ply)), error)
-        if (any(wanted)) stresses = stresses_of_ply(model, stepper%failures, strains, ply)
+          call fields%write_cell_field(name//'failure', failure_code(stepper%now%plies%onset%failed(ply)), error)
+        if (any(wanted)) stresses = stresses_of_ply(model, stepper%now%plies, strains, ply)
         do place = 1, 3
           if (.not. wanted(place)) cycle
           do i = 1, merge(5, 3, place == 1)

@@ -59,7 +59,7 @@ contains
 
     allocate (ratio(1, model%elements%elements), source=0.0_wp)
     do zone = 1, size(model%mesh%zones)
-      front = release_along_front(model, now%interfaces%faces, now%motion, zone, &
+      front = release_along_front(model, now%plies%stiffness, now%interfaces%faces, now%motion, zone, &
                                   model%scene%delaminations(zone)%energy_release)
       do s = 1, size(front%segments)
         place = merge(front%segments(s)%inside, front%segments(s)%outside, front%segments(s)%at_border)

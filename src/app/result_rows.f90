@@ -46,7 +46,7 @@ contains
                     now%interfaces%faces%complementarity(model, now%motion%displacement)]
       row(26:37) = real([now%iterations, now%force_iterations, now%contact_iterations, now%all_iterations, &
                          now%all_force_iterations, now%all_contact_iterations, stepper%rejected, &
-                         stepper%operator%factorizations, stepper%operator%solves, stepper%failures%counts(model)], wp)
+                         stepper%operator%factorizations, stepper%operator%solves, stepper%now%plies%counts(model)], wp)
       row(38) = merge(1.0_wp, 0.0_wp, now%interfaces%border_reached)
     end associate
   end function row_of

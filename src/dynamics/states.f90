@@ -8,6 +8,7 @@ module states
   use energy_ledgers, only: ledger_t
   use motions, only: motion_t
   use models, only: model_t
+  use ply_failures, only: ply_failure_t, new_ply_failure
   use interface_states, only: interface_state_t, new_interface_state
   implicit none
   private
@@ -25,6 +26,8 @@ module states
     type(impactor_t) :: impactor
     !> Memory of the indentation
     type(indentation_t) :: indentation
+    !> Failures of the plies and the stiffness they have left
+    type(ply_failure_t) :: plies
     !> The interfaces
     type(interface_state_t) :: interfaces
     !> Impact force at this time
@@ -42,6 +45,8 @@ module states
     !> Largest forces so far, by which a residual is judged when forces fade: translations, rotations
     real(wp) :: largest_forces(2) = 0
   contains
+    !> Counts a step and its iterations.
+    procedure :: count_step
     !> Saves or loads the state.
     procedure :: visit
   end type state_t
@@ -60,12 +65,26 @@ contains
     allocate (self%motion%displacement(5, points), self%motion%velocity(5, points), &
               self%motion%acceleration(5, points), self%motion%internal(5, points), &
               self%motion%inertia(5, points), source=0.0_wp)
+    self%plies = new_ply_failure(model)
     self%interfaces = new_interface_state(model)
     if (.not. model%scene%has_impactor) return
     self%impactor = new_impactor(model%scene%impactor)
     self%ledger%impactor = impactor_energy(model%scene%impactor, self%impactor)
     self%ledger%initial = self%ledger%impactor
   end function new_state
+
+  !> Counts a step and its iterations.
+  pure subroutine count_step(self, old)
+    !> State at the end of the step
+    class(state_t), intent(inout) :: self
+    !> State at its start
+    type(state_t), intent(in) :: old
+
+    self%step = old%step + 1
+    self%all_iterations = old%all_iterations + self%iterations
+    self%all_force_iterations = old%all_force_iterations + self%force_iterations
+    self%all_contact_iterations = old%all_contact_iterations + self%contact_iterations
+  end subroutine count_step
 
   !> Saves or loads the state.
   subroutine visit(self, archive, model)
@@ -86,6 +105,7 @@ contains
     call archive%item('deflection', self%deflection)
     call archive%item('stress', self%stress)
     call archive%item('largest_stress', self%largest_stress)
+    call self%plies%visit(archive, model)
     call self%interfaces%visit(archive, model)
     call self%ledger%visit(archive)
     call archive%item('iterations', self%iterations)

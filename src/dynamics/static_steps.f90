@@ -1,85 +1,143 @@
-!> Load steps of a static analysis: Newton's iteration with a fresh tangent, around it that of the contact
+!> A load step of a static analysis: Newton's iteration with a fresh tangent, around it that of the contact
 !> pressures.
 module static_steps
   use kinds, only: wp
-  use errors, only: error_t, exit_convergence
+  use errors, only: error_t
   use plate_options, only: kinematics_linear
   use delamination_parameters, only: contact_none
   use stepping_parameters, only: equilibrium_t
   use models, only: model_t
   use states, only: state_t
+  use step_problems, only: step_problem_t
   use residual_norms, only: relative_residual
   use tangent_operators, only: tangent_operator_t
   implicit none
   private
-  public :: attempt_load
+  public :: static_step_t, new_static_step
 
   !> Distance of pressures and gaps from contact (complementarity) at which they have settled.
   real(wp), parameter :: contact_tolerance = 5.0e-10_wp
 
+  !> A load step.
+  type, extends(step_problem_t) :: static_step_t
+    !> Load over the full load
+    real(wp) :: load_factor = 0
+  contains
+    procedure :: begin
+    procedure :: find_residual
+    procedure :: residual_norm
+    procedure :: may_stop
+    procedure :: prepare_operator
+    procedure :: improve
+    procedure :: complete
+    procedure :: finish
+  end type static_step_t
+
 contains
 
-  !> Tries to reach a load factor. On return either `converged` and `new` is the state there, or nothing of it counts.
-  subroutine attempt_load(model, equilibrium, operator, old, load_factor, new, converged, error)
+  !> The step to a load.
+  pure function new_static_step(model, load_factor) result(self)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Load over the full load
+    real(wp), intent(in) :: load_factor
+    !> The problem
+    type(static_step_t) :: self
+
+    self%contact_tolerance = contact_tolerance
+    self%curable = model%scene%kinematics /= kinematics_linear
+    self%load_factor = load_factor
+  end function new_static_step
+
+  !> First guess: the state before.
+  subroutine begin(self, model, operator, old, new)
+    !> The problem
+    class(static_step_t), intent(inout) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> The factored operator
+    type(tangent_operator_t), intent(inout) :: operator
+    !> State at the load before
+    type(state_t), intent(in) :: old
+    !> State at this load
+    type(state_t), intent(inout) :: new
+
+    new%time = self%load_factor
+    new%iterations = 0
+    new%contact_iterations = 0
+  end subroutine begin
+
+  !> Load less internal forces.
+  subroutine find_residual(self, model, old, new, residual, energy)
+    !> The problem
+    class(static_step_t), intent(in) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> State at the load before
+    type(state_t), intent(in) :: old
+    !> State at this load; receives its internal forces
+    type(state_t), intent(inout) :: new
+    !> Residual at the owned points, (5, points)
+    real(wp), intent(inout) :: residual(:, :)
+    !> Strain energy of this rank's elements
+    real(wp), intent(out) :: energy
+
+    call model%internal(new%plies%stiffness, new%motion%displacement, new%motion%internal, energy)
+    residual = self%load_factor*model%pressure - new%motion%internal
+  end subroutine find_residual
+
+  !> Residual relative to internal forces and load.
+  real(wp) function residual_norm(self, model, equilibrium, operator, residual, new)
+    !> The problem
+    class(static_step_t), intent(in) :: self
     !> The model
     type(model_t), intent(in) :: model
     !> Convergence asked for
     type(equilibrium_t), intent(in) :: equilibrium
     !> The factored operator
-    type(tangent_operator_t), intent(inout) :: operator
-    !> State at the load before
-    type(state_t), intent(in) :: old
-    !> Load over the full load
-    real(wp), intent(in) :: load_factor
-    !> State at this load
+    type(tangent_operator_t), intent(in) :: operator
+    !> Residual at the owned points, (5, points)
+    real(wp), intent(in) :: residual(:, :)
+    !> State at this load; remembers its largest forces
     type(state_t), intent(inout) :: new
-    !> True if equilibrium was reached
-    logical, intent(out) :: converged
-    !> Set if the solver fails for good
-    type(error_t), allocatable, intent(out) :: error
-    real(wp), allocatable :: residual(:, :), correction(:, :)
-    real(wp) :: energy, norm
-    logical :: pressures_new
 
-    new = old
-    new%time = load_factor
-    new%iterations = 0
-    new%contact_iterations = 0
-    allocate (residual, correction, mold=old%motion%displacement)
-    correction = 0
-    pressures_new = .false.
-    do
-      call model%internal(new%motion%displacement, new%motion%internal, energy)
-      residual = load_factor*model%pressure - new%motion%internal
-      call new%interfaces%faces%act(model, new%motion%displacement, residual)
-      norm = relative_residual(model%communicator, operator%numbering, residual, new%motion%internal, &
-                               load_factor*model%pressure, 0.0_wp, &
-                               operator%diagonal*new%motion%displacement, equilibrium%tolerance, &
-                               model%thickness, new%largest_forces)
-      ! New pressures may be too little a change for the tolerance; only a correction can make them fit the gaps.
-      converged = norm <= equilibrium%tolerance .and. .not. pressures_new
-      pressures_new = .false.
-      if (converged) then
-        call new%interfaces%faces%settle(model, new%motion%displacement, contact_tolerance, new%contact_iterations, &
-                                   converged)
-        if (converged) exit
-        pressures_new = .true.
-        if (new%contact_iterations < equilibrium%max_iterations) cycle
-      end if
-      if (.not. norm <= huge(norm) .or. new%iterations >= equilibrium%max_iterations) exit
-      if (.not. operator%ready .or. changes(model, new%iterations)) &
-        call operator%renew(model, new%interfaces%faces, new%motion%displacement, 1.0_wp, 0.0_wp, error)
-      if (.not. allocated(error)) call operator%correct(model, residual, correction, error)
-      if (allocated(error)) then
-        if (error%code == exit_convergence .and. model%scene%kinematics /= kinematics_linear) deallocate (error)
-        return
-      end if
-      call new%interfaces%faces%hold(model, correction)
-      new%motion%displacement = new%motion%displacement + correction
-      new%iterations = new%iterations + 1
-    end do
-    if (converged) call finish(model, old, energy, new)
-  end subroutine attempt_load
+    residual_norm = relative_residual(model%communicator, operator%numbering, residual, new%motion%internal, &
+                                      self%load_factor*model%pressure, 0.0_wp, &
+                                      operator%diagonal*new%motion%displacement, equilibrium%tolerance, &
+                                      model%thickness, new%largest_forces)
+  end function residual_norm
+
+  !> New pressures may be too little a change for the tolerance; only a correction can make them fit the gaps.
+  pure logical function may_stop(self, model, new, pressures_new)
+    !> The problem
+    class(static_step_t), intent(in) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> State at this load
+    type(state_t), intent(in) :: new
+    !> True: contact has taken new pressures since the last correction
+    logical, intent(in) :: pressures_new
+
+    may_stop = .not. pressures_new
+  end function may_stop
+
+  !> A fresh tangent wherever it may have changed.
+  subroutine prepare_operator(self, model, operator, new, error)
+    !> The problem
+    class(static_step_t), intent(in) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> The factored operator
+    type(tangent_operator_t), intent(inout) :: operator
+    !> State at this load
+    type(state_t), intent(in) :: new
+    !> Set if the solver fails
+    type(error_t), allocatable, intent(inout) :: error
+
+    if (operator%ready .and. .not. changes(model, new%iterations)) return
+    call operator%renew(model, new%plies%stiffness, new%interfaces%faces, new%motion%displacement, 1.0_wp, 0.0_wp, &
+                        error)
+  end subroutine prepare_operator
 
   !> True if the tangent may not be what it was at the iteration before.
   pure logical function changes(model, iterations)
@@ -95,8 +153,40 @@ contains
     changes = any(model%scene%delaminations%contact /= contact_none)
   end function changes
 
+  !> Keeps held jumps as they are.
+  subroutine improve(self, model, operator, old, new, correction, error)
+    !> The problem
+    class(static_step_t), intent(inout) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> The factored operator
+    type(tangent_operator_t), intent(inout) :: operator
+    !> State at the load before
+    type(state_t), intent(in) :: old
+    !> State at this load, before the correction
+    type(state_t), intent(inout) :: new
+    !> Correction of the displacement, (5, points)
+    real(wp), intent(inout) :: correction(:, :)
+    !> Never set
+    type(error_t), allocatable, intent(inout) :: error
+
+    call new%interfaces%faces%hold(model, correction)
+  end subroutine improve
+
+  !> Nothing moves.
+  subroutine complete(self, old, new)
+    !> The problem
+    class(static_step_t), intent(in) :: self
+    !> State at the load before
+    type(state_t), intent(in) :: old
+    !> State at this load
+    type(state_t), intent(inout) :: new
+  end subroutine complete
+
   !> Completes an accepted load step.
-  subroutine finish(model, old, energy, new)
+  subroutine finish(self, model, old, energy, new)
+    !> The problem
+    class(static_step_t), intent(in) :: self
     !> The model
     type(model_t), intent(in) :: model
     !> State at the load before
@@ -123,9 +213,7 @@ contains
     if (.not. model%scene%has_ply_damage) sums(5) = 0
     call model%communicator%sum(sums)
     sums = sums*model%mesh%multiplicity
-    new%step = old%step + 1
-    new%all_iterations = old%all_iterations + new%iterations
-    new%all_contact_iterations = old%all_contact_iterations + new%contact_iterations
+    call new%count_step(old)
     new%deflection = model%deflection(new%motion%displacement)
     new%patch_mean = model%patch_mean(new%motion%displacement)
     new%ledger%strain = sums(1)

@@ -1,4 +1,4 @@
-!> The march through time or load: steps are tried, accepted or tried again shorter.
+!> Time stepping, or stepping through loads: steps are tried, accepted or tried again shorter.
 module time_stepping
   use kinds, only: wp
   use errors, only: error_t, fail, exit_convergence
@@ -12,14 +12,12 @@ module time_stepping
   use states, only: state_t, new_state
   use tangent_operators, only: tangent_operator_t
   use step_controllers, only: step_controller_t
-  use dynamic_steps, only: attempt_step
-  use static_steps, only: attempt_load
+  use step_problems, only: step_problem_t, solve_step
+  use dynamic_steps, only: dynamic_step_t, new_dynamic_step
+  use static_steps, only: static_step_t, new_static_step
   use struck_stresses, only: struck_stress
-  use front_growth, only: grow_fronts
-  use tie_release, only: tie_release_t
+  use growth_in_steps, only: grow_in_step, grows_by_steps
   use plate_options, only: kinematics_von_karman
-  use ply_failures, only: ply_failure_t, new_ply_failure
-  use delamination_parameters, only: growth_equilibrium
   implicit none
   private
   public :: time_stepper_t
@@ -36,10 +34,6 @@ module time_stepping
     type(plate_integrator_t) :: integrator
     !> How steps are taken
     type(stepping_t) :: stepping
-    !> Failed plies
-    type(ply_failure_t) :: failures
-    !> Factorizations when the failures were last noted
-    integer, private :: factorizations_noted = 0
     !> Factorizations when the present step was begun
     integer, private :: factorizations_begun = 0
     !> Steps that were tried in vain
@@ -74,7 +68,6 @@ contains
     allocate (self%now, source=new_state(model))
     allocate (self%trial, source=self%now)
     self%controller%wanted = 1.0_wp/self%stepping%static_steps
-    self%failures = new_ply_failure(model)
     call self%operator%create(model, linear_solver%factorization, error)
     if (allocated(error) .or. model%scene%has_static) return
     self%integrator = plate_integrator(self%stepping%time)
@@ -92,7 +85,8 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     associate (motion => self%now%motion)
-      call self%operator%renew(model, self%now%interfaces%faces, motion%displacement, 0.0_wp, 1.0_wp, error)
+      call self%operator%renew(model, self%now%plies%stiffness, self%now%interfaces%faces, motion%displacement, &
+                               0.0_wp, 1.0_wp, error)
       if (allocated(error)) return
       call self%operator%correct(model, model%scene%pressure%amplitude(0.0_wp)*model%pressure, &
                                  motion%acceleration, error)
@@ -106,8 +100,8 @@ contains
   subroutine advance(self, model, event, error)
     !> The march
     class(time_stepper_t), intent(inout) :: self
-    !> The model; elements whose plies fail lose stiffness
-    type(model_t), intent(inout) :: model
+    !> The model
+    type(model_t), intent(in) :: model
     !> Time, or load factor, not to be passed
     real(wp), intent(in) :: event
     !> Set if the smallest step failed
@@ -134,7 +128,7 @@ contains
     end do
     if (abs(self%trial%time - event) <= 1.0e-9_wp*step) self%trial%time = event
     call accept(self, model, step)
-    if (model%scene%has_static .and. self%failures%softened) call settle(self, model, error)
+    if (model%scene%has_static .and. self%now%plies%softened) call settle(self, model, error)
   end subroutine advance
 
   !> Brings a plate whose plies have failed under a load back into equilibrium with it, until no more of them fail.
@@ -142,13 +136,15 @@ contains
     !> The march
     class(time_stepper_t), intent(inout) :: self
     !> The model
-    type(model_t), intent(inout) :: model
+    type(model_t), intent(in) :: model
     !> Set if what is left of the plate does not bear the load
     type(error_t), allocatable, intent(out) :: error
+    type(static_step_t) :: problem
     logical :: converged
 
-    do while (self%failures%softened)
-      call attempt_load(model, self%stepping%equilibrium, self%operator, self%now, self%now%time, self%trial, converged, error)
+    do while (self%now%plies%softened)
+      problem = new_static_step(model, self%now%time)
+      call solve_step(problem, model, self%stepping%equilibrium, self%operator, self%now, self%trial, converged, error)
       if (.not. (allocated(error) .or. converged)) &
         call fail(error, exit_convergence, 'No equilibrium at '//to_text(self%now%time)// &
                   ' of the load: what is left of the plate after failures of plies does not bear it.')
@@ -183,6 +179,7 @@ contains
     logical, intent(out) :: converged
     !> Set if the solver fails for good
     type(error_t), allocatable, intent(out) :: error
+    type(dynamic_step_t) :: problem
     real(wp) :: mass_factor
     logical :: due
 
@@ -193,76 +190,17 @@ contains
       model%scene%kinematics == kinematics_von_karman, mass_factor/self%operator%mass_factor, &
                                                      self%now%deflection - self%operator%deflection, model%thickness)
     if (due) then
-      call self%operator%renew(model, self%now%interfaces%faces, self%now%motion%displacement, &
-                               self%integrator%stiffness_factor(), mass_factor, error)
+      call self%operator%renew(model, self%now%plies%stiffness, self%now%interfaces%faces, &
+                               self%now%motion%displacement, self%integrator%stiffness_factor(), mass_factor, error)
       if (allocated(error)) return
       call self%controller%renewed()
     end if
     self%factorizations_begun = self%operator%factorizations
-    call attempt_step(model, self%stepping, self%integrator, self%operator, self%now, step, self%trial, converged, error)
-    if (converged .and. model%map%layered) call let_grow(self, model, step, converged, error)
+    problem = new_dynamic_step(self%integrator, step, self%stepping%adapt%iterations)
+    call solve_step(problem, model, self%stepping%equilibrium, self%operator, self%now, self%trial, converged, error)
+    if (converged .and. model%map%layered) &
+      call grow_in_step(problem, model, self%stepping%equilibrium, self%operator, self%now, self%trial, converged, error)
   end subroutine try_step
-
-  !> Lets delaminations grow in a step that has converged: with equilibrium growth the step is computed again
-  !> from its start until no front is above its critical value, else what grew acts from the next step on.
-  subroutine let_grow(self, model, step, converged, error)
-    !> The march
-    type(time_stepper_t), intent(inout) :: self
-    !> The model
-    type(model_t), intent(in) :: model
-    !> Step tried
-    real(wp), intent(in) :: step
-    !> False on return if equilibrium was lost
-    logical, intent(inout) :: converged
-    !> Set if the solver fails for good
-    type(error_t), allocatable, intent(inout) :: error
-    type(state_t) :: start
-    type(tie_release_t) :: ties
-    real(wp), allocatable :: guess(:, :), opened(:)
-    logical, allocatable :: free(:)
-    real(wp) :: fracture
-    logical :: grown
-
-    ties = self%now%interfaces%ties
-    do
-      free = self%trial%interfaces%faces%free
-      fracture = self%trial%ledger%delamination
-      call grow_fronts(model, self%trial%motion, self%trial%interfaces, self%trial%ledger%delamination, grown)
-      ! The integrators cannot tell the energy that fracture takes from their own losses.
-      self%trial%ledger%algorithmic = self%trial%ledger%algorithmic - (self%trial%ledger%delamination - fracture)
-      if (.not. grown .or. grows_by_steps(model)) return
-      associate (trial => self%trial)
-        call ties%let_go(model, free, trial%interfaces%faces%free, &
-                         trial%motion%internal(1:3, :) + trial%motion%inertia(1:3, :))
-        ties%asked = trial%interfaces%ties%asked
-        guess = trial%motion%displacement
-      end associate
-      start = self%now
-      start%interfaces%faces = self%trial%interfaces%faces
-      start%interfaces%ties = ties
-      start%ledger%delamination = start%ledger%delamination &
-                                  + (self%trial%ledger%delamination - self%now%ledger%delamination)
-      start%ledger%algorithmic = start%ledger%algorithmic &
-                                 - (self%trial%ledger%delamination - self%now%ledger%delamination)
-      call attempt_step(model, self%stepping, self%integrator, self%operator, start, step, self%trial, converged, error, &
-                        guess)
-      if (.not. converged .or. allocated(error)) return
-      associate (trial => self%trial)
-        opened = trial%interfaces%ties%first_opening(model, free, trial%interfaces%faces%free, trial%motion%displacement)
-        trial%interfaces%ties%set_free = trial%interfaces%ties%set_free + opened
-        ties%set_free = ties%set_free + opened
-      end associate
-    end do
-  end subroutine let_grow
-
-  !> True if delaminations grow with the steps, none of them at a frozen time.
-  pure logical function grows_by_steps(model)
-    !> The model
-    type(model_t), intent(in) :: model
-
-    grows_by_steps = model%map%layered
-    if (grows_by_steps) grows_by_steps = all(model%scene%delaminations%growth /= growth_equilibrium)
-  end function grows_by_steps
 
   !> Longest step that the impactor's integrator bears now, as a binary fraction of the step wanted so that
   !> the factored operator need not follow every small change.
@@ -294,9 +232,11 @@ contains
     logical, intent(out) :: converged
     !> Set if the solver fails for good
     type(error_t), allocatable, intent(out) :: error
+    type(static_step_t) :: problem
 
     step = self%controller%propose(event - self%now%time, huge(step))
-    call attempt_load(model, self%stepping%equilibrium, self%operator, self%now, self%now%time + step, self%trial, converged, error)
+    problem = new_static_step(model, self%now%time + step)
+    call solve_step(problem, model, self%stepping%equilibrium, self%operator, self%now, self%trial, converged, error)
   end subroutine try_load
 
   !> Makes the state tried the state reached.
@@ -304,7 +244,7 @@ contains
     !> The march
     class(time_stepper_t), intent(inout) :: self
     !> The model
-    type(model_t), intent(inout) :: model
+    type(model_t), intent(in) :: model
     !> Step taken
     real(wp), intent(in) :: step
     type(state_t), allocatable :: before
@@ -315,12 +255,10 @@ contains
     self%trial%largest_stress = max(self%now%largest_stress, self%trial%stress)
     change = 0
     if (self%trial%largest_stress > 0) change = abs(self%trial%stress - self%now%stress)/self%trial%largest_stress
-    if (self%operator%factorizations /= self%factorizations_noted) call self%failures%note_factored()
-    self%factorizations_noted = self%operator%factorizations
     strain = self%trial%ledger%strain
-    call self%failures%grow(model, [self%now%time, self%trial%time], self%now%motion%displacement, self%trial%motion, &
-                            self%trial%ledger%strain)
-    if (self%failures%softened) &
+    call self%trial%plies%grow(model, [self%now%time, self%trial%time], self%now%motion%displacement, &
+                               self%trial%motion, self%trial%ledger%strain)
+    if (self%trial%plies%softened) &
       self%trial%ledger%ply_damage = self%trial%ledger%ply_damage + strain - self%trial%ledger%strain
     self%trial%interfaces%faces%glued = self%trial%interfaces%faces%glued .or. model%scene%has_impactor .and. &
                                   self%trial%impactor%velocity <= 0 .and. self%trial%force < self%now%force
@@ -346,21 +284,13 @@ contains
     !> Where to or where from
     class(archive_t), intent(inout) :: archive
     !> The model
-    type(model_t), intent(inout) :: model
+    type(model_t), intent(in) :: model
     !> Set if the operator cannot be made again
     type(error_t), allocatable, intent(out) :: error
 
     call self%now%visit(archive, model)
     call self%controller%visit(archive)
     call archive%item('stepper/rejected', self%rejected)
-    call self%failures%visit(archive, model)
-    ! The lagged factor is made again with the stiffness of its time.
-    if (archive%loading) call self%failures%swap()
-    if (archive%loading) call self%failures%apply(model)
     call self%operator%visit(archive, model, error)
-    self%factorizations_noted = self%operator%factorizations
-    if (.not. archive%loading) return
-    call self%failures%swap()
-    call self%failures%apply(model)
   end subroutine visit
 end module time_stepping

@@ -28,9 +28,11 @@ module front_energy_release
 contains
 
   !> Energy release rates along the front of a zone.
-  function release_along_front(model, faces, motion, zone, method) result(front)
+  function release_along_front(model, stiffness, faces, motion, zone, method) result(front)
     !> The model
     type(model_t), intent(in) :: model
+    !> Section stiffness left in the elements, (lanes, 21, batches)
+    real(wp), intent(in) :: stiffness(:, :, :)
     !> Delaminated cells
     type(contact_and_ties_t), intent(in) :: faces
     !> Motion with its forces
@@ -45,7 +47,7 @@ contains
 
     front%segments = find_front(faces%regions(zone), model%mesh)
     if (method == release_two_state) then
-      front%modes = two_state_rates(model, motion, zone, front%segments)
+      front%modes = two_state_rates(model, stiffness, motion, zone, front%segments)
     else
       front%modes = vcct_rates(model, motion, zone, front%segments)
     end if

@@ -17,9 +17,11 @@ module front_growth
 contains
 
   !> Takes cells apart where the energy release rate of a state is above its critical value.
-  subroutine grow_fronts(model, motion, state, fracture, grown)
+  subroutine grow_fronts(model, stiffness, motion, state, fracture, grown)
     !> The model
     type(model_t), intent(in) :: model
+    !> Section stiffness left in the elements, (lanes, 21, batches)
+    real(wp), intent(in) :: stiffness(:, :, :)
     !> Motion with its forces
     type(motion_t), intent(in) :: motion
     !> The interfaces; receive new delaminated cells and the largest ratio
@@ -35,7 +37,7 @@ contains
     state%release_ratio = 0
     state%growth_ratio = 0
     do zone = 1, size(model%mesh%zones)
-      front = release_along_front(model, state%faces, motion, zone, &
+      front = release_along_front(model, stiffness, state%faces, motion, zone, &
                                   model%scene%delaminations(zone)%energy_release)
       if (size(front%segments) == 0) cycle
       state%release_ratio = max(state%release_ratio, maxval(front%ratio))

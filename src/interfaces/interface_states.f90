@@ -22,6 +22,8 @@ module interface_states
     !> True once a front has reached the border of its zone, where it cannot grow on
     logical :: border_reached = .false.
   contains
+    !> Adds the forces of ties and contact to a residual.
+    procedure :: act
     !> Saves or loads the state.
     procedure :: visit
   end type interface_state_t
@@ -38,6 +40,21 @@ contains
     self%faces = new_contact_and_ties(model)
     self%ties = new_tie_release(model)
   end function new_interface_state
+
+  !> Adds the forces of ties and contact to a residual and takes the residual of held jumps out of it.
+  subroutine act(self, model, displacement, residual)
+    !> The state
+    class(interface_state_t), intent(inout) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Unknowns, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> Residual at the owned points, (5, points)
+    real(wp), intent(inout) :: residual(:, :)
+
+    call self%ties%act(model, residual)
+    call self%faces%act(model, displacement, residual)
+  end subroutine act
 
   !> Saves or loads the state.
   subroutine visit(self, archive, model)

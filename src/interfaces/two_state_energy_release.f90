@@ -26,9 +26,11 @@ module two_state_energy_release
 contains
 
   !> Rates of the segments of a front.
-  function two_state_rates(model, motion, zone, segments) result(modes)
+  function two_state_rates(model, section_stiffness, motion, zone, segments) result(modes)
     !> The model
     type(model_t), intent(in) :: model
+    !> Section stiffness left in the elements, (lanes, 21, batches)
+    real(wp), intent(in) :: section_stiffness(:, :, :)
     !> Motion
     type(motion_t), intent(in) :: motion
     !> Index of the zone
@@ -43,8 +45,8 @@ contains
     n = size(segments)
     allocate (modes(3, n), source=0.0_wp)
     allocate (values(180*n), source=0.0_wp)
-    call front_states(model, model%motion_of(motion%displacement), segments, front_elements(model, zone, segments), &
-                      values(:96*n), values(96*n + 1:))
+    call front_states(model, section_stiffness, model%motion_of(motion%displacement), segments, &
+                      front_elements(model, zone, segments), values(:96*n), values(96*n + 1:))
     call model%communicator%sum(values)
     modes(2, :) = rates_of_states(model, segments, reshape(values(:96*n), [8, 3, 2, 2, n]), &
                                   reshape(values(96*n + 1:), [21, 2, 2, n]))
@@ -180,9 +182,11 @@ contains
 
   !> Strains of the elements along a front at the three nodes of their segments, and their stiffness; zero where another
   !> rank has the element. Every batch is computed once.
-  subroutine front_states(model, field, segments, elements, strains, stiffness)
+  subroutine front_states(model, section_stiffness, field, segments, elements, strains, stiffness)
     !> The model
     type(model_t), intent(in) :: model
+    !> Section stiffness left in the elements, (lanes, 21, batches)
+    real(wp), intent(in) :: section_stiffness(:, :, :)
     !> Motion of every layer, (5, points)
     real(wp), intent(in) :: field(:, :)
     !> The front
@@ -208,7 +212,7 @@ contains
         do line = 1, 3
           strains(:, line, same) = at_nodes(lane, findloc(nodes, segments(s)%edge(line), dim=1), :)
         end do
-        stiffness(:, same) = model%elements%stiffness(lane, :, batches(e))
+        stiffness(:, same) = section_stiffness(lane, :, batches(e))
       end do
     end do
   end subroutine front_states

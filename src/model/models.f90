@@ -96,9 +96,11 @@ contains
   end function motion_of
 
   !> Internal forces at the owned points and this rank's share of the strain energy.
-  subroutine internal(self, displacement, force, energy)
+  subroutine internal(self, stiffness, displacement, force, energy)
     !> The model
     class(model_t), intent(in) :: self
+    !> Section stiffness left in the elements, (lanes, 21, batches)
+    real(wp), contiguous, intent(in) :: stiffness(:, :, :)
     !> Displacement, ghosts up to date, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Internal forces, (5, points); ghosts zero
@@ -108,10 +110,10 @@ contains
 
     force = 0
     if (self%map%layered) then
-      call add_internal_force(self%elements, self%scene%kinematics, self%motion_of(displacement), force, energy)
+      call add_internal_force(self%elements, stiffness, self%scene%kinematics, self%motion_of(displacement), force, energy)
       call self%map%to_unknowns(force)
     else
-      call add_internal_force(self%elements, self%scene%kinematics, displacement, force, energy)
+      call add_internal_force(self%elements, stiffness, self%scene%kinematics, displacement, force, energy)
     end if
     call self%halo%accumulate(force)
   end subroutine internal

@@ -17,11 +17,13 @@ module element_tangents
 contains
 
   !> stiffness_factor * tangent stiffness + mass_factor * consistent mass of the elements of a batch.
-  subroutine tangent(batches, b, kinematics, u, stiffness_factor, mass_factor, k)
+  subroutine tangent(batches, b, stiffness, kinematics, u, stiffness_factor, mass_factor, k)
     !> The elements
     type(element_batches_t), intent(in) :: batches
     !> Number of the batch
     integer, intent(in) :: b
+    !> Section stiffness left in the batch (lanes, 21)
+    real(wp), intent(in) :: stiffness(:, :)
     !> One of the kinematics_* choices
     integer, intent(in) :: kinematics
     !> Unknowns (5, points), used for von Karman's strains only
@@ -35,7 +37,7 @@ contains
     integer :: row, column
 
     k = 0.0_wp
-    c = stiffness_factor*batches%stiffness(:, :, b)
+    c = stiffness_factor*stiffness
     call slopes_and_values(9, batches%inverse_jacobian(:, :, :, b), x_slopes, y_slopes, values)
     call add_linear_tangent(c, batches%weight(:, :, b), x_slopes, y_slopes, k)
     call add_shear_tangent(batches, b, c, k)

@@ -13,9 +13,11 @@ module internal_forces
 contains
 
   !> Adds the internal force of all elements to the forces on the points.
-  subroutine add_internal_force(batches, kinematics, u, f, energy)
+  subroutine add_internal_force(batches, stiffness, kinematics, u, f, energy)
     !> The elements
     type(element_batches_t), intent(in) :: batches
+    !> Section stiffness left, as in the batches (lanes, 21, batches)
+    real(wp), contiguous, intent(in) :: stiffness(:, :, :)
     !> One of the kinematics_* choices
     integer, intent(in) :: kinematics
     !> Unknowns (5, points)
@@ -33,11 +35,11 @@ contains
       call gather(batches%points(:, :, b), u, r)
       call in_plane_strains(batches%inverse_jacobian(:, :, :, b), kinematics, r, strains, slopes)
       call shear_strains(batches, b, r, shear)
-      call in_plane_resultants(batches%stiffness(:, :, b), batches%weight(:, :, b), strains, energies)
+      call in_plane_resultants(stiffness(:, :, b), batches%weight(:, :, b), strains, energies)
       if (batches%shear == shear_assumed) then
-        call shear_resultants(9, batches%stiffness(:, :, b), batches%weight(:, :, b), shear, energies)
+        call shear_resultants(9, stiffness(:, :, b), batches%weight(:, :, b), shear, energies)
       else
-        call shear_resultants(batches%shear_points, batches%stiffness(:, :, b), batches%shear_weight(:, :, b), &
+        call shear_resultants(batches%shear_points, stiffness(:, :, b), batches%shear_weight(:, :, b), &
                               shear, energies)
       end if
       r = 0.0_wp

@@ -15,9 +15,11 @@ contains
 
   !> How near the plies of an element are to each mode of failure, whether or not they failed so before: 1 where the
   !> criterion is met. Roots of the criteria's values, so that they grow with the load.
-  function failure_measures(model, element, elasticity, strains) result(measures)
+  function failure_measures(model, stiffness, element, elasticity, strains) result(measures)
     !> The model
     type(model_t), intent(in) :: model
+    !> Section stiffness left in the elements, (lanes, 21, batches)
+    real(wp), intent(in) :: stiffness(:, :, :)
     !> Element of this rank
     integer, intent(in) :: element
     !> Present elastic constants of its plies
@@ -29,7 +31,7 @@ contains
     real(wp) :: local(8)
     integer :: i
 
-    local = strains_of_plies(model, element, elasticity, strains)
+    local = strains_of_plies(model, stiffness, element, elasticity, strains)
     associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
       do i = 1, size(elasticity)
         associate (ply => model%plies(range(1) + i - 1))
@@ -48,9 +50,11 @@ contains
 
   !> Strains of an element that the stresses of its plies follow from: its own, but for one transverse shear strain
   !> whose stresses add up to the shear force.
-  pure function strains_of_plies(model, element, elasticity, strains) result(local)
+  pure function strains_of_plies(model, stiffness, element, elasticity, strains) result(local)
     !> The model
     type(model_t), intent(in) :: model
+    !> Section stiffness left in the elements, (lanes, 21, batches)
+    real(wp), intent(in) :: stiffness(:, :, :)
     !> Element of this rank
     integer, intent(in) :: element
     !> Present elastic constants of its plies
@@ -63,7 +67,7 @@ contains
     local = strains
     associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
       local(7:8) = mean_shear_strain(model%plies(range(1):range(2)), elasticity, &
-                                     model%elements%stiffness(lane_of(element), :, batch_of(element)), strains(7:8))
+                                     stiffness(lane_of(element), :, batch_of(element)), strains(7:8))
     end associate
   end function strains_of_plies
 end module ply_criteria

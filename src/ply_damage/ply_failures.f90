@@ -5,6 +5,7 @@ module ply_failures
   use element_batches, only: batch_of, lane_of
   use ply_damage_parameters, only: failure_modes
   use stacking, only: section_stiffness
+  use section_stiffnesses, only: visit_stiffness
   use motions, only: motion_t
   use models, only: model_t
   use ply_onsets, only: ply_onset_t, new_ply_onset
@@ -16,19 +17,13 @@ module ply_failures
   type :: ply_failure_t
     !> When they began
     type(ply_onset_t) :: onset
-    !> The same when the operator was last factored, which a restart must make again
-    type(ply_onset_t), private :: onset_when_factored
+    !> Section stiffness left in the elements, (lanes, 21, batches)
+    real(wp), allocatable :: stiffness(:, :, :)
     !> True if plies took stiffness away after the last step
     logical :: softened = .false.
   contains
     !> Finds new failures in an accepted state and takes stiffness away.
     procedure :: grow
-    !> Gives all failed elements the stiffness that is left.
-    procedure :: apply
-    !> Notes that the operator was factored with the present stiffness.
-    procedure :: note_factored
-    !> Exchanges the failures with those of the last factorization.
-    procedure :: swap
     !> Number of ply elements failed in each mode, of the whole plate.
     procedure :: counts
     !> Saves or loads.
@@ -45,7 +40,7 @@ contains
     type(ply_failure_t) :: self
 
     self%onset = new_ply_onset(model)
-    self%onset_when_factored = self%onset
+    self%stiffness = model%elements%stiffness
   end function new_ply_failure
 
   !> Finds new failures in an accepted state, takes away what stiffness goes until the end of the next step and books
@@ -53,8 +48,8 @@ contains
   subroutine grow(self, model, times, before, after, strain_energy)
     !> The failures
     class(ply_failure_t), intent(inout) :: self
-    !> The model, whose failed elements lose stiffness
-    type(model_t), intent(inout) :: model
+    !> The model
+    type(model_t), intent(in) :: model
     !> Times before and after the step
     real(wp), intent(in) :: times(2)
     !> Displacement before the step, (5, points)
@@ -68,14 +63,14 @@ contains
 
     if (.not. model%scene%has_ply_damage) return
     changing = self%onset%fading()
-    call self%onset%find(model, times, before, after%displacement, changing)
+    call self%onset%find(model, self%stiffness, times, before, after%displacement, changing)
     call self%onset%go_on(times)
     self%softened = model%communicator%any(any(changing))
     if (.not. self%softened) return
     do element = 1, size(changing)
       if (changing(element)) call soften(self, model, element)
     end do
-    call model%internal(after%displacement, after%internal, strain_energy)
+    call model%internal(self%stiffness, after%displacement, after%internal, strain_energy)
     call model%communicator%sum(strain_energy)
     strain_energy = strain_energy*model%mesh%multiplicity
   end subroutine grow
@@ -83,57 +78,18 @@ contains
   !> Gives one element the stiffness that failures have left.
   subroutine soften(self, model, element)
     !> The failures
-    type(ply_failure_t), intent(in) :: self
+    type(ply_failure_t), intent(inout) :: self
     !> The model
-    type(model_t), intent(inout) :: model
+    type(model_t), intent(in) :: model
     !> Element of this rank
     integer, intent(in) :: element
 
     associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
-      model%elements%stiffness(lane_of(element), :, batch_of(element)) = &
+      self%stiffness(lane_of(element), :, batch_of(element)) = &
         section_stiffness(model%plies(range(1):range(2)), self%onset%elasticities(model, element), &
                           model%scene%laminate%shear_correction)
     end associate
   end subroutine soften
-
-  !> Gives all failed elements the stiffness that is left. The others are left alone: the same sums made in another
-  !> place may differ in the last digit, and a restart is to go on bit by bit.
-  subroutine apply(self, model)
-    !> The failures
-    class(ply_failure_t), intent(in) :: self
-    !> The model
-    type(model_t), intent(inout) :: model
-    logical, allocatable :: cut(:)
-    integer :: ply, element
-
-    if (.not. model%scene%has_ply_damage) return
-    allocate (cut(model%elements%elements), source=.false.)
-    do ply = 1, size(model%plies)
-      cut = cut .or. any(self%onset%failed(ply), dim=1)
-    end do
-    do element = 1, size(cut)
-      if (cut(element)) call soften(self, model, element)
-    end do
-  end subroutine apply
-
-  !> Notes that the operator was factored with the present stiffness.
-  pure subroutine note_factored(self)
-    !> The failures
-    class(ply_failure_t), intent(inout) :: self
-
-    self%onset_when_factored = self%onset
-  end subroutine note_factored
-
-  !> Exchanges the failures with those of the last factorization.
-  pure subroutine swap(self)
-    !> The failures
-    class(ply_failure_t), intent(inout) :: self
-    type(ply_onset_t) :: kept
-
-    kept = self%onset
-    self%onset = self%onset_when_factored
-    self%onset_when_factored = kept
-  end subroutine swap
 
   !> Number of ply elements failed in each mode, of the whole plate.
   function counts(self, model)
@@ -165,6 +121,6 @@ contains
     type(model_t), intent(in) :: model
 
     call self%onset%visit(archive, model, 'ply_failure/onset/')
-    call self%onset_when_factored%visit(archive, model, 'ply_failure/onset_when_factored/')
+    if (model%scene%has_ply_damage) call visit_stiffness(archive, 'ply_failure/stiffness', model, self%stiffness)
   end subroutine visit
 end module ply_failures

@@ -56,11 +56,13 @@ contains
   end function new_ply_onset
 
   !> Finds the modes whose criteria are met for the first time, and when within a step that was.
-  subroutine find(self, model, times, before, after, found)
+  subroutine find(self, model, stiffness, times, before, after, found)
     !> The onsets
     class(ply_onset_t), intent(inout) :: self
     !> The model
     type(model_t), intent(in) :: model
+    !> Section stiffness left in the elements, (lanes, 21, batches)
+    real(wp), intent(in) :: stiffness(:, :, :)
     !> Times before and after the step
     real(wp), intent(in) :: times(2)
     !> Displacements before and after it, (5, points)
@@ -72,22 +74,24 @@ contains
     integer :: element
 
     strains = mean_strains_of_elements(model, after)
-    failing = [(any(failing_anew(self, model, element, strains(:, element))), element=1, size(strains, 2))]
+    failing = [(any(failing_anew(self, model, stiffness, element, strains(:, element))), element=1, size(strains, 2))]
     if (.not. model%communicator%any(any(failing))) return
     found = found .or. failing
     strains_before = mean_strains_of_elements(model, before)
     do element = 1, size(failing)
-      if (failing(element)) call note_start(self, model, element, strains_before(:, element), &
+      if (failing(element)) call note_start(self, model, stiffness, element, strains_before(:, element), &
                                             strains(:, element), times)
     end do
   end subroutine find
 
   !> Modes of an element's plies whose criteria are met for the first time.
-  function failing_anew(self, model, element, strains) result(failing)
+  function failing_anew(self, model, stiffness, element, strains) result(failing)
     !> The onsets
     type(ply_onset_t), intent(in) :: self
     !> The model
     type(model_t), intent(in) :: model
+    !> Section stiffness left in the elements, (lanes, 21, batches)
+    real(wp), intent(in) :: stiffness(:, :, :)
     !> Element of this rank
     integer, intent(in) :: element
     !> Its mean strains after the step
@@ -96,18 +100,20 @@ contains
     logical, allocatable :: failing(:, :)
 
     associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
-      failing = failure_measures(model, element, self%elasticities(model, element), strains) >= 1 .and. &
+      failing = failure_measures(model, stiffness, element, self%elasticities(model, element), strains) >= 1 .and. &
                 self%start(:, range(1):range(2), element) >= never
     end associate
   end function failing_anew
 
   !> Notes when within a step modes were met. What a criterion measures is taken to go straight through the step, so
   !> that the time found hardly depends on the length of the step.
-  subroutine note_start(self, model, element, before, after, times)
+  subroutine note_start(self, model, stiffness, element, before, after, times)
     !> The onsets
     type(ply_onset_t), intent(inout) :: self
     !> The model
     type(model_t), intent(in) :: model
+    !> Section stiffness left in the elements, (lanes, 21, batches)
+    real(wp), intent(in) :: stiffness(:, :, :)
     !> Element of this rank
     integer, intent(in) :: element
     !> Its mean strains before and after the step
@@ -118,10 +124,10 @@ contains
     real(wp), allocatable :: first(:, :), last(:, :)
     logical, allocatable :: failing(:, :)
 
-    failing = failing_anew(self, model, element, after)
+    failing = failing_anew(self, model, stiffness, element, after)
     elasticity = self%elasticities(model, element)
-    first = min(failure_measures(model, element, elasticity, before), 1.0_wp)
-    last = failure_measures(model, element, elasticity, after)
+    first = min(failure_measures(model, stiffness, element, elasticity, before), 1.0_wp)
+    last = failure_measures(model, stiffness, element, elasticity, after)
     associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
       associate (start => self%start(:, range(1):range(2), element))
         where (failing) start = times(2) - (times(2) - times(1))*(last - 1)/max(last - first, tiny(1.0_wp))

@@ -15,9 +15,11 @@ module operator_assembly
 contains
 
   !> Adds the elements' matrices and a lumped mass to a cleared solver; ghosts' diagonals go to their owners.
-  subroutine assemble_elements(model, numbering, displacement, stiffness_factor, mass_factor, solver, diagonal)
+  subroutine assemble_elements(model, stiffness, numbering, displacement, stiffness_factor, mass_factor, solver, diagonal)
     !> The model
     type(model_t), intent(in) :: model
+    !> Section stiffness left in the elements, (lanes, 21, batches)
+    real(wp), intent(in) :: stiffness(:, :, :)
     !> Equations
     type(numbering_t), intent(in) :: numbering
     !> Unknowns at which the tangent is taken, (5, points)
@@ -38,7 +40,8 @@ contains
     allocate (matrices(lanes, 45, 45), turned(45, 45, lanes))
     motion = model%motion_of(displacement)
     do b = 1, model%elements%batches
-      call tangent(model%elements, b, model%scene%kinematics, motion, stiffness_factor, consistent_factor, matrices)
+      call tangent(model%elements, b, stiffness(:, :, b), model%scene%kinematics, motion, stiffness_factor, &
+                   consistent_factor, matrices)
       do column = 1, 45
         turned(:, column, :) = transpose(matrices(:, :, column))
       end do

@@ -12,6 +12,7 @@ module tangent_operators
   use linear_solver_parameters, only: factorization_cholmod
   use numberings, only: numbering_t, number_equations
   use models, only: model_t
+  use section_stiffnesses, only: visit_stiffness
   use contact_and_ties, only: contact_and_ties_t
   use anderson_acceleration, only: anderson_t
   use operator_assembly, only: assemble_elements, assemble_diagonal
@@ -40,6 +41,8 @@ module tangent_operators
     real(wp) :: stiffness_factor = 0, mass_factor = 0
     !> Displacement at which the tangent was taken, (5, points)
     real(wp), allocatable :: displacement(:, :)
+    !> Section stiffness of the elements at that time, (lanes, 21, batches)
+    real(wp), allocatable :: stiffness(:, :, :)
     !> Diagonal of the operator, (5, points)
     real(wp), allocatable :: diagonal(:, :)
     !> Displacement under a unit force of the impactor, (5, points)
@@ -93,6 +96,7 @@ contains
     points = size(model%distribution%points)
     allocate (self%displacement(5, points), self%response(5, points), self%diagonal(5, points), source=0.0_wp)
     allocate (self%added(3, points), source=0.0_wp)
+    self%stiffness = model%elements%stiffness
     call number_equations(model%mesh, model%distribution, model%held, self%numbering)
     if (factorization == factorization_cholmod) solver%package = 'cholmod'
     allocate (self%solver, source=solver)
@@ -104,11 +108,13 @@ contains
   end subroutine create
 
   !> Assembles and factors the operator at a displacement, and finds the response to a unit force.
-  subroutine renew(self, model, faces, displacement, stiffness_factor, mass_factor, error)
+  subroutine renew(self, model, stiffness, faces, displacement, stiffness_factor, mass_factor, error)
     !> The operator
     class(tangent_operator_t), intent(inout) :: self
     !> The model
     type(model_t), intent(in) :: model
+    !> Section stiffness left in the elements, (lanes, 21, batches)
+    real(wp), intent(in) :: stiffness(:, :, :)
     !> Ties and contacts
     type(contact_and_ties_t), intent(in) :: faces
     !> Displacement, ghosts up to date, (5, points)
@@ -119,12 +125,13 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     self%displacement = displacement
+    self%stiffness = stiffness
     self%deflection = model%deflection(displacement)
     self%stiffness_factor = stiffness_factor
     self%mass_factor = mass_factor
     call self%timers%start('assembly')
     call self%solver%clear()
-    call assemble_elements(model, self%numbering, displacement, stiffness_factor, mass_factor, self%solver, &
+    call assemble_elements(model, stiffness, self%numbering, displacement, stiffness_factor, mass_factor, self%solver, &
                            self%diagonal)
     call faces%added_stiffness(model, self%diagonal, self%added)
     call self%timers%stop('assembly')
@@ -324,6 +331,7 @@ contains
       if (model%map%layered) &
         call archive%field('operator/added', share%points(:share%owned), model%mesh%points(), self%added)
     end associate
+    if (model%scene%has_ply_damage) call visit_stiffness(archive, 'operator/stiffness', model, self%stiffness)
     columns = self%changes%list()
     call archive%item('operator/columns', columns)
     if (archive%loading .and. self%ready) call remake(self, model, columns, error)
@@ -346,7 +354,7 @@ contains
     call model%halo%update(self%displacement)
     self%deflection = model%deflection(self%displacement)
     call self%solver%clear()
-    call assemble_elements(model, self%numbering, self%displacement, self%stiffness_factor, self%mass_factor, &
+    call assemble_elements(model, self%stiffness, self%numbering, self%displacement, self%stiffness_factor, self%mass_factor, &
                            self%solver, self%diagonal)
     call factorize(self, model, error)
     k = 1

@@ -1,0 +1,231 @@
+!> Equilibrium of a step: one nonlinear iteration for every kind of step, be it a step in time or a load step.
+!>
+!> A kind of step says what its first guess, residual, operator and books are; the iteration around them is the
+!> paper's Fig. 7: residual, ties and contact, correction by a factored operator that may lag, and once equilibrium
+!> holds the contact pressures found become the next multipliers, until they settle.
+module step_problems
+  use kinds, only: wp
+  use errors, only: error_t, exit_convergence
+  use models, only: model_t
+  use states, only: state_t
+  use stepping_parameters, only: equilibrium_t
+  use tangent_operators, only: tangent_operator_t
+  implicit none
+  private
+  public :: step_problem_t, solve_step
+
+  !> One kind of step.
+  type, abstract :: step_problem_t
+    !> Distance of pressures and gaps from contact (complementarity) at which they have settled
+    real(wp) :: contact_tolerance = 0
+    !> True: a solver that fails may be cured by a shorter step
+    logical :: curable = .true.
+  contains
+    !> First guess of the state at the end of the step.
+    procedure(begin_step), deferred :: begin
+    !> Residual of equilibrium without ties and contact.
+    procedure(find_residual), deferred :: find_residual
+    !> Size of a residual relative to the forces in play.
+    procedure(residual_norm), deferred :: residual_norm
+    !> True if a residual within the tolerance is the end.
+    procedure(may_stop), deferred :: may_stop
+    !> Makes the operator fit the state, by changes or by a factorization.
+    procedure(prepare_operator), deferred :: prepare_operator
+    !> Betters a correction: the impact force that goes with it, what earlier iterations showed.
+    procedure(improve), deferred :: improve
+    !> Completes the motion after a correction.
+    procedure(complete), deferred :: complete
+    !> Completes the state of a step that has converged, and its ledger.
+    procedure(finish), deferred :: finish
+  end type step_problem_t
+
+  abstract interface
+    !> First guess of the state at the end of the step.
+    subroutine begin_step(self, model, operator, old, new)
+      import :: step_problem_t, model_t, tangent_operator_t, state_t
+      !> The problem
+      class(step_problem_t), intent(inout) :: self
+      !> The model
+      type(model_t), intent(in) :: model
+      !> The factored operator, with its memory of iterations
+      type(tangent_operator_t), intent(inout) :: operator
+      !> State at the start
+      type(state_t), intent(in) :: old
+      !> State at the end
+      type(state_t), intent(inout) :: new
+    end subroutine begin_step
+
+    !> Residual of equilibrium without ties and contact.
+    subroutine find_residual(self, model, old, new, residual, energy)
+      import :: step_problem_t, model_t, state_t, wp
+      !> The problem
+      class(step_problem_t), intent(in) :: self
+      !> The model
+      type(model_t), intent(in) :: model
+      !> State at the start
+      type(state_t), intent(in) :: old
+      !> State at the end; receives its forces
+      type(state_t), intent(inout) :: new
+      !> Residual at the owned points, (5, points)
+      real(wp), intent(inout) :: residual(:, :)
+      !> Strain energy of this rank's elements
+      real(wp), intent(out) :: energy
+    end subroutine find_residual
+
+    !> Size of a residual relative to the forces in play; infinite if a number is not finite.
+    real(wp) function residual_norm(self, model, equilibrium, operator, residual, new)
+      import :: step_problem_t, model_t, equilibrium_t, tangent_operator_t, state_t, wp
+      !> The problem
+      class(step_problem_t), intent(in) :: self
+      !> The model
+      type(model_t), intent(in) :: model
+      !> Convergence asked for
+      type(equilibrium_t), intent(in) :: equilibrium
+      !> The factored operator
+      type(tangent_operator_t), intent(in) :: operator
+      !> Residual at the owned points, (5, points)
+      real(wp), intent(in) :: residual(:, :)
+      !> State at the end; remembers its largest forces
+      type(state_t), intent(inout) :: new
+    end function residual_norm
+
+    !> True if a residual within the tolerance is the end.
+    pure logical function may_stop(self, model, new, pressures_new)
+      import :: step_problem_t, model_t, state_t
+      !> The problem
+      class(step_problem_t), intent(in) :: self
+      !> The model
+      type(model_t), intent(in) :: model
+      !> State at the end
+      type(state_t), intent(in) :: new
+      !> True: contact has taken new pressures since the last correction
+      logical, intent(in) :: pressures_new
+    end function may_stop
+
+    !> Makes the operator fit the state, by changes or by a factorization.
+    subroutine prepare_operator(self, model, operator, new, error)
+      import :: step_problem_t, model_t, tangent_operator_t, state_t, error_t
+      !> The problem
+      class(step_problem_t), intent(in) :: self
+      !> The model
+      type(model_t), intent(in) :: model
+      !> The factored operator
+      type(tangent_operator_t), intent(inout) :: operator
+      !> State at the end
+      type(state_t), intent(in) :: new
+      !> Set if the solver fails
+      type(error_t), allocatable, intent(inout) :: error
+    end subroutine prepare_operator
+
+    !> Betters a correction: the impact force that goes with it, what earlier iterations showed.
+    subroutine improve(self, model, operator, old, new, correction, error)
+      import :: step_problem_t, model_t, tangent_operator_t, state_t, error_t, wp
+      !> The problem
+      class(step_problem_t), intent(inout) :: self
+      !> The model
+      type(model_t), intent(in) :: model
+      !> The factored operator, with its memory of iterations
+      type(tangent_operator_t), intent(inout) :: operator
+      !> State at the start
+      type(state_t), intent(in) :: old
+      !> State at the end, before the correction
+      type(state_t), intent(inout) :: new
+      !> Correction of the displacement, (5, points)
+      real(wp), intent(inout) :: correction(:, :)
+      !> Set if numbers are not finite
+      type(error_t), allocatable, intent(inout) :: error
+    end subroutine improve
+
+    !> Completes the motion after a correction.
+    subroutine complete(self, old, new)
+      import :: step_problem_t, state_t
+      !> The problem
+      class(step_problem_t), intent(in) :: self
+      !> State at the start
+      type(state_t), intent(in) :: old
+      !> State at the end
+      type(state_t), intent(inout) :: new
+    end subroutine complete
+
+    !> Completes the state of a step that has converged, and its ledger.
+    subroutine finish(self, model, old, energy, new)
+      import :: step_problem_t, model_t, state_t, wp
+      !> The problem
+      class(step_problem_t), intent(in) :: self
+      !> The model
+      type(model_t), intent(in) :: model
+      !> State at the start
+      type(state_t), intent(in) :: old
+      !> Strain energy of this rank's elements
+      real(wp), intent(in) :: energy
+      !> State at the end
+      type(state_t), intent(inout) :: new
+    end subroutine finish
+  end interface
+
+contains
+
+  !> Tries a step. On return either `converged` and `new` is the state at its end, or nothing of it counts.
+  subroutine solve_step(problem, model, equilibrium, operator, old, new, converged, error)
+    !> The kind of step
+    class(step_problem_t), intent(inout) :: problem
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Convergence asked for
+    type(equilibrium_t), intent(in) :: equilibrium
+    !> The factored operator; renewed on the way if convergence asks for it
+    type(tangent_operator_t), intent(inout) :: operator
+    !> State at the start
+    type(state_t), intent(in) :: old
+    !> State at the end
+    type(state_t), intent(inout) :: new
+    !> True if equilibrium was reached
+    logical, intent(out) :: converged
+    !> Set if the solver fails for good
+    type(error_t), allocatable, intent(out) :: error
+    real(wp), allocatable :: residual(:, :), correction(:, :)
+    real(wp) :: norm, energy
+    logical :: pressures_new
+
+    new = old
+    allocate (residual, correction, mold=old%motion%displacement)
+    correction = 0
+    pressures_new = .false.
+    call problem%begin(model, operator, old, new)
+    do
+      call operator%timers%start('element forces')
+      call problem%find_residual(model, old, new, residual, energy)
+      call new%interfaces%act(model, new%motion%displacement, residual)
+      call operator%timers%stop('element forces')
+      norm = problem%residual_norm(model, equilibrium, operator, residual, new)
+      converged = norm <= equilibrium%tolerance
+      if (converged) converged = problem%may_stop(model, new, pressures_new)
+      pressures_new = .false.
+      if (converged) then
+        call new%interfaces%faces%settle(model, new%motion%displacement, problem%contact_tolerance, &
+                                         new%contact_iterations, converged)
+        if (converged) exit
+        pressures_new = .true.
+        call operator%anderson%pause()
+        if (new%contact_iterations < equilibrium%max_iterations) cycle
+      end if
+      if (.not. norm <= huge(norm) .or. new%iterations >= equilibrium%max_iterations) exit
+      call problem%prepare_operator(model, operator, new, error)
+      if (.not. allocated(error)) call operator%correct(model, residual, correction, error)
+      if (allocated(error)) then
+        if (problem%curable .and. error%code == exit_convergence) deallocate (error)
+        return
+      end if
+      call problem%improve(model, operator, old, new, correction, error)
+      if (allocated(error)) then
+        ! Numbers have run away, or the operator is not positive: a shorter step may cure it.
+        deallocate (error)
+        return
+      end if
+      new%motion%displacement = new%motion%displacement + correction
+      call problem%complete(old, new)
+      new%iterations = new%iterations + 1
+    end do
+    if (converged) call problem%finish(model, old, energy, new)
+  end subroutine solve_step
+end module step_problems

@@ -1,0 +1,34 @@
+!> Saves and loads the section stiffness that damage has left in the elements.
+module section_stiffnesses
+  use kinds, only: wp
+  use archives, only: archive_t
+  use element_batches, only: batch_of, lane_of
+  use models, only: model_t
+  implicit none
+  private
+  public :: visit_stiffness
+
+contains
+
+  !> Saves or loads a section stiffness.
+  subroutine visit_stiffness(archive, name, model, stiffness)
+    !> Where to or where from
+    class(archive_t), intent(inout) :: archive
+    !> Name of the item
+    character(len=*), intent(in) :: name
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Section stiffness of this rank's elements, (lanes, 21, batches)
+    real(wp), intent(inout) :: stiffness(:, :, :)
+    real(wp) :: values(21, model%elements%elements)
+    integer :: element
+
+    do element = 1, size(values, 2)
+      values(:, element) = stiffness(lane_of(element), :, batch_of(element))
+    end do
+    call archive%field(name, model%distribution%elements, model%mesh%elements(), values)
+    do element = 1, size(values, 2)
+      stiffness(lane_of(element), :, batch_of(element)) = values(:, element)
+    end do
+  end subroutine visit_stiffness
+end module section_stiffnesses
