@@ -10,12 +10,14 @@ module cracked_plates
   use material_parameters, only: material_t
   use delamination_parameters, only: contact_none
   use front_energy_release, only: front_energy_release_t, release_along_front
-  use scenes, only: scene_t
+  use stepped_scenes, only: stepped_scene_t, build_model
   use models, only: model_t
-  use model_building, only: create_model
   use states, only: state_t, new_state
   use tangent_operators, only: tangent_operator_t
-  use static_steps, only: attempt_load
+  use static_steps, only: static_step_t, new_static_step
+  use step_problems, only: solve_step
+  use stepping_parameters, only: equilibrium_t
+  use linear_solver_parameters, only: factorization_mumps
   implicit none
   private
   public :: cracked_plate_t, strip, disc, front_mean
@@ -28,6 +30,10 @@ module cracked_plates
     type(state_t) :: state
     !> The operator
     type(tangent_operator_t) :: operator
+    !> Section stiffness left in the elements, (lanes, 21, batches)
+    real(wp), allocatable :: stiffness(:, :, :)
+    !> Convergence asked for
+    type(equilibrium_t) :: equilibrium
   contains
     !> Builds the model of a scene, without forces and delaminated cells.
     procedure :: create
@@ -62,7 +68,7 @@ contains
     !> Cells along the strip, an even number
     integer, intent(in) :: elements
     !> The scene
-    type(scene_t) :: scene
+    type(stepped_scene_t) :: scene
 
     scene = layered(materials, angles, thickness, below_ply)
     scene%plate%length = [length, width]
@@ -82,7 +88,7 @@ contains
     !> Cells along half a side
     integer, intent(in) :: elements
     !> The scene
-    type(scene_t) :: scene
+    type(stepped_scene_t) :: scene
 
     scene = layered([material], [0.0_wp, 0.0_wp], [thickness, thickness]/2, 1)
     scene%plate%length = side
@@ -104,7 +110,7 @@ contains
     !> Plies above the interface
     integer, intent(in) :: below_ply
     !> The scene, without plate and mesh
-    type(scene_t) :: scene
+    type(stepped_scene_t) :: scene
 
     scene%kinematics = kinematics_linear
     allocate (scene%materials, source=materials)
@@ -113,7 +119,7 @@ contains
     allocate (scene%laminate%thickness, source=thickness)
     scene%has_static = .true.
     scene%has_pressure = .true.
-    scene%solver%tolerance = 1.0e-9_wp
+    scene%stepping%equilibrium%tolerance = 1.0e-9_wp
     allocate (scene%delaminations(1))
     scene%delaminations%below_ply = below_ply
     scene%delaminations%toughness = 1
@@ -123,15 +129,17 @@ contains
   !> Builds the model of a scene, without forces and delaminated cells.
   subroutine create(self, scene)
     class(cracked_plate_t), intent(out) :: self
-    type(scene_t), intent(in) :: scene
+    type(stepped_scene_t), intent(in) :: scene
     type(error_t), allocatable :: error
 
     ! These tests run on one process also where there are more.
-    call create_model(scene, communicator_from_handle(MPI_COMM_SELF%mpi_val), self%model, error)
+    call build_model(scene, communicator_from_handle(MPI_COMM_SELF%mpi_val), self%model, error)
     if (allocated(error)) error stop 'no model'
     self%model%pressure = 0
     self%state = new_state(self%model)
-    call self%operator%create(self%model, error)
+    self%stiffness = self%model%elements%stiffness
+    self%equilibrium = scene%stepping%equilibrium
+    call self%operator%create(self%model, factorization_mumps, error)
     if (allocated(error)) error stop 'no operator'
   end subroutine create
 
@@ -210,7 +218,7 @@ contains
         do column = columns(1), columns(2)
           do row = 1, model%mesh%cells(2)
             if (model%mesh%element_cell(model%distribution%elements(e)) /= model%mesh%cell_at(column, row)) cycle
-            associate (values => model%elements%stiffness(1 + modulo(e - 1, lanes), :, 1 + (e - 1)/lanes))
+            associate (values => self%stiffness(1 + modulo(e - 1, lanes), :, 1 + (e - 1)/lanes))
               values = factor*values
             end associate
           end do
@@ -223,12 +231,15 @@ contains
   subroutine settle(self)
     class(cracked_plate_t), intent(inout) :: self
     type(state_t) :: rest
+    type(static_step_t) :: problem
     type(error_t), allocatable :: error
     logical :: converged
 
     rest = new_state(self%model)
-    rest%faces = self%state%interfaces%faces
-    call attempt_load(self%model, self%operator, rest, 1.0_wp, self%state, converged, error)
+    rest%interfaces%faces = self%state%interfaces%faces
+    rest%plies%stiffness = self%stiffness
+    problem = new_static_step(self%model, 1.0_wp)
+    call solve_step(problem, self%model, self%equilibrium, self%operator, rest, self%state, converged, error)
     if (allocated(error) .or. .not. converged) error stop 'no equilibrium'
   end subroutine settle
 
@@ -245,7 +256,7 @@ contains
     integer, intent(in) :: method
     type(front_energy_release_t) :: front
 
-    front = release_along_front(self%model, self%state%interfaces%faces, self%state%motion, 1, method)
+    front = release_along_front(self%model, self%stiffness, self%state%interfaces%faces, self%state%motion, 1, method)
   end function rates
 
   !> Mean rate over the length of a front.

@@ -8,9 +8,10 @@ module small_scenes
   use material_parameters, only: material_t
   use impact_parameters, only: law_hertz, integrator_conserving
   use pressure_loads, only: distribution_sine
-  use scenes, only: scene_t
+  use stepped_scenes, only: stepped_scene_t
   use models, only: model_t
   use contact_and_ties, only: new_contact_and_ties
+  use linear_solver_parameters, only: factorization_mumps
   use tangent_operators, only: tangent_operator_t
   use time_stepping, only: time_stepper_t
   implicit none
@@ -64,7 +65,7 @@ contains
     !> True: a quarter is modelled
     logical, intent(in) :: quarter
     !> The scene
-    type(scene_t) :: scene
+    type(stepped_scene_t) :: scene
     integer :: plies
 
     plies = size(angles)
@@ -77,14 +78,13 @@ contains
     allocate (scene%laminate%material(plies), source=1)
     scene%laminate%angle = angles
     allocate (scene%laminate%thickness(plies), source=thickness/plies)
-    scene%has_time = .true.
-    scene%solver%tolerance = 1.0e-12_wp
+    scene%stepping%equilibrium%tolerance = 1.0e-12_wp
   end function unit_plate
 
   !> Adds a pressure of one half-sine along each side.
   pure subroutine press(scene, value)
     !> The scene
-    type(scene_t), intent(inout) :: scene
+    type(stepped_scene_t), intent(inout) :: scene
     !> Largest pressure
     real(wp), intent(in) :: value
 
@@ -96,7 +96,7 @@ contains
   !> Adds an impactor that falls on a patch a fifth of the side wide.
   pure subroutine coupling(scene, mass, velocity, k)
     !> The scene
-    type(scene_t), intent(inout) :: scene
+    type(stepped_scene_t), intent(inout) :: scene
     !> Mass and velocity of the impactor, contact stiffness
     real(wp), intent(in) :: mass, velocity, k
 
@@ -122,9 +122,9 @@ contains
     !> Set if there is no factor
     type(error_t), allocatable, intent(out) :: error
 
-    call operator%create(model, error)
+    call operator%create(model, factorization_mumps, error)
     if (allocated(error)) return
-    call operator%renew(model, new_contact_and_ties(model), displacement, stiffness_factor, mass_factor, error)
+    call operator%renew(model, model%elements%stiffness, new_contact_and_ties(model), displacement, stiffness_factor, mass_factor, error)
   end subroutine factor
 
   !> Deflection of m half-waves along x and n along y of a simply supported plate.
@@ -173,7 +173,7 @@ contains
       if (allocated(error)) return
       mode = mode/maxval(abs(mode(3, :)))
     end do
-    call model%internal(mode, force, energy)
+    call model%internal(model%elements%stiffness, mode, force, energy)
     products(1) = model%product(mode, force)
     call model%inertia(mode, force)
     products(2) = model%product(mode, force)
@@ -197,7 +197,7 @@ contains
 
     associate (motion => stepper%now%motion)
       motion%displacement = displacement
-      call model%internal(displacement, motion%internal, energy)
+      call model%internal(model%elements%stiffness, displacement, motion%internal, energy)
       call factor(model, 0*displacement, 0.0_wp, 1.0_wp, mass, error)
       if (allocated(error)) return
       call mass%correct(model, -motion%internal, motion%acceleration, error)

@@ -187,7 +187,7 @@ contains
     allocate (matrix(size(u), size(u)), source=0.0_wp)
     allocate (k(lanes, 45, 45))
     do b = 1, batches%batches
-      call tangent(batches, b, kinematics, u, stiffness_factor, mass_factor, k)
+      call tangent(batches, b, batches%stiffness(:, :, b), kinematics, u, stiffness_factor, mass_factor, k)
       do lane = 1, batches%lanes_used(b)
         dofs = [((5*(batches%points(lane, row, b) - 1) + column, column=1, 5), row=1, 9)]
         matrix(dofs, dofs) = matrix(dofs, dofs) + k(lane, :, :)
