@@ -56,8 +56,7 @@ contains
     reach = cohesive_reach(law, jumps, pressure)
     new%damage = grown_damage(law, reach, old)
     new%dissipated = old%dissipated + reach%toughness*share_growth(law, old%damage, new%damage)
-    traction = 0
-    if (new%damage < 1) traction = (1 - new%damage)*stiffness_of(law)*opened(jumps)
+    traction = ((1 - new%damage)*stiffness_of(law))*opened(jumps)
   end subroutine cohesive_traction
 
   !> How far jumps reach along the curve: x = sqrt(N Y/G_c).

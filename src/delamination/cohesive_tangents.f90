@@ -48,7 +48,6 @@ contains
     new%damage = grown_damage(law, reach, old)
     stiffness = stiffness_of(law)
     slopes = 0
-    if (new%damage >= 1) return
     do i = 1, 3
       slopes(i, i) = (1 - new%damage)*stiffness(i)
     end do
