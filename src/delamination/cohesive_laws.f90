@@ -1,0 +1,123 @@
+!> Cohesive law of an interface: what its traction against the jumps between two faces is made of.
+!>
+!> The curve is bilinear: linear up to the onset, then straight down to nothing at N times the jump of the onset.
+!> The area under it is the toughness of the present mixture of modes (M. L. Benzeggagh and M. Kenane, Composites
+!> Science and Technology 56 (1996) 439-449). N is the same for every mixture if stiffnesses and strengths keep
+!> K_s/K_n = (G_Ic/G_IIc) (tau/sigma)**2 (A. Turon et al., Composite Structures 92 (2010) 1857-1864); a point then
+!> needs no history but its damage.
+module cohesive_laws
+  use kinds, only: wp
+  use short_numbers, only: text_at_least
+  implicit none
+  private
+  public :: cohesive_law_t, create_cohesive_law, cohesive_objection, stiffness_of
+
+  !> Stiffness of the law over that of the layer beside it, K_n h/E3. A factor of ten either way moves the radius of a
+  !> grown delamination by 0.3 to 1.4 %.
+  real(wp), parameter :: usual_stiffness = 50
+  !> Least jump at failure over jump at onset.
+  real(wp), parameter :: least_ratio = 20
+
+  !> The law of one interface.
+  type :: cohesive_law_t
+    !> Stiffness K_n of opening and K_s of shear, pressure per jump
+    real(wp) :: stiffness_opening = 0, stiffness_shear = 0
+    !> Toughness of pure opening G_Ic and of pure shear G_IIc, energy per area
+    real(wp) :: toughness_opening = 0, toughness_shear = 0
+    !> Exponent eta of Benzeggagh and Kenane
+    real(wp) :: mixing_exponent = 1.75_wp
+    !> Strength sigma of pure opening and tau of pure shear
+    real(wp) :: strength_opening = 0, strength_shear = 0
+    !> Growth of the shear strength with pressure, mu; the toughness grows with its square, N stays
+    real(wp) :: pressure_strengthening = 0
+    !> Jump at failure over jump at onset, N
+    real(wp) :: failure_ratio = 0
+  end type cohesive_law_t
+
+contains
+
+  !> The law of an interface. Values that `cohesive_objection` refuses give a law without stiffness.
+  pure function create_cohesive_law(toughness, mixing_exponent, strength, stiffness, modulus, thickness, &
+                                    pressure_strengthening) result(law)
+    !> G_Ic and G_IIc
+    real(wp), intent(in) :: toughness(2)
+    !> Exponent eta of Benzeggagh and Kenane
+    real(wp), intent(in) :: mixing_exponent
+    !> Strengths of opening sigma and of shear tau
+    real(wp), intent(in) :: strength(2)
+    !> K_n, pressure per jump; 0: derived from the next two
+    real(wp), intent(in) :: stiffness
+    !> Modulus across the plies beside the interface, E3
+    real(wp), intent(in) :: modulus
+    !> Thickness of the thinner layer
+    real(wp), intent(in) :: thickness
+    !> mu
+    real(wp), intent(in) :: pressure_strengthening
+    !> The law
+    type(cohesive_law_t) :: law
+
+    law%toughness_opening = toughness(1)
+    law%toughness_shear = toughness(2)
+    law%mixing_exponent = mixing_exponent
+    law%strength_opening = strength(1)
+    law%strength_shear = strength(2)
+    law%pressure_strengthening = pressure_strengthening
+    if (.not. (all(toughness > 0) .and. all(strength > 0))) return
+    law%stiffness_opening = stiffness
+    if (.not. abs(stiffness) > 0) then
+      if (.not. thickness > 0) return
+      law%stiffness_opening = max(usual_stiffness*modulus/thickness, least_stiffness(law))
+    end if
+    law%stiffness_shear = law%stiffness_opening*(toughness(1)/toughness(2))*(strength(2)/strength(1))**2
+    law%failure_ratio = least_ratio*law%stiffness_opening/least_stiffness(law)
+  end function create_cohesive_law
+
+  !> Least stiffness of opening that leaves the fall of the curve gentle, 10 sigma**2/G_Ic.
+  pure real(wp) function least_stiffness(law)
+    !> The law, with toughness and strength of opening
+    type(cohesive_law_t), intent(in) :: law
+
+    least_stiffness = least_ratio*law%strength_opening**2/(2*law%toughness_opening)
+  end function least_stiffness
+
+  !> What is wrong with a law, or an empty text.
+  pure function cohesive_objection(law) result(objection)
+    !> The law
+    type(cohesive_law_t), intent(in) :: law
+    !> One clause for the user; empty: nothing is wrong
+    character(len=:), allocatable :: objection
+
+    objection = ''
+    if (.not. (positive(law%toughness_opening) .and. positive(law%toughness_shear))) then
+      objection = 'the toughnesses G_Ic and G_IIc must be positive'
+    else if (.not. positive(law%mixing_exponent)) then
+      objection = 'the exponent eta must be positive'
+    else if (.not. (positive(law%strength_opening) .and. positive(law%strength_shear))) then
+      objection = 'strength_opening and strength_shear must be positive'
+    else if (.not. (law%pressure_strengthening >= 0 .and. law%pressure_strengthening <= huge(1.0_wp))) then
+      objection = 'pressure_strengthening must not be negative'
+    else if (.not. (positive(law%stiffness_opening) .and. positive(law%stiffness_shear))) then
+      objection = 'stiffness must be positive'
+    else if (law%failure_ratio < least_ratio*(1 - sqrt(epsilon(1.0_wp)))) then
+      objection = 'stiffness must be at least '//text_at_least(least_stiffness(law))// &
+                  ' (10 strength_opening**2/G_Ic)'
+    end if
+  end function cohesive_objection
+
+  !> True for a positive finite number.
+  elemental logical function positive(value)
+    !> The number
+    real(wp), intent(in) :: value
+    positive = value > 0 .and. value <= huge(value)
+  end function positive
+
+  !> Stiffnesses of the undamaged interface against two shears and opening.
+  pure function stiffness_of(law) result(stiffness)
+    !> The law
+    type(cohesive_law_t), intent(in) :: law
+    !> Pressure per jump
+    real(wp) :: stiffness(3)
+
+    stiffness = [law%stiffness_shear, law%stiffness_shear, law%stiffness_opening]
+  end function stiffness_of
+end module cohesive_laws

@@ -1,0 +1,200 @@
+!> One point of a cohesive interface: traction against the jumps between its faces, damage, energies.
+!>
+!> Jumps, tractions and stiffnesses stand in the order: two shears along the interface, opening. Closing faces are
+!> left to contact: a negative opening counts as none. Jumps of any finite size are met without overflow.
+module cohesive_points
+  use cohesive_laws, only: cohesive_law_t, stiffness_of
+  use kinds, only: wp
+  implicit none
+  private
+  public :: cohesive_point_t, cohesive_reach_t, cohesive_traction, cohesive_reach, grown_damage, point_class, opened, &
+            undamaged_energy, stored_energy, mode_mixity, dissipated_share, share_growth
+
+  !> Classes of points: without damage, damaged and not growing, growing in this state, without traction for good.
+  integer, parameter, public :: point_intact = 0, point_damaged = 1, point_growing = 2, point_failed = 3
+
+  !> What a point of the interface remembers; changes only when a step is accepted.
+  type :: cohesive_point_t
+    !> Part of the stiffness that is lost, d: 0 intact, 1 failed
+    real(wp) :: damage = 0
+    !> Energy dissipated per area, e
+    real(wp) :: dissipated = 0
+  end type cohesive_point_t
+
+  !> How far jumps reach along the curve.
+  type :: cohesive_reach_t
+    !> Largest of the jumps, closing not counted
+    real(wp) :: size = 0
+    !> The jumps over their size
+    real(wp) :: unit(3) = 0
+    !> Energy per area of these unit jumps in an undamaged interface, and the share of shear in it, B
+    real(wp) :: unit_energy = 0, shear_share = 0
+    !> Toughness G_c of this mixture of modes under this pressure
+    real(wp) :: toughness = 0
+    !> Jump over that of the onset, x, at most N
+    real(wp) :: ratio = 0
+  end type cohesive_reach_t
+
+contains
+
+  !> Traction of trial jumps, and what the point will remember if they are accepted.
+  pure subroutine cohesive_traction(law, jumps, pressure, old, traction, new)
+    !> The law
+    type(cohesive_law_t), intent(in) :: law
+    !> Two shears and opening
+    real(wp), intent(in) :: jumps(3)
+    !> Contact pressure of the last accepted state
+    real(wp), intent(in) :: pressure
+    !> The point in the last accepted state
+    type(cohesive_point_t), intent(in) :: old
+    !> Force per area that pulls the faces back; no normal one where they close
+    real(wp), intent(out) :: traction(3)
+    !> The point with these jumps
+    type(cohesive_point_t), intent(out) :: new
+    type(cohesive_reach_t) :: reach
+
+    reach = cohesive_reach(law, jumps, pressure)
+    new%damage = grown_damage(law, reach, old)
+    new%dissipated = old%dissipated + reach%toughness*share_growth(law, old%damage, new%damage)
+    traction = ((1 - new%damage)*stiffness_of(law))*opened(jumps)
+  end subroutine cohesive_traction
+
+  !> How far jumps reach along the curve: x = sqrt(N Y/G_c).
+  pure function cohesive_reach(law, jumps, pressure) result(reach)
+    !> The law
+    type(cohesive_law_t), intent(in) :: law
+    !> Two shears and opening
+    real(wp), intent(in) :: jumps(3)
+    !> Contact pressure; none if negative
+    real(wp), intent(in) :: pressure
+    !> Place on the curve
+    type(cohesive_reach_t) :: reach
+    real(wp) :: size, s1, s2, n, shear, energy, share, unit_ratio, toughness
+
+    ! Plain numbers: with arrays and components this took five times as long.
+    toughness = law%toughness_opening
+    if (pressure > 0) toughness = toughness*(1 + law%pressure_strengthening*pressure/law%strength_shear)**2
+    reach%toughness = toughness
+    size = max(abs(jumps(1)), abs(jumps(2)), jumps(3))
+    if (.not. size > 0) return
+    s1 = jumps(1)/size
+    s2 = jumps(2)/size
+    n = max(jumps(3), 0.0_wp)/size
+    shear = law%stiffness_shear*(s1**2 + s2**2)/2
+    energy = shear + law%stiffness_opening*n**2/2
+    share = shear/energy
+    if (share > 0) &
+      toughness = toughness*(1 + (law%toughness_shear/law%toughness_opening - 1)*share**law%mixing_exponent)
+    unit_ratio = sqrt(law%failure_ratio*energy/toughness)
+    reach%size = size
+    reach%unit = [s1, s2, n]
+    reach%unit_energy = energy
+    reach%shear_share = share
+    reach%toughness = toughness
+    ! No product beyond failure, where jumps near the largest number would overflow. Jumps that are no numbers go on.
+    if (size >= law%failure_ratio/unit_ratio) then
+      reach%ratio = law%failure_ratio
+    else
+      reach%ratio = size*unit_ratio
+    end if
+  end function cohesive_reach
+
+  !> Damage with trial jumps: d = N (x - 1)/(x (N - 1)) between onset and failure, and never less than before.
+  pure real(wp) function grown_damage(law, reach, old) result(damage)
+    !> The law
+    type(cohesive_law_t), intent(in) :: law
+    !> Place of the jumps on the curve
+    type(cohesive_reach_t), intent(in) :: reach
+    !> The point in the last accepted state
+    type(cohesive_point_t), intent(in) :: old
+
+    damage = 0
+    if (reach%ratio >= law%failure_ratio) then
+      damage = 1
+    else if (reach%ratio > 1) then
+      damage = min(1.0_wp, law%failure_ratio*(reach%ratio - 1)/(reach%ratio*(law%failure_ratio - 1)))
+    end if
+    damage = max(old%damage, damage)
+  end function grown_damage
+
+  !> Class of a point from its damage in the last accepted and in the trial state.
+  elemental integer function point_class(old, new) result(class_of_point)
+    !> The point in the last accepted state
+    type(cohesive_point_t), intent(in) :: old
+    !> The point with the trial jumps
+    type(cohesive_point_t), intent(in) :: new
+
+    class_of_point = point_intact
+    if (new%damage > 0) class_of_point = point_damaged
+    if (new%damage > old%damage) class_of_point = point_growing
+    if (new%damage >= 1) class_of_point = point_failed
+  end function point_class
+
+  !> The jumps that the law sees.
+  pure function opened(jumps) result(seen)
+    !> Two shears and opening
+    real(wp), intent(in) :: jumps(3)
+    !> The same, a closing one as none
+    real(wp) :: seen(3)
+
+    seen = [jumps(1), jumps(2), max(jumps(3), 0.0_wp)]
+  end function opened
+
+  !> Energy per area that these jumps would store in an undamaged interface, Y.
+  pure real(wp) function undamaged_energy(law, jumps) result(energy)
+    !> The law
+    type(cohesive_law_t), intent(in) :: law
+    !> Two shears and opening
+    real(wp), intent(in) :: jumps(3)
+
+    energy = sum(stiffness_of(law)*opened(jumps)**2)/2
+  end function undamaged_energy
+
+  !> Energy per area that unloading gives back, (1 - d) Y.
+  pure real(wp) function stored_energy(law, jumps, point) result(energy)
+    !> The law
+    type(cohesive_law_t), intent(in) :: law
+    !> Two shears and opening
+    real(wp), intent(in) :: jumps(3)
+    !> The point with these jumps
+    type(cohesive_point_t), intent(in) :: point
+
+    energy = 0
+    if (point%damage < 1) energy = (1 - point%damage)*undamaged_energy(law, jumps)
+  end function stored_energy
+
+  !> Share of shear in the energy of the jumps, B; 0 without jumps.
+  pure real(wp) function mode_mixity(law, jumps) result(share)
+    !> The law
+    type(cohesive_law_t), intent(in) :: law
+    !> Two shears and opening
+    real(wp), intent(in) :: jumps(3)
+    type(cohesive_reach_t) :: reach
+
+    reach = cohesive_reach(law, jumps, 0.0_wp)
+    share = reach%shear_share
+  end function mode_mixity
+
+  !> Part of the toughness that a damage has dissipated: phi(d) = d/(N (1 - d) + d), from 0 to 1.
+  pure real(wp) function dissipated_share(law, damage) result(share)
+    !> The law
+    type(cohesive_law_t), intent(in) :: law
+    !> d, from 0 to 1
+    real(wp), intent(in) :: damage
+
+    share = damage/(law%failure_ratio*(1 - damage) + damage)
+  end function dissipated_share
+
+  !> phi(d) - phi(d_old), free of cancellation however little the damage has grown.
+  pure real(wp) function share_growth(law, damage_from, damage_to) result(growth)
+    !> The law
+    type(cohesive_law_t), intent(in) :: law
+    !> Damage before and after, from 0 to 1
+    real(wp), intent(in) :: damage_from, damage_to
+    real(wp) :: from, to
+
+    from = law%failure_ratio*(1 - damage_from) + damage_from
+    to = law%failure_ratio*(1 - damage_to) + damage_to
+    growth = law%failure_ratio*(damage_to - damage_from)/(from*to)
+  end function share_growth
+end module cohesive_points

@@ -1,0 +1,59 @@
+!> Numbers of three digits for the reader of a warning.
+module short_numbers
+  use kinds, only: wp
+  use text, only: to_text
+  implicit none
+  private
+  public :: short_text, text_at_least, text_at_most
+
+  !> Numbers this near to one of three digits are meant to be it.
+  real(wp), parameter :: blur = 1.0e-12_wp
+
+contains
+
+  !> A number to three digits.
+  pure function short_text(value) result(digits)
+    !> The number
+    real(wp), intent(in) :: value
+    !> Such as 0.00345
+    character(len=:), allocatable :: digits
+
+    digits = to_text(rounded(value, 'rn'))
+  end function short_text
+
+  !> A least value that may be typed as it is printed: three digits, not smaller than the number.
+  pure function text_at_least(value) result(digits)
+    !> The number
+    real(wp), intent(in) :: value
+    !> Such as 0.00346
+    character(len=:), allocatable :: digits
+
+    digits = to_text(rounded(value, 'ru'))
+  end function text_at_least
+
+  !> A largest value that may be typed as it is printed: three digits, not larger than the number.
+  pure function text_at_most(value) result(digits)
+    !> The number
+    real(wp), intent(in) :: value
+    !> Such as 0.00345
+    character(len=:), allocatable :: digits
+
+    digits = to_text(rounded(value, 'rd'))
+  end function text_at_most
+
+  !> A number to three digits.
+  pure real(wp) function rounded(value, mode)
+    !> The number
+    real(wp), intent(in) :: value
+    !> Mode of rounding as in formats: rn to the nearest, ru up, rd down
+    character(len=2), intent(in) :: mode
+    character(len=12) :: digits
+
+    write (digits, '(rn,es12.2e3)') value
+    read (digits, *) rounded
+    ! The binary form of 0.005 lies above 0.005: rounded up it would read 0.00501.
+    if (abs(rounded - value) <= blur*abs(value)) return
+    write (digits, '('//mode//',es12.2e3)') value
+    read (digits, *) rounded
+  end function rounded
+end module short_numbers
