@@ -7,7 +7,8 @@ module deck_damage
   use deck_problems, only: problems_t
   use deck_remarks, only: tell, remark
   use ply_damage_parameters, only: criteria_hou, stress_at_middle, stress_at_faces
-  use delamination_parameters, only: delamination_t, delamination_objection, default_starter, release_two_state, &
+  use delamination_parameters, only: law_front, law_cohesive, delamination_t, &
+                                     delamination_objection, default_starter, release_two_state, &
                                      release_vcct, growth_equilibrium, growth_one_per_step, tie_eliminate, &
                                      tie_penalty, contact_augmented_lagrangian, contact_continuous_penalty, &
                                      contact_none, unloading_contact, unloading_glued, account_debts, &
@@ -68,7 +69,9 @@ contains
     character(len=*), parameter :: group = 'delamination'
     real(wp) :: starter
 
+    call fill_law(deck, place, deck%delaminations(place))
     starter = default_starter(deck%plate%length)
+    if (deck%delaminations(place)%law == law_cohesive) starter = 0
     if (.not. deck%settings%is_given(group, 'starter', place)) &
       call deck%settings%derive(group, 'starter', to_text(starter), .false., place)
     associate (s => deck%settings, d => deck%delaminations(place))
@@ -85,6 +88,56 @@ contains
       call fill_choices(deck, place, d)
     end associate
   end subroutine fill_delamination
+
+  !> The law of one interface: cohesive unless a starter is given.
+  subroutine fill_law(deck, place, delamination)
+    !> The deck
+    type(deck_t), intent(inout) :: deck
+    !> Which of the groups
+    integer, intent(in) :: place
+    !> Receives it
+    type(delamination_t), intent(inout) :: delamination
+    character(len=*), parameter :: group = 'delamination'
+    real(wp) :: strengths(2)
+    integer :: below
+
+    associate (s => deck%settings, d => delamination)
+      if (.not. s%is_given(group, 'law', place)) &
+        call s%derive(group, 'law', trim(merge('front   ', 'cohesive', s%is_given(group, 'starter', place))), .true., place)
+      d%law = code_of(s%text_of(group, 'law', place), 'front cohesive', [law_front, law_cohesive])
+      if (d%law /= law_cohesive) return
+      d%stiffness = s%real_of(group, 'stiffness', place)
+      d%pressure_strengthening = s%real_of(group, 'pressure_strengthening', place)
+      strengths = 0
+      below = s%integer_of(group, 'below_ply', place)
+      if (allocated(deck%laminate%material)) then
+        if (below >= 1 .and. below < size(deck%laminate%material)) then
+          associate (beside => deck%materials(deck%laminate%material(below:below + 1)))
+            strengths = [minval(beside%yt), minval(beside%s12)]
+          end associate
+        end if
+      end if
+      call fill_strength('strength_opening', strengths(1), d%strength_opening)
+      call fill_strength('strength_shear', strengths(2), d%strength_shear)
+    end associate
+
+  contains
+
+    !> One strength: the key, or that of the plies.
+    subroutine fill_strength(key, of_plies, strength)
+      !> The key
+      character(len=*), intent(in) :: key
+      !> Strength of the weaker ply; 0: none given
+      real(wp), intent(in) :: of_plies
+      !> Receives it
+      real(wp), intent(out) :: strength
+
+      if (.not. deck%settings%is_given(group, key, place) .and. of_plies > 0) &
+        call deck%settings%derive(group, key, to_text(of_plies), .false., place)
+      strength = of_plies
+      if (deck%settings%is_given(group, key, place)) strength = deck%settings%real_of(group, key, place)
+    end subroutine fill_strength
+  end subroutine fill_law
 
   !> The choices of one interface.
   subroutine fill_choices(deck, place, delamination)
@@ -149,7 +202,11 @@ contains
       else if (d%energy_release == release_two_state .and. d%toughness <= 0) then
         call tell(deck%settings, problems, group, 'energy_release', 'Eq. 11 does not part the modes; give G_c, or take '// &
                   '''vcct''.', place)
-      else if (deck%has_impactor .and. d%starter < 1.5_wp*deck%mesh%patch) then
+      else if (d%law == law_cohesive .and. .not. d%strength_opening > 0) then
+        call tell(deck%settings, problems, group, 'strength_opening', 'is missing; give it, or YT of the materials.', place)
+      else if (d%law == law_cohesive .and. .not. d%strength_shear > 0) then
+        call tell(deck%settings, problems, group, 'strength_shear', 'is missing; give it, or S12 of the materials.', place)
+      else if (deck%has_impactor .and. d%law == law_front .and. d%starter < 1.5_wp*deck%mesh%patch) then
         call remark(deck%settings, problems, group, 'starter', 'the starter is hardly larger than the loaded patch: most of '// &
                     'the shear then passes inside it, and growth may never start.', place)
       end if

@@ -161,8 +161,18 @@ module deck_table
       &Exponent of Benzeggagh and Kenane between opening and shear.', &
     'delamination | zone | real | 2 | length | required | > 0 | &
       &Full extents of the layered rectangle along x and y, centred on the struck point.', &
-    'delamination | starter | real | 1 | length | = 0.05 % of the plate | > 0 | &
+    'delamination | starter | real | 1 | length | = 0.05 % of the plate, with a cohesive law none | > 0 | &
       &Side of the square starter delamination, centred on the struck point.', &
+    'delamination | law | choice | 1 | - | = cohesive, with a starter front | front cohesive | &
+      &Ties that a front releases by its energy release rate, or tractions against the jumps of the faces.', &
+    'delamination | strength_opening | real | 1 | pressure | = YT of the weaker ply beside it | > 0 | &
+      &Strength of the cohesive law in pure opening.', &
+    'delamination | strength_shear | real | 1 | pressure | = S12 of the weaker ply beside it | > 0 | &
+      &Strength of the cohesive law in pure shear.', &
+    'delamination | stiffness | real | 1 | pressure/length | = 5 E2/h of the thinner layer | > 0 | &
+      &Stiffness of the undamaged cohesive law in opening.', &
+    'delamination | pressure_strengthening | real | 1 | - | 0 | >= 0, <= 10 | &
+      &Growth of the cohesive law''s shear strength with the pressure on the faces.', &
     'delamination | energy_release | choice | 1 | - | ''vcct'' | two_state vcct | &
       &Energy release rate: Eq. 11 with its sign put right, or virtual crack closure.', &
     'delamination | growth | choice | 1 | - | ''equilibrium'' | equilibrium one_per_step | &

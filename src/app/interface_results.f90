@@ -1,6 +1,7 @@
 !> What the results hold of the interfaces. What belongs to an interface stands in the layer below it.
 module interface_results
   use kinds, only: wp
+  use delamination_parameters, only: law_cohesive
   use front_energy_release, only: front_energy_release_t, release_along_front
   use models, only: model_t
   use states, only: state_t
@@ -59,6 +60,7 @@ contains
 
     allocate (ratio(1, model%elements%elements), source=0.0_wp)
     do zone = 1, size(model%mesh%zones)
+      if (model%scene%delaminations(zone)%law == law_cohesive) cycle
       front = release_along_front(model, now%plies%stiffness, now%interfaces%faces, now%motion, zone, &
                                   model%scene%delaminations(zone)%energy_release)
       do s = 1, size(front%segments)

@@ -37,7 +37,7 @@ contains
     associate (now => stepper%now, ledger => stepper%now%ledger)
       row(1:7) = [now%time, real(now%step, wp), now%force, now%indentation%alpha, now%impactor%displacement, &
                   now%impactor%velocity, now%deflection]
-      row(8) = now%interfaces%faces%area(model)
+      row(8) = now%interfaces%faces%area(model) + sum(now%interfaces%cohesive%area(model))
       row(9:12) = [ledger%impactor, ledger%kinetic, ledger%strain, ledger%indentation]
       row(13:15) = [ledger%delamination, ledger%ply_damage, ledger%contact]
       row(16:25) = [ledger%algorithmic, ledger%error(), now%patch_mean, ledger%external_work, &

@@ -13,8 +13,8 @@ module cohesive_laws
   public :: cohesive_law_t, create_cohesive_law, cohesive_objection, stiffness_of
 
   !> Stiffness of the law over that of the layer beside it, K_n h/E3. A factor of ten either way moves the radius of a
-  !> grown delamination by 0.3 to 1.4 %.
-  real(wp), parameter :: usual_stiffness = 50
+  !> grown delamination by 0.3 to 1.4 %; the iterations of a step fall by a third from 50 to 5.
+  real(wp), parameter :: usual_stiffness = 5
   !> Least jump at failure over jump at onset.
   real(wp), parameter :: least_ratio = 20
 

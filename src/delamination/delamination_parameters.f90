@@ -3,8 +3,11 @@ module delamination_parameters
   use kinds, only: wp
   implicit none
   private
-  public :: delamination_t, delamination_objection, default_starter
+  public :: delamination_t, delamination_objection, default_starter, toughnesses
 
+  !> What holds the faces and lets them part: a cohesive law of tractions against jumps, or ties that a front releases
+  !> by its energy release rate.
+  integer, parameter, public :: law_front = 1, law_cohesive = 2
   !> Ways to the energy release rate: strain states on both sides of the front (Eq. 11 with its sign
   !> put right), or virtual crack closure.
   integer, parameter, public :: release_two_state = 1, release_vcct = 2
@@ -35,6 +38,14 @@ module delamination_parameters
     real(wp) :: zone(2) = 0
     !> Side of the square starter, centred on the struck point
     real(wp) :: starter = 0
+    !> law_front or law_cohesive
+    integer :: law = law_front
+    !> Strengths of the cohesive law in opening and shear
+    real(wp) :: strength_opening = 0, strength_shear = 0
+    !> Stiffness K_n of the cohesive law, pressure per jump; 0: from E2 of the plies
+    real(wp) :: stiffness = 0
+    !> Growth of the cohesive law's shear strength with pressure, mu
+    real(wp) :: pressure_strengthening = 0
     !> release_two_state or release_vcct
     integer :: energy_release = release_vcct
     !> growth_equilibrium or growth_one_per_step
@@ -77,7 +88,7 @@ contains
       objection = 'below_ply must name a ply that has another one below it'
     else if (.not. all(positive(delamination%zone))) then
       objection = 'both extents of the zone must be positive'
-    else if (.not. positive(delamination%starter)) then
+    else if (delamination%law == law_front .and. .not. positive(delamination%starter)) then
       objection = 'the side of the starter must be positive'
     else if (.not. all(delamination%starter < delamination%zone)) then
       objection = 'the starter must be smaller than the zone'
@@ -110,6 +121,17 @@ contains
       end if
     end associate
   end function toughness_objection
+
+  !> Toughnesses of opening and shear.
+  pure function toughnesses(delamination) result(toughness)
+    !> The parameters
+    type(delamination_t), intent(in) :: delamination
+    !> G_Ic and G_IIc
+    real(wp) :: toughness(2)
+
+    toughness = [delamination%toughness_opening, delamination%toughness_shear]
+    if (delamination%toughness > 0) toughness = delamination%toughness
+  end function toughnesses
 
   !> True for a positive finite number.
   elemental logical function positive(value)

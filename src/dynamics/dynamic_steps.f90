@@ -113,7 +113,7 @@ contains
     real(wp), intent(out) :: energy
     real(wp) :: amplitude
 
-    call model%internal(new%plies%stiffness, new%motion%displacement, new%motion%internal, energy)
+    call new%find_internal(model, old, energy)
     call model%inertia(new%motion%acceleration, new%motion%inertia)
     associate (m => self%integrator%alpha_m, f => self%integrator%alpha_f)
       residual = -(1 - m)*new%motion%inertia - m*old%motion%inertia - (1 - f)*new%motion%internal &
@@ -177,9 +177,9 @@ contains
     logical :: follows
 
     follows = modulo(new%iterations + 1, self%renewal) > 0
-    if (follows) call operator%follow(model, new%interfaces%faces, follows, error)
+    if (follows) call operator%follow(model, new%interfaces, follows, error)
     if (follows .or. allocated(error)) return
-    call operator%renew(model, new%plies%stiffness, new%interfaces%faces, new%motion%displacement, &
+    call operator%renew(model, new%plies%stiffness, new%interfaces, new%motion%displacement, &
                         self%integrator%stiffness_factor(), self%integrator%mass_factor(self%step), error)
   end subroutine prepare_operator
 

@@ -43,7 +43,7 @@ contains
     !> State at the end; receives its ledger
     type(state_t), intent(inout) :: new
     type(products_t) :: products
-    real(wp) :: amplitudes(2), gain, impactor, taken
+    real(wp) :: amplitudes(2), gain, impactor, taken, fracture
 
     products = step_products(model, old, energy, new)
     amplitudes = model%scene%pressure%amplitude([old%time, new%time])
@@ -58,6 +58,9 @@ contains
       ! What fracture takes has been booked, and taken off here, when the ties were let go.
       call new%interfaces%ties%book(model, old%interfaces%ties, new%motion%displacement - old%motion%displacement, taken)
       new%ledger%algorithmic = new%ledger%algorithmic + taken
+      fracture = new%interfaces%cohesive%dissipation(model, old%interfaces%cohesive)
+      new%ledger%delamination = new%ledger%delamination + fracture
+      new%ledger%algorithmic = new%ledger%algorithmic - fracture
     end if
     if (.not. model%scene%has_impactor) return
     impactor = impactor_energy(model%scene%impactor, new%impactor)

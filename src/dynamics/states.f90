@@ -45,6 +45,8 @@ module states
     !> Largest forces so far, by which a residual is judged when forces fade: translations, rotations
     real(wp) :: largest_forces(2) = 0
   contains
+    !> Internal forces and the energy that goes with them.
+    procedure :: find_internal
     !> Counts a step and its iterations.
     procedure :: count_step
     !> Saves or loads the state.
@@ -72,6 +74,22 @@ contains
     self%ledger%impactor = impactor_energy(model%scene%impactor, self%impactor)
     self%ledger%initial = self%ledger%impactor
   end function new_state
+
+  !> Internal forces of layers and cohesive interfaces, and this rank's share of the energy that they store.
+  subroutine find_internal(self, model, old, energy)
+    !> The state, whose displacement is known; receives the forces
+    class(state_t), intent(inout) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> The last accepted state
+    type(state_t), intent(in) :: old
+    !> Strain energy
+    real(wp), intent(out) :: energy
+
+    call model%internal(self%plies%stiffness, self%motion%displacement, self%motion%internal, energy)
+    call self%interfaces%cohesive%add_forces(model, old%interfaces%cohesive, self%motion%displacement, &
+                                             self%motion%internal, energy)
+  end subroutine find_internal
 
   !> Counts a step and its iterations.
   pure subroutine count_step(self, old)

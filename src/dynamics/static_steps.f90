@@ -82,7 +82,7 @@ contains
     !> Strain energy of this rank's elements
     real(wp), intent(out) :: energy
 
-    call model%internal(new%plies%stiffness, new%motion%displacement, new%motion%internal, energy)
+    call new%find_internal(model, old, energy)
     residual = self%load_factor*model%pressure - new%motion%internal
   end subroutine find_residual
 
@@ -135,7 +135,7 @@ contains
     type(error_t), allocatable, intent(inout) :: error
 
     if (operator%ready .and. .not. changes(model, new%iterations)) return
-    call operator%renew(model, new%plies%stiffness, new%interfaces%faces, new%motion%displacement, 1.0_wp, 0.0_wp, &
+    call operator%renew(model, new%plies%stiffness, new%interfaces, new%motion%displacement, 1.0_wp, 0.0_wp, &
                         error)
   end subroutine prepare_operator
 
@@ -195,7 +195,7 @@ contains
     real(wp), intent(in) :: energy
     !> State at this load
     type(state_t), intent(inout) :: new
-    real(wp) :: sums(5), faces
+    real(wp) :: sums(5), faces, fracture
     real(wp), allocatable :: change(:, :)
 
     change = new%motion%displacement - old%motion%displacement
@@ -219,6 +219,8 @@ contains
     new%ledger%strain = sums(1)
     new%ledger%external_work = old%ledger%external_work + sums(3)
     new%ledger%contact = old%ledger%contact - sums(4)
-    new%ledger%algorithmic = old%ledger%algorithmic - (sums(1) - old%ledger%strain - sums(2)) + sums(5)
+    fracture = new%interfaces%cohesive%dissipation(model, old%interfaces%cohesive)
+    new%ledger%delamination = old%ledger%delamination + fracture
+    new%ledger%algorithmic = old%ledger%algorithmic - (sums(1) - old%ledger%strain - sums(2)) + sums(5) - fracture
   end subroutine finish
 end module static_steps

@@ -85,7 +85,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     associate (motion => self%now%motion)
-      call self%operator%renew(model, self%now%plies%stiffness, self%now%interfaces%faces, motion%displacement, &
+      call self%operator%renew(model, self%now%plies%stiffness, self%now%interfaces, motion%displacement, &
                                0.0_wp, 1.0_wp, error)
       if (allocated(error)) return
       call self%operator%correct(model, model%scene%pressure%amplitude(0.0_wp)*model%pressure, &
@@ -190,7 +190,7 @@ contains
       model%scene%kinematics == kinematics_von_karman, mass_factor/self%operator%mass_factor, &
                                                      self%now%deflection - self%operator%deflection, model%thickness)
     if (due) then
-      call self%operator%renew(model, self%now%plies%stiffness, self%now%interfaces%faces, &
+      call self%operator%renew(model, self%now%plies%stiffness, self%now%interfaces, &
                                self%now%motion%displacement, self%integrator%stiffness_factor(), mass_factor, error)
       if (allocated(error)) return
       call self%controller%renewed()
@@ -248,18 +248,17 @@ contains
     !> Step taken
     real(wp), intent(in) :: step
     type(state_t), allocatable :: before
-    real(wp) :: change, strain
+    real(wp) :: change
     logical :: extended
 
     self%trial%stress = struck_stress(model, self%trial%motion%displacement)
     self%trial%largest_stress = max(self%now%largest_stress, self%trial%stress)
     change = 0
     if (self%trial%largest_stress > 0) change = abs(self%trial%stress - self%now%stress)/self%trial%largest_stress
-    strain = self%trial%ledger%strain
     call self%trial%plies%grow(model, [self%now%time, self%trial%time], self%now%motion%displacement, &
-                               self%trial%motion, self%trial%ledger%strain)
-    if (self%trial%plies%softened) &
-      self%trial%ledger%ply_damage = self%trial%ledger%ply_damage + strain - self%trial%ledger%strain
+                               self%trial%motion%displacement)
+    if (self%trial%plies%softened) call book_failures(model, self%now, self%trial)
+    if (self%trial%interfaces%cohesive%border_reached(model)) self%trial%interfaces%border_reached = .true.
     self%trial%interfaces%faces%glued = self%trial%interfaces%faces%glued .or. model%scene%has_impactor .and. &
                                   self%trial%impactor%velocity <= 0 .and. self%trial%force < self%now%force
     extended = self%trial%ledger%delamination > self%now%ledger%delamination
@@ -276,6 +275,23 @@ contains
       if (grows_by_steps(model)) call self%controller%heed_fronts(self%stepping, self%now%interfaces%growth_ratio, extended)
     end if
   end subroutine accept
+
+  !> Books the strain energy that failed plies have lost, and finds the forces that are left.
+  subroutine book_failures(model, now, trial)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> The state before the step
+    type(state_t), intent(in) :: now
+    !> The state after it
+    type(state_t), intent(inout) :: trial
+    real(wp) :: energy
+
+    call trial%find_internal(model, now, energy)
+    call model%communicator%sum(energy)
+    energy = energy*model%mesh%multiplicity
+    trial%ledger%ply_damage = trial%ledger%ply_damage + trial%ledger%strain - energy
+    trial%ledger%strain = energy
+  end subroutine book_failures
 
   !> Saves or loads all that evolves.
   subroutine visit(self, archive, model, error)

@@ -1,7 +1,7 @@
 !> Growth of delaminations: which cells come apart in a state, and what that costs.
 module front_growth
   use kinds, only: wp
-  use delamination_parameters, only: growth_one_per_step, unloading_glued
+  use delamination_parameters, only: growth_one_per_step, law_cohesive, unloading_glued
   use benzeggagh_kenane, only: critical_release_rate
   use front_energy_release, only: front_energy_release_t, release_along_front
   use motions, only: motion_t
@@ -37,6 +37,7 @@ contains
     state%release_ratio = 0
     state%growth_ratio = 0
     do zone = 1, size(model%mesh%zones)
+      if (model%scene%delaminations(zone)%law == law_cohesive) cycle
       front = release_along_front(model, stiffness, state%faces, motion, zone, &
                                   model%scene%delaminations(zone)%energy_release)
       if (size(front%segments) == 0) cycle

@@ -4,6 +4,7 @@ module interface_states
   use archives, only: archive_t
   use models, only: model_t
   use contact_and_ties, only: contact_and_ties_t, new_contact_and_ties
+  use cohesive_interfaces, only: cohesive_interfaces_t, new_cohesive_interfaces
   use tie_release, only: tie_release_t, new_tie_release
   implicit none
   private
@@ -13,6 +14,8 @@ module interface_states
   type :: interface_state_t
     !> Ties and contacts of the faces
     type(contact_and_ties_t) :: faces
+    !> Points held by cohesive laws
+    type(cohesive_interfaces_t) :: cohesive
     !> Released ties whose forces fade, and the energy they released
     type(tie_release_t) :: ties
     !> Largest energy release rate on the fronts over its critical value
@@ -24,6 +27,8 @@ module interface_states
   contains
     !> Adds the forces of ties and contact to a residual.
     procedure :: act
+    !> Stiffness that ties, contact and cohesive laws add to the diagonal.
+    procedure :: added_stiffness
     !> Saves or loads the state.
     procedure :: visit
   end type interface_state_t
@@ -39,6 +44,7 @@ contains
 
     self%faces = new_contact_and_ties(model)
     self%ties = new_tie_release(model)
+    if (model%map%layered) self%cohesive = new_cohesive_interfaces(model, self%faces%free)
   end function new_interface_state
 
   !> Adds the forces of ties and contact to a residual and takes the residual of held jumps out of it.
@@ -56,6 +62,27 @@ contains
     call self%faces%act(model, displacement, residual)
   end subroutine act
 
+  !> Stiffness that ties, contact and cohesive laws add to the diagonal of the operator.
+  pure subroutine added_stiffness(self, model, diagonal, stiffness_factor, added)
+    !> The state
+    class(interface_state_t), intent(in) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Diagonal of the operator without it, (5, points)
+    real(wp), intent(in) :: diagonal(:, :)
+    !> Factor of internal forces in the operator
+    real(wp), intent(in) :: stiffness_factor
+    !> Stiffness added to the three jumps, (3, points); ghosts zero
+    real(wp), intent(out) :: added(:, :)
+    integer :: i
+
+    call self%faces%added_stiffness(model, diagonal, added)
+    if (.not. allocated(self%cohesive%cohesive)) return
+    do i = 1, model%distribution%owned
+      if (self%cohesive%cohesive(i)) added(:, i) = stiffness_factor*self%cohesive%stiffness(:, i)
+    end do
+  end subroutine added_stiffness
+
   !> Saves or loads the state.
   subroutine visit(self, archive, model)
     !> The state
@@ -70,5 +97,6 @@ contains
     call archive%item('border_reached', self%border_reached)
     call self%faces%visit(archive, model)
     call self%ties%visit(archive, model)
+    call self%cohesive%visit(archive, model)
   end subroutine visit
 end module interface_states

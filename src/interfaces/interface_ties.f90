@@ -2,15 +2,15 @@
 module interface_ties
   use kinds, only: wp
   use archives, only: archive_t
-  use delamination_parameters, only: contact_none, tie_penalty, unloading_glued
+  use delamination_parameters, only: contact_none, law_cohesive, tie_penalty, unloading_glued
   use delaminated_regions, only: delaminated_region_t, create_region
   use models, only: model_t
   implicit none
   private
   public :: interface_ties_t, create_interface_ties, tie_stiffness
 
-  !> What acts on the jumps of a point: nothing, ties that hold them exactly, penalty ties, contact.
-  integer, parameter, public :: bond_none = 0, bond_held = 1, bond_penalty = 2, bond_contact = 3
+  !> What acts on the jumps of a point: nothing, ties that hold them exactly, penalty ties, contact, a cohesive law.
+  integer, parameter, public :: bond_none = 0, bond_held = 1, bond_penalty = 2, bond_contact = 3, bond_cohesive = 4
 
   !> Bonds of all interfaces.
   type :: interface_ties_t
@@ -84,7 +84,9 @@ contains
     bond = bond_none
     if (model%zone(i) == 0) return
     associate (interface => model%scene%delaminations(model%zone(i)))
-      if (.not. self%free(i)) then
+      if (interface%law == law_cohesive) then
+        bond = bond_cohesive
+      else if (.not. self%free(i)) then
         bond = merge(bond_penalty, bond_held, interface%tie == tie_penalty)
       else if (self%glued .and. interface%unloading == unloading_glued) then
         bond = bond_held
@@ -164,6 +166,7 @@ contains
 
     area = 0
     do zone = 1, size(self%regions)
+      if (model%scene%delaminations(zone)%law == law_cohesive) cycle
       do j = self%regions(zone)%rows(1), self%regions(zone)%rows(2)
         do i = self%regions(zone)%columns(1), self%regions(zone)%columns(2)
           if (self%regions(zone)%is_delaminated(i, j)) area = area + model%mesh%cell_area([i, j])

@@ -9,10 +9,12 @@ module model_building
   use stacking, only: section_t, stacked_plies, section_of
   use mesh_parameters, only: edge_free, symmetry_none
   use cell_grids, only: cell_edges
-  use layered_meshes, only: zone_t, create_mesh
+  use layered_meshes, only: zone_t, layered_mesh_t, create_mesh
   use layer_maps, only: create_layer_map
   use delaminated_regions, only: cells_within
   use face_contact, only: create_contact_law
+  use cohesive_laws, only: create_cohesive_law
+  use delamination_parameters, only: law_cohesive, toughnesses
   use distributions, only: distribute
   use neighbourhoods, only: neighbourhood_of
   use supports, only: held_unknowns
@@ -223,7 +225,8 @@ contains
         where (self%zone == 0) areas(1, :) = 0
       end if
       self%contact_area = areas(1, :)
-      allocate (self%contact_laws(size(mesh%zones)))
+      self%beside_border = [(beside_border(mesh, share%points(i)), i=1, size(share%points))]
+      allocate (self%contact_laws(size(mesh%zones)), self%cohesive_laws(size(mesh%zones)))
       do zone = 1, size(mesh%zones)
         associate (below => mesh%zones(zone)%below_ply, interface => self%scene%delaminations(zone))
           thickness = min(self%plies(below)%z_bottom - self%plies(1)%z_top, &
@@ -231,8 +234,43 @@ contains
           self%contact_laws(zone) = create_contact_law(interface%contact, interface%contact_exponent, &
                                                        self%plies(below)%elasticity%e2/thickness, thickness, &
                                                        moving=.not. self%scene%has_static)
+          if (interface%law == law_cohesive) &
+            self%cohesive_laws(zone) = create_cohesive_law(toughnesses(interface), interface%mixing_exponent, &
+                                                           [interface%strength_opening, interface%strength_shear], &
+                                                           interface%stiffness, self%plies(below)%elasticity%e2, &
+                                                           thickness, interface%pressure_strengthening)
         end associate
       end do
     end associate
   end subroutine build_interfaces
+
+  !> True if a point lies next to the border of its zone, that of the model not counted.
+  pure logical function beside_border(mesh, point)
+    !> The mesh
+    type(layered_mesh_t), intent(in) :: mesh
+    !> The point
+    integer, intent(in) :: point
+    integer :: line(2)
+
+    beside_border = .false.
+    if (mesh%point_zone(point) == 0) return
+    line = [modulo(mesh%point_node(point) - 1, 2*mesh%cells(1) + 1), (mesh%point_node(point) - 1)/(2*mesh%cells(1) + 1)]
+    associate (zone => mesh%zones(mesh%point_zone(point)))
+      beside_border = near(line(1), zone%columns, mesh%cells(1)) .or. near(line(2), zone%rows, mesh%cells(2))
+    end associate
+
+  contains
+
+    !> True if a line of nodes shares a cell with the first or last of a range of cells that ends within the model.
+    pure logical function near(line, range, cells)
+      !> Line of nodes, from 0
+      integer, intent(in) :: line
+      !> First and last cell of the range
+      integer, intent(in) :: range(2)
+      !> Cells along this direction
+      integer, intent(in) :: cells
+
+      near = range(1) > 1 .and. line <= 2*range(1) .or. range(2) < cells .and. line >= 2*range(2) - 2
+    end function near
+  end function beside_border
 end module model_building

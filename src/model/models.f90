@@ -12,6 +12,7 @@ module models
   use layered_meshes, only: layered_mesh_t
   use layer_maps, only: layer_map_t
   use face_contact, only: contact_law_t
+  use cohesive_laws, only: cohesive_law_t
   use distributions, only: distribution_t
   use neighbourhoods, only: neighbourhood_t
   use scenes, only: scene_t
@@ -53,6 +54,10 @@ module models
     real(wp), allocatable :: contact_area(:)
     !> Contact of each zone's faces
     type(contact_law_t), allocatable :: contact_laws(:)
+    !> Cohesive law of each zone; without meaning where fronts release ties
+    type(cohesive_law_t), allocatable :: cohesive_laws(:)
+    !> True for points next to the border of their zone, where growth ends, (local points)
+    logical, allocatable :: beside_border(:)
     !> Zone of each of this rank's points; 0: first layer
     integer, allocatable :: zone(:)
     !> Position of the struck node's first point on the rank that owns it; 0 elsewhere

@@ -6,7 +6,6 @@ module ply_failures
   use ply_damage_parameters, only: failure_modes
   use stacking, only: section_stiffness
   use section_stiffnesses, only: visit_stiffness
-  use motions, only: motion_t
   use models, only: model_t
   use ply_onsets, only: ply_onset_t, new_ply_onset
   implicit none
@@ -43,36 +42,28 @@ contains
     self%stiffness = model%elements%stiffness
   end function new_ply_failure
 
-  !> Finds new failures in an accepted state, takes away what stiffness goes until the end of the next step and books
-  !> the energy lost.
-  subroutine grow(self, model, times, before, after, strain_energy)
+  !> Finds new failures in an accepted state and takes away what stiffness goes until the end of the next step.
+  subroutine grow(self, model, times, before, after)
     !> The failures
     class(ply_failure_t), intent(inout) :: self
     !> The model
     type(model_t), intent(in) :: model
     !> Times before and after the step
     real(wp), intent(in) :: times(2)
-    !> Displacement before the step, (5, points)
-    real(wp), intent(in) :: before(:, :)
-    !> Motion after it, whose internal forces are renewed
-    type(motion_t), intent(inout) :: after
-    !> Strain energy of the whole plate; what failures take is missing on return
-    real(wp), intent(inout) :: strain_energy
+    !> Displacements before and after the step, (5, points)
+    real(wp), intent(in) :: before(:, :), after(:, :)
     logical, allocatable :: changing(:)
     integer :: element
 
     if (.not. model%scene%has_ply_damage) return
     changing = self%onset%fading()
-    call self%onset%find(model, self%stiffness, times, before, after%displacement, changing)
+    call self%onset%find(model, self%stiffness, times, before, after, changing)
     call self%onset%go_on(times)
     self%softened = model%communicator%any(any(changing))
     if (.not. self%softened) return
     do element = 1, size(changing)
       if (changing(element)) call soften(self, model, element)
     end do
-    call model%internal(self%stiffness, after%displacement, after%internal, strain_energy)
-    call model%communicator%sum(strain_energy)
-    strain_energy = strain_energy*model%mesh%multiplicity
   end subroutine grow
 
   !> Gives one element the stiffness that failures have left.

@@ -13,7 +13,7 @@ module tangent_operators
   use numberings, only: numbering_t, number_equations
   use models, only: model_t
   use section_stiffnesses, only: visit_stiffness
-  use contact_and_ties, only: contact_and_ties_t
+  use interface_states, only: interface_state_t
   use anderson_acceleration, only: anderson_t
   use operator_assembly, only: assemble_elements, assemble_diagonal
   use woodbury_updates, only: woodbury_updates_t, list_changes
@@ -51,6 +51,8 @@ module tangent_operators
     real(wp), allocatable :: fresh_response(:, :)
     !> Stiffness added to the three jumps of each point when factored, (3, points)
     real(wp), allocatable :: added(:, :)
+    !> The same with the changes followed since then, (3, points)
+    real(wp), allocatable :: present(:, :)
     !> Changes of ties and contacts since then
     type(woodbury_updates_t) :: changes
     !> What the iterations of the present step have shown
@@ -96,6 +98,7 @@ contains
     points = size(model%distribution%points)
     allocate (self%displacement(5, points), self%response(5, points), self%diagonal(5, points), source=0.0_wp)
     allocate (self%added(3, points), source=0.0_wp)
+    self%present = self%added
     self%stiffness = model%elements%stiffness
     call number_equations(model%mesh, model%distribution, model%held, self%numbering)
     if (factorization == factorization_cholmod) solver%package = 'cholmod'
@@ -108,15 +111,15 @@ contains
   end subroutine create
 
   !> Assembles and factors the operator at a displacement, and finds the response to a unit force.
-  subroutine renew(self, model, stiffness, faces, displacement, stiffness_factor, mass_factor, error)
+  subroutine renew(self, model, stiffness, interfaces, displacement, stiffness_factor, mass_factor, error)
     !> The operator
     class(tangent_operator_t), intent(inout) :: self
     !> The model
     type(model_t), intent(in) :: model
     !> Section stiffness left in the elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
-    !> Ties and contacts
-    type(contact_and_ties_t), intent(in) :: faces
+    !> Ties, contacts and cohesive laws
+    type(interface_state_t), intent(in) :: interfaces
     !> Displacement, ghosts up to date, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Factors of stiffness and mass
@@ -133,7 +136,8 @@ contains
     call self%solver%clear()
     call assemble_elements(model, stiffness, self%numbering, displacement, stiffness_factor, mass_factor, self%solver, &
                            self%diagonal)
-    call faces%added_stiffness(model, self%diagonal, self%added)
+    call interfaces%added_stiffness(model, self%diagonal, stiffness_factor, self%added)
+    self%present = self%added
     call self%timers%stop('assembly')
     call factorize(self, model, error)
   end subroutine renew
@@ -182,13 +186,13 @@ contains
   end subroutine find_response
 
   !> Follows changes of ties and contacts since the factorization.
-  subroutine follow(self, model, faces, possible, error)
+  subroutine follow(self, model, interfaces, possible, error)
     !> The operator
     class(tangent_operator_t), intent(inout) :: self
     !> The model
     type(model_t), intent(in) :: model
-    !> Ties and contacts now
-    type(contact_and_ties_t), intent(in) :: faces
+    !> Ties, contacts and cohesive laws now
+    type(interface_state_t), intent(in) :: interfaces
     !> False: they are too many, the operator has to be renewed
     logical, intent(out) :: possible
     !> Set if a solve fails
@@ -202,7 +206,8 @@ contains
     possible = .true.
     if (.not. model%map%layered) return
     allocate (wanted, mold=self%added)
-    call faces%added_stiffness(model, self%diagonal, wanted)
+    call interfaces%added_stiffness(model, self%diagonal, self%stiffness_factor, wanted)
+    call interfaces%cohesive%keep_nearly(model, self%diagonal, self%present, wanted)
     call list_changes(model%communicator, self%numbering, self%diagonal, self%added, wanted, equations, stiffness)
     missing = [(self%changes%column_of(equations(k)) == 0, k=1, size(equations))]
     possible = size(equations) <= most_changes .and. self%changes%kept + count(missing) &
@@ -215,6 +220,7 @@ contains
       end do
     end associate
     call self%changes%set(equations, stiffness)
+    self%present = wanted
     self%switches = self%switches + 1
     call self%anderson%forget()
     self%response = self%fresh_response

@@ -1,0 +1,212 @@
+!> Cohesive interfaces: tractions that hold the faces of layers together, and what they dissipate as they fail.
+!>
+!> Tractions act at nodal points as internal forces on the jumps. Faces that close are held apart by the stiffness of
+!> the undamaged interface, whatever the damage: with five times the stiffness of the layer beside it they pass
+!> through each other by less than a micrometre, nothing is lost where they meet, and the factored operator stays
+!> what it is where intact faces change between pressure and tension.
+module cohesive_interfaces
+  use kinds, only: wp
+  use archives, only: archive_t
+  use delamination_parameters, only: law_cohesive, contact_none
+  use cohesive_laws, only: stiffness_of
+  use cohesive_points, only: cohesive_point_t, cohesive_traction, stored_energy, dissipated_share
+  use cohesive_tangents, only: operator_stiffness
+  use models, only: model_t
+  implicit none
+  private
+  public :: cohesive_interfaces_t, new_cohesive_interfaces
+
+  !> Part of a point's stiffness, or of that of the layers there, by which the operator may be wrong before it follows.
+  !> Between 0.25 and 0.5 the number of iterations hardly changes.
+  real(wp), parameter :: noticed = 0.5_wp
+
+  !> Points of all cohesive interfaces.
+  type :: cohesive_interfaces_t
+    !> True for this rank's points whose faces a cohesive law holds, (local points); unallocated: there are none
+    logical, allocatable :: cohesive(:)
+    !> Damage and dissipated energy per area of each point, (local points)
+    type(cohesive_point_t), allocatable :: points(:)
+    !> Stiffness of the jumps for the factored operator, (3, local points)
+    real(wp), allocatable :: stiffness(:, :)
+  contains
+    !> Adds the forces of the tractions on the jumps.
+    procedure :: add_forces
+    !> Energy dissipated since an earlier state.
+    procedure :: dissipation
+    !> Area dissipated.
+    procedure :: area
+    !> True once damage has reached the border of a zone.
+    procedure :: border_reached
+    !> Keeps the operator's stiffness of points where it is nearly right.
+    procedure :: keep_nearly
+    !> Saves or loads.
+    procedure :: visit
+  end type cohesive_interfaces_t
+
+contains
+
+  !> All cohesive interfaces, failed within their starters.
+  pure function new_cohesive_interfaces(model, free) result(self)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> True where starters leave jumps free, (local points)
+    logical, intent(in) :: free(:)
+    !> The interfaces
+    type(cohesive_interfaces_t) :: self
+    integer :: i
+
+    if (.not. model%map%layered) return
+    if (.not. any(model%scene%delaminations%law == law_cohesive)) return
+    allocate (self%cohesive(size(model%zone)), source=.false.)
+    allocate (self%points(size(model%zone)))
+    allocate (self%stiffness(3, size(model%zone)), source=0.0_wp)
+    do i = 1, size(model%zone)
+      if (model%zone(i) == 0) cycle
+      self%cohesive(i) = model%scene%delaminations(model%zone(i))%law == law_cohesive
+      if (.not. self%cohesive(i)) cycle
+      if (free(i)) self%points(i)%damage = 1
+      self%stiffness(:, i) = (1 - self%points(i)%damage)*model%contact_area(i) &
+                             *stiffness_of(model%cohesive_laws(model%zone(i)))
+    end do
+  end function new_cohesive_interfaces
+
+  !> Adds the forces of the tractions on the jumps, and finds what the points remember if the jumps are accepted.
+  pure subroutine add_forces(self, model, old, displacement, force, energy)
+    !> The interfaces
+    class(cohesive_interfaces_t), intent(inout) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> The interfaces in the last accepted state
+    type(cohesive_interfaces_t), intent(in) :: old
+    !> Unknowns, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> Internal forces at the owned points, (5, points)
+    real(wp), intent(inout) :: force(:, :)
+    !> Energy of this rank; what the points store is added
+    real(wp), intent(inout) :: energy
+    real(wp) :: traction(3)
+    integer :: i
+
+    if (.not. allocated(self%cohesive)) return
+    do i = 1, model%distribution%owned
+      if (.not. self%cohesive(i)) cycle
+      associate (law => model%cohesive_laws(model%zone(i)), jumps => displacement(1:3, i), &
+                 area => model%contact_area(i))
+        call cohesive_traction(law, jumps, 0.0_wp, old%points(i), traction, self%points(i))
+        self%stiffness(:, i) = area*operator_stiffness(law, jumps, 0.0_wp, old%points(i))
+        energy = energy + area*stored_energy(law, jumps, self%points(i))
+        if (jumps(3) < 0 .and. model%scene%delaminations(model%zone(i))%contact /= contact_none) then
+          traction(3) = law%stiffness_opening*jumps(3)
+          self%stiffness(3, i) = area*law%stiffness_opening
+          energy = energy + area*law%stiffness_opening*jumps(3)**2/2
+        end if
+        force(1:3, i) = force(1:3, i) + area*traction
+      end associate
+    end do
+  end subroutine add_forces
+
+  !> Energy dissipated since an earlier state, of the whole plate, the same on every rank.
+  real(wp) function dissipation(self, model, old) result(energy)
+    !> The interfaces
+    class(cohesive_interfaces_t), intent(in) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> The interfaces in the earlier state
+    type(cohesive_interfaces_t), intent(in) :: old
+
+    energy = 0
+    if (.not. allocated(self%cohesive)) return
+    associate (owned => model%distribution%owned)
+      energy = sum(model%contact_area(:owned)*(self%points(:owned)%dissipated - old%points(:owned)%dissipated))
+    end associate
+    call model%communicator%sum(energy)
+    energy = energy*model%mesh%multiplicity
+  end function dissipation
+
+  !> Area dissipated in each zone of the whole plate: the sum of the points' areas times the part of their toughness
+  !> that is gone. The same on every rank.
+  function area(self, model)
+    !> The interfaces
+    class(cohesive_interfaces_t), intent(in) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> The area, (zones); zero for zones without a cohesive law
+    real(wp) :: area(size(model%mesh%zones))
+    integer :: i
+
+    area = 0
+    if (.not. allocated(self%cohesive)) return
+    do i = 1, model%distribution%owned
+      if (.not. self%cohesive(i)) cycle
+      associate (zone => model%zone(i))
+        area(zone) = area(zone) + model%contact_area(i)*dissipated_share(model%cohesive_laws(zone), self%points(i)%damage)
+      end associate
+    end do
+    call model%communicator%sum(area)
+    area = area*model%mesh%multiplicity
+  end function area
+
+  !> True once a point beside the border of a zone has been damaged: growth ends there. The same on every rank.
+  logical function border_reached(self, model)
+    !> The interfaces
+    class(cohesive_interfaces_t), intent(in) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    integer :: i
+
+    border_reached = .false.
+    if (.not. allocated(self%cohesive)) return
+    do i = 1, model%distribution%owned
+      if (.not. self%cohesive(i)) cycle
+      if (self%points(i)%damage > 0) border_reached = border_reached .or. model%beside_border(i)
+    end do
+    border_reached = model%communicator%any(border_reached)
+  end function border_reached
+
+  !> Leaves the operator's stiffness of points as it is where it is nearly right: a change there costs a solve, and
+  !> little errors are mended by the iterations.
+  pure subroutine keep_nearly(self, model, diagonal, present, wanted)
+    !> The interfaces
+    class(cohesive_interfaces_t), intent(in) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Diagonal of the operator without interfaces, (5, points)
+    real(wp), intent(in) :: diagonal(:, :)
+    !> Stiffness of the jumps in the operator, (3, points)
+    real(wp), intent(in) :: present(:, :)
+    !> Stiffness wanted, (3, points)
+    real(wp), intent(inout) :: wanted(:, :)
+    integer :: i
+
+    if (.not. allocated(self%cohesive)) return
+    do i = 1, model%distribution%owned
+      if (.not. self%cohesive(i)) cycle
+      where (abs(wanted(:, i) - present(:, i)) <= noticed*max(wanted(:, i), present(:, i), diagonal(1:3, i))) &
+        wanted(:, i) = present(:, i)
+    end do
+  end subroutine keep_nearly
+
+  !> Saves or loads.
+  subroutine visit(self, archive, model)
+    !> The interfaces
+    class(cohesive_interfaces_t), intent(inout) :: self
+    !> Where to or where from
+    class(archive_t), intent(inout) :: archive
+    !> The model
+    type(model_t), intent(in) :: model
+    real(wp), allocatable :: fields(:, :)
+
+    if (.not. allocated(self%cohesive)) return
+    allocate (fields(5, size(self%points)))
+    fields(1, :) = self%points%damage
+    fields(2, :) = self%points%dissipated
+    fields(3:, :) = self%stiffness
+    associate (share => model%distribution)
+      call archive%field('cohesive/points', share%points(:share%owned), model%mesh%points(), fields)
+    end associate
+    if (.not. archive%loading) return
+    self%points%damage = fields(1, :)
+    self%points%dissipated = fields(2, :)
+    self%stiffness = fields(3:, :)
+  end subroutine visit
+end module cohesive_interfaces
