@@ -75,25 +75,25 @@ contains
     end if
   end subroutine check_indentation_law
 
-  !> Contact stiffness k of Sun's modified Hertz law, (4/3) sqrt(R) / ((1 - nu**2)/E + 1/E2).
-  pure function sun_stiffness(radius, e2, impactor_e, impactor_nu) result(k)
+  !> Contact stiffness k of a sphere on a plate, (4/3) sqrt(R) / ((1 - nu**2)/E + c) (Sun and Yang).
+  pure function sun_stiffness(radius, struck_compliance, impactor_e, impactor_nu) result(k)
     !> Radius of the impactor's nose
     real(wp), intent(in) :: radius
-    !> Transverse modulus of the struck ply
-    real(wp), intent(in) :: e2
+    !> What the struck ply gives way, c: 1/E2 of its transverse modulus; on an isotropic plate Hertz' (1 - nu**2)/E
+    real(wp), intent(in) :: struck_compliance
     !> Young's modulus of the impactor; absent: rigid
     real(wp), intent(in), optional :: impactor_e
     !> Poisson's ratio of the impactor; absent: 0
     real(wp), intent(in), optional :: impactor_nu
     !> Contact stiffness, force per length**1.5
     real(wp) :: k
-    real(wp) :: flexibility, nu
+    real(wp) :: compliance, nu
 
-    flexibility = 1/e2
+    compliance = struck_compliance
     nu = 0
     if (present(impactor_nu)) nu = impactor_nu
-    if (present(impactor_e)) flexibility = flexibility + (1 - nu**2)/impactor_e
-    k = 4*sqrt(radius)/(3*flexibility)
+    if (present(impactor_e)) compliance = compliance + (1 - nu**2)/impactor_e
+    k = 4*sqrt(radius)/(3*compliance)
   end function sun_stiffness
 
   !> Indentation below which the contact force is zero.
