@@ -14,11 +14,13 @@ module deck_cross_checks
   use kinds, only: wp
   use laminate_parameters, only: shear_five_sixths
   use material_deck, only: material_group, require_densities
+  use material_parameters, only: material_t
   use mesh_deck, only: mesh_group, key_patch
   use mesh_parameters, only: symmetry_quarter
   use output_deck, only: remark_idle_fields
   use plate_deck, only: plate_group, key_symmetry, check_supports
   use plies, only: ply_t, material_objection
+  use ply_damage_parameters, only: ply_damage_t, criteria_hou
   use pressure_deck, only: pressure_group, key_history
   use stacking, only: stacked_plies, section_stiffness
   use static_deck, only: static_group
@@ -110,9 +112,9 @@ contains
     type(problems_t), intent(inout) :: problems
 
     if (deck%plate%symmetry /= symmetry_quarter) return
-    if (is_coupled(deck)) call tell(deck%settings, problems, plate_group, key_symmetry, 'the laminate couples bending or '// &
-      'extension with shear or twist (A16, A26, B16, B26, D16, D26 or A45 isn''t 0), so a quarter can''t stand for '// &
-      'the plate; use ''none''.')
+    if (is_coupled(deck)) call tell(deck%settings, problems, plate_group, key_symmetry, 'the laminate couples '// &
+      'bending or extension with shear or twist (A16, A26, B16, B26, D16, D26 or A45 isn''t 0), so a quarter '// &
+      'can''t stand for the plate; use ''none''.')
   end subroutine check_symmetry
 
   !> True: the laminate is clear and not symmetric about both axes of the plate.
@@ -125,7 +127,8 @@ contains
 
     is_coupled = .false.
     associate (laminate => deck%laminate)
-      if (.not. (allocated(laminate%angle) .and. allocated(laminate%thickness) .and. allocated(laminate%material))) return
+      if (.not. (allocated(laminate%angle) .and. allocated(laminate%thickness))) return
+      if (.not. allocated(laminate%material)) return
       if (any([(material_objection(deck%materials(laminate%material(i))) /= '', i=1, size(laminate%material))])) return
       plies = stacked_plies(laminate, deck%materials)
       thickness = sum(laminate%thickness)
@@ -155,9 +158,11 @@ contains
         call tell(s, problems, mesh_group, key_patch, 'an impactor needs a loaded patch; give its side > 0.')
       if (.not. (s%is_given(indentation_group, key_k) .or. s%is_given(impactor_group, key_radius)) .and. &
           are_clear(s, problems, indentation_group, key_k) .and. are_clear(s, problems, impactor_group, key_radius)) &
-        call tell(s, problems, impactor_group, key_radius, 'is missing; give it, or the contact stiffness &indentation k.')
+        call tell(s, problems, impactor_group, key_radius, &
+                  'is missing; give it, or the contact stiffness &indentation k.')
       if (deck%impactor%velocity <= 0 .and. deck%impactor%gravity <= 0 .and. .not. deck%has_pressure .and. &
-          are_clear(s, problems, impactor_group, key_velocity//' '//key_gravity) .and. .not. problems%concern(pressure_group)) &
+          .not. problems%concern(pressure_group) .and. &
+          are_clear(s, problems, impactor_group, key_velocity//' '//key_gravity)) &
         call tell(s, problems, impactor_group, key_velocity, &
                   'nothing moves the impactor towards the plate; give a velocity or gravity > 0.')
     end associate
@@ -190,15 +195,31 @@ contains
     integer :: i, j
 
     do i = 1, size(deck%materials)
-      if (missing_strengths(deck%materials(i)) == '') cycle
-      needed = words_of(missing_strengths(deck%materials(i)), ',')
+      needed = words_of(strengths_missing(deck%ply_damage, deck%materials(i)), ',')
       allocate (missing(0))
       do j = 1, size(needed)
+        if (needed(j)%text == '') cycle
         if (are_clear(deck%settings, problems, material_group, needed(j)%text, i)) call append(missing, needed(j)%text)
       end do
-      if (size(missing) > 0) call tell(deck%settings, problems, material_group, '', 'ply damage needs the strengths '// &
-        joined(missing, ', ')//'; give them or leave &ply_damage out.', i)
+      if (size(missing) > 0) call tell(deck%settings, problems, material_group, '', 'ply damage needs the '// &
+        'strengths '//joined(missing, ', ')//'; give them or leave &ply_damage out.', i)
       deallocate (missing)
     end do
   end subroutine check_strengths
+
+  !> Names of the strengths that the chosen criteria need and a material lacks.
+  pure function strengths_missing(damage, material) result(names)
+    !> Damage of the plies
+    type(ply_damage_t), intent(in) :: damage
+    !> The material
+    type(material_t), intent(in) :: material
+    !> Separated by commas; empty: it has all
+    character(len=:), allocatable :: names
+
+    names = ''
+    select case (damage%criteria)
+    case (criteria_hou)
+      names = missing_strengths(material)
+    end select
+  end function strengths_missing
 end module deck_cross_checks

@@ -81,7 +81,8 @@ contains
     associate (s => deck%settings, patch => deck%mesh%patch)
       if (patch <= 0) return
       if (patch > shorter) then
-        call tell(s, problems, mesh_group, key_patch, 'is larger than the plate; allowed: up to '//to_text(shorter)//'.')
+        call tell(s, problems, mesh_group, key_patch, 'is larger than the plate; allowed: up to '// &
+                  to_text(shorter)//'.')
       else if (patch < least_patch*shorter) then
         call tell(s, problems, mesh_group, key_patch, 'is too small for the plate; allowed: from '// &
                   to_text(least_patch*shorter)//'.')
@@ -162,7 +163,8 @@ contains
         call extents_of(x_edges, y_edges, deck%delaminations(place), zone, starter)
         if (differs(zone, d%zone)) call remark(deck%settings, problems, delamination_group, key_zone, &
           'a zone is whole cells; this mesh makes it '//shown(zone)//'.', place)
-        if (deck%settings%is_given(delamination_group, key_starter, place) .and. differs(starter, [d%starter, d%starter])) &
+        if (deck%settings%is_given(delamination_group, key_starter, place) .and. &
+            differs(starter, [d%starter, d%starter])) &
           call remark(deck%settings, problems, delamination_group, key_starter, &
                       'a starter is whole cells; this mesh makes it '//shown(starter)//'.', place)
       end associate

@@ -43,7 +43,7 @@ contains
     call problems%warning(line_of(settings, group, key, place), group, key, head(settings, group, key, place)//message)
   end subroutine remark
 
-  !> Adds a warning for each of some keys that is given but changes nothing.
+  !> Adds a warning for each of some keys that is soundly given but changes nothing.
   subroutine remark_idle(settings, problems, group, keys, message, place)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
@@ -62,8 +62,8 @@ contains
 
     names = words_of(keys, ' ')
     do i = 1, size(names)
-      if (settings%is_given(group, names(i)%text, place)) call remark(settings, problems, group, names(i)%text, message, &
-                                                                      place)
+      if (settings%is_given(group, names(i)%text, place) .and. settings%is_known(group, names(i)%text, place)) &
+        call remark(settings, problems, group, names(i)%text, message, place)
     end do
   end subroutine remark_idle
 

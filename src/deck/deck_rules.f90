@@ -4,7 +4,7 @@ module deck_rules
   use deck_problems, only: problems_t
   use deck_scanner, only: scan_t
   use deck_settings, only: settings_t, setting_t, present_group_t
-  use deck_values, only: fault_of_value, fault_of_count, allowed_sentence, literal_value
+  use deck_values, only: fault_of_value, fault_of_count, allowed_sentence, limit_of_size, literal_value
   use deck_vocabulary, only: vocabulary_t, key_entry_t
   use text, only: line_t, append, joined, lower_case, nearest_name, to_text
   implicit none
@@ -267,12 +267,16 @@ contains
     logical, intent(out) :: sound
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
-    character(len=:), allocatable :: fault
+    character(len=:), allocatable :: fault, limit
     integer :: i, forgotten
 
     fault = ''
+    limit = ''
     do i = 1, size(entry%values)
-      if (fault == '') fault = fault_of_value(key, entry%values(i))
+      if (fault == '') then
+        fault = fault_of_value(key, entry%values(i))
+        limit = limit_of_size(key, entry%values(i))
+      end if
       forgotten = 0
       if (.not. entry%values(i)%quoted) forgotten = vocabulary%key_index(key%group, entry%values(i)%text)
       if (forgotten == 0) cycle
@@ -284,7 +288,7 @@ contains
     if (fault == '') fault = fault_of_count(key, size(entry%values))
     sound = fault == ''
     if (.not. sound) call problems%error(entry%line, key%group, key%name, message_head(key%group, entry)// &
-                                         fault//'; '//allowed_sentence(key)//'.', place)
+                                         fault//'; '//allowed_sentence(key)//limit//'.', place)
   end subroutine judge_values
 
   !> Which of the groups of its name a group is.

@@ -29,7 +29,8 @@ module deck_vocabulary
     character(len=:), allocatable :: values
     !> Physical dimension, - if none
     character(len=:), allocatable :: unit
-    !> required; none: the key may be left out; = and what it is worked out from; or the value as it would stand in a deck
+    !> required; none: the key may be left out; = and what it is worked out from; or the value as it would stand in a
+    !> deck
     character(len=:), allocatable :: default
     !> Choices separated by blanks, or conditions separated by commas
     character(len=:), allocatable :: allowed

@@ -6,9 +6,9 @@ module delamination_deck
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
   use delamination_parameters, only: delamination_t, default_starter, toughness_objection, release_two_state, &
-                                     release_vcct, growth_equilibrium, growth_one_per_step, tie_eliminate, tie_penalty, &
-                                     contact_augmented_lagrangian, contact_continuous_penalty, contact_none, &
-                                     unloading_contact, unloading_glued, account_debts, account_balance
+                                     release_vcct, growth_equilibrium, growth_one_per_step, tie_eliminate, &
+                                     tie_penalty, contact_augmented_lagrangian, contact_continuous_penalty, &
+                                     contact_none, unloading_contact, unloading_glued, account_debts, account_balance
   use kinds, only: wp
   use text, only: to_text
   implicit none

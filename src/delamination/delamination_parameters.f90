@@ -86,7 +86,8 @@ contains
     objection = ''
     associate (d => delamination)
       if (d%toughness > 0) then
-        if (d%toughness_opening > 0 .or. d%toughness_shear > 0) objection = 'give either G_c or G_Ic and G_IIc, not both'
+        if (d%toughness_opening > 0 .or. d%toughness_shear > 0) &
+          objection = 'give either G_c or G_Ic and G_IIc, not both'
       else if (d%toughness_opening <= 0 .or. d%toughness_shear <= 0) then
         objection = 'give a positive G_c, or positive G_Ic and G_IIc'
       end if

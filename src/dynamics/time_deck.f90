@@ -82,8 +82,8 @@ contains
         call tell(settings, problems, time_group, 'step', 'is longer than the run; allowed: up to end = '// &
                   to_text(time%end)//'.')
       else if (time%end > most_steps*time%step) then
-        call tell(settings, problems, time_group, 'step', 'makes more than '//to_text(most_steps)//' steps; allowed: '// &
-                  'from '//to_text(time%end/most_steps)//'.')
+        call tell(settings, problems, time_group, 'step', 'makes more than '//to_text(most_steps)//' steps; '// &
+                  'allowed: from '//to_text(time%end/most_steps)//'.')
       end if
     end if
     if (time%step_min > time%step .and. clear('step step_min')) call tell(settings, problems, time_group, 'step_min', &

@@ -2,12 +2,12 @@
 module indentation_deck
   use deck_choices, only: code_of
   use deck_problems, only: problems_t
-  use deck_remarks, only: tell, remark_idle
+  use deck_remarks, only: tell, remark_idle, are_clear
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
   use impact_parameters, only: indentation_law_t, law_tan_sun, law_hertz, dent_tan_sun, dent_yang_sun
   use kinds, only: wp
-  use tan_sun_hertz_indentation, only: sun_stiffness
+  use tan_sun_hertz_indentation, only: sun_stiffness, loading_exponent
   use text, only: to_text
   implicit none
   private
@@ -84,10 +84,12 @@ contains
     if (.not. settings%is_known(indentation_group, 'law')) return
     if (law%law == law_hertz) then
       call idle('q reload beta alpha_cr dent', 'has no effect with law = ''hertz''.')
-    else if (.not. (settings%is_given(indentation_group, 'alpha_cr') .or. &
-                    problems%concern(indentation_group, 'alpha_cr'))) then
-      call tell(settings, problems, indentation_group, 'alpha_cr', 'is missing; law = ''tan_sun'' needs the indentation '// &
-                'above which a dent remains (law = ''hertz'' leaves none).')
+    else
+      if (.not. (settings%is_given(indentation_group, 'alpha_cr') .or. &
+                 problems%concern(indentation_group, 'alpha_cr'))) &
+        call tell(settings, problems, indentation_group, 'alpha_cr', 'is missing; law = ''tan_sun'' needs the '// &
+                  'indentation above which a dent remains (law = ''hertz'' leaves none).')
+      call check_exponents(settings, law, problems)
     end if
     if (law%law == law_tan_sun .and. law%dent == dent_yang_sun) &
       call idle('beta', 'has no effect with dent = ''yang_sun''.')
@@ -109,4 +111,27 @@ contains
       call remark_idle(settings, problems, indentation_group, keys, message)
     end subroutine idle
   end subroutine check_indentation
+
+  !> Exponents of a law that makes no energy: 1.5 <= reload <= q. Unloading then gives back no more than loading took,
+  !> and reloading takes no less than unloading gave.
+  subroutine check_exponents(settings, law, problems)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+    !> The law
+    type(indentation_law_t), intent(in) :: law
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+
+    if (.not. are_clear(settings, problems, indentation_group, 'q reload')) return
+    if (law%q < loading_exponent) then
+      call tell(settings, problems, indentation_group, 'q', 'unloading would give back more energy than loading '// &
+                'took; allowed: >= '//to_text(max(loading_exponent, law%reload))//', <= 10.')
+    else if (law%reload > law%q) then
+      call tell(settings, problems, indentation_group, 'reload', 'reloading would take less energy than unloading '// &
+                'gave back; allowed: >= '//to_text(loading_exponent)//', <= q = '//to_text(law%q)//'.')
+    end if
+    if (law%reload < loading_exponent) &
+      call tell(settings, problems, indentation_group, 'reload', 'reloading would be stiffer than first loading; '// &
+                'allowed: >= '//to_text(loading_exponent)//', <= q.')
+  end subroutine check_exponents
 end module indentation_deck

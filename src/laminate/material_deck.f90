@@ -147,8 +147,8 @@ contains
     if (settings%is_given(material_group, 'E', place) .or. settings%is_given(material_group, 'nu', place)) then
       missing = words_with(settings, place, 'E nu', .false.)
       if (size(given) > 0) then
-        call tell(settings, problems, material_group, given(1)%text, 'the material has E or nu too; give either E and nu '// &
-                  '(isotropic) or E1, E2, G12, G23, nu12 (orthotropic).', place)
+        call tell(settings, problems, material_group, given(1)%text, 'the material has E or nu too; give either E '// &
+                  'and nu (isotropic) or E1, E2, G12, G23, nu12 (orthotropic).', place)
         return
       end if
     else
@@ -163,7 +163,7 @@ contains
         joined(missing, ', ')//' must be given too.', place)
       return
     end if
-    complete = all_known(settings, place)
+    complete = are_clear(settings, problems, material_group, 'E nu '//orthotropic_keys, place)
   end subroutine judge_completeness
 
   !> Those of some keys that the deck gives, or those that it doesn't.
@@ -200,22 +200,6 @@ contains
 
     is_misspelt = any([(problems%concern(material_group, missing(i)%text, place), i=1, size(missing))])
   end function is_misspelt
-
-  !> True: every key of a material that is given can be used.
-  pure logical function all_known(settings, place)
-    !> Keys in effect
-    type(settings_t), intent(in) :: settings
-    !> Index of the material
-    integer, intent(in) :: place
-    integer :: i
-
-    all_known = .true.
-    do i = 1, size(settings%items)
-      associate (item => settings%items(i))
-        if (item%group == material_group .and. item%place == place) all_known = all_known .and. item%sound
-      end associate
-    end do
-  end function all_known
 
   !> Constants of an isotropic material.
   subroutine fill_isotropic(settings, place, material)

@@ -1,7 +1,7 @@
 !> The mesh of the deck: rows of its table, filling and checks. What the element brings is in `element_deck`.
 module mesh_deck
   use deck_problems, only: problems_t
-  use deck_remarks, only: tell
+  use deck_remarks, only: tell, are_clear
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
   use kinds, only: wp
@@ -48,7 +48,7 @@ contains
     if (settings%is_known(mesh_group, key_cell)) mesh%cell = settings%real_of(mesh_group, key_cell)
   end subroutine fill_mesh
 
-  !> Number of elements, and keys that go together.
+  !> Number of elements, grading, and keys that go together.
   subroutine check_mesh(settings, mesh, problems)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
@@ -59,8 +59,13 @@ contains
 
     if (product(real(mesh%elements, wp)) > most_elements) call tell(settings, problems, mesh_group, key_elements, &
       'more than '//to_text(most_elements)//' elements in all; give fewer.')
-    if (settings%is_given(mesh_group, key_core) .neqv. settings%is_given(mesh_group, key_cell)) &
-      call tell(settings, problems, mesh_group, trim(merge(key_cell, key_core, settings%is_given(mesh_group, key_core))), &
-                'is missing; `core` and `cell` go together.')
+    if (mesh%grading > 0 .and. mesh%grading < 1) call tell(settings, problems, mesh_group, 'grading', &
+      'the largest edge is not smaller than the smallest; allowed: 0 or >= 1.')
+    if (.not. are_clear(settings, problems, mesh_group, key_core//' '//key_cell)) return
+    if (settings%is_given(mesh_group, key_core) .and. .not. settings%is_given(mesh_group, key_cell)) then
+      call tell(settings, problems, mesh_group, key_cell, 'is missing; `core` and `cell` go together.')
+    else if (settings%is_given(mesh_group, key_cell) .and. .not. settings%is_given(mesh_group, key_core)) then
+      call tell(settings, problems, mesh_group, key_core, 'is missing; `core` and `cell` go together.')
+    end if
   end subroutine check_mesh
 end module mesh_deck

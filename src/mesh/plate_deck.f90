@@ -49,7 +49,8 @@ contains
                                [edge_free, edge_simple, edge_clamped])
     end do
     plate%in_plane_fixed = lower_case(settings%text_of(plate_group, 'in_plane')) /= 'free'
-    plate%symmetry = code_of(settings%text_of(plate_group, key_symmetry), 'none quarter', [symmetry_none, symmetry_quarter])
+    plate%symmetry = code_of(settings%text_of(plate_group, key_symmetry), 'none quarter', &
+                             [symmetry_none, symmetry_quarter])
   end subroutine fill_plate
 
   !> Its sides against each other, and its supports against its symmetry.
@@ -66,7 +67,8 @@ contains
                 ' times the other; such a strip is no plate.')
     if (plate%symmetry /= symmetry_quarter) return
     if (plate%edges(1) /= plate%edges(2) .or. plate%edges(3) /= plate%edges(4)) &
-      call tell(settings, problems, plate_group, 'edges', 'symmetry = ''quarter'' needs the same support at opposite edges.')
+      call tell(settings, problems, plate_group, 'edges', &
+                'symmetry = ''quarter'' needs the same support at opposite edges.')
   end subroutine check_plate
 
   !> Supports that hold the plate in equilibrium; only a static analysis needs them.
@@ -80,10 +82,11 @@ contains
 
     if (.not. settings%is_known(plate_group, 'edges')) return
     if (all(plate%edges == edge_free)) then
-      call tell(settings, problems, plate_group, 'edges', 'nothing holds the plate in a static analysis; support an edge.')
+      call tell(settings, problems, plate_group, 'edges', &
+                'nothing holds the plate in a static analysis; support an edge.')
     else if (count(plate%edges /= edge_free) == 1 .and. all(plate%edges /= edge_clamped)) then
-      call tell(settings, problems, plate_group, 'edges', 'in a static analysis the plate turns about its one simply '// &
-                'supported edge; clamp it or support another one.')
+      call tell(settings, problems, plate_group, 'edges', 'in a static analysis the plate turns about its one '// &
+                'simply supported edge; clamp it or support another one.')
     end if
   end subroutine check_supports
 end module plate_deck
