@@ -8,10 +8,10 @@ module indentation_deck
   use impact_parameters, only: indentation_law_t, law_tan_sun, law_hertz, dent_tan_sun, dent_yang_sun
   use kinds, only: wp
   use tan_sun_hertz_indentation, only: sun_stiffness, loading_exponent
-  use text, only: to_text
+  use text, only: line_t, append, to_text
   implicit none
   private
-  public :: fill_indentation, check_indentation
+  public :: fill_indentation, check_indentation, echo_without_group
 
   !> Names that checks across groups use.
   character(len=*), parameter, public :: indentation_group = 'indentation', key_k = 'k'
@@ -71,6 +71,17 @@ contains
     end if
     call settings%derive(indentation_group, key_k, to_text(law%k), .false.)
   end subroutine fill_indentation
+
+  !> What holds of the law without the group, as the echo tells it.
+  subroutine echo_without_group(law, lines)
+    !> The law
+    type(indentation_law_t), intent(in) :: law
+    !> Lines are added
+    type(line_t), allocatable, intent(inout) :: lines(:)
+
+    call append(lines, '&indentation law = ''hertz'' [default]')
+    call append(lines, '&indentation k = '//to_text(law%k)//' [default]')
+  end subroutine echo_without_group
 
   !> Keys that the law needs, and keys that it leaves without effect.
   subroutine check_indentation(settings, law, problems)
