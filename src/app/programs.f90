@@ -6,11 +6,10 @@ module programs
   use communicators, only: communicator_t, start_mpi, finish_mpi
   use launchers, only: launched
   use petsc_session, only: start_petsc, finish_petsc
-  use linear_solver_parameters, only: factorization_cholmod
+  use linear_solver_deck, only: check_ranks
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
   use deck_reader, only: read_deck, read_deck_text
-  use deck_remarks, only: tell
   use deck_table, only: load_deck_table
   use deck_vocabulary, only: vocabulary_t
   use deck_explain, only: explain, explain_table
@@ -167,8 +166,7 @@ contains
     else
       call read_deck_everywhere(command%target, communicator, deck, problems)
     end if
-    if (deck%linear_solver%factorization == factorization_cholmod .and. communicator%size > 1) call tell(deck%settings, problems, &
-      'solver', 'factorization', 'works on one rank only; run on one rank, or take ''mumps''.')
+    call check_ranks(deck%settings, deck%linear_solver, communicator%size, problems)
     code = problems%exit_code()
     call print_lines(communicator, problems%lines())
     if (code /= exit_done) return

@@ -2,7 +2,7 @@
 module simulations
   use kinds, only: wp
   use errors, only: error_t, fail, exit_stopped
-  use text, only: to_text, line_t, append
+  use text, only: to_text, line_t
   use files, only: make_directory
   use logger, only: log_t
   use timers, only: timer_set_t
@@ -15,6 +15,7 @@ module simulations
   use deck_table, only: load_deck_table
   use deck_vocabulary, only: vocabulary_t
   use deck_extents, only: extent_lines
+  use indentation_deck, only: echo_without_group
   use build_information, only: this_build
   use run_provenance, only: provenance_t, this_run
   use run_progress, only: progress_t
@@ -140,10 +141,8 @@ contains
 
     call load_deck_table(vocabulary)
     call echo(vocabulary, self%deck%settings, lines)
-    if (self%deck%has_impactor .and. .not. self%deck%has_indentation) then
-      call append(lines, '&indentation law = ''hertz'' [default]')
-      call append(lines, '&indentation k = '//to_text(self%deck%indentation%k)//' [default]')
-    end if
+    if (self%deck%has_impactor .and. .not. self%deck%has_indentation) &
+      call echo_without_group(self%deck%indentation, lines)
     lines = [lines, extent_lines(self%deck)]
     do i = 1, size(lines)
       call self%log%detail(lines(i)%text)

@@ -6,20 +6,20 @@
 !> and F = k alpha**1.5 beyond it. The power is `q` as long as the bodies have not separated, so a
 !> reversal during contact runs back up the unloading curve, and `reload` after a separation. The
 !> reloading curve is run back the way it came: a second contact that doesn't reach the largest
-!> indentation is elastic. Energy is never created if 1.5 <= reload <= q, see `check_indentation_law`.
+!> indentation is elastic. Energy is never created if 1.5 <= reload <= q, see
+!> `check_indentation` of the deck.
 module tan_sun_hertz_indentation
   use archives, only: archive_t
-  use errors, only: error_t, fail, exit_deck
   use impact_parameters, only: indentation_law_t, law_hertz, law_tan_sun, dent_yang_sun
   use kinds, only: wp
   implicit none
   private
-  public :: indentation_t, check_indentation_law, sun_stiffness, touch_indentation, indentation_force, &
+  public :: indentation_t, sun_stiffness, touch_indentation, indentation_force, &
             indentation_stiffness, mean_indentation_force, indentation_work, stored_energy, &
             stiffening, commit_indentation
 
   !> Exponent of loading (Hertz)
-  real(wp), parameter :: loading_exponent = 1.5_wp
+  real(wp), parameter, public :: loading_exponent = 1.5_wp
 
   !> What the contact remembers; changes only when a step is accepted.
   type :: indentation_t
@@ -55,45 +55,25 @@ module tan_sun_hertz_indentation
 
 contains
 
-  !> Refuses a law that has no meaning or that would create energy.
-  subroutine check_indentation_law(law, error)
-    !> The law
-    type(indentation_law_t), intent(in) :: law
-    !> Raised if the law can't be used
-    type(error_t), allocatable, intent(inout) :: error
-
-    if (.not. law%k > 0) call fail(error, exit_deck, 'indentation: k must be positive.')
-    if (law%law == law_hertz) return
-    if (.not. (law%reload >= loading_exponent .and. law%q >= law%reload)) &
-      call fail(error, exit_deck, 'indentation: 1.5 <= reload <= q is needed, other exponents create energy.')
-    if (.not. law%alpha_critical >= 0) call fail(error, exit_deck, 'indentation: alpha_cr must not be negative.')
-    if (law%dent == dent_yang_sun) then
-      if (.not. law%alpha_critical > 0) &
-        call fail(error, exit_deck, 'indentation: the dent of yang_sun needs a positive alpha_cr.')
-    else if (.not. (law%beta >= 0 .and. law%beta < 1)) then
-      call fail(error, exit_deck, 'indentation: beta must be at least 0 and less than 1.')
-    end if
-  end subroutine check_indentation_law
-
-  !> Contact stiffness k of Sun's modified Hertz law, (4/3) sqrt(R) / ((1 - nu**2)/E + 1/E2).
-  pure function sun_stiffness(radius, e2, impactor_e, impactor_nu) result(k)
+  !> Contact stiffness k of a sphere on a plate, (4/3) sqrt(R) / ((1 - nu**2)/E + c) (Sun and Yang).
+  pure function sun_stiffness(radius, struck_compliance, impactor_e, impactor_nu) result(k)
     !> Radius of the impactor's nose
     real(wp), intent(in) :: radius
-    !> Transverse modulus of the struck ply
-    real(wp), intent(in) :: e2
+    !> What the struck ply gives way, c: 1/E2 of its transverse modulus; on an isotropic plate Hertz' (1 - nu**2)/E
+    real(wp), intent(in) :: struck_compliance
     !> Young's modulus of the impactor; absent: rigid
     real(wp), intent(in), optional :: impactor_e
     !> Poisson's ratio of the impactor; absent: 0
     real(wp), intent(in), optional :: impactor_nu
     !> Contact stiffness, force per length**1.5
     real(wp) :: k
-    real(wp) :: flexibility, nu
+    real(wp) :: compliance, nu
 
-    flexibility = 1/e2
+    compliance = struck_compliance
     nu = 0
     if (present(impactor_nu)) nu = impactor_nu
-    if (present(impactor_e)) flexibility = flexibility + (1 - nu**2)/impactor_e
-    k = 4*sqrt(radius)/(3*flexibility)
+    if (present(impactor_e)) compliance = compliance + (1 - nu**2)/impactor_e
+    k = 4*sqrt(radius)/(3*compliance)
   end function sun_stiffness
 
   !> Indentation below which the contact force is zero.
