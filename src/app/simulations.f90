@@ -86,7 +86,7 @@ contains
 
     call prepare(self, deck, communicator, append=.false., error=error)
     if (allocated(error)) return
-    call self%history%create(communicator, self%base//'_history.csv', column_names, column_whole, error)
+    call self%history%create(communicator, self%base//'_history.csv', column_names(), column_whole(), error)
     if (allocated(error)) return
     call self%fields%create(communicator, self%base, self%provenance, part_of(self), error)
     if (allocated(error)) return
@@ -185,7 +185,7 @@ contains
     call archive%close(error)
     if (allocated(error)) return
     self%warned_of_border = self%stepper%now%interfaces%border_reached
-    call self%history%resume(communicator, self%base//'_history.csv', column_names, column_whole, rows, error)
+    call self%history%resume(communicator, self%base//'_history.csv', column_names(), column_whole(), rows, error)
     if (allocated(error)) return
     if (self%history%rows /= rows) &
       call self%log%warning('The history before the checkpoint is not there; it goes on from here.')

@@ -1,0 +1,166 @@
+!> Tables of what results hold: the columns of the history and the fields over the plate. A row is a text whose cells
+!> are parted by bars. Each folder brings the rows of what it knows; the header of the history, `implam explain`, the
+!> manual and the attributes in the field file are all made from them.
+module result_tables
+  use text, only: append, joined, line_t, words_of
+  implicit none
+  private
+  public :: cell, field_row, is_number_type, is_place, is_unit_kind, markdown_table, plain_table
+
+  !> Characters of a row, enough for the longest.
+  integer, parameter, public :: result_row_length = 220
+  !> Characters of a name, enough for the longest.
+  integer, parameter, public :: result_name_length = 24
+
+  !> What the cells of a column of the history hold, and where these are. Type: that of its numbers; a logical is 0 or 1.
+  character(len=*), parameter, public :: column_heading = 'name | type | unit | meaning'
+  integer, parameter, public :: column_name = 1, column_type = 2, column_unit = 3, column_meaning = 4
+
+  !> What the cells of a field hold, and where these are. Name: in the file, with N for a number; on: points or cells;
+  !> choice: the value of `fields` in &output that writes it, - if it is always written; needs: the group of the deck
+  !> without which there is no such field.
+  character(len=*), parameter, public :: field_heading = 'name | on | unit | choice | needs | meaning'
+  integer, parameter, public :: field_name = 1, field_place = 2, field_unit = 3, field_choice = 4, field_needs = 5, &
+                                field_meaning = 6
+
+  !> Physical dimensions, named as in the table of the deck; - if there is none.
+  character(len=*), parameter :: unit_kinds = '- time length area length/time force pressure energy radian'
+  !> Types of numbers, and where fields may be.
+  character(len=*), parameter :: number_types = 'real integer logical', places = 'points cells'
+
+contains
+
+  !> One cell of a row.
+  pure function cell(row, number) result(content)
+    !> The row
+    character(len=*), intent(in) :: row
+    !> Number of the cell, from 1
+    integer, intent(in) :: number
+    !> Without blanks around it; empty if the row has fewer cells
+    character(len=:), allocatable :: content
+    type(line_t), allocatable :: cells(:)
+
+    cells = words_of(trim(row), '|')
+    content = ''
+    if (number <= size(cells)) content = cells(number)%text
+  end function cell
+
+  !> Row of the field of that name; numbers between underscores stand for N if there is no row of the name as it is.
+  pure integer function field_row(rows, name) result(place)
+    !> The table
+    character(len=*), intent(in) :: rows(:)
+    !> Name in the file, such as ply_12_failure
+    character(len=*), intent(in) :: name
+    type(line_t), allocatable :: words(:)
+    integer :: i
+
+    words = words_of(name, '_')
+    do i = 1, size(words)
+      if (verify(words(i)%text, '0123456789') == 0) words(i)%text = 'N'
+    end do
+    place = position(name)
+    if (place == 0) place = position(joined(words, '_'))
+
+  contains
+
+    !> Row of a name; 0 if there is none.
+    pure integer function position(wanted)
+      !> The name
+      character(len=*), intent(in) :: wanted
+
+      do position = size(rows), 1, -1
+        if (cell(rows(position), field_name) == wanted) return
+      end do
+    end function position
+  end function field_row
+
+  !> True for a physical dimension that results may have.
+  pure logical function is_unit_kind(word)
+    !> A cell
+    character(len=*), intent(in) :: word
+
+    is_unit_kind = is_one_of(word, unit_kinds)
+  end function is_unit_kind
+
+  !> True for a type of numbers.
+  pure logical function is_number_type(word)
+    !> A cell
+    character(len=*), intent(in) :: word
+
+    is_number_type = is_one_of(word, number_types)
+  end function is_number_type
+
+  !> True for a place where fields may be.
+  pure logical function is_place(word)
+    !> A cell
+    character(len=*), intent(in) :: word
+
+    is_place = is_one_of(word, places)
+  end function is_place
+
+  !> True for one of several words.
+  pure logical function is_one_of(word, words)
+    !> A word
+    character(len=*), intent(in) :: word
+    !> Words parted by blanks
+    character(len=*), intent(in) :: words
+
+    is_one_of = len_trim(word) > 0 .and. index(' '//words//' ', ' '//trim(word)//' ') > 0
+  end function is_one_of
+
+  !> A table in Markdown, for the manual.
+  subroutine markdown_table(heading, rows, lines)
+    !> What the cells hold, parted by bars
+    character(len=*), intent(in) :: heading
+    !> The table
+    character(len=*), intent(in) :: rows(:)
+    !> Lines of the table
+    type(line_t), allocatable, intent(out) :: lines(:)
+    integer :: i, bar
+
+    call append(lines, '| '//heading//' |')
+    call append(lines, repeat('|---', size(words_of(heading, '|')))//'|')
+    do i = 1, size(rows)
+      bar = index(rows(i), ' |')
+      call append(lines, '| `'//rows(i)(:bar - 1)//'`'//trim(rows(i)(bar:))//' |')
+    end do
+  end subroutine markdown_table
+
+  !> A table in columns of equal width, for the terminal.
+  subroutine plain_table(heading, rows, lines)
+    !> What the cells hold, parted by bars
+    character(len=*), intent(in) :: heading
+    !> The table
+    character(len=*), intent(in) :: rows(:)
+    !> Lines are added
+    type(line_t), allocatable, intent(inout) :: lines(:)
+    integer, allocatable :: widths(:)
+    integer :: i, j
+
+    widths = [(len(cell(heading, j)), j=1, size(words_of(heading, '|')))]
+    do i = 1, size(rows)
+      widths = max(widths, [(len(cell(rows(i), j)), j=1, size(widths))])
+    end do
+    call append(lines, padded(heading))
+    do i = 1, size(rows)
+      call append(lines, padded(rows(i)))
+    end do
+
+  contains
+
+    !> A row with its cells filled up to the widths.
+    pure function padded(row) result(line)
+      !> The row
+      character(len=*), intent(in) :: row
+      !> The line
+      character(len=:), allocatable :: line
+      integer :: k
+
+      line = ''
+      do k = 1, size(widths)
+        line = line//'  '//cell(row, k)//repeat(' ', widths(k) - len(cell(row, k)))
+      end do
+      line = trim(line)
+    end function padded
+  end subroutine plain_table
+end module result_tables
