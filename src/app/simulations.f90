@@ -25,7 +25,7 @@ module simulations
   use output_clocks, only: clock_t
   use energy_watches, only: energy_watch_t
   use result_rows, only: row_of, column_names, column_whole
-  use field_results, only: write_mesh, write_fields
+  use field_results, only: write_mesh, write_fields, field_rows
   implicit none
   private
   public :: simulation_t
@@ -113,6 +113,7 @@ contains
     self%history_clock%interval = deck%output%history_every
     self%fields_clock%interval = deck%output%fields_every
     self%checkpoint_clock%interval = deck%output%checkpoint_every
+    call self%fields%describe(field_rows)
     if (communicator%is_root()) call make_directory(deck%output%directory, error)
     if (.not. allocated(error)) call self%log%open(self%base//'.log', communicator%is_root(), append, error)
     call communicator%agree(error)

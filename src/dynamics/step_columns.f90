@@ -14,14 +14,16 @@ module step_columns
     'time | real | time | Time at the end of the step; in a static analysis the load over the full load.', &
     'step | integer | - | Accepted steps so far.', &
     'force | real | force | Contact force between impactor and plate, positive where they press on each other.', &
-    'indentation | real | length | Displacement of the impactor less the mean deflection of the patch; negative: a gap.', &
+    'indentation | real | length | Displacement of the impactor less the mean deflection of the patch; &
+      &negative: a gap.', &
     'impactor_displacement | real | length | Displacement of the impactor towards the plate since first touch.', &
     'impactor_velocity | real | length/time | Velocity of the impactor, positive towards the plate.', &
     'deflection | real | length | Deflection of the struck point on the struck side, positive along the impact.']
 
   !> The energy ledger. These columns and their order are the public interface.
   character(len=result_row_length), parameter, public :: ledger_rows(*) = [character(len=result_row_length) :: &
-    'energy_impactor | real | energy | Kinetic energy of the impactor and its potential in gravity, 0 at first touch.', &
+    'energy_impactor | real | energy | Kinetic energy of the impactor and its potential in gravity; the latter is 0 at &
+      &first touch.', &
     'energy_kinetic | real | energy | Kinetic energy of the plate.', &
     'energy_strain | real | energy | Strain energy of the plate with the stiffness that failures have left.', &
     'energy_indentation | real | energy | Work of the contact force on the indentation so far, stored and lost.', &
@@ -46,8 +48,10 @@ module step_columns
   character(len=result_row_length), parameter, public :: iteration_rows(*) = [character(len=result_row_length) :: &
     'iterations | integer | - | Corrections of the displacement in the step; after growth those of its last &
       &computation.', &
-    'force_iterations | integer | - | Newton and bisection steps for the contact force in the step, counted likewise.', &
-    'contact_iterations | integer | - | Rounds in which contact pressures were updated in the step, counted likewise.', &
+    'force_iterations | integer | - | Newton and bisection steps for the contact force in the step, &
+      &counted likewise.', &
+    'contact_iterations | integer | - | Rounds of contact pressures in the step that had something to &
+      &settle, counted likewise.', &
     'total_iterations | integer | - | Sum of iterations over the accepted steps.', &
     'total_force_iterations | integer | - | Sum of force_iterations over the accepted steps.', &
     'total_contact_iterations | integer | - | Sum of contact_iterations over the accepted steps.', &
@@ -73,8 +77,8 @@ contains
     !> A value a column
     real(wp) :: values(size(ledger_rows))
 
-    values = [ledger%impactor, ledger%kinetic, ledger%strain, ledger%indentation, ledger%delamination, ledger%ply_damage, &
-              ledger%contact, ledger%algorithmic, ledger%error()]
+    values = [ledger%impactor, ledger%kinetic, ledger%strain, ledger%indentation, ledger%delamination, &
+              ledger%ply_damage, ledger%contact, ledger%algorithmic, ledger%error()]
   end function ledger_values
 
   !> The rest of the state and the length of the step.

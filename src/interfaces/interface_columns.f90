@@ -9,7 +9,7 @@ module interface_columns
   private
   public :: area_values, release_values, border_values
 
-  !> How much has come apart.
+  !> How much has come apart: a column of the public interface.
   character(len=result_row_length), parameter, public :: area_rows(*) = [character(len=result_row_length) :: &
     'delaminated_area | real | area | Delaminated area of all interfaces together, their starters included.']
 
@@ -53,7 +53,8 @@ contains
     !> A value a column, the same on every rank
     real(wp) :: values(size(release_rows))
 
-    values = [interfaces%release_ratio, sum(interfaces%ties%set_free), interfaces%faces%penetration(model, displacement), &
+    values = [interfaces%release_ratio, sum(interfaces%ties%set_free), &
+              interfaces%faces%penetration(model, displacement), &
               interfaces%faces%complementarity(model, displacement)]
   end function release_values
 

@@ -12,11 +12,11 @@ module result_tables
   !> Characters of a name, enough for the longest.
   integer, parameter, public :: result_name_length = 24
 
-  !> What the cells of a column of the history hold, and where these are. Type: that of its numbers; a logical is 0 or 1.
+  !> What the cells of a column of the history hold, and where they are. Type: that of its numbers; logical: 0 or 1.
   character(len=*), parameter, public :: column_heading = 'name | type | unit | meaning'
   integer, parameter, public :: column_name = 1, column_type = 2, column_unit = 3, column_meaning = 4
 
-  !> What the cells of a field hold, and where these are. Name: in the file, with N for a number; on: points or cells;
+  !> What the cells of a field hold, and where they are. Name: in the file, with N for a number; on: points or cells;
   !> choice: the value of `fields` in &output that writes it, - if it is always written; needs: the group of the deck
   !> without which there is no such field.
   character(len=*), parameter, public :: field_heading = 'name | on | unit | choice | needs | meaning'
