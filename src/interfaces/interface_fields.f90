@@ -23,8 +23,8 @@ module interface_fields
       &top of a layer.', &
     'delaminated_above | cells | - | delamination | &delamination | 1 in elements whose interface on top has come &
       &apart, else 0.', &
-    'energy_release_above | cells | - | energy_release | &delamination | G/G_c of that interface in the intact &
-      &elements next to a front, 0 elsewhere.']
+    'energy_release_above | cells | - | energy_release | &delamination | G/G_c of the interface on top in the &
+      &intact elements next to a front, 0 elsewhere.']
 
 contains
 

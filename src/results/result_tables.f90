@@ -2,7 +2,7 @@
 !> are parted by bars. Each folder brings the rows of what it knows; the header of the history, `implam explain`, the
 !> manual and the attributes in the field file are all made from them.
 module result_tables
-  use text, only: append, joined, line_t, words_of
+  use text, only: append, line_t
   implicit none
   private
   public :: cell, field_row, is_number_type, is_place, is_unit_kind, markdown_table, plain_table
@@ -38,41 +38,71 @@ contains
     integer, intent(in) :: number
     !> Without blanks around it; empty if the row has fewer cells
     character(len=:), allocatable :: content
-    type(line_t), allocatable :: cells(:)
+    integer :: start, length, k
 
-    cells = words_of(trim(row), '|')
-    content = ''
-    if (number <= size(cells)) content = cells(number)%text
+    ! Not by a list of texts, which gfortran 12 leaks: fields are looked up at every time written.
+    start = 1
+    do k = 2, number
+      start = start + length_to_bar(row(start:)) + 1
+    end do
+    length = length_to_bar(row(start:))
+    content = trim(adjustl(row(start:start + length - 1)))
   end function cell
 
+  !> Characters before the next bar, or all there are.
+  pure integer function length_to_bar(rest) result(length)
+    !> Rest of a row
+    character(len=*), intent(in) :: rest
+
+    length = index(rest, '|') - 1
+    if (length < 0) length = len(rest)
+  end function length_to_bar
+
   !> Row of the field of that name; numbers between underscores stand for N if there is no row of the name as it is.
+  !> 0 if there is none.
   pure integer function field_row(rows, name) result(place)
     !> The table
     character(len=*), intent(in) :: rows(:)
     !> Name in the file, such as ply_12_failure
     character(len=*), intent(in) :: name
-    type(line_t), allocatable :: words(:)
-    integer :: i
 
-    words = words_of(name, '_')
-    do i = 1, size(words)
-      if (verify(words(i)%text, '0123456789') == 0) words(i)%text = 'N'
-    end do
-    place = position(name)
-    if (place == 0) place = position(joined(words, '_'))
-
-  contains
-
-    !> Row of a name; 0 if there is none.
-    pure integer function position(wanted)
-      !> The name
-      character(len=*), intent(in) :: wanted
-
-      do position = size(rows), 1, -1
-        if (cell(rows(position), field_name) == wanted) return
-      end do
-    end function position
+    place = row_named(rows, name)
+    if (place == 0) place = row_named(rows, with_n_for_numbers(name))
   end function field_row
+
+  !> Row that begins with a name; 0 if there is none.
+  pure integer function row_named(rows, name) result(place)
+    !> The table
+    character(len=*), intent(in) :: rows(:)
+    !> The name
+    character(len=*), intent(in) :: name
+
+    do place = size(rows), 1, -1
+      if (cell(rows(place), field_name) == name) return
+    end do
+  end function row_named
+
+  !> A name with N for each number between underscores.
+  pure function with_n_for_numbers(name) result(pattern)
+    !> Such as ply_12_sigma11
+    character(len=*), intent(in) :: name
+    !> Such as ply_N_sigma11
+    character(len=:), allocatable :: pattern
+    integer :: start, finish
+
+    pattern = ''
+    start = 1
+    do while (start <= len(name))
+      finish = start + index(name(start:)//'_', '_') - 2
+      if (finish >= start .and. verify(name(start:finish), '0123456789') == 0) then
+        pattern = pattern//'N_'
+      else
+        pattern = pattern//name(start:finish)//'_'
+      end if
+      start = finish + 2
+    end do
+    pattern = pattern(:len(pattern) - 1)
+  end function with_n_for_numbers
 
   !> True for a physical dimension that results may have.
   pure logical function is_unit_kind(word)
@@ -108,6 +138,15 @@ contains
     is_one_of = len_trim(word) > 0 .and. index(' '//words//' ', ' '//trim(word)//' ') > 0
   end function is_one_of
 
+  !> Number of cells of a row.
+  pure integer function cells_of(row)
+    !> The row
+    character(len=*), intent(in) :: row
+    integer :: i
+
+    cells_of = 1 + count([(row(i:i) == '|', i=1, len(row))])
+  end function cells_of
+
   !> A table in Markdown, for the manual.
   subroutine markdown_table(heading, rows, lines)
     !> What the cells hold, parted by bars
@@ -119,7 +158,7 @@ contains
     integer :: i, bar
 
     call append(lines, '| '//heading//' |')
-    call append(lines, repeat('|---', size(words_of(heading, '|')))//'|')
+    call append(lines, repeat('|---', cells_of(heading))//'|')
     do i = 1, size(rows)
       bar = index(rows(i), ' |')
       call append(lines, '| `'//rows(i)(:bar - 1)//'`'//trim(rows(i)(bar:))//' |')
@@ -137,7 +176,7 @@ contains
     integer, allocatable :: widths(:)
     integer :: i, j
 
-    widths = [(len(cell(heading, j)), j=1, size(words_of(heading, '|')))]
+    widths = [(len(cell(heading, j)), j=1, cells_of(heading))]
     do i = 1, size(rows)
       widths = max(widths, [(len(cell(rows(i), j)), j=1, size(widths))])
     end do
