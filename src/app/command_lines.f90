@@ -157,12 +157,13 @@ contains
   !> What the program tells of its use.
   pure function usage() result(text)
     !> Lines of the text
-    character(len=96) :: text(15)
+    character(len=96) :: text(16)
 
     text = [character(len=96) :: &
             'Usage: implam [run] DECK.nml       run a deck', &
             '       implam check DECK.nml       read and check a deck, list every fault, run nothing', &
             '       implam explain [GROUP[%KEY]] what a deck can say: keys, units, defaults, meaning', &
+            '       implam explain history|fields  what results hold: names, units, meaning', &
             '       implam restart FILE         go on from a checkpoint (NAME_restart.h5)', &
             '       implam --version | --help', &
             'Options:', &

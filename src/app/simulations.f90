@@ -26,7 +26,7 @@ module simulations
   use output_clocks, only: clock_t
   use energy_watches, only: energy_watch_t
   use result_rows, only: row_of, column_names, column_whole
-  use field_results, only: write_mesh, write_fields
+  use field_results, only: write_mesh, write_fields, field_rows
   implicit none
   private
   public :: simulation_t
@@ -87,7 +87,7 @@ contains
 
     call prepare(self, deck, communicator, append=.false., error=error)
     if (allocated(error)) return
-    call self%history%create(communicator, self%base//'_history.csv', column_names, column_whole, error)
+    call self%history%create(communicator, self%base//'_history.csv', column_names(), column_whole(), error)
     if (allocated(error)) return
     call self%fields%create(communicator, self%base, self%provenance, part_of(self), error)
     if (allocated(error)) return
@@ -114,6 +114,7 @@ contains
     self%history_clock%interval = deck%output%history_every
     self%fields_clock%interval = deck%output%fields_every
     self%checkpoint_clock%interval = deck%output%checkpoint_every
+    call self%fields%describe(field_rows)
     if (communicator%is_root()) call make_directory(deck%output%directory, error)
     if (.not. allocated(error)) call self%log%open(self%base//'.log', communicator%is_root(), append, error)
     call communicator%agree(error)
@@ -184,7 +185,7 @@ contains
     call archive%close(error)
     if (allocated(error)) return
     self%warned_of_border = self%stepper%now%interfaces%border_reached
-    call self%history%resume(communicator, self%base//'_history.csv', column_names, column_whole, rows, error)
+    call self%history%resume(communicator, self%base//'_history.csv', column_names(), column_whole(), rows, error)
     if (allocated(error)) return
     if (self%history%rows /= rows) &
       call self%log%warning('The history before the checkpoint is not there; it goes on from here.')
