@@ -4,7 +4,7 @@ module time_stepping
   use errors, only: error_t, fail, exit_convergence
   use archives, only: archive_t
   use text, only: to_text
-  use impactors, only: largest_safe_step
+  use impactor_integrators, only: largest_safe_step
   use stepping_parameters, only: stepping_t
   use linear_solver_parameters, only: linear_solver_parameters_t
   use newmark_integrators, only: plate_integrator_t, plate_integrator

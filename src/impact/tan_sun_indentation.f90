@@ -7,19 +7,17 @@
 !> reversal during contact runs back up the unloading curve, and `reload` after a separation. The
 !> reloading curve is run back the way it came: a second contact that doesn't reach the largest
 !> indentation is elastic. Energy is never created if 1.5 <= reload <= q, see `check_indentation_law`.
-module tan_sun_hertz_indentation
+module tan_sun_indentation
   use archives, only: archive_t
   use errors, only: error_t, fail, exit_deck
+  use hertz_contact, only: hertz_exponent, hertz_force, hertz_stiffness, mean_power
   use impact_parameters, only: indentation_law_t, law_hertz, law_tan_sun, dent_yang_sun
   use kinds, only: wp
   implicit none
   private
-  public :: indentation_t, check_indentation_law, sun_stiffness, touch_indentation, indentation_force, &
+  public :: indentation_t, check_indentation_law, touch_indentation, indentation_force, &
             indentation_stiffness, mean_indentation_force, indentation_work, stored_energy, &
             stiffening, commit_indentation
-
-  !> Exponent of loading (Hertz)
-  real(wp), parameter :: loading_exponent = 1.5_wp
 
   !> What the contact remembers; changes only when a step is accepted.
   type :: indentation_t
@@ -50,7 +48,7 @@ module tan_sun_hertz_indentation
     !> Force at `finish`
     real(wp) :: force = 0
     !> Exponent
-    real(wp) :: exponent = loading_exponent
+    real(wp) :: exponent = hertz_exponent
   end type branch_t
 
 contains
@@ -64,7 +62,7 @@ contains
 
     if (.not. law%k > 0) call fail(error, exit_deck, 'indentation: k must be positive.')
     if (law%law == law_hertz) return
-    if (.not. (law%reload >= loading_exponent .and. law%q >= law%reload)) &
+    if (.not. (law%reload >= hertz_exponent .and. law%q >= law%reload)) &
       call fail(error, exit_deck, 'indentation: 1.5 <= reload <= q is needed, other exponents create energy.')
     if (.not. law%alpha_critical >= 0) call fail(error, exit_deck, 'indentation: alpha_cr must not be negative.')
     if (law%dent == dent_yang_sun) then
@@ -74,27 +72,6 @@ contains
       call fail(error, exit_deck, 'indentation: beta must be at least 0 and less than 1.')
     end if
   end subroutine check_indentation_law
-
-  !> Contact stiffness k of Sun's modified Hertz law, (4/3) sqrt(R) / ((1 - nu**2)/E + 1/E2).
-  pure function sun_stiffness(radius, e2, impactor_e, impactor_nu) result(k)
-    !> Radius of the impactor's nose
-    real(wp), intent(in) :: radius
-    !> Transverse modulus of the struck ply
-    real(wp), intent(in) :: e2
-    !> Young's modulus of the impactor; absent: rigid
-    real(wp), intent(in), optional :: impactor_e
-    !> Poisson's ratio of the impactor; absent: 0
-    real(wp), intent(in), optional :: impactor_nu
-    !> Contact stiffness, force per length**1.5
-    real(wp) :: k
-    real(wp) :: flexibility, nu
-
-    flexibility = 1/e2
-    nu = 0
-    if (present(impactor_nu)) nu = impactor_nu
-    if (present(impactor_e)) flexibility = flexibility + (1 - nu**2)/impactor_e
-    k = 4*sqrt(radius)/(3*flexibility)
-  end function sun_stiffness
 
   !> Indentation below which the contact force is zero.
   pure function touch_indentation(law, state) result(touch)
@@ -128,7 +105,7 @@ contains
     else if (alpha <= branch%finish) then
       force = branch%force*position(branch, alpha)**branch%exponent
     else
-      force = law%k*alpha**loading_exponent
+      force = hertz_force(law%k, alpha)
     end if
   end function indentation_force
 
@@ -151,7 +128,7 @@ contains
       stiffness = branch%exponent*branch%force/(branch%finish - branch%start) &
                   *position(branch, alpha)**(branch%exponent - 1)
     else
-      stiffness = loading_exponent*law%k*sqrt(alpha)
+      stiffness = hertz_stiffness(law%k, alpha)
     end if
   end function indentation_stiffness
 
@@ -184,7 +161,7 @@ contains
     if (upper > lower) mean = branch%force*(upper - lower)/(most - least) &
                               *mean_power(position(branch, lower), position(branch, upper), branch%exponent)
     lower = max(least, branch%finish)
-    if (most > lower) mean = mean + law%k*(most - lower)/(most - least)*mean_power(lower, most, loading_exponent)
+    if (most > lower) mean = mean + law%k*(most - lower)/(most - least)*mean_power(lower, most, hertz_exponent)
   end function mean_indentation_force
 
   !> Work of the contact force along a path that doesn't turn.
@@ -234,7 +211,7 @@ contains
     branch = current_branch(law, state)
     ratio = 1
     if (branch%finish > branch%start) &
-      ratio = branch%exponent/loading_exponent*branch%finish/(branch%finish - branch%start)
+      ratio = branch%exponent/hertz_exponent*branch%finish/(branch%finish - branch%start)
   end function stiffening
 
   !> Accepts a new indentation, reached in one direction from the committed one.
@@ -249,7 +226,7 @@ contains
     state%work = state%work + indentation_work(law, state, state%alpha, alpha)
     if (alpha > state%alpha_max) then
       state%alpha_max = alpha
-      state%force_max = law%k*alpha**loading_exponent
+      state%force_max = hertz_force(law%k, alpha)
       state%dent = permanent_dent(law, alpha)
       state%separated = .false.
     else if (alpha <= state%dent) then
@@ -318,35 +295,4 @@ contains
       dent = law%beta*(alpha_max - law%alpha_critical)
     end if
   end function permanent_dent
-
-  !> Mean of x**exponent over an interval of positive numbers. Short intervals are summed as a
-  !> binomial series about the middle, since the difference of powers would cancel.
-  pure function mean_power(lower, upper, exponent) result(mean)
-    !> Start of the interval, at least 0
-    real(wp), intent(in) :: lower
-    !> End of the interval, larger than `lower` or equal
-    real(wp), intent(in) :: upper
-    !> Exponent
-    real(wp), intent(in) :: exponent
-    !> Mean
-    real(wp) :: mean
-    real(wp) :: middle, ratio, term, total
-    integer :: order
-
-    middle = 0.5_wp*(lower + upper)
-    ratio = 0.5_wp*(upper - lower)/middle
-    if (ratio > 0.25_wp) then
-      mean = (upper**(exponent + 1) - lower**(exponent + 1))/((exponent + 1)*(upper - lower))
-      return
-    end if
-    term = 1
-    total = 1
-    order = 0
-    do while (abs(term) > epsilon(term))
-      term = term*ratio**2*(exponent - order)*(exponent - order - 1)/real((order + 1)*(order + 2), wp)
-      order = order + 2
-      total = total + term/(order + 1)
-    end do
-    mean = middle**exponent*total
-  end function mean_power
-end module tan_sun_hertz_indentation
+end module tan_sun_indentation
