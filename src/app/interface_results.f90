@@ -30,16 +30,15 @@ contains
     type(state_t), intent(in) :: now
     !> 1 or 0, (1, elements)
     real(wp), allocatable :: delaminated(:, :)
-    integer :: zone, i, cell
+    integer :: zone, i, place(2)
 
     allocate (delaminated(1, model%elements%elements), source=0.0_wp)
     do i = 1, model%elements%elements
       associate (mesh => model%mesh, element => model%distribution%elements(i))
-        cell = mesh%element_cell(element) - 1
+        place = mesh%place_of(mesh%element_cell(element))
         do zone = 1, size(mesh%zones)
           if (mesh%zones(zone)%below_ply /= mesh%element_plies(1, element) - 1) cycle
-          if (now%interfaces%faces%regions(zone)%is_delaminated(1 + modulo(cell, mesh%cells(1)), &
-                                                                1 + cell/mesh%cells(1))) delaminated(1, i) = 1
+          if (now%interfaces%faces%regions(zone)%is_delaminated(place(1), place(2))) delaminated(1, i) = 1
         end do
       end associate
     end do

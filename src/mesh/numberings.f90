@@ -3,6 +3,7 @@
 module numberings
   use kinds, only: wp
   use layered_meshes, only: layered_mesh_t
+  use nine_node_grids, only: lines_around
   use distributions, only: distribution_t
   implicit none
   private
@@ -174,36 +175,19 @@ contains
     integer, intent(in) :: node
     !> Equations, from 0
     integer, allocatable :: columns(:)
-    integer :: i(2), j(2), line(2), along, row, first, last
+    integer :: i(2), j(2), line(2), row, first, last
 
-    along = 2*mesh%cells(1) + 1
-    line = [modulo(node - 1, along), (node - 1)/along]
-    i = reach(line(1), mesh%cells(1))
-    j = reach(line(2), mesh%cells(2))
+    line = mesh%lines_of(node)
+    i = lines_around(line(1), mesh%cells(1))
+    j = lines_around(line(2), mesh%cells(2))
     allocate (columns(0))
     do row = j(1), j(2)
-      first = mesh%first_point(1 + i(1) + along*row)
-      last = mesh%first_point(2 + i(2) + along*row) - 1
+      first = mesh%first_point(mesh%node_at(i(1), row))
+      last = mesh%first_point(mesh%node_at(i(2), row) + 1) - 1
       columns = [columns, pack(equation(:, first:last), equation(:, first:last) >= 0)]
     end do
     call sort(columns)
   end function columns_around
-
-  !> Lines of nodes that share a cell with a line.
-  pure function reach(line, cells) result(range)
-    !> Line of nodes, from 0
-    integer, intent(in) :: line
-    !> Cells along this direction
-    integer, intent(in) :: cells
-    !> First and last line
-    integer :: range(2)
-
-    if (modulo(line, 2) == 1) then
-      range = [line - 1, line + 1]
-    else
-      range = [max(0, line - 2), min(2*cells, line + 2)]
-    end if
-  end function reach
 
   !> Sorts a short list that is made of few ascending runs (insertion, which is linear for such).
   pure subroutine sort(list)
