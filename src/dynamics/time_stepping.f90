@@ -199,7 +199,8 @@ contains
     problem = new_dynamic_step(self%integrator, step, self%stepping%adapt%iterations)
     call solve_step(problem, model, self%stepping%equilibrium, self%operator, self%now, self%trial, converged, error)
     if (converged .and. model%map%layered) &
-      call grow_in_step(problem, model, self%stepping%equilibrium, self%operator, self%now, self%trial, converged, error)
+      call grow_in_step(problem, model, self%stepping%equilibrium, self%operator, self%now, self%trial, converged, &
+                        error)
   end subroutine try_step
 
   !> Longest step that the impactor's integrator bears now, as a binary fraction of the step wanted so that
@@ -273,7 +274,8 @@ contains
                                   self%now%iterations - self%operator%switches, change)
       ! What a step took until it renewed the operator itself does not speak against the new one.
       if (self%operator%factorizations /= self%factorizations_begun) call self%controller%renewed()
-      if (grows_by_steps(model)) call self%controller%heed_fronts(self%stepping, self%now%interfaces%growth_ratio, extended)
+      if (grows_by_steps(model)) &
+        call self%controller%heed_fronts(self%stepping, self%now%interfaces%growth_ratio, extended)
     end if
   end subroutine accept
 

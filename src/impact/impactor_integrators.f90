@@ -1,4 +1,5 @@
-!> The impactor's integrators in time: Gear's method, trapezoidal rule, central differences and the energy-conserving one.
+!> The impactor's integrators in time: Gear's method, the trapezoidal rule, central differences and one that conserves
+!> energy.
 !>
 !> Every integrator gives the displacement at the end of a step as an affine function of the one
 !> unknown contact force of the step, w_end = w_free - compliance*force. What that force means is
@@ -14,8 +15,8 @@ module impactor_integrators
   private
   public :: takes_mean_force, predict, advance, largest_safe_step
 
-  !> Largest omega*step of the integrators other than Gear's, which are stable far beyond, so that a contact is seen at all:
-  !> some six steps a contact at least, where the rebound is still right to a per cent.
+  !> Largest omega*step of the integrators other than Gear's, which are stable far beyond, so that a contact is seen at
+  !> all: some six steps a contact at least, where the rebound is still right to a per cent.
   real(wp), parameter, public :: resolution_limit = 0.5_wp
 
 contains
