@@ -7,7 +7,7 @@ module indentation_deck
   use deck_vocabulary, only: group_row_length, key_row_length
   use impact_parameters, only: indentation_law_t, law_tan_sun, law_hertz, dent_tan_sun, dent_yang_sun
   use kinds, only: wp
-  use tan_sun_hertz_indentation, only: sun_stiffness, loading_exponent
+  use hertz_contact, only: sun_stiffness, hertz_exponent
   use text, only: line_t, append, to_text
   implicit none
   private
@@ -134,15 +134,15 @@ contains
     type(problems_t), intent(inout) :: problems
 
     if (.not. are_clear(settings, problems, indentation_group, 'q reload')) return
-    if (law%q < loading_exponent) then
+    if (law%q < hertz_exponent) then
       call tell(settings, problems, indentation_group, 'q', 'unloading would give back more energy than loading '// &
-                'took; allowed: >= '//to_text(max(loading_exponent, law%reload))//', <= 10.')
+                'took; allowed: >= '//to_text(max(hertz_exponent, law%reload))//', <= 10.')
     else if (law%reload > law%q) then
       call tell(settings, problems, indentation_group, 'reload', 'reloading would take less energy than unloading '// &
-                'gave back; allowed: >= '//to_text(loading_exponent)//', <= q = '//to_text(law%q)//'.')
+                'gave back; allowed: >= '//to_text(hertz_exponent)//', <= q = '//to_text(law%q)//'.')
     end if
-    if (law%reload < loading_exponent) &
+    if (law%reload < hertz_exponent) &
       call tell(settings, problems, indentation_group, 'reload', 'reloading would be stiffer than first loading; '// &
-                'allowed: >= '//to_text(loading_exponent)//', <= q.')
+                'allowed: >= '//to_text(hertz_exponent)//', <= q.')
   end subroutine check_exponents
 end module indentation_deck

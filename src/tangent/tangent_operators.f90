@@ -354,8 +354,8 @@ contains
     call model%halo%update(self%displacement)
     self%deflection = model%deflection(self%displacement)
     call self%solver%clear()
-    call assemble_elements(model, self%stiffness, self%numbering, self%displacement, self%stiffness_factor, self%mass_factor, &
-                           self%solver, self%diagonal)
+    call assemble_elements(model, self%stiffness, self%numbering, self%displacement, self%stiffness_factor, &
+                           self%mass_factor, self%solver, self%diagonal)
     call factorize(self, model, error)
     k = 1
     do while (k < size(columns) .and. .not. allocated(error))

@@ -6,20 +6,16 @@
 !> and F = k alpha**1.5 beyond it. The power is `q` as long as the bodies have not separated, so a
 !> reversal during contact runs back up the unloading curve, and `reload` after a separation. The
 !> reloading curve is run back the way it came: a second contact that doesn't reach the largest
-!> indentation is elastic. Energy is never created if 1.5 <= reload <= q, see
-!> `check_indentation` of the deck.
-module tan_sun_hertz_indentation
+!> indentation is elastic. Energy is never created if 1.5 <= reload <= q, see `check_indentation` of the deck.
+module tan_sun_indentation
   use archives, only: archive_t
+  use hertz_contact, only: hertz_exponent, hertz_force, hertz_stiffness, mean_power
   use impact_parameters, only: indentation_law_t, law_hertz, law_tan_sun, dent_yang_sun
   use kinds, only: wp
   implicit none
   private
-  public :: indentation_t, sun_stiffness, touch_indentation, indentation_force, &
-            indentation_stiffness, mean_indentation_force, indentation_work, stored_energy, &
-            stiffening, commit_indentation
-
-  !> Exponent of loading (Hertz)
-  real(wp), parameter, public :: loading_exponent = 1.5_wp
+  public :: indentation_t, touch_indentation, indentation_force, indentation_stiffness, mean_indentation_force, &
+            indentation_work, stored_energy, stiffening, commit_indentation
 
   !> What the contact remembers; changes only when a step is accepted.
   type :: indentation_t
@@ -50,31 +46,10 @@ module tan_sun_hertz_indentation
     !> Force at `finish`
     real(wp) :: force = 0
     !> Exponent
-    real(wp) :: exponent = loading_exponent
+    real(wp) :: exponent = hertz_exponent
   end type branch_t
 
 contains
-
-  !> Contact stiffness k of a sphere on a plate, (4/3) sqrt(R) / ((1 - nu**2)/E + c) (Sun and Yang).
-  pure function sun_stiffness(radius, struck_compliance, impactor_e, impactor_nu) result(k)
-    !> Radius of the impactor's nose
-    real(wp), intent(in) :: radius
-    !> What the struck ply gives way, c: 1/E2 of its transverse modulus; on an isotropic plate Hertz' (1 - nu**2)/E
-    real(wp), intent(in) :: struck_compliance
-    !> Young's modulus of the impactor; absent: rigid
-    real(wp), intent(in), optional :: impactor_e
-    !> Poisson's ratio of the impactor; absent: 0
-    real(wp), intent(in), optional :: impactor_nu
-    !> Contact stiffness, force per length**1.5
-    real(wp) :: k
-    real(wp) :: compliance, nu
-
-    compliance = struck_compliance
-    nu = 0
-    if (present(impactor_nu)) nu = impactor_nu
-    if (present(impactor_e)) compliance = compliance + (1 - nu**2)/impactor_e
-    k = 4*sqrt(radius)/(3*compliance)
-  end function sun_stiffness
 
   !> Indentation below which the contact force is zero.
   pure function touch_indentation(law, state) result(touch)
@@ -108,7 +83,7 @@ contains
     else if (alpha <= branch%finish) then
       force = branch%force*position(branch, alpha)**branch%exponent
     else
-      force = law%k*alpha**loading_exponent
+      force = hertz_force(law%k, alpha)
     end if
   end function indentation_force
 
@@ -131,7 +106,7 @@ contains
       stiffness = branch%exponent*branch%force/(branch%finish - branch%start) &
                   *position(branch, alpha)**(branch%exponent - 1)
     else
-      stiffness = loading_exponent*law%k*sqrt(alpha)
+      stiffness = hertz_stiffness(law%k, alpha)
     end if
   end function indentation_stiffness
 
@@ -164,7 +139,7 @@ contains
     if (upper > lower) mean = branch%force*(upper - lower)/(most - least) &
                               *mean_power(position(branch, lower), position(branch, upper), branch%exponent)
     lower = max(least, branch%finish)
-    if (most > lower) mean = mean + law%k*(most - lower)/(most - least)*mean_power(lower, most, loading_exponent)
+    if (most > lower) mean = mean + law%k*(most - lower)/(most - least)*mean_power(lower, most, hertz_exponent)
   end function mean_indentation_force
 
   !> Work of the contact force along a path that doesn't turn.
@@ -214,7 +189,7 @@ contains
     branch = current_branch(law, state)
     ratio = 1
     if (branch%finish > branch%start) &
-      ratio = branch%exponent/loading_exponent*branch%finish/(branch%finish - branch%start)
+      ratio = branch%exponent/hertz_exponent*branch%finish/(branch%finish - branch%start)
   end function stiffening
 
   !> Accepts a new indentation, reached in one direction from the committed one.
@@ -229,7 +204,7 @@ contains
     state%work = state%work + indentation_work(law, state, state%alpha, alpha)
     if (alpha > state%alpha_max) then
       state%alpha_max = alpha
-      state%force_max = law%k*alpha**loading_exponent
+      state%force_max = hertz_force(law%k, alpha)
       state%dent = permanent_dent(law, alpha)
       state%separated = .false.
     else if (alpha <= state%dent) then
@@ -298,35 +273,4 @@ contains
       dent = law%beta*(alpha_max - law%alpha_critical)
     end if
   end function permanent_dent
-
-  !> Mean of x**exponent over an interval of positive numbers. Short intervals are summed as a
-  !> binomial series about the middle, since the difference of powers would cancel.
-  pure function mean_power(lower, upper, exponent) result(mean)
-    !> Start of the interval, at least 0
-    real(wp), intent(in) :: lower
-    !> End of the interval, larger than `lower` or equal
-    real(wp), intent(in) :: upper
-    !> Exponent
-    real(wp), intent(in) :: exponent
-    !> Mean
-    real(wp) :: mean
-    real(wp) :: middle, ratio, term, total
-    integer :: order
-
-    middle = 0.5_wp*(lower + upper)
-    ratio = 0.5_wp*(upper - lower)/middle
-    if (ratio > 0.25_wp) then
-      mean = (upper**(exponent + 1) - lower**(exponent + 1))/((exponent + 1)*(upper - lower))
-      return
-    end if
-    term = 1
-    total = 1
-    order = 0
-    do while (abs(term) > epsilon(term))
-      term = term*ratio**2*(exponent - order)*(exponent - order - 1)/real((order + 1)*(order + 2), wp)
-      order = order + 2
-      total = total + term/(order + 1)
-    end do
-    mean = middle**exponent*total
-  end function mean_power
-end module tan_sun_hertz_indentation
+end module tan_sun_indentation

@@ -1,14 +1,14 @@
 !> The impact force of a step: the one scalar unknown that ties impactor and plate together.
-module contact_forces
+module impact_force
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use errors, only: error_t, fail, exit_internal
   use impact_parameters, only: indentation_law_t
-  use tan_sun_hertz_indentation, only: indentation_t, touch_indentation, indentation_force, indentation_stiffness, &
-                         mean_indentation_force, indentation_work
+  use tan_sun_indentation, only: indentation_t, touch_indentation, indentation_force, indentation_stiffness, &
+                                 mean_indentation_force, indentation_work
   use kinds, only: wp
   implicit none
   private
-  public :: solve_contact_force
+  public :: solve_impact_force
 
   !> Never reached: the worst found is 154, at a compliance of 1e100 (usual steps need 3 to 6).
   integer, parameter :: most_iterations = 500
@@ -18,7 +18,7 @@ contains
   !> Finds the force x with alpha_end = alpha_free - compliance*x, where x is the contact force at
   !> alpha_end or, for `mean_force`, the mean over the indentations from alpha_start to alpha_end.
   !> Either is a non-decreasing function of alpha_end, so there is exactly one such force.
-  subroutine solve_contact_force(law, state, alpha_start, alpha_free, compliance, mean_force, &
+  subroutine solve_impact_force(law, state, alpha_start, alpha_free, compliance, mean_force, &
                                  x, alpha_end, force_end, iterations, error)
     !> Indentation law
     type(indentation_law_t), intent(in) :: law
@@ -61,7 +61,7 @@ contains
                             x, alpha_end, iterations)
       force_end = indentation_force(law, state, alpha_end)
     end if
-  end subroutine solve_contact_force
+  end subroutine solve_impact_force
 
   !> The step ends out of contact, where the work is that of the whole way down to zero force: a
   !> quadratic equation for the way.
@@ -191,4 +191,4 @@ contains
       slope = 0.5_wp*slope
     end if
   end function slope_of_step
-end module contact_forces
+end module impact_force
