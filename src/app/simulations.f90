@@ -22,7 +22,7 @@ module simulations
   use fields_file, only: fields_file_t
   use checkpoints, only: checkpoint_archive_t
   use queue_signals, only: stop_signal
-  use output_clocks, only: clock_t
+  use output_clocks, only: clock_t, next_event
   use energy_watches, only: energy_watch_t
   use result_rows, only: row_of, column_names, column_whole
   use field_results, only: write_mesh, write_fields
@@ -228,21 +228,22 @@ contains
     class(simulation_t), intent(inout) :: self
     !> Set if no step converges, a file cannot be written, or a signal came
     type(error_t), allocatable, intent(out) :: error
-    real(wp) :: event
+    real(wp) :: event, closest
 
     call self%timers%stop('set-up')
+    closest = self%stepper%smallest_step(self%model)
     do while (self%stepper%now%time < end_of(self))
-      event = min(end_of(self), self%history_clock%next(), self%fields_clock%next(), self%checkpoint_clock%next())
+      event = next_event([self%history_clock, self%fields_clock, self%checkpoint_clock], end_of(self), closest)
       call self%timers%start('steps')
       call self%stepper%advance(self%model, event, error)
       call self%timers%stop('steps')
       if (allocated(error)) return
       call self%timers%start('results')
-      call write_results(self, error)
+      call write_results(self, self%stepper%now%time >= event, error)
       call self%timers%stop('results')
       if (allocated(error)) return
-      call self%progress%update(self%log, self%stepper%now%time/end_of(self), 'step '//to_text(self%stepper%now%step)// &
-                                ', time '//to_text(self%stepper%now%time))
+      call self%progress%update(self%log, self%stepper%now%time/end_of(self), 'step '// &
+                                to_text(self%stepper%now%step)//', time '//to_text(self%stepper%now%time))
       if (.not. self%communicator%any(stop_signal() /= 0)) cycle
       call save_checkpoint(self, error)
       call fail(error, exit_stopped, 'Stopped by a signal at time '//to_text(self%stepper%now%time)// &
@@ -253,22 +254,31 @@ contains
 
   !> Writes what is due after an accepted step. The clocks move before the checkpoint is saved, so that
   !> a run that goes on from it does not write twice.
-  subroutine write_results(self, error)
+  subroutine write_results(self, at_event, error)
     !> The run
     class(simulation_t), intent(inout) :: self
+    !> True if the step has reached an output time or the end
+    logical, intent(in) :: at_event
     !> Set if a file cannot be written
     type(error_t), allocatable, intent(out) :: error
-    logical :: row_due
+    real(wp) :: closest
+    logical :: row_due, fields_due, checkpoint_due
 
     call warn(self)
     row_due = self%history_clock%interval <= 0 .or. self%stepper%now%time >= end_of(self)
-    if (self%history_clock%strikes_at(self%stepper%now%time)) row_due = .true.
+    fields_due = .false.
+    checkpoint_due = .false.
+    if (at_event) then
+      closest = self%stepper%smallest_step(self%model)
+      if (self%history_clock%strikes_at(self%stepper%now%time, closest)) row_due = .true.
+      fields_due = self%fields_clock%strikes_at(self%stepper%now%time, closest)
+      checkpoint_due = self%checkpoint_clock%strikes_at(self%stepper%now%time, closest)
+    end if
     if (row_due) call self%history%write_row(row_of(self%model, self%stepper), error)
     if (allocated(error)) return
-    if (self%fields_clock%strikes_at(self%stepper%now%time)) &
-      call write_fields(self%model, self%stepper, self%deck%output, self%fields, error)
+    if (fields_due) call write_fields(self%model, self%stepper, self%deck%output, self%fields, error)
     if (allocated(error)) return
-    if (self%checkpoint_clock%strikes_at(self%stepper%now%time)) call save_checkpoint(self, error)
+    if (checkpoint_due) call save_checkpoint(self, error)
   end subroutine write_results
 
   !> Warns, once each, of what a user must not overlook.
