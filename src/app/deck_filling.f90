@@ -198,6 +198,7 @@ contains
       if (.not. s%is_given('time', 'step_max')) call s%derive('time', 'step_max', to_text(time%step), .false.)
       time%step_min = s%real_of('time', 'step_min')
       time%step_max = s%real_of('time', 'step_max')
+      time%wall_limit = s%real_of('time', 'wall_limit')
       time%integrator = code_of(s%text_of('time', 'integrator'), 'newmark generalized_alpha', &
                                 [integrator_newmark, integrator_generalized_alpha])
       time%beta = s%real_of('time', 'beta')

@@ -187,6 +187,8 @@ module deck_table
       &Smallest step tried before giving up.', &
     'time | step_max | real | 1 | time | = step | > 0 | &
       &Largest step taken.', &
+    'time | wall_limit | real | 1 | s | none | > 0 | &
+      &Seconds on the wall by which the run ends with a checkpoint; --wall-limit overrides it.', &
     'time | integrator | choice | 1 | - | ''generalized_alpha'' | newmark generalized_alpha | &
       &Time integrator of the plate.', &
     'time | beta | real | 1 | - | 0.25 | > 0, <= 1 | &
