@@ -235,13 +235,17 @@ def check_signal(implam, folder, _):
     require_same(history_of(deck.parent), reference, "signals")
 
 
+# Options that end a run after its next step.
+SINGLE_STEP = ["--wall-limit", "1e-3"]
+
+
 def stop_by_limit(implam, folder, command, seconds):
     """Run a command that the time on the wall must end; return the rows written."""
     begun = time.monotonic()
     said = run([implam, *command], EXIT_STOPPED)
     took = time.monotonic() - begun
     require("time on the wall" in said, f"The sentence does not name the time on the wall: {said}")
-    require(took < seconds or seconds < 1, f"With {seconds} s the run took {took:.2f} s.")
+    require(took < seconds or seconds == 0, f"With {seconds} s the run took {took:.2f} s.")
     rows = len(read_history(history_of(folder))["time"])
     print(f"Stopped after {took:.2f} of {seconds} s with {rows} rows", flush=True)
     return rows
@@ -266,10 +270,10 @@ def check_limit(implam, folder, _):
     deck = write_deck(folder / "each_step", IMPACT, settings)
     command = [deck, "--output", deck.parent]
     for step in range(1, 5):
-        rows = stop_by_limit(implam, deck.parent, [*command, "--wall-limit", "1e-3"], 1e-3)
+        rows = stop_by_limit(implam, deck.parent, [*command, *SINGLE_STEP], 0)
         require(rows == step, f"{rows} steps were taken where each was to be the last of its run.")
         command = ["restart", checkpoint_of(deck.parent)]
-    run([implam, *command, "--wall-limit", "1e-3"])
+    run([implam, *command, *SINGLE_STEP])
     require_same(history_of(deck.parent), reference, "a run for each step")
 
 
