@@ -4,6 +4,8 @@ module programs
   use errors, only: error_t, exit_done, exit_files
   use text, only: line_t
   use communicators, only: communicator_t, start_mpi, finish_mpi
+  use kinds, only: wp
+  use timers, only: wall_time
   use launchers, only: launched
   use petsc_session, only: start_petsc, finish_petsc
   use linear_solver_deck, only: check_ranks
@@ -166,7 +168,9 @@ contains
     type(deck_t) :: deck
     type(problems_t) :: problems
     type(simulation_t), allocatable :: simulation
+    real(wp) :: begun
 
+    begun = wall_time()
     ! A checkpoint is read through MPI.
     if (command%verb == verb_restart) then
       call start_mpi(communicator)
@@ -180,15 +184,16 @@ contains
     call print_lines(communicator, problems%lines())
     if (code /= exit_done) return
     if (allocated(command%output)) deck%output%directory = command%output
+    if (command%wall_limit > 0) deck%stepping%time%wall_limit = command%wall_limit
     call start_mpi(communicator)
     call start_petsc(communicator, deck%linear_solver%petsc_options//command%petsc_options, error)
     if (allocated(error)) return
     call catch_stop_signals()
     allocate (simulation)
     if (command%verb == verb_restart) then
-      call simulation%resume(deck, communicator, command%target, error)
+      call simulation%resume(deck, communicator, begun, command%target, error)
     else
-      call simulation%initialize(deck, communicator, error)
+      call simulation%initialize(deck, communicator, begun, error)
     end if
     if (.not. allocated(error)) call simulation%run(error)
     if (.not. allocated(error)) call simulation%finalize(error)

@@ -27,6 +27,8 @@ module time_deck
       &Smallest step tried before giving up.', &
     'time | step_max | real | 1 | time | = step | > 0 | &
       &Largest step taken.', &
+    'time | wall_limit | real | 1 | s | none | > 0 | &
+      &Seconds on the wall by which the run ends with a checkpoint; --wall-limit overrides it.', &
     'time | integrator | choice | 1 | - | ''generalized_alpha'' | newmark generalized_alpha | &
       &Time integrator of the plate.', &
     'time | beta | real | 1 | - | 0.25 | > 0, <= 1 | &
@@ -58,6 +60,7 @@ contains
       if (.not. s%is_given(time_group, 'step_max')) call s%derive(time_group, 'step_max', to_text(time%step), .false.)
       time%step_min = s%real_of(time_group, 'step_min')
       time%step_max = s%real_of(time_group, 'step_max')
+      time%wall_limit = s%real_of(time_group, 'wall_limit')
       time%integrator = code_of(s%text_of(time_group, 'integrator'), 'newmark generalized_alpha', &
                                 [integrator_newmark, integrator_generalized_alpha])
       time%beta = s%real_of(time_group, 'beta')
