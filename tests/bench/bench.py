@@ -255,6 +255,35 @@ def growth(program, arguments):
               f'{rows[-1]["energy_algorithmic"]:.4f} |', flush=True)
 
 
+def one_deck(program, arguments):
+    """Figures of one deck with keys set anew: growth, forces, area, extents, energies, steps and cost."""
+    # Elsewhere Python's standard library is enough.
+    for folder in ('postproc', 'tests/regress'):
+        sys.path.insert(0, str(pathlib.Path(__file__).parents[2]/folder))
+    from implam_post.quantities import QUANTITIES
+    from implam_post.history import read_history
+    from solver_runs import change_deck
+    print('| set | first growth, N | peak force, N | mean force of growth, N | area, mm^2 | released over booked '
+          '| algorithmic, J | fibre failures, cracks | steps, factorizations | processor, s |')
+    print('|---|---|---|---|---|---|---|---|---|---|')
+    for settings in arguments.set or [[]]:
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            seconds = run_deck(program, change_deck(arguments.deck.read_text(), settings), folder)
+            rows = history(folder)
+            columns = read_history(next(folder.glob('*_history.csv')))
+        first, peak = (QUANTITIES[name](columns) for name in ('first_growth_force', 'peak_force'))
+        last = rows[-1]
+        grown = [(later['force'], later['delaminated_area'] - row['delaminated_area'])
+                 for row, later in itertools.pairwise(rows) if later['delaminated_area'] > row['delaminated_area']]
+        mean = sum(force*area for force, area in grown)/sum(area for _, area in grown) if grown else float('nan')
+        released = last['energy_released']/last['energy_delamination'] if grown else float('nan')
+        print(f'| {" ".join(settings) or "as it is"} | {first:.0f} | {peak:.0f} | {mean:.0f} | '
+              f'{1e6*last["delaminated_area"]:.0f} | {released:.3f} | {last["energy_algorithmic"]:.4f} | '
+              f'{last["fibre_failures"]:.0f}, {last["matrix_cracks"]:.0f} | {last["step"]:.0f}, '
+              f'{last["refactorisations"]:.0f} | {seconds:.1f} |', flush=True)
+
+
 class Peanut:
     """input/peanut.nml on a mesh of its own; prints a row of the table."""
 
@@ -336,6 +365,11 @@ def main():
     part = parts.add_parser('growth', help=growth.__doc__)
     part.add_argument('--step', type=float, nargs='*', default=[16, 8, 4, 2, 1], help='us')
     part.set_defaults(act=growth)
+    part = parts.add_parser('deck', help=one_deck.__doc__)
+    part.add_argument('deck', type=pathlib.Path)
+    part.add_argument('--set', nargs='+', action='append', metavar='GROUP%%KEY=VALUE',
+                      help='keys set anew; given again: another run')
+    part.set_defaults(act=one_deck)
     arguments = parser.parse_args()
     arguments.act(os.path.abspath(arguments.program), arguments)
 
