@@ -240,8 +240,11 @@ def sentences(page):
 
 def paragraphs(page):
     """Paragraphs, items of lists and cells of tables, with the numbers of their first lines."""
-    text, first = "", 0
+    text, first, listed = "", 0, False
     for line, number in [*prose(page), ("", 0)]:
+        listed = line == BEGIN or (listed and line != END)
+        if listed:
+            continue
         stripped = line.strip()
         # Equations and commands stand indented, apart from the text around them.
         starts = re.match(r"(?:[-*] |\d+\. |>|\||#|$|<!--)", stripped) or (line.startswith("    ") and not text)

@@ -119,7 +119,8 @@ class PagesTest(unittest.TestCase):
     def test_sentences(self):
         """Sentences of more than thirty words are counted; code, links and equations are one word or none."""
         long = " ".join(["word"] * 31)
-        page = f"# Page\n\n{long}. {long[5:]}. `a b` [a b](page.md) et al. it.\n\n    {long}\n\n- {long}\n- short\n\n|{long}|a|\n"
+        page = f"# Page\n\n{long}. {long[5:]}. `a b` [a b](page.md) et al. it.\n\n    {long}\n\n- {long}\n- a\n"
+        page += f"\n|{long}|a|\n"
         said = self.said("--sentences", page=page)[1]
         self.assertIn("3 of ", said.splitlines()[-1])
 
