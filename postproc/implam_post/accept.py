@@ -21,7 +21,7 @@ from implam_post.quantities import QUANTITIES
 _FIGURES = ("peak_force", "max_deflection", "rebound_velocity", "absorbed_energy", "first_growth_force")
 _TIMES = ("peak_force_time", "contact_duration")
 _COLUMNS = ("delaminated_area", "fibre_failures", "matrix_cracks", "matrix_crushings")
-RELATIVE, OF_A_STEP, SMALLEST_ERROR = 1e-3, 0.1, 1e-9
+RELATIVE, OF_A_STEP, LEAST_ERROR = 1e-3, 0.1, 1e-6
 _HEADER = re.compile(r"\s*\[\[\s*(expect|variant|variant\s*\.\s*expect)\s*\]\]")
 _NUMBER = r"(\s*{key}\s*=\s*)([-+\w.]+)(.*)"
 
@@ -63,15 +63,16 @@ def accept_new(path: Path, history: History, version: str) -> list[str]:
                 if name in history.columns and history[name][-1]]
     if pushed:
         error = QUANTITIES["energy_error"](history)
-        largest = 10.0**math.ceil(math.log10(2 * error)) if error > 0 else 0.0
-        entries.append(_entry("energy_error", 0.0, {"absolute": max(largest, SMALLEST_ERROR)}))
+        largest = 10.0**math.ceil(math.log10(10 * error)) if error > 0 else 0.0
+        entries.append(_entry("energy_error", 0.0, {"absolute": max(largest, LEAST_ERROR)}))
     if not entries:
         raise FileError("the run has no figure to expect.")
     text = "\n".join(_written(entry) for entry in entries)
     parse_expectations(path, tomllib.loads(text))
     write_text(path, f"# Accepted from a run of Implam {version}.\n\n{text}")
-    return [f"written with {len(entries)} figures, tolerance {100 * RELATIVE:g} %; of times "
-            f"{OF_A_STEP:g} of the mean step of {step:.3g}"]
+    told = [f"{entry.label}: {entry.value:g}, tolerance {_tolerance(entry)}" for entry in entries]
+    return [f"written with {len(entries)} figures, tolerance {100 * RELATIVE:g} %, of times {OF_A_STEP:g} of the mean "
+            f"step of {step:.3g}", *told]
 
 
 def _entry(name: str, value: float, tolerance: dict[str, float], column: str = "") -> Expectation:
@@ -150,7 +151,11 @@ def _written(entry: Expectation) -> str:
 
 def _told(old: Expectation, new: Expectation, variant: str) -> str:
     """Return what was changed."""
-    tolerance = f"relative {new.relative:g}" if new.absolute is None else f"absolute {new.absolute:g}"
     kept = "kept" if old.relative == new.relative else "instead of a relative one"
     where = f"{variant}: " if variant else ""
-    return f"{where}{new.label}: {old.value:g} -> {new.value:g}, tolerance {tolerance} {kept}"
+    return f"{where}{new.label}: {old.value:g} -> {new.value:g}, tolerance {_tolerance(new)} {kept}"
+
+
+def _tolerance(entry: Expectation) -> str:
+    """Return the tolerance as it is told."""
+    return f"relative {entry.relative:g}" if entry.absolute is None else f"absolute {entry.absolute:g}"

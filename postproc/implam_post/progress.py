@@ -17,7 +17,7 @@ class Progress:
         self._total, self._ended, self._failed = total, 0, 0
         self._stream = stream or sys.stderr
         self._bar = self._stream.isatty()
-        self._start = time.monotonic()
+        self._start = self._last = time.monotonic()
 
     def __enter__(self) -> "Progress":
         """Show the bar."""
@@ -32,14 +32,14 @@ class Progress:
 
     def end_run(self, label: str, failure: str = "") -> None:
         """Count a run that has ended; one that failed is told at once."""
-        self._ended += 1
+        self._ended, self._last = self._ended + 1, time.monotonic()
         self._failed += bool(failure)
         if self._bar:
             if failure:
-                self._show(f"{label}: {failure}\n")
+                self._show(f"{label}: {failure}", "\n")
             self.tick()
         else:
-            self._stream.write(f"[{self._ended}/{self._total}] {label}: {failure or 'done'}{self._left(', ')}\n")
+            self._stream.write(f"[{self._ended}/{self._total}] {label}: {failure or 'done'}{self._left(self._last)}\n")
             self._stream.flush()
 
     def tick(self) -> None:
@@ -47,20 +47,20 @@ class Progress:
         if self._bar and self._total:
             full = _WIDTH * self._ended // self._total
             failed = f", {self._failed} failed" if self._failed else ""
-            self._show(f"[{'#' * full}{'.' * (_WIDTH - full)}] {self._ended}/{self._total}{failed}{self._left(', ')}")
+            self._show(f"[{'#' * full}{'.' * (_WIDTH - full)}] {self._ended}/{self._total}{failed}"
+                       f"{self._left(time.monotonic())}")
 
-    def _left(self, before: str) -> str:
+    def _left(self, now: float) -> str:
         """Return the time left, by the mean of the runs that have ended."""
         if not self._ended or self._ended == self._total:
             return ""
-        seconds = (time.monotonic() - self._start) / self._ended * (self._total - self._ended)
-        return f"{before}{duration(seconds)} left"
+        seconds = (self._last - self._start) / self._ended * (self._total - self._ended) - (now - self._last)
+        return f", {duration(max(seconds, 0.0))} left"
 
-    def _show(self, text: str) -> None:
-        """Write over the bar's line, and no further than the terminal is wide."""
+    def _show(self, text: str, end: str = "") -> None:
+        """Write over the bar's line; a bar is no longer than the terminal is wide."""
         width = shutil.get_terminal_size().columns - 1
-        cut = text if text.endswith("\n") else text[:width]
-        self._stream.write(f"\r{cut.ljust(width) if cut == text[:width] else cut}")
+        self._stream.write(f"\r{(text if end else text[:width]).ljust(width)}{end}")
         self._stream.flush()
 
 

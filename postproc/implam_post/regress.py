@@ -78,7 +78,8 @@ def _run(options: argparse.Namespace, folder: Path) -> bool:
     run_all(to_run, program, options.jobs, options.timeout)
     if options.junit:
         write_text(options.junit, junit(everything, time.monotonic() - start))
-    print(table(everything))
+    if any(outcome.comparisons or outcome.trouble for outcome in everything):
+        print(table(everything))
     failed = sum(not outcome.passed for outcome in everything)
     if options.accept:
         accepted = [_accept(expectations, outcomes[expectations.path]) for expectations in found]
@@ -118,8 +119,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--timeout", type=float, metavar="SECONDS", help="longest time a run may take")
     parser.add_argument("--junit", type=Path, metavar="FILE", help="write the results as JUnit XML")
     parser.add_argument("--accept", action="store_true",
-                        help="write what is found as what is expected, where it isn't; tolerances stay, and are 0.1 "
-                        "percent and a tenth of a time step in new files")
+                        help="write what is found as what is expected, where it isn't met; tolerances stay, and "
+                        "are 0.1 %% and, of times, a tenth of a step in new files")
     return run(_command, parser, arguments)
 
 

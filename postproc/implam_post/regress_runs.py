@@ -41,8 +41,8 @@ class Outcome:
 
     @property
     def passed(self) -> bool:
-        """Tell whether everything expected was found."""
-        return not self.trouble and all(comparison.passed for comparison in self.comparisons)
+        """Tell whether everything expected was found, and something was expected."""
+        return not self.trouble and bool(self.comparisons) and all(comparison.passed for comparison in self.comparisons)
 
     @property
     def verdict(self) -> str:

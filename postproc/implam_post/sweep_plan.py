@@ -69,8 +69,9 @@ class Case:
 
     @property
     def label(self) -> str:
-        """Return the values in one line."""
-        return "  ".join(f"{name}={deck_value(value)}" for name, value in self.values.items()) or "the deck as it is"
+        """Return the values in one line, to six digits."""
+        return "  ".join(f"{name}={value:.6g}" if isinstance(value, float) else f"{name}={deck_value(value)}"
+                         for name, value in self.values.items())
 
 
 @dataclass(frozen=True)

@@ -40,7 +40,7 @@ def series(table: Table) -> dict[str, np.ndarray]:
     """
     energy = table.numbers("impact_energy")
     told = np.isfinite(energy)
-    swept = [name for name in table.swept if name not in table.derived]
+    swept = [name for name in _varied(table) if name not in table.derived]
     kept = [name for name in swept if not _changes_energy(table, swept, name, energy)]
     groups: dict[str, list[int]] = {}
     for row in np.flatnonzero(told):
@@ -85,7 +85,7 @@ def _against_energy(table: Table, name: str) -> Drawing | None:
 def _scatter(table: Table) -> Drawing | None:
     """Draw figures, row by row, against what is swept, column by column; nothing if there is nothing to see."""
     figures = [name for name in _SCATTERED if np.any(np.isfinite(table.numbers(name)))]
-    swept = [name for name in table.swept if len(set(map(str, table.columns[name]))) > 1][:_MOST_COLUMNS]
+    swept = _varied(table)[:_MOST_COLUMNS]
     if not figures or not swept:
         return None
     drawing = Drawing(figsize=(2.8 * len(swept) + 1, 2.2 * len(figures) + 0.6), layout="constrained")
@@ -115,6 +115,11 @@ def _scatter_one(axes: Axes, table: Table, name: str, values: np.ndarray) -> str
     axes.plot([words.index(str(word)) for word in table.columns[name]], values, "o", markersize=4, alpha=0.7)
     axes.set_xticks(range(len(words)), [_short(word) for word in words], rotation=30, ha="right", fontsize="x-small")
     return name
+
+
+def _varied(table: Table) -> list[str]:
+    """Return the names whose values differ from case to case."""
+    return [name for name in table.swept if len(set(map(str, table.columns[name]))) > 1]
 
 
 def _dimension(name: str) -> str:
