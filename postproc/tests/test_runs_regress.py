@@ -94,6 +94,7 @@ class RegressTest(unittest.TestCase):
             self.assertRegex(text, told)
         suite = ElementTree.parse(self.folder / "junit.xml").getroot().find("testsuite")
         self.assertEqual([suite.get(name) for name in ("tests", "failures", "errors")], ["3", "0", "3"])
+        self.assertEqual(len(suite.findall("testcase/error")), 3)
         self.write()
         code, text = self.regress("--timeout", "0.01")
         self.assertEqual((code, text.count("the run took longer than 0.01 s. FAIL")), (1, 2), text)

@@ -1,13 +1,16 @@
 """Tests of sweeps with real runs of the program: the table, failures, and sweeps that are killed or stopped."""
 
+import contextlib
 import csv
 import fcntl
+import json
 import math
 import os
 import shutil
 import signal
 import subprocess
 import tempfile
+import threading
 import time
 import unittest
 from collections.abc import Callable
@@ -39,7 +42,7 @@ deck = "ply_damage.nml"
 "solver.max_iterations" = [1, 30]
 "solver.tolerance" = [1e-13, 1e-6]
 """
-PATIENCE = 120  # seconds
+PATIENCE, SLOW = 120, 5  # seconds
 
 
 class SweepTest(unittest.TestCase):
@@ -53,6 +56,7 @@ class SweepTest(unittest.TestCase):
         self.output, self.program, self.calls = (self.folder / name for name in ("out", "noting", "calls.txt"))
         self.program.write_text(f'#!/bin/sh\necho "$@" >> {self.calls}\nexec {implam()} "$@"\n')
         self.program.chmod(0o755)
+        self.addCleanup(lambda: self.kill(self.processes()))
 
     def arguments(self, text: str, *more: object) -> list[str]:
         """Write the file of a sweep and return the arguments to run it."""
@@ -128,12 +132,12 @@ class SweepTest(unittest.TestCase):
         self.assertEqual((self.called("run"), self.called("check")), (0, 4))
         self.assertEqual([path for path in self.output.rglob("*") if path.suffix not in (".nml", "")], [])
 
-    def test_killed_twice(self) -> None:
-        """Once the sweep alone is killed, once all of its processes: the table is that of an undisturbed sweep."""
+    def test_killed(self) -> None:
+        """The sweep alone, all of its processes, all but the runs are killed: the table is as if nothing had been."""
         reference = self.folder / "reference"
         code, text = run("sweep", *self.arguments(LONG, "--output", reference, "--program", implam()))
         self.assertEqual(code, 0, text)
-        for kill in (self.kill_one, self.kill_all):
+        for kill in (self.kill_sweep, self.kill_all, self.kill_all_but_runs):
             before = self.states()
             with start("sweep", *self.arguments(LONG)) as process:
                 self.wait_until(lambda before=before: len(self.states() - before) >= 2, process)
@@ -142,7 +146,7 @@ class SweepTest(unittest.TestCase):
         self.assertEqual(code, 0, text)
         self.assertEqual(self.table(), self.table(reference))
         self.assertGreater(self.called("restart"), 0)
-        self.assertLess(self.called("run"), 12)
+        self.assertLess(self.called("run"), 18)
         for case in (reference / "cases").iterdir():
             again = self.output / "cases" / case.name / "ply_damage_history.csv"
             self.assertEqual((case / again.name).read_bytes(), again.read_bytes())
@@ -211,22 +215,46 @@ class SweepTest(unittest.TestCase):
 
     def processes(self) -> list[int]:
         """Return the processes that work in the folder of the test."""
-        found = []
-        for path in Path("/proc").glob("[0-9]*/cmdline"):
-            try:
-                if str(self.folder).encode() in path.read_bytes():
-                    found.append(int(path.parent.name))
-            except OSError:
-                continue  # it has ended meanwhile
-        return found
+        numbers = [int(path.name) for path in Path("/proc").glob("[0-9]*")]
+        return [number for number in numbers if str(self.folder).encode() in self.command(number)]
 
-    def kill_one(self, process: subprocess.Popen) -> None:
-        """Kill the sweep, not what it has started."""
+    def kill_sweep(self, process: subprocess.Popen) -> None:
+        """Kill the sweep alone: what it has started stops by itself, to go on from a checkpoint."""
         process.kill()
+        latest = time.monotonic() + PATIENCE
+        while self.processes() and time.monotonic() < latest:
+            time.sleep(0.01)
+        records = [json.loads(path.read_text()) for path in self.output.glob("cases/*/run.json")]
+        self.assertIn(EXIT_STOPPED, [record["exit_code"] for record in records])
 
     def kill_all(self, process: subprocess.Popen) -> None:
         """Kill the sweep and all it has started, at once, as when a machine goes down."""
-        for number in self.processes():
-            os.kill(number, signal.SIGSTOP)
-        for number in self.processes():
-            os.kill(number, signal.SIGKILL)
+        self.kill(self.processes())
+
+    def kill_all_but_runs(self, process: subprocess.Popen) -> None:
+        """Kill the sweep and the watchers over its runs; these go on, slowly, with nobody to note how they end."""
+        runs = [number for number in self.processes() if b"implam_post" not in self.command(number)]
+        self.assertGreater(len(runs), 0)
+        self.send(signal.SIGSTOP, runs)
+        self.kill([number for number in self.processes() if number not in runs])
+        timer = threading.Timer(SLOW, self.send, (signal.SIGCONT, runs))
+        timer.start()
+        self.addCleanup(timer.join)
+
+    def kill(self, numbers: list[int]) -> None:
+        """Kill processes, none of which sees another one end."""
+        self.send(signal.SIGSTOP, numbers)
+        self.send(signal.SIGKILL, numbers)
+
+    def send(self, number: signal.Signals, processes: list[int]) -> None:
+        """Send a signal to processes; some may have ended."""
+        for process in processes:
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(process, number)
+
+    def command(self, number: int) -> bytes:
+        """Return the command line of a process; nothing if it has ended."""
+        try:
+            return Path(f"/proc/{number}/cmdline").read_bytes()
+        except OSError:
+            return b""
