@@ -33,7 +33,7 @@ def number(value: float) -> str:
     mantissa, _, exponent = f"{value:.{max(digits - 1, 0)}e}".partition("e")
     short = f"{mantissa}e{int(exponent)}"
     plain = exact.removesuffix(".0")
-    return short if len(short) < len(plain) else plain
+    return plain if 0.01 <= abs(value) < 1e5 or len(plain) <= len(short) else short
 
 
 def _header(source: str, shape: Shape) -> Iterator[str]:
@@ -95,8 +95,9 @@ def _impact(impact: Impact) -> Iterator[str]:
     else:
         yield (f"&impactor  mass={number(impact.mass)}  velocity={number(impact.velocity)}  "
                f"radius={number(impact.radius)} /")
-    yield "! Left out, the contact is elastic. &indentation law='tan_sun' alpha_cr= /"
+    yield "! Left out, the contact is elastic: &indentation  alpha_cr= /"
     if impact.end is None or impact.step is None:
         yield "! &time        end=  step= /"
     else:
         yield f"&time      end={number(impact.end)}  step={number(impact.step)} /"
+    yield "! For damage: &delamination, and &ply_damage, which needs XT, YT, YC, S12, Sf and Sm23 of every &material."
