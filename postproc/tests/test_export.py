@@ -112,6 +112,9 @@ class PanelTest(ExportTest):
         write_fields(self.results, part="whole")
         self.keep_deck(DECK)
         self.assertEqual(self.panel().cells, (3, 3))
+        write_fields(self.results, part="eighth")
+        self.keep_deck(DECK)
+        self.assertEqual(self.run_command(to_nastran, self.results)[0], 4)
 
     def test_sections(self) -> None:
         """One for each kind of stack, in its place about the middle of the laminate."""
@@ -333,7 +336,8 @@ class AbaqusTest(ExportTest):
         self.assertIn("*MATERIAL, NAME=M1_CARBON_A\n*ELASTIC, TYPE=ENGINEERING CONSTANTS\n"
                       "139000, 9400, 9400, 0.309, 0, 0, 4500, 4600\n2980\n*DENSITY\n1.58e-09\n", text)
         self.assertIn("139000, 94, 94, 0.00309, 0, 0, 45, 4600\n2980\n", text)
-        self.assertIn("0.2, 3, M2_METAL, AT_0\n", text)
+        self.assertIn("COMPOSITE\n0.1, 3, M1_CARBON_A, AT_45\n0.2, 3, M2_METAL, AT_0\n0.3, 3, M1_CARBON_A, AT_90\n",
+                      text)
         self.assertIn("*ORIENTATION, NAME=AT_90\n0, 1, 0, -1, 0, 0\n3, 0.", text)
         self.assertIn("1, 36, 1\n*STEP\n*STATIC\n*DLOAD\nSTRUCK, P, 0.25", text)
         self.assertTrue(all(len(line) <= 255 for line in lines))

@@ -7,6 +7,7 @@ import re
 import tempfile
 import unittest
 from pathlib import Path
+from unittest import mock
 
 import numpy as np
 
@@ -274,6 +275,22 @@ class ReportTest(ImportTest):
             self.assertEqual(from_nastran.main([str(self.folder / "none.bdf")]), 4)
 
 
+class WithoutPyNastranTest(unittest.TestCase):
+    """What a user without pyNastran is told."""
+
+    def test_it_is_named(self) -> None:
+        """One sentence, exit code 1."""
+        with tempfile.TemporaryDirectory() as folder, mock.patch.dict(
+                "sys.modules", {"pyNastran.bdf.bdf_interface.bdf_card": None, "pyNastran": None}):
+            path = Path(folder) / "panel.bdf"
+            path.write_text(Bulk().text())
+            told = io.StringIO()
+            with contextlib.redirect_stderr(told):
+                self.assertEqual(from_nastran.main([str(path)]), 1)
+        self.assertEqual(told.getvalue().count("\n"), 1)
+        self.assertIn("pip install 'implam-post[nastran]'", told.getvalue())
+
+
 class RefusedTest(ImportTest):
     """Contradictions are one sentence and exit code 2."""
 
@@ -363,5 +380,9 @@ class RefusedTest(ImportTest):
         self.refused(Bulk(more=[("GRDSET", None, None, None, None, None, None, 6)]), "GRDSET: it isn't taken")
         self.refused(Bulk(more=[("GRID", 1, None, 5.0, 0.0, 0.0)]), "grid 1 is another one in line 1")
         self.refused(Bulk(more=[("SPC1", 1, "7", 1)]), "SPC1")
+        for text in ("nan", "1e400", "1.+400"):
+            self.refused(Bulk(materials=[(*MATERIALS[0][:2], text, *MATERIALS[0][3:]), MATERIALS[1]]),
+                         f"{text} isn't a finite number")
+        self.refused(Bulk(more=[("CQUAD4", 99, 1, 0, 1, 3, 21)]), "grid 0 isn't there")
         self.refused(Bulk(head="+,1,2\n"), "a continuation without a card")
         self.refused(Bulk(more=[("GRID", 99, 4, 5.0, 0.0, 0.0)]), "coordinate system 4")

@@ -1,5 +1,6 @@
 """A panel as Abaqus' input, in the words that CalculiX understands too."""
 
+import re
 from collections.abc import Iterator, Sequence
 
 from implam_post.exchange.panel import MaterialState, Panel, Section
@@ -46,7 +47,7 @@ def _elements(panel: Panel, mesh: ShellMesh, sections: Sequence[Section]) -> Ite
 
 def _material_name(number: int, state: MaterialState) -> str:
     """Return a name that tells materials apart by their number, since Abaqus' names are short and case-blind."""
-    return f"M{number}_" + "".join(letter if letter.isalnum() else "_" for letter in state.name.upper())[:60]
+    return f"M{number}_" + re.sub("[^A-Z0-9]", "_", state.name.upper())[:60]
 
 
 def _material(name: str, state: MaterialState, material: Material) -> Iterator[str]:

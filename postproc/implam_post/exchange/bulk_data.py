@@ -1,5 +1,7 @@
 """Nastran's bulk data card by card, each with its line; pyNastran reads the fields."""
 
+import contextlib
+import math
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property
@@ -13,18 +15,34 @@ _READING_ERRORS = (SyntaxError, RuntimeError, AssertionError, ValueError, TypeEr
 
 
 class BulkCard:
-    """A card: its name in capitals, the line it begins on, and its text."""
+    """A card: its name in capitals, the line it begins on, its text, and the name of its file."""
 
-    def __init__(self, name: str, line: int, text: str) -> None:
+    def __init__(self, name: str, line: int, text: str, file: str) -> None:
         """Begin with the first line of the text."""
-        self.name, self.line, self.lines = name, line, [text]
+        self.name, self.line, self.lines, self.file = name, line, [text], file
 
     @cached_property
     def fields(self) -> Any:
         """Fields as pyNastran has them, the name being number 0."""
         from pyNastran.bdf.bdf_interface.bdf_card import BDFCard
         from pyNastran.bdf.bdf_interface.utils import to_fields
-        return BDFCard([field.strip() for field in to_fields(self.lines, self.name)])
+        try:
+            card = BDFCard([field.strip() for field in to_fields(self.lines, self.name)])
+        except _READING_ERRORS as error:
+            raise self.unread(error) from None
+        for text in filter(None, card.card[1:]):
+            if _is_infinite(text):
+                raise self.error(f"{text} isn't a finite number.")
+        return card
+
+    def error(self, sentence: str) -> DeckError:
+        """Return an error that names file, line and card."""
+        return DeckError(f"{self.file}:{self.line}: {self.name}: {sentence}")
+
+    def unread(self, error: Exception) -> DeckError:
+        """Return an error that tells the first line of one of pyNastran's, after that which repeats the card's name."""
+        lines = [line.strip() for line in str(error).splitlines() if line.strip() and "card_name=" not in line]
+        return self.error(f"{(lines or [type(error).__name__])[0].rstrip('.')}.")
 
     def given(self, number: int) -> bool:
         """Tell whether a field is there and isn't zero."""
@@ -57,7 +75,7 @@ class BulkData:
         try:
             return kind.add_card(card.fields)
         except _READING_ERRORS as error:
-            raise self._unread(card, error) from None
+            raise card.unread(error) from None
 
     def integer(self, card: BulkCard, number: int) -> int:
         """Return a field that must hold a whole number."""
@@ -65,7 +83,7 @@ class BulkData:
         try:
             return integer(card.fields, number, f"field {number}")
         except _READING_ERRORS as error:
-            raise self._unread(card, error) from None
+            raise card.unread(error) from None
 
     def real(self, card: BulkCard, number: int) -> float | None:
         """Return a field that holds a real number or nothing."""
@@ -73,19 +91,15 @@ class BulkData:
         try:
             return double_or_blank(card.fields, number, f"field {number}")
         except _READING_ERRORS as error:
-            raise self._unread(card, error) from None
+            raise card.unread(error) from None
 
     def missing(self, sentence: str) -> DeckError:
         """Return an error about what isn't there."""
         return DeckError(f"{self.path.name}: {sentence}")
 
-    def _unread(self, card: BulkCard, error: Exception) -> DeckError:
-        """Return an error that tells the first line of one of pyNastran's."""
-        return self.error(card, f"{(str(error).strip() or type(error).__name__).splitlines()[0].rstrip('.')}.")
-
     def error(self, card: BulkCard, sentence: str) -> DeckError:
         """Return an error that names file, line and card."""
-        return DeckError(f"{self.path.name}:{card.line}: {card.name}: {sentence}")
+        return card.error(sentence)
 
     def _split(self, text: str) -> None:
         """Find the cards between BEGIN BULK, if there is one, and ENDDATA."""
@@ -105,7 +119,7 @@ class BulkData:
                     raise DeckError(f"{self.path.name}:{number}: a continuation without a card.")
                 self.cards[-1].lines.append(line)
             else:
-                self.cards.append(BulkCard(name, number, line))
+                self.cards.append(BulkCard(name, number, line, self.path.name))
 
     def _read_case_control(self, lines: Sequence[str]) -> None:
         """Note which set of supports the case control takes; several subcases may not differ."""
@@ -122,6 +136,13 @@ def read_bulk_data(path: Path) -> BulkData:
     except OSError as error:
         raise FileError(f"{path} cannot be read ({error}).") from None
     return BulkData(path, text)
+
+
+def _is_infinite(text: str) -> bool:
+    """Tell whether a field is no number by name, or one too large."""
+    with contextlib.suppress(ValueError):
+        return not math.isfinite(float(re.sub(r"(?<=[\d.])[DE]?([-+]\d+)$", r"E\1", text.upper())))
+    return False
 
 
 def ranges(lines: Iterable[int], everything: Sequence[int]) -> str:

@@ -127,9 +127,9 @@ def _quadrilaterals(bulk: BulkData, points: Mapping[int, np.ndarray], remarks: R
     quads = []
     for card in bulk.named("CQUAD4", "CQUAD8"):
         read = bulk.read(card, CQUAD4 if card.name == "CQUAD4" else CQUAD8)
-        for number in read.nodes:
-            if number and number not in points:
-                raise bulk.error(card, f"grid {number} isn't there.")
+        for place, number in enumerate(read.nodes):
+            if number not in points and (number or place < 4):
+                raise bulk.error(card, f"grid {number or 0} isn't there.")
         corners = np.array([points[number] for number in read.nodes[:4]])
         normal = np.cross(corners[2] - corners[0], corners[3] - corners[1])
         if not np.linalg.norm(normal) > 0:

@@ -29,7 +29,10 @@ def _from_results(path: Path, time: float | None) -> Panel:
     snapshot = fields.snapshots[-1 if time is None else fields.place(time)]
     with opened(path) as file:
         deck = Deck(file["provenance/deck"][()].decode(), path)
+        part = file["part"][()].decode()
         written = set(file["times"][min(file["times"])].get("cells", {}))
+    if part not in ("whole", "quarter"):
+        raise FileError(f"{path} holds a part of the plate that isn't known here: {part}.")
     for group, field in _STATES.items():
         if deck.has(group) and field not in written:
             raise FileError(f"{path} doesn't hold the state of &{group}: run again with '{group}' among the fields of "
