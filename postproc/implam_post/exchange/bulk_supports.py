@@ -68,7 +68,8 @@ def _sets(bulk: BulkData, chosen: int | None) -> set[int]:
         return there
     sets = {wanted}
     if wanted in added:
-        sets = {int(number) for number in added[wanted].fields.fields(2) if number}
+        card = added[wanted]
+        sets = {bulk.integer(card, number) for number in range(2, len(card.fields))}
     if absent := sets - there:
         raise bulk.missing(f"there are no supports with the number {min(absent)}.")
     return sets
