@@ -227,6 +227,7 @@ class NastranTest(ExportTest):
         self.assertTrue(same(139e9, 8) and same(0.125e-3, 8) and not same(0.1333333e-3, 8) and same(0.1333333e-3, 16))
         self.assertEqual(list(card("GRID", 1, None, 0.1333333e-3, 0.0, 1.0)), [
             "GRID*   1                               0.0001333333    0.0", "*       1.0"])
+        self.assertEqual(list(card("X", 0.1333333e-3)), ["X*      0.0001333333", "*"])
         self.assertEqual(list(card("SPC1", 1, 3, *range(1, 8), None)), [
             "SPC1    1       3       1       2       3       4       5       6", "+       7"])
 

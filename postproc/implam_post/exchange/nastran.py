@@ -89,6 +89,8 @@ def card(name: str, *fields: Field) -> Iterator[str]:
     width, count = (8, 8) if small else (16, 4)
     texts = ["" if field is None else real(field, width) if isinstance(field, float) else str(field)
              for field in fields]
+    # Lines of large fields come in pairs.
+    texts += ([] if small else -len(texts) % 8 * [""])
     head = name if small else name + "*"
     for start in range(0, len(texts), count):
         yield (head.ljust(8) + "".join(text.ljust(width) for text in texts[start:start + count])).rstrip()
