@@ -1,6 +1,7 @@
 """Materials and lay-up out of bulk data: MAT1, MAT8, PCOMP and PCOMPG."""
 
 from collections.abc import Iterable
+from itertools import zip_longest
 from typing import Any
 
 from implam_post.exchange.bulk_data import BulkCard, BulkData
@@ -26,7 +27,8 @@ def read_laminate(bulk: BulkData, properties: Iterable[int], remarks: Remarks) -
             raise bulk.missing(f"the elements have property {number}, but there is no PCOMP or PCOMPG of that number.")
         found.append((cards[number], _plies(bulk, cards[number], remarks)))
     for card, plies in found[1:]:
-        if plies != found[0][1]:
+        if any(ply != other or ply.material.strengths != other.material.strengths
+               for ply, other in zip_longest(plies, found[0][1], fillvalue=None)):
             first = found[0][0]
             raise bulk.error(card, f"it isn't the lay-up of {first.name} {first.fields.field(1)} in line {first.line}: "
                                    "a panel has one laminate.")
