@@ -9,7 +9,7 @@ module cohesive_interfaces
   use archives, only: archive_t
   use delamination_parameters, only: law_cohesive, contact_none
   use cohesive_laws, only: stiffness_of
-  use cohesive_points, only: cohesive_point_t, cohesive_traction, stored_energy, dissipated_share
+  use cohesive_points, only: cohesive_point_t, cohesive_traction, stored_energy, dissipated_share, mode_mixity
   use cohesive_tangents, only: operator_stiffness
   use models, only: model_t
   implicit none
@@ -35,6 +35,11 @@ module cohesive_interfaces
     procedure :: dissipation
     !> Area dissipated.
     procedure :: area
+    !> Damage, dissipated part of the toughness, share of shear and pressure at the points.
+    procedure :: damage
+    procedure :: shares
+    procedure :: shear_share
+    procedure :: pressure
     !> True once damage has reached the border of a zone.
     procedure :: border_reached
     !> Keeps the operator's stiffness of points where it is nearly right.
@@ -95,7 +100,7 @@ contains
         call cohesive_traction(law, jumps, 0.0_wp, old%points(i), traction, self%points(i))
         self%stiffness(:, i) = area*operator_stiffness(law, jumps, 0.0_wp, old%points(i))
         energy = energy + area*stored_energy(law, jumps, self%points(i))
-        if (jumps(3) < 0 .and. model%scene%delaminations(model%zone(i))%contact /= contact_none) then
+        if (jumps(3) < 0 .and. holds_closed(model, model%zone(i))) then
           traction(3) = law%stiffness_opening*jumps(3)
           self%stiffness(3, i) = area*law%stiffness_opening
           energy = energy + area*law%stiffness_opening*jumps(3)**2/2
@@ -145,6 +150,85 @@ contains
     call model%communicator%sum(area)
     area = area*model%mesh%multiplicity
   end function area
+
+  !> Damage of this rank's points.
+  pure function damage(self, model)
+    !> The interfaces
+    class(cohesive_interfaces_t), intent(in) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> 0 to 1; 0 where there is no cohesive law, (local points)
+    real(wp) :: damage(size(model%zone))
+
+    damage = 0
+    if (allocated(self%cohesive)) damage = merge(self%points%damage, 0.0_wp, self%cohesive)
+  end function damage
+
+  !> Part of their toughness that this rank's points have dissipated.
+  pure function shares(self, model)
+    !> The interfaces
+    class(cohesive_interfaces_t), intent(in) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> 0 to 1; 0 where there is no cohesive law, (local points)
+    real(wp) :: shares(size(model%zone))
+    integer :: i
+
+    shares = 0
+    if (.not. allocated(self%cohesive)) return
+    do i = 1, model%distribution%owned
+      if (self%cohesive(i)) shares(i) = dissipated_share(model%cohesive_laws(model%zone(i)), self%points(i)%damage)
+    end do
+  end function shares
+
+  !> Share of shear in the energy of the jumps of this rank's points.
+  pure function shear_share(self, model, displacement)
+    !> The interfaces
+    class(cohesive_interfaces_t), intent(in) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Unknowns, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> 0 to 1; 0 where there is no cohesive law, (local points)
+    real(wp) :: shear_share(size(model%zone))
+    integer :: i
+
+    shear_share = 0
+    if (.not. allocated(self%cohesive)) return
+    do i = 1, model%distribution%owned
+      if (self%cohesive(i)) shear_share(i) = mode_mixity(model%cohesive_laws(model%zone(i)), displacement(1:3, i))
+    end do
+  end function shear_share
+
+  !> Pressure on closed faces at this rank's points.
+  pure function pressure(self, model, displacement)
+    !> The interfaces
+    class(cohesive_interfaces_t), intent(in) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Unknowns, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> Pressure; 0 where there is no cohesive law, (local points)
+    real(wp) :: pressure(size(model%zone))
+    integer :: i
+
+    pressure = 0
+    if (.not. allocated(self%cohesive)) return
+    do i = 1, model%distribution%owned
+      if (self%cohesive(i) .and. holds_closed(model, model%zone(i))) &
+        pressure(i) = max(0.0_wp, -model%cohesive_laws(model%zone(i))%stiffness_opening*displacement(3, i))
+    end do
+  end function pressure
+
+  !> True if the faces of a zone don't pass through each other.
+  pure logical function holds_closed(model, zone)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Index of the zone
+    integer, intent(in) :: zone
+
+    holds_closed = model%scene%delaminations(zone)%contact /= contact_none
+  end function holds_closed
 
   !> True once a point beside the border of a zone has been damaged: growth ends there. The same on every rank.
   logical function border_reached(self, model)

@@ -2,6 +2,7 @@
 module interface_states
   use kinds, only: wp
   use archives, only: archive_t
+  use cohesive_points, only: dissipated_share
   use models, only: model_t
   use contact_and_ties, only: contact_and_ties_t, new_contact_and_ties
   use cohesive_interfaces, only: cohesive_interfaces_t, new_cohesive_interfaces
@@ -27,6 +28,8 @@ module interface_states
   contains
     !> Adds the forces of ties and contact to a residual.
     procedure :: act
+    !> Area come apart at every node of the mesh.
+    procedure :: area_at_nodes
     !> Stiffness that ties, contact and cohesive laws add to the diagonal.
     procedure :: added_stiffness
     !> Saves or loads the state.
@@ -61,6 +64,31 @@ contains
     call self%ties%act(model, residual)
     call self%faces%act(model, displacement, residual)
   end subroutine act
+
+  !> Area that has come apart at the nodes of the mesh, of this rank's points: a node where ties are released has its
+  !> whole area, a cohesive one the part dissipated.
+  pure function area_at_nodes(self, model) result(area)
+    !> The state
+    class(interface_state_t), intent(in) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Area, zone after zone, (nodes*zones)
+    real(wp) :: area(model%mesh%nodes()*size(model%mesh%zones))
+    real(wp) :: share
+    integer :: i, place
+
+    area = 0
+    do i = 1, model%distribution%owned
+      if (model%zone(i) == 0) cycle
+      share = merge(1.0_wp, 0.0_wp, self%faces%free(i))
+      if (allocated(self%cohesive%cohesive)) then
+        if (self%cohesive%cohesive(i)) &
+          share = dissipated_share(model%cohesive_laws(model%zone(i)), self%cohesive%points(i)%damage)
+      end if
+      place = model%mesh%point_node(model%distribution%points(i)) + (model%zone(i) - 1)*model%mesh%nodes()
+      area(place) = share*model%contact_area(i)
+    end do
+  end function area_at_nodes
 
   !> Stiffness that ties, contact and cohesive laws add to the diagonal of the operator.
   pure subroutine added_stiffness(self, model, diagonal, stiffness_factor, added)

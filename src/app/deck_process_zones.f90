@@ -1,0 +1,95 @@
+!> Warns of cohesive interfaces whose process zone the mesh does not resolve.
+module deck_process_zones
+  use cell_grids, only: cell_edges
+  use deck_contents, only: deck_t
+  use deck_problems, only: problems_t
+  use deck_remarks, only: remark
+  use delaminated_regions, only: cells_within
+  use delamination_deck, only: delamination_group
+  use delamination_parameters, only: delamination_t, law_cohesive, toughnesses
+  use kinds, only: wp
+  use laminate_parameters, only: shear_five_sixths
+  use plies, only: ply_t
+  use process_zones, only: process_zone_t, process_zone_warning
+  use stacking, only: stacked_plies, section_stiffness
+  implicit none
+  private
+  public :: check_process_zones
+
+contains
+
+  !> Warns of unresolved process zones.
+  subroutine check_process_zones(deck, problems)
+    !> The deck, filled and checked
+    type(deck_t), intent(in) :: deck
+    !> Receives the warnings
+    type(problems_t), intent(inout) :: problems
+    character(len=:), allocatable :: warning
+    integer :: place
+
+    if (problems%errors() > 0) return
+    do place = 1, size(deck%delaminations)
+      if (deck%delaminations(place)%law /= law_cohesive) cycle
+      warning = process_zone_warning(process_zone(deck, deck%delaminations(place)), deck%delaminations(place)%below_ply)
+      if (warning /= '') call remark(deck%settings, problems, delamination_group, '', warning, place)
+    end do
+  end subroutine check_process_zones
+
+  !> What the process zone of an interface depends on.
+  pure function process_zone(deck, delamination) result(zone)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> The interface
+    type(delamination_t), intent(in) :: delamination
+    !> Modulus and thickness of the thinner layer, toughness, strengths and cells
+    type(process_zone_t) :: zone
+    type(ply_t), allocatable :: plies(:), layer(:)
+    real(wp) :: toughness(2)
+
+    plies = stacked_plies(deck%laminate, deck%materials)
+    layer = plies(:delamination%below_ply)
+    zone%thickness = thickness_of(layer)
+    if (thickness_of(plies(delamination%below_ply + 1:)) < zone%thickness) layer = plies(delamination%below_ply + 1:)
+    zone%thickness = thickness_of(layer)
+    zone%modulus = bending_modulus(layer)
+    toughness = toughnesses(delamination)
+    zone%toughness_opening = toughness(1)
+    zone%toughness_shear = toughness(2)
+    zone%strength_opening = delamination%strength_opening
+    zone%strength_shear = delamination%strength_shear
+    zone%cell = max(longest_cell(cell_edges(deck%plate, deck%mesh, 1), delamination%zone(1)), &
+                    longest_cell(cell_edges(deck%plate, deck%mesh, 2), delamination%zone(2)))
+  end function process_zone
+
+  !> Thickness of some plies.
+  pure real(wp) function thickness_of(layer)
+    !> The plies, from the struck face
+    type(ply_t), intent(in) :: layer(:)
+
+    thickness_of = layer(size(layer))%z_bottom - layer(1)%z_top
+  end function thickness_of
+
+  !> Smaller bending modulus of some plies about their own middle, the lesser of 12 D_11/h**3 and 12 D_22/h**3.
+  pure real(wp) function bending_modulus(layer) result(modulus)
+    !> The plies, from the struck face
+    type(ply_t), intent(in) :: layer(:)
+    real(wp) :: stiffness(21), middle, bending(2)
+
+    stiffness = section_stiffness(layer, layer%elasticity, shear_five_sixths)
+    middle = (layer(1)%z_top + layer(size(layer))%z_bottom)/2
+    bending = stiffness([13, 16]) - 2*middle*stiffness([7, 10]) + middle**2*stiffness([1, 4])
+    modulus = 12*minval(bending)/thickness_of(layer)**3
+  end function bending_modulus
+
+  !> Longest side of the cells within an extent.
+  pure real(wp) function longest_cell(edges, extent) result(longest)
+    !> Edges of the cells along one direction, the struck point at 0
+    real(wp), intent(in) :: edges(:)
+    !> Full extent
+    real(wp), intent(in) :: extent
+    integer :: range(2)
+
+    range = cells_within(edges, extent)
+    longest = maxval(edges(range(1) + 1:range(2) + 1) - edges(range(1):range(2)))
+  end function longest_cell
+end module deck_process_zones

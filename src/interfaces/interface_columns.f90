@@ -1,0 +1,97 @@
+!> What the history tells of the interfaces. A new column goes to the end of the border's rows, with its value in the
+!> function beside them: all columns before it stay where they are.
+module interface_columns
+  use kinds, only: wp
+  use interface_states, only: interface_state_t
+  use models, only: model_t
+  use result_tables, only: result_row_length
+  implicit none
+  private
+  public :: area_values, release_values, border_values
+
+  !> How much has come apart: a column of the public interface.
+  character(len=result_row_length), parameter, public :: area_rows(*) = [character(len=result_row_length) :: &
+    'delaminated_area | real | area | Delaminated area of all interfaces together, their starters included; with a cohesive law the area &
+      &dissipated.']
+
+  !> How near the fronts are to growth, what growth has set free, and how well faces meet.
+  character(len=result_row_length), parameter, public :: release_rows(*) = [character(len=result_row_length) :: &
+    'release_ratio | real | - | Largest energy release rate on all fronts over its critical value; 0 in a static &
+      &analysis.', &
+    'energy_released | real | energy | Work done against the fading forces of released ties so far; 0 if all &
+      &interfaces have growth = ''one_per_step''.', &
+    'penetration | real | length | Largest penetration of separated faces.', &
+    'complementarity | real | - | Largest contact pressure that does not go with its gap, over the largest pressure &
+      &so far.']
+
+  !> Fronts at the border of their zone.
+  character(len=result_row_length), parameter, public :: border_rows(*) = [character(len=result_row_length) :: &
+    'border_reached | logical | - | 1 once a front or damage has reached the border of its zone, where it cannot grow &
+      &on; before that 0.', &
+    'projected_area | real | area | Area that a C-scan sees: where several interfaces have come apart above each &
+      &other, the largest of them counts once.']
+
+contains
+
+  !> How much has come apart. Collective.
+  function area_values(model, interfaces) result(values)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> The interfaces
+    type(interface_state_t), intent(in) :: interfaces
+    !> A value a column, of the whole plate
+    real(wp) :: values(size(area_rows))
+
+    values = [interfaces%faces%area(model) + sum(interfaces%cohesive%area(model))]
+  end function area_values
+
+  !> How near the fronts are to growth, what growth has set free, and how well faces meet. Collective.
+  function release_values(model, interfaces, displacement) result(values)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> The interfaces
+    type(interface_state_t), intent(in) :: interfaces
+    !> Unknowns, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> A value a column, the same on every rank
+    real(wp) :: values(size(release_rows))
+
+    values = [interfaces%release_ratio, sum(interfaces%ties%set_free), &
+              interfaces%faces%penetration(model, displacement), &
+              interfaces%faces%complementarity(model, displacement)]
+  end function release_values
+
+  !> Fronts at the border of their zone, and the area projected. Collective.
+  function border_values(model, interfaces) result(values)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> The interfaces
+    type(interface_state_t), intent(in) :: interfaces
+    !> A value a column
+    real(wp) :: values(size(border_rows))
+
+    values = [merge(1.0_wp, 0.0_wp, interfaces%border_reached), projected_area(model, interfaces)]
+  end function border_values
+
+  !> Area in which at least one interface has come apart, of the whole plate: nodal areas times the largest part come
+  !> apart above each other. Collective.
+  function projected_area(model, interfaces) result(area)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> The interfaces
+    type(interface_state_t), intent(in) :: interfaces
+    real(wp) :: area
+    real(wp), allocatable :: shares(:)
+    integer :: nodes, zone
+
+    area = 0
+    if (.not. model%map%layered) return
+    nodes = model%mesh%nodes()
+    shares = interfaces%area_at_nodes(model)
+    call model%communicator%sum(shares)
+    do zone = 2, size(model%mesh%zones)
+      shares(:nodes) = max(shares(:nodes), shares((zone - 1)*nodes + 1:zone*nodes))
+    end do
+    area = sum(shares(:nodes))*model%mesh%multiplicity
+  end function projected_area
+end module interface_columns
