@@ -6,7 +6,9 @@ module field_results
   use element_stresses, only: element_strains, stresses_of_ply
   use models, only: model_t
   use time_stepping, only: time_stepper_t
-  use output_parameters, only: output_t
+  use output_parameters, only: output_t, field_displacement, field_rotation, field_velocity, field_gap, &
+                               field_contact_pressure, field_delamination, field_energy_release, field_ply_damage, &
+                               field_stress, field_face_stress
   use fields_file, only: fields_file_t
   use interface_results, only: jumps, delaminated_above, release_ahead
   implicit none
@@ -80,17 +82,17 @@ contains
     associate (now => stepper%now)
       call fields%begin(now%time, now%step, error)
       motion = model%motion_of(now%motion%displacement)
-      if (output%wants('displacement')) call fields%write_point_field('displacement', motion(1:3, :), error)
-      if (output%wants('rotation')) call fields%write_point_field('rotation', motion(4:5, :), error)
+      if (output%wants(field_displacement)) call fields%write_point_field(field_displacement, motion(1:3, :), error)
+      if (output%wants(field_rotation)) call fields%write_point_field(field_rotation, motion(4:5, :), error)
       motion = model%motion_of(now%motion%velocity)
-      if (output%wants('velocity')) call fields%write_point_field('velocity', motion(1:3, :), error)
+      if (output%wants(field_velocity)) call fields%write_point_field(field_velocity, motion(1:3, :), error)
       if (model%map%layered) then
-        if (output%wants('gap')) call fields%write_point_field('jump', jumps(model, now), error)
-        if (output%wants('contact_pressure')) call fields%write_point_field( &
-          'contact_pressure', reshape(now%interfaces%faces%pressure, [1, size(now%interfaces%faces%pressure)]), error)
-        if (output%wants('delamination')) &
+        if (output%wants(field_gap)) call fields%write_point_field('jump', jumps(model, now), error)
+        if (output%wants(field_contact_pressure)) call fields%write_point_field(field_contact_pressure, &
+          reshape(now%interfaces%faces%pressure, [1, size(now%interfaces%faces%pressure)]), error)
+        if (output%wants(field_delamination)) &
           call fields%write_cell_field('delaminated_above', delaminated_above(model, now), error)
-        if (output%wants('energy_release')) &
+        if (output%wants(field_energy_release)) &
           call fields%write_cell_field('energy_release_above', release_ahead(model, now), error)
       end if
     end associate
@@ -117,11 +119,12 @@ contains
     real(wp), allocatable :: strains(:, :), stresses(:, :, :)
     integer :: ply, place, i
 
-    wanted = [output%wants('stress'), output%wants('face_stress'), output%wants('face_stress')]
+    wanted(1) = output%wants(field_stress)
+    wanted(2:3) = output%wants(field_face_stress)
     if (any(wanted)) strains = element_strains(model, stepper%failures, stepper%now%motion%displacement)
     do ply = 1, size(model%plies)
       associate (name => 'ply_'//to_text(ply)//'_')
-        if (output%wants('ply_damage') .and. model%scene%has_ply_damage) &
+        if (output%wants(field_ply_damage) .and. model%scene%has_ply_damage) &
           call fields%write_cell_field(name//'failure', failure_code(stepper%failures%onset%failed(ply)), error)
         if (any(wanted)) stresses = stresses_of_ply(model, stepper%failures, strains, ply)
         do place = 1, 3
