@@ -41,7 +41,8 @@ contains
       row(9:12) = [ledger%impactor, ledger%kinetic, ledger%strain, ledger%indentation]
       row(13:15) = [ledger%delamination, ledger%ply_damage, ledger%contact]
       row(16:25) = [ledger%algorithmic, ledger%error(), now%patch_mean, ledger%external_work, &
-                    stepper%controller%last, now%stress, now%interfaces%release_ratio, sum(now%interfaces%ties%set_free), &
+                    stepper%controller%last, now%stress, now%interfaces%release_ratio, &
+                    sum(now%interfaces%ties%set_free), &
                     now%interfaces%faces%penetration(model, now%motion%displacement), &
                     now%interfaces%faces%complementarity(model, now%motion%displacement)]
       row(26:37) = real([now%iterations, now%force_iterations, now%contact_iterations, now%all_iterations, &

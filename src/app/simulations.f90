@@ -240,8 +240,8 @@ contains
       call write_results(self, error)
       call self%timers%stop('results')
       if (allocated(error)) return
-      call self%progress%update(self%log, self%stepper%now%time/end_of(self), 'step '//to_text(self%stepper%now%step)// &
-                                ', time '//to_text(self%stepper%now%time))
+      call self%progress%update(self%log, self%stepper%now%time/end_of(self), 'step '// &
+                                to_text(self%stepper%now%step)//', time '//to_text(self%stepper%now%time))
       if (.not. self%communicator%any(stop_signal() /= 0)) cycle
       call save_checkpoint(self, error)
       call fail(error, exit_stopped, 'Stopped by a signal at time '//to_text(self%stepper%now%time)// &
