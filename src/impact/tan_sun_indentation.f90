@@ -6,18 +6,16 @@
 !> and F = k alpha**1.5 beyond it. The power is `q` as long as the bodies have not separated, so a
 !> reversal during contact runs back up the unloading curve, and `reload` after a separation. The
 !> reloading curve is run back the way it came: a second contact that doesn't reach the largest
-!> indentation is elastic. Energy is never created if 1.5 <= reload <= q, see `check_indentation_law`.
+!> indentation is elastic. Energy is never created if 1.5 <= reload <= q.
 module tan_sun_indentation
   use archives, only: archive_t
-  use errors, only: error_t, fail, exit_deck
   use hertz_contact, only: hertz_exponent, hertz_force, hertz_stiffness, mean_power
   use impact_parameters, only: indentation_law_t, law_hertz, law_tan_sun, dent_yang_sun
   use kinds, only: wp
   implicit none
   private
-  public :: indentation_t, check_indentation_law, touch_indentation, indentation_force, &
-            indentation_stiffness, mean_indentation_force, indentation_work, stored_energy, &
-            stiffening, commit_indentation
+  public :: indentation_t, touch_indentation, indentation_force, indentation_stiffness, mean_indentation_force, &
+            indentation_work, stiffening, commit_indentation
 
   !> What the contact remembers; changes only when a step is accepted.
   type :: indentation_t
@@ -52,26 +50,6 @@ module tan_sun_indentation
   end type branch_t
 
 contains
-
-  !> Refuses a law that has no meaning or that would create energy.
-  subroutine check_indentation_law(law, error)
-    !> The law
-    type(indentation_law_t), intent(in) :: law
-    !> Raised if the law can't be used
-    type(error_t), allocatable, intent(inout) :: error
-
-    if (.not. law%k > 0) call fail(error, exit_deck, 'indentation: k must be positive.')
-    if (law%law == law_hertz) return
-    if (.not. (law%reload >= hertz_exponent .and. law%q >= law%reload)) &
-      call fail(error, exit_deck, 'indentation: 1.5 <= reload <= q is needed, other exponents create energy.')
-    if (.not. law%alpha_critical >= 0) call fail(error, exit_deck, 'indentation: alpha_cr must not be negative.')
-    if (law%dent == dent_yang_sun) then
-      if (.not. law%alpha_critical > 0) &
-        call fail(error, exit_deck, 'indentation: the dent of yang_sun needs a positive alpha_cr.')
-    else if (.not. (law%beta >= 0 .and. law%beta < 1)) then
-      call fail(error, exit_deck, 'indentation: beta must be at least 0 and less than 1.')
-    end if
-  end subroutine check_indentation_law
 
   !> Indentation below which the contact force is zero.
   pure function touch_indentation(law, state) result(touch)
@@ -179,24 +157,6 @@ contains
 
     work = mean_indentation_force(law, state, alpha_from, alpha_to)*(alpha_to - alpha_from)
   end function indentation_work
-
-  !> Energy that unloading from a trial indentation down to zero force would give back.
-  pure function stored_energy(law, state, alpha) result(energy)
-    !> The law
-    type(indentation_law_t), intent(in) :: law
-    !> Committed state
-    type(indentation_t), intent(in) :: state
-    !> Indentation
-    real(wp), intent(in) :: alpha
-    !> Recoverable energy
-    real(wp) :: energy
-    type(indentation_t) :: reached
-
-    reached = state
-    call commit_indentation(law, reached, alpha)
-    energy = indentation_work(law, reached, touch_indentation(law, reached), &
-                              max(alpha, touch_indentation(law, reached)))
-  end function stored_energy
 
   !> Bound on the ratio of the present contact stiffness to that of loading at the same indentation.
   pure function stiffening(law, state) result(ratio)

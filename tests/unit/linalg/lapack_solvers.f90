@@ -28,8 +28,6 @@ module lapack_solvers
     procedure :: factorize
     procedure :: solve
     procedure :: solve_many
-    procedure :: multiply
-    procedure :: negative_pivots
     procedure :: statistics
     procedure :: release
   end type lapack_solver_t
@@ -207,28 +205,6 @@ contains
     end if
     self%solves = self%solves + size(solutions, 2)
   end subroutine solve_many
-
-  !> Multiplies the matrix as it was assembled last.
-  subroutine multiply(self, vector, product)
-    class(lapack_solver_t), intent(inout) :: self
-    !> Vector
-    real(wp), intent(in) :: vector(:)
-    !> Matrix times vector
-    real(wp), intent(out) :: product(:)
-
-    product = matmul(self%matrix, vector)
-  end subroutine multiply
-
-  !> Number of negative pivots: a block of two rows has one, as the pivoting makes its determinant negative.
-  integer function negative_pivots(self)
-    class(lapack_solver_t), intent(in) :: self
-    integer :: i
-
-    negative_pivots = count(self%pivots < 0)/2
-    do i = 1, size(self%pivots)
-      if (self%pivots(i) > 0 .and. self%factor(i, i) < 0) negative_pivots = negative_pivots + 1
-    end do
-  end function negative_pivots
 
   !> Size of the factor.
   subroutine statistics(self, factor_entries, megabytes)
