@@ -45,6 +45,8 @@ module time_stepping
     procedure :: start
     !> One accepted step.
     procedure :: advance
+    !> Smallest step worth trying.
+    procedure :: smallest_step
     !> Saves or loads all that evolves.
     procedure :: visit
   end type time_stepper_t
@@ -120,7 +122,7 @@ contains
       self%rejected = self%rejected + 1
       call self%controller%reject(step)
       self%operator%ready = .false.
-      if (step <= smallest_step(self, model)*(1 + 1.0e-9_wp)) then
+      if (step <= self%smallest_step(model)*(1 + 1.0e-9_wp)) then
         call fail(error, exit_convergence, 'No equilibrium from time '//to_text(self%now%time)// &
                   ' on with the smallest step, '//to_text(step)//'.')
         return
@@ -157,7 +159,7 @@ contains
   !> Smallest step worth trying.
   pure real(wp) function smallest_step(self, model) result(step)
     !> The stepper
-    type(time_stepper_t), intent(in) :: self
+    class(time_stepper_t), intent(in) :: self
     !> The model
     type(model_t), intent(in) :: model
 

@@ -6,7 +6,7 @@
 !> and F = k alpha**1.5 beyond it. The power is `q` as long as the bodies have not separated, so a
 !> reversal during contact runs back up the unloading curve, and `reload` after a separation. The
 !> reloading curve is run back the way it came: a second contact that doesn't reach the largest
-!> indentation is elastic. Energy is never created if 1.5 <= reload <= q.
+!> indentation is elastic. Energy is never created if 1.5 <= reload <= q, see `check_indentation` of the deck.
 module tan_sun_indentation
   use archives, only: archive_t
   use hertz_contact, only: hertz_exponent, hertz_force, hertz_stiffness, mean_power

@@ -85,6 +85,7 @@ class Reader:
         self.procedure = None
         self.type = None
         self.interface = None
+        self.abstract, self.depth = False, 0
         lines = path.read_text(encoding="utf-8").splitlines()
         for statement in check_style.statements(lines):
             self.take(statement.text)
@@ -97,11 +98,9 @@ class Reader:
         elif self.type:
             self.take_of_type(text)
         elif re.match(r"(abstract\s+)?interface\b", text):
-            name = re.match(r"interface\s+(\w+)$", text)
-            self.interface = {"name": name.group(1) if name else "", "abstract": text.startswith("abstract"), "depth": 0}
-            operator = re.match(r"interface\s+(operator|assignment)\b", text)
-            if operator:
-                self.interface["name"] = text.split(None, 1)[1].replace(" ", "")
+            name = re.match(r"interface\s+(\w+\s*(?:\(.*\))?)$", text)
+            self.abstract, self.depth = text.startswith("abstract"), 0
+            self.interface = name.group(1).replace(" ", "") if name else ""
         elif check_style.UNIT.match(text):
             self.open_unit(check_style.UNIT.match(text))
         elif procedure and not text.startswith("end"):
@@ -167,22 +166,21 @@ class Reader:
 
     def take_interface(self, text, procedure):
         """Take a statement of an interface."""
-        state = self.interface
         listed = re.match(r"(?:module\s+)?procedure\s*(?:::)?\s*(\w.*)$", text)
         if re.match(r"end\s*interface\b", text):
             self.interface = None
         elif procedure and not text.startswith("end"):
-            state["depth"] += 1
-            if not state["abstract"] and not self.procedure:
+            self.depth += 1
+            if not self.abstract and not self.procedure:
                 name = procedure.group(2)
                 self.module.procedures[name] = Procedure(name, self.module.name)
-                if state["name"]:
-                    self.module.generics.setdefault(state["name"], []).append(name)
-        elif listed and state["name"] and not state["depth"]:
+                if self.interface:
+                    self.module.generics.setdefault(self.interface, []).append(name)
+        elif listed and self.interface and not self.depth:
             names = [name.strip() for name in listed.group(1).split(",")]
-            self.module.generics.setdefault(state["name"], []).extend(names)
+            self.module.generics.setdefault(self.interface, []).extend(names)
         elif re.match(r"end\b", text):
-            state["depth"] -= 1
+            self.depth -= 1
 
 
 def read_modules(paths):
