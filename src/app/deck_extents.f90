@@ -7,7 +7,7 @@ module deck_extents
   use deck_remarks, only: tell, remark, are_clear
   use delaminated_regions, only: extent_of_cells
   use delamination_deck, only: delamination_group, key_starter, key_zone
-  use delamination_parameters, only: delamination_t
+  use delamination_parameters, only: delamination_t, law_front
   use gradings, only: core_elements
   use kinds, only: wp
   use laminate_deck, only: laminate_group, key_thicknesses
@@ -137,7 +137,7 @@ contains
         if (any(d%zone > deck%plate%length) .and. are_clear(s, problems, plate_group, key_length) .and. &
             are_clear(s, problems, delamination_group, key_zone, place)) &
           call tell(s, problems, delamination_group, key_zone, 'the zone must not be larger than the plate.', place)
-        if (deck%has_impactor .and. d%starter < least_starter*deck%mesh%patch .and. &
+        if (deck%has_impactor .and. d%law == law_front .and. d%starter < least_starter*deck%mesh%patch .and. &
             are_clear(s, problems, delamination_group, key_starter, place)) &
           call remark(s, problems, delamination_group, key_starter, 'the starter is hardly larger than the loaded '// &
                       'patch: most of the shear then passes inside it, and growth may never start.', place)

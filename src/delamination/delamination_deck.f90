@@ -238,10 +238,11 @@ contains
     type(problems_t), intent(inout) :: problems
 
     if (delamination%law /= law_cohesive) return
-    if (.not. (delamination%strength_opening > 0) .and. are_clear(settings, problems, group, 'strength_opening', place)) &
+    if (.not. delamination%strength_opening > 0 .and. &
+        are_clear(settings, problems, group, 'strength_opening', place)) &
       call tell(settings, problems, group, 'strength_opening', 'is missing; a cohesive law needs it, or YT of the '// &
                 'materials.', place)
-    if (.not. (delamination%strength_shear > 0) .and. are_clear(settings, problems, group, 'strength_shear', place)) &
+    if (.not. delamination%strength_shear > 0 .and. are_clear(settings, problems, group, 'strength_shear', place)) &
       call tell(settings, problems, group, 'strength_shear', 'is missing; a cohesive law needs it, or S12 of the '// &
                 'materials.', place)
   end subroutine check_strengths

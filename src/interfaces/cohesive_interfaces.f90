@@ -144,7 +144,8 @@ contains
     do i = 1, model%distribution%owned
       if (.not. self%cohesive(i)) cycle
       associate (zone => model%zone(i))
-        area(zone) = area(zone) + model%contact_area(i)*dissipated_share(model%cohesive_laws(zone), self%points(i)%damage)
+        area(zone) = area(zone) + model%contact_area(i)*dissipated_share(model%cohesive_laws(zone), &
+                                                                         self%points(i)%damage)
       end associate
     end do
     call model%communicator%sum(area)

@@ -11,8 +11,8 @@ module interface_columns
 
   !> How much has come apart: a column of the public interface.
   character(len=result_row_length), parameter, public :: area_rows(*) = [character(len=result_row_length) :: &
-    'delaminated_area | real | area | Delaminated area of all interfaces together, their starters included; with a cohesive law the area &
-      &dissipated.']
+    'delaminated_area | real | area | Delaminated area of all interfaces together, their starters included; &
+      &with a cohesive law the area dissipated.']
 
   !> How near the fronts are to growth, what growth has set free, and how well faces meet.
   character(len=result_row_length), parameter, public :: release_rows(*) = [character(len=result_row_length) :: &

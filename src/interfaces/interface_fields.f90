@@ -57,8 +57,8 @@ contains
         call fields%write_point_field('contact_pressure', pressures(model, interfaces, motion%displacement), error)
       if (output%wants('delamination')) then
         call fields%write_cell_field('delaminated_above', delaminated_above(model, interfaces), error)
-        call fields%write_point_field('damage_above', reshape(interfaces%cohesive%damage(model), [1, size(model%zone)]), &
-                                      error)
+        call fields%write_point_field('damage_above', reshape(interfaces%cohesive%damage(model), &
+                                                              [1, size(model%zone)]), error)
         call fields%write_point_field('shear_share_above', reshape(interfaces%cohesive%shear_share( &
           model, motion%displacement), [1, size(model%zone)]), error)
       end if
