@@ -43,7 +43,6 @@ module deck_problems
     procedure :: error => add_error
     procedure :: warning => add_warning
     procedure :: errors => number_of_errors
-    procedure :: warnings => number_of_warnings
     procedure :: concern
     procedure :: is_full
     procedure :: exit_code
@@ -167,13 +166,6 @@ contains
 
     number = count(.not. self%list%is_warning)
   end function number_of_errors
-
-  !> Number of remarks.
-  pure integer function number_of_warnings(self) result(number)
-    class(problems_t), intent(in) :: self
-
-    number = count(self%list%is_warning)
-  end function number_of_warnings
 
   !> Exit code that the program ends with after a mere check.
   pure integer function exit_code(self)

@@ -15,7 +15,7 @@ module tan_sun_indentation
   implicit none
   private
   public :: indentation_t, touch_indentation, indentation_force, indentation_stiffness, mean_indentation_force, &
-            indentation_work, stored_energy, stiffening, commit_indentation
+            indentation_work, stiffening, commit_indentation
 
   !> What the contact remembers; changes only when a step is accepted.
   type :: indentation_t
@@ -157,24 +157,6 @@ contains
 
     work = mean_indentation_force(law, state, alpha_from, alpha_to)*(alpha_to - alpha_from)
   end function indentation_work
-
-  !> Energy that unloading from a trial indentation down to zero force would give back.
-  pure function stored_energy(law, state, alpha) result(energy)
-    !> The law
-    type(indentation_law_t), intent(in) :: law
-    !> Committed state
-    type(indentation_t), intent(in) :: state
-    !> Indentation
-    real(wp), intent(in) :: alpha
-    !> Recoverable energy
-    real(wp) :: energy
-    type(indentation_t) :: reached
-
-    reached = state
-    call commit_indentation(law, reached, alpha)
-    energy = indentation_work(law, reached, touch_indentation(law, reached), &
-                              max(alpha, touch_indentation(law, reached)))
-  end function stored_energy
 
   !> Bound on the ratio of the present contact stiffness to that of loading at the same indentation.
   pure function stiffening(law, state) result(ratio)

@@ -24,9 +24,11 @@ FENCE = re.compile(r"^ *```")
 ORIGIN = re.compile(r"^<!-- from (\S+) -->$")
 # A file in a folder of the project, a source by the folder of src/ that it is in, or a bare name of one.
 PATHS = re.compile(r"^(?:src|tests|input|doc|cmake|postproc|\.ci)/[\w./*-]*$")
-SOURCES = re.compile(r"^(?:[a-z_]+/)?[\w-]+\.(?:f90|pf|c|nml|py|toml)$")
-# Names that stand for a user's own files.
-PLACEHOLDERS = {"deck.nml", "my.nml"}
+SOURCES = re.compile(r"^(?:[a-z_]+/)?[\w-]+\.(?:f90|pf|c|py)$")
+# Names that stand for others: <name>, GROUP_deck.f90.
+PLACEHOLDER = re.compile(r"<|[A-Z]{2}")
+# Files that a patch of an example makes.
+PATCHED = re.compile(r"^\+\+\+ \w/(\S+)", re.MULTILINE)
 DIARY = re.compile(
     r"\b(?:as it was then|was then|as it was when|before the deck had|before (?:that|this) change|formerly|used to be|"
     r"up to now|until now|has now been)\b",
@@ -90,12 +92,14 @@ class Names:
         """List them."""
         self.root = root
         self.bare = set()
-        for folder in ("src", "tests", "input", "postproc", "cmake"):
+        for folder in ("src", "tests", "postproc", "cmake"):
             self.bare |= {path.name for path in (root / folder).rglob("*") if ".venv" not in path.parts}
+        patches = (root / "tests" / "examples").glob("*.patch")
+        self.patched = {name for path in patches for name in PATCHED.findall(path.read_text(encoding="utf-8"))}
 
     def missing(self, word):
         """Does a quoted word name a file that is not there?"""
-        if "<" in word or word in PLACEHOLDERS:
+        if PLACEHOLDER.search(word) or word in self.patched:
             return False
         if PATHS.match(word):
             return not (any(self.root.glob(word)) if "*" in word else (self.root / word).exists())

@@ -1,5 +1,5 @@
 !> Small dense symmetric equations solved by LAPACK on one rank: what the sparse solvers are compared with.
-module lapack_solvers
+module dense_solvers
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use communicators, only: communicator_t
   use errors, only: error_t, fail, exit_convergence, exit_internal
@@ -7,13 +7,13 @@ module lapack_solvers
   use linear_solvers, only: linear_solver_t
   implicit none
   private
-  public :: lapack_solver_t
+  public :: dense_solver_t
 
   !> Blocks of this many columns are factored at once
   integer, parameter :: block_size = 64
 
   !> A dense symmetric matrix and its factor L D L^T by Bunch and Kaufman's pivoting.
-  type, extends(linear_solver_t) :: lapack_solver_t
+  type, extends(linear_solver_t) :: dense_solver_t
     !> The matrix, both triangles
     real(wp), allocatable, private :: matrix(:, :)
     !> Its factor in the lower triangle
@@ -28,11 +28,9 @@ module lapack_solvers
     procedure :: factorize
     procedure :: solve
     procedure :: solve_many
-    procedure :: multiply
-    procedure :: negative_pivots
     procedure :: statistics
     procedure :: release
-  end type lapack_solver_t
+  end type dense_solver_t
 
   interface
     !> LAPACK: factor of a symmetric matrix.
@@ -97,7 +95,7 @@ contains
 
   !> Sets the order of the matrix, anew if there was one; the pattern is of no use to it.
   subroutine define(self, communicator, first_row, total_rows, row_start, columns, positive_definite, error)
-    class(lapack_solver_t), intent(inout) :: self
+    class(dense_solver_t), intent(inout) :: self
     !> One rank
     type(communicator_t), intent(in) :: communicator
     !> Number of the first row, 0
@@ -124,14 +122,14 @@ contains
 
   !> Zeroes the values of the matrix.
   subroutine clear(self)
-    class(lapack_solver_t), intent(inout) :: self
+    class(dense_solver_t), intent(inout) :: self
 
     self%matrix = 0
   end subroutine clear
 
   !> Adds an element's matrix.
   subroutine add(self, equations, values)
-    class(lapack_solver_t), intent(inout) :: self
+    class(dense_solver_t), intent(inout) :: self
     !> Equation of each row of the element's matrix, from 0; -1 for a row left out
     integer, intent(in) :: equations(:)
     !> The symmetric matrix, shape (equations, equations)
@@ -150,14 +148,14 @@ contains
 
   !> Nothing needs to be brought together on one rank.
   subroutine finish_assembly(self, error)
-    class(lapack_solver_t), intent(inout) :: self
+    class(dense_solver_t), intent(inout) :: self
     !> Never raised
     type(error_t), allocatable, intent(inout) :: error
   end subroutine finish_assembly
 
   !> Factors the matrix as it was assembled last.
   subroutine factorize(self, error)
-    class(lapack_solver_t), intent(inout) :: self
+    class(dense_solver_t), intent(inout) :: self
     !> Raised when the matrix is singular
     type(error_t), allocatable, intent(inout) :: error
     real(wp) :: work(max(block_size, 2)*size(self%pivots)), condition
@@ -175,7 +173,7 @@ contains
 
   !> Solves for one right-hand side with the factor.
   subroutine solve(self, right_hand_side, solution, error)
-    class(lapack_solver_t), intent(inout) :: self
+    class(dense_solver_t), intent(inout) :: self
     !> Right-hand side
     real(wp), intent(in) :: right_hand_side(:)
     !> Solution
@@ -190,7 +188,7 @@ contains
 
   !> Solves for several right-hand sides with the factor.
   subroutine solve_many(self, right_hand_sides, solutions, error)
-    class(lapack_solver_t), intent(inout) :: self
+    class(dense_solver_t), intent(inout) :: self
     !> Right-hand sides, shape (rows, right-hand sides)
     real(wp), intent(in) :: right_hand_sides(:, :)
     !> Solutions, shape (rows, right-hand sides)
@@ -208,31 +206,9 @@ contains
     self%solves = self%solves + size(solutions, 2)
   end subroutine solve_many
 
-  !> Multiplies the matrix as it was assembled last.
-  subroutine multiply(self, vector, product)
-    class(lapack_solver_t), intent(inout) :: self
-    !> Vector
-    real(wp), intent(in) :: vector(:)
-    !> Matrix times vector
-    real(wp), intent(out) :: product(:)
-
-    product = matmul(self%matrix, vector)
-  end subroutine multiply
-
-  !> Number of negative pivots: a block of two rows has one, as the pivoting makes its determinant negative.
-  integer function negative_pivots(self)
-    class(lapack_solver_t), intent(in) :: self
-    integer :: i
-
-    negative_pivots = count(self%pivots < 0)/2
-    do i = 1, size(self%pivots)
-      if (self%pivots(i) > 0 .and. self%factor(i, i) < 0) negative_pivots = negative_pivots + 1
-    end do
-  end function negative_pivots
-
   !> Size of the factor.
   subroutine statistics(self, factor_entries, megabytes)
-    class(lapack_solver_t), intent(in) :: self
+    class(dense_solver_t), intent(in) :: self
     !> Numbers stored in the factor
     real(wp), intent(out) :: factor_entries
     !> Memory of the factor in MB
@@ -244,9 +220,9 @@ contains
 
   !> Frees matrix and factor.
   subroutine release(self)
-    class(lapack_solver_t), intent(inout) :: self
+    class(dense_solver_t), intent(inout) :: self
 
     if (allocated(self%matrix)) deallocate (self%matrix, self%pivots)
     if (allocated(self%factor)) deallocate (self%factor)
   end subroutine release
-end module lapack_solvers
+end module dense_solvers
