@@ -5,6 +5,7 @@ program write_energy
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
   use deck_reader, only: read_deck
+  use element_batches, only: batch_of, lane_of
   use energy_fields, only: strain_energy_density, write_energy_fields, energy_field_rows
   use errors, only: error_t
   use example_checks, only: require
@@ -13,7 +14,6 @@ program write_energy
   use hdf5_data, only: read_real_columns
   use hdf5_file, only: hdf5_file_t
   use kinds, only: wp
-  use load_vectors, only: element_areas
   use model_building, only: create_model
   use models, only: model_t
   use output_parameters, only: output_t
@@ -49,12 +49,22 @@ program write_energy
   stiffness(:, 20, :) = stiffness(:, 20, :) + 0.1_wp*stiffness(:, 21, :)
   density = strain_energy_density(model, stiffness, bent)
   call model%internal(stiffness, bent, force, energy)
-  call require('field times areas over strain energy', sum(density(1, :)*element_areas(model%elements))/energy, &
-               1.0_wp, 1e-13_wp)
+  call require('field times areas over strain energy', sum(density(1, :)*areas())/energy, 1.0_wp, 1e-13_wp)
   call write_and_read('example_output_field')
   call finish_mpi()
 
 contains
+
+  !> Area of each element.
+  function areas()
+    !> One an element
+    real(wp) :: areas(size(density, 2))
+    integer :: element
+
+    do element = 1, size(areas)
+      areas(element) = sum(model%elements%weight(lane_of(element), :, batch_of(element)))
+    end do
+  end function areas
 
   !> Writes the field at one time, and reads it back.
   subroutine write_and_read(base)
