@@ -1,17 +1,18 @@
 !> Interfaces of the deck that may delaminate: rows of its table, filling and checks.
 module delamination_deck
+  use cohesive_laws, only: cohesive_objection, create_cohesive_law
   use deck_choices, only: code_of
   use deck_problems, only: problems_t
-  use deck_remarks, only: tell, remark_idle, are_clear
+  use deck_remarks, only: tell, remark, remark_idle, are_clear
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
-  use delamination_parameters, only: delamination_t, law_front, law_cohesive, default_starter, &
+  use delamination_parameters, only: delamination_t, law_front, law_cohesive, default_starter, toughnesses, &
                                      toughness_objection, release_two_state, release_vcct, growth_equilibrium, &
                                      growth_one_per_step, tie_eliminate, &
                                      tie_penalty, contact_augmented_lagrangian, contact_continuous_penalty, &
                                      contact_none, unloading_contact, unloading_glued, account_debts, account_balance
   use kinds, only: wp
-  use text, only: to_text
+  use text, only: line_t, to_text, words_of
   implicit none
   private
   public :: fill_delaminations, check_delaminations
@@ -20,6 +21,9 @@ module delamination_deck
   character(len=*), parameter, public :: delamination_group = 'delamination', key_below_ply = 'below_ply', &
                                          key_zone = 'zone', key_starter = 'starter'
   character(len=*), parameter :: group = delamination_group
+  !> Keys that have no effect on a cohesive interface.
+  character(len=*), parameter :: keys_of_fronts = &
+    'energy_release growth tie penalty unloading account contact_exponent'
   !> Row of the group.
   character(len=group_row_length), parameter, public :: delamination_group_row = &
     'delamination | several | An interface that may delaminate; one group an interface.'
@@ -39,7 +43,7 @@ module delamination_deck
       &Full extents of the layered rectangle along x and y, centred on the struck point.', &
     'delamination | starter | real | 1 | length | = 0.05 % of the plate, with law = cohesive none | > 0 | &
       &Side of the square starter delamination, centred on the struck point.', &
-    'delamination | law | choice | 1 | - | = cohesive, with a starter front | front cohesive | &
+    'delamination | law | choice | 1 | - | = cohesive; front with a starter or without strengths | front cohesive | &
       &Ties that a front releases by its energy release rate, or tractions against the jumps of the faces.', &
     'delamination | strength_opening | real | 1 | pressure | = YT of the weaker ply beside it | > 0 | &
       &Strength of the cohesive law in pure opening.', &
@@ -126,17 +130,44 @@ contains
     real(wp) :: weaker(2)
     integer :: below
 
-    if (.not. settings%is_given(group, 'law', place)) call settings%derive(group, 'law', &
-      trim(merge('front   ', 'cohesive', settings%is_given(group, key_starter, place))), .true., place)
-    delamination%law = code_of(settings%text_of(group, 'law', place), 'front cohesive', [law_front, law_cohesive])
-    if (delamination%law /= law_cohesive) return
-    delamination%stiffness = settings%real_of(group, 'stiffness', place)
     below = settings%integer_of(group, key_below_ply, place)
     weaker = 0
     if (below >= 1 .and. below < size(strengths, 2)) weaker = minval(strengths(:, below:below + 1), dim=2)
+    if (.not. settings%is_given(group, 'law', place)) call settings%derive(group, 'law', &
+      trim(merge('cohesive', 'front   ', suits_cohesive(settings, place, weaker))), .true., place)
+    delamination%law = code_of(settings%text_of(group, 'law', place), 'front cohesive', [law_front, law_cohesive])
+    if (delamination%law /= law_cohesive) return
+    delamination%stiffness = settings%real_of(group, 'stiffness', place)
     call fill_strength(settings, place, 'strength_opening', weaker(1), delamination%strength_opening)
     call fill_strength(settings, place, 'strength_shear', weaker(2), delamination%strength_shear)
   end subroutine fill_law
+
+  !> True if the deck means a cohesive law without saying so: it asks for nothing of a front, and strengths are known.
+  pure logical function suits_cohesive(settings, place, of_plies) result(suits)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+    !> Which of the groups
+    integer, intent(in) :: place
+    !> Strengths YT and S12 of the weaker ply; 0: not given
+    real(wp), intent(in) :: of_plies(2)
+
+    suits = .not. asks_for_front(settings, place) .and. &
+            (of_plies(1) > 0 .or. settings%is_given(group, 'strength_opening', place)) .and. &
+            (of_plies(2) > 0 .or. settings%is_given(group, 'strength_shear', place))
+  end function suits_cohesive
+
+  !> True if the deck gives a key that only a front has.
+  pure logical function asks_for_front(settings, place)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+    !> Which of the groups
+    integer, intent(in) :: place
+    type(line_t), allocatable :: names(:)
+    integer :: i
+
+    names = words_of(key_starter//' '//keys_of_fronts, ' ')
+    asks_for_front = any([(settings%is_given(group, names(i)%text, place), i=1, size(names))])
+  end function asks_for_front
 
   !> One strength: the key, or that of the plies.
   subroutine fill_strength(settings, place, key, of_plies, strength)
@@ -237,7 +268,13 @@ contains
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
 
-    if (delamination%law /= law_cohesive) return
+    if (delamination%law /= law_cohesive) then
+      if (.not. (settings%is_given(group, 'law', place) .or. asks_for_front(settings, place))) &
+        call remark(settings, problems, group, '', 'a front with a starter of the usual size holds the faces, as a '// &
+                    'cohesive law needs strength_opening and strength_shear, or YT and S12 of the materials.', place)
+      return
+    end if
+    call check_law(settings, delamination, place, problems)
     if (.not. delamination%strength_opening > 0 .and. &
         are_clear(settings, problems, group, 'strength_opening', place)) &
       call tell(settings, problems, group, 'strength_opening', 'is missing; a cohesive law needs it, or YT of the '// &
@@ -246,6 +283,29 @@ contains
       call tell(settings, problems, group, 'strength_shear', 'is missing; a cohesive law needs it, or S12 of the '// &
                 'materials.', place)
   end subroutine check_strengths
+
+  !> A stiffness that leaves the fall of the curve gentle.
+  subroutine check_law(settings, delamination, place, problems)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+    !> The interface
+    type(delamination_t), intent(in) :: delamination
+    !> Which of the groups
+    integer, intent(in) :: place
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    character(len=:), allocatable :: objection
+
+    if (.not. settings%is_given(group, 'stiffness', place)) return
+    if (.not. are_clear(settings, problems, group, &
+                        'G_c G_Ic G_IIc eta strength_opening strength_shear stiffness', place)) return
+    associate (d => delamination)
+      if (.not. (d%strength_opening > 0 .and. d%strength_shear > 0) .or. toughness_objection(d) /= '') return
+      objection = cohesive_objection(create_cohesive_law(toughnesses(d), d%mixing_exponent, [d%strength_opening, &
+                                                         d%strength_shear], d%stiffness, 0.0_wp, 0.0_wp, 0.0_wp))
+    end associate
+    if (objection /= '') call tell(settings, problems, group, 'stiffness', objection//'.', place)
+  end subroutine check_law
 
   !> What an interface asks for but has no effect.
   subroutine remark_idle_keys(settings, delamination, place, problems)
@@ -260,7 +320,7 @@ contains
 
     associate (d => delamination)
       if (d%law == law_cohesive) then
-        call idle('energy_release growth tie penalty unloading account contact_exponent', 'with law = ''cohesive''')
+        call idle(keys_of_fronts, 'with law = ''cohesive''')
       else
         call idle('strength_opening strength_shear stiffness', 'without law = ''cohesive''')
       end if

@@ -9,7 +9,7 @@ module interface_fields
   use kinds, only: wp
   use models, only: model_t
   use motions, only: motion_t
-  use output_parameters, only: output_t
+  use output_parameters, only: output_t, field_gap, field_contact_pressure, field_delamination, field_energy_release
   use result_tables, only: result_row_length
   implicit none
   private
@@ -52,17 +52,17 @@ contains
 
     if (.not. model%map%layered) return
     associate (faces => interfaces%faces)
-      if (output%wants('gap')) call fields%write_point_field('jump', jumps(model, motion%displacement), error)
-      if (output%wants('contact_pressure')) &
+      if (output%wants(field_gap)) call fields%write_point_field('jump', jumps(model, motion%displacement), error)
+      if (output%wants(field_contact_pressure)) &
         call fields%write_point_field('contact_pressure', pressures(model, interfaces, motion%displacement), error)
-      if (output%wants('delamination')) then
+      if (output%wants(field_delamination)) then
         call fields%write_cell_field('delaminated_above', delaminated_above(model, interfaces), error)
         call fields%write_point_field('damage_above', reshape(interfaces%cohesive%damage(model), &
                                                               [1, size(model%zone)]), error)
         call fields%write_point_field('shear_share_above', reshape(interfaces%cohesive%shear_share( &
           model, motion%displacement), [1, size(model%zone)]), error)
       end if
-      if (output%wants('energy_release')) &
+      if (output%wants(field_energy_release)) &
         call fields%write_cell_field('energy_release_above', release_ahead(model, stiffness, faces, motion), error)
     end associate
   end subroutine write_interface_fields

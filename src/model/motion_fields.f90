@@ -5,7 +5,7 @@ module motion_fields
   use kinds, only: wp
   use models, only: model_t
   use motions, only: motion_t
-  use output_parameters, only: output_t
+  use output_parameters, only: output_t, field_displacement, field_rotation, field_velocity
   use result_tables, only: result_row_length
   implicit none
   private
@@ -36,9 +36,9 @@ contains
     real(wp), allocatable :: layers(:, :)
 
     layers = model%motion_of(motion%displacement)
-    if (output%wants('displacement')) call fields%write_point_field('displacement', layers(1:3, :), error)
-    if (output%wants('rotation')) call fields%write_point_field('rotation', layers(4:5, :), error)
+    if (output%wants(field_displacement)) call fields%write_point_field('displacement', layers(1:3, :), error)
+    if (output%wants(field_rotation)) call fields%write_point_field('rotation', layers(4:5, :), error)
     layers = model%motion_of(motion%velocity)
-    if (output%wants('velocity')) call fields%write_point_field('velocity', layers(1:3, :), error)
+    if (output%wants(field_velocity)) call fields%write_point_field(field_velocity, layers(1:3, :), error)
   end subroutine write_motion_fields
 end module motion_fields

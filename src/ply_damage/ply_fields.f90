@@ -5,7 +5,7 @@ module ply_fields
   use fields_file, only: fields_file_t
   use kinds, only: wp
   use models, only: model_t
-  use output_parameters, only: output_t
+  use output_parameters, only: output_t, field_stress, field_face_stress, field_ply_damage
   use ply_failures, only: ply_failure_t
   use result_tables, only: result_row_length
   use text, only: to_text
@@ -54,11 +54,11 @@ contains
     real(wp), allocatable :: strains(:, :), stresses(:, :, :)
     integer :: ply, place, i
 
-    wanted = [output%wants('stress'), output%wants('face_stress'), output%wants('face_stress')]
+    wanted = [output%wants(field_stress), output%wants(field_face_stress), output%wants(field_face_stress)]
     if (any(wanted)) strains = element_strains(model, plies, displacement)
     do ply = 1, size(model%plies)
       associate (name => 'ply_'//to_text(ply)//'_')
-        if (output%wants('ply_damage') .and. model%scene%has_ply_damage) &
+        if (output%wants(field_ply_damage) .and. model%scene%has_ply_damage) &
           call fields%write_cell_field(name//'failure', failure_code(plies%onset%failed(ply)), error)
         if (any(wanted)) stresses = stresses_of_ply(model, plies, strains, ply)
         do place = 1, 3

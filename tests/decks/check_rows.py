@@ -16,7 +16,7 @@ import sys
 SRC = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "src")
 # Texts that are no names of keys: file, texts, reason. One that no longer stands there is a breach too.
 OTHERS = (
-    ("app/result_rows.f90", "time step indentation stress iterations", "columns of the history, which users read"),
+    ("app/result_explain.f90", "history fields", "topics of `implam explain`"),
     ("app/simulations.f90", "history fields", "items of a checkpoint, which must stay readable"),
     ("app/simulations.f90", "steps", "a timer"),
     ("base/text.f90", "e", "the exponent of a number"),

@@ -12,7 +12,7 @@ contains
 
   !> Toughnesses of IM7/8552 with moderate strengths: N = 346.
   pure type(cohesive_law_t) function tough_law() result(law)
-    law = create_cohesive_law([280.0_wp, 790.0_wp], 1.75_wp, [27e6_wp, 60e6_wp], 0.0_wp, 9e9_wp, 1e-3_wp, 0.0_wp)
+    law = create_cohesive_law([280.0_wp, 790.0_wp], 1.75_wp, [27e6_wp, 60e6_wp], 0.0_wp, 90e9_wp, 1e-3_wp, 0.0_wp)
   end function tough_law
 
   !> One toughness for every mode.
@@ -27,7 +27,7 @@ contains
 
   !> A law that pressure strengthens by mu = 0.3.
   pure type(cohesive_law_t) function strengthened_law() result(law)
-    law = create_cohesive_law([280.0_wp, 790.0_wp], 1.75_wp, [27e6_wp, 60e6_wp], 0.0_wp, 9e9_wp, 1e-3_wp, 0.3_wp)
+    law = create_cohesive_law([280.0_wp, 790.0_wp], 1.75_wp, [27e6_wp, 60e6_wp], 0.0_wp, 90e9_wp, 1e-3_wp, 0.3_wp)
   end function strengthened_law
 
   !> N from 1e6 (case 0) down to 1e3 (case 3), exponents of all kinds.

@@ -10,7 +10,7 @@ module small_scenes
   use pressure_loads, only: distribution_sine
   use stepped_scenes, only: stepped_scene_t
   use models, only: model_t
-  use contact_and_ties, only: new_contact_and_ties
+  use interface_states, only: new_interface_state
   use linear_solver_parameters, only: factorization_mumps
   use tangent_operators, only: tangent_operator_t
   use time_stepping, only: time_stepper_t
@@ -124,7 +124,7 @@ contains
 
     call operator%create(model, factorization_mumps, error)
     if (allocated(error)) return
-    call operator%renew(model, model%elements%stiffness, new_contact_and_ties(model), displacement, stiffness_factor, &
+    call operator%renew(model, model%elements%stiffness, new_interface_state(model), displacement, stiffness_factor, &
                         mass_factor, error)
   end subroutine factor
 
