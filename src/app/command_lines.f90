@@ -1,6 +1,7 @@
 !> The command line of the program.
 module command_lines
   use errors, only: error_t, fail, exit_usage
+  use kinds, only: wp
   implicit none
   private
   public :: command_t, read_command_line, usage
@@ -17,6 +18,8 @@ module command_lines
     character(len=:), allocatable :: target
     !> Folder that overrides the deck's; unallocated: the deck's
     character(len=:), allocatable :: output
+    !> Seconds on the wall that override the deck's; 0: the deck's
+    real(wp) :: wall_limit = 0
     !> Arguments for PETSc, in one string
     character(len=:), allocatable :: petsc_options
     !> True: explain as a Markdown table, for the manual
@@ -86,10 +89,26 @@ contains
       command%output = ''
       if (i <= command_argument_count()) command%output = argument(i)
       if (command%output == '') call fail(error, exit_usage, '--output needs a folder.')
+    case ('--wall-limit')
+      i = i + 1
+      if (i <= command_argument_count()) command%wall_limit = seconds_of(argument(i))
+      if (.not. command%wall_limit > 0) call fail(error, exit_usage, '--wall-limit needs a number of seconds above 0.')
     case default
       call fail(error, exit_usage, 'Unknown option "'//word//'"; see implam --help.')
     end select
   end subroutine read_option
+
+  !> Seconds that a word says; 0 if it is no number.
+  pure real(wp) function seconds_of(word) result(seconds)
+    !> The word
+    character(len=*), intent(in) :: word
+    integer :: status
+
+    seconds = 0
+    if (verify(word, '0123456789.eE+-') > 0) return
+    read (word, *, iostat=status) seconds
+    if (status /= 0 .or. .not. seconds <= huge(seconds)) seconds = 0
+  end function seconds_of
 
   !> Checks that the verbs that need a file have one.
   subroutine require_target(command, error)
@@ -157,7 +176,7 @@ contains
   !> What the program tells of its use.
   pure function usage() result(text)
     !> Lines of the text
-    character(len=96) :: text(16)
+    character(len=96) :: text(18)
 
     text = [character(len=96) :: &
             'Usage: implam [run] DECK.nml       run a deck', &
@@ -168,11 +187,13 @@ contains
             '       implam --version | --help', &
             'Options:', &
             '  --output DIR   folder of the results, instead of the deck''s', &
+            '  --wall-limit SECONDS  end with a checkpoint before so many seconds have passed on the wall', &
             '  --markdown     explain as a table for the manual', &
             '  -mat_..., -ksp_..., -log_view and other words with one dash go to PETSc', &
             'Under mpirun the same. Exit codes:', &
             '  0 done  1 usage  2 deck  3 no convergence at the smallest step  4 files  5 internal', &
-            '  75 stopped by a signal of the queue with a checkpoint written: run again with restart', &
+            '  75 stopped by a signal of the queue or the time on the wall, with a checkpoint written:', &
+            '     go on with restart', &
             'Signals: TERM, INT, USR1, USR2 and XCPU end the run after the step at hand, with a', &
             '  checkpoint.', &
             '']

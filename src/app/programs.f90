@@ -4,13 +4,14 @@ module programs
   use errors, only: error_t, exit_done, exit_files
   use text, only: line_t
   use communicators, only: communicator_t, start_mpi, finish_mpi
+  use kinds, only: wp
+  use timers, only: wall_time
   use launchers, only: launched
   use petsc_session, only: start_petsc, finish_petsc
-  use linear_solver_parameters, only: factorization_cholmod
+  use linear_solver_deck, only: check_ranks
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
   use deck_reader, only: read_deck, read_deck_text
-  use deck_remarks, only: tell
   use deck_table, only: load_deck_table
   use deck_vocabulary, only: vocabulary_t
   use deck_explain, only: explain, explain_table
@@ -167,7 +168,9 @@ contains
     type(deck_t) :: deck
     type(problems_t) :: problems
     type(simulation_t), allocatable :: simulation
+    real(wp) :: begun
 
+    begun = wall_time()
     ! A checkpoint is read through MPI.
     if (command%verb == verb_restart) then
       call start_mpi(communicator)
@@ -176,21 +179,21 @@ contains
     else
       call read_deck_everywhere(command%target, communicator, deck, problems)
     end if
-    if (deck%linear_solver%factorization == factorization_cholmod .and. communicator%size > 1) call tell(deck%settings, problems, &
-      'solver', 'factorization', 'works on one rank only; run on one rank, or take ''mumps''.')
+    call check_ranks(deck%settings, deck%linear_solver, communicator%size, problems)
     code = problems%exit_code()
     call print_lines(communicator, problems%lines())
     if (code /= exit_done) return
     if (allocated(command%output)) deck%output%directory = command%output
+    if (command%wall_limit > 0) deck%stepping%time%wall_limit = command%wall_limit
     call start_mpi(communicator)
     call start_petsc(communicator, deck%linear_solver%petsc_options//command%petsc_options, error)
     if (allocated(error)) return
     call catch_stop_signals()
     allocate (simulation)
     if (command%verb == verb_restart) then
-      call simulation%resume(deck, communicator, command%target, error)
+      call simulation%resume(deck, communicator, begun, command%target, error)
     else
-      call simulation%initialize(deck, communicator, error)
+      call simulation%initialize(deck, communicator, begun, error)
     end if
     if (.not. allocated(error)) call simulation%run(error)
     if (.not. allocated(error)) call simulation%finalize(error)

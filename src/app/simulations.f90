@@ -2,27 +2,25 @@
 module simulations
   use kinds, only: wp
   use errors, only: error_t, fail, exit_stopped
-  use text, only: to_text, line_t, append
+  use text, only: to_text
   use files, only: make_directory
   use logger, only: log_t
-  use timers, only: timer_set_t
+  use timers, only: timer_set_t, wall_time
   use communicators, only: communicator_t
   use models, only: model_t
   use model_building, only: create_model
   use time_stepping, only: time_stepper_t
   use deck_contents, only: deck_t
-  use deck_echo, only: echo
-  use deck_table, only: load_deck_table
-  use deck_vocabulary, only: vocabulary_t
-  use deck_extents, only: extent_lines
   use build_information, only: this_build
   use run_provenance, only: provenance_t, this_run
   use run_progress, only: progress_t
+  use run_reports, only: log_echo, log_costs, summary
   use history_file, only: history_file_t
   use fields_file, only: fields_file_t
   use checkpoints, only: checkpoint_archive_t
+  use wall_limits, only: wall_limit_t
   use queue_signals, only: stop_signal
-  use output_clocks, only: clock_t
+  use output_clocks, only: clock_t, next_event
   use energy_watches, only: energy_watch_t
   use result_rows, only: row_of, column_names, column_whole
   use field_results, only: write_mesh, write_fields, field_rows
@@ -54,6 +52,8 @@ module simulations
     type(fields_file_t) :: fields
     !> Clocks of history, fields and checkpoints
     type(clock_t) :: history_clock, fields_clock, checkpoint_clock
+    !> Time granted on the wall
+    type(wall_limit_t), private :: wall_limit
     !> The warning of a border reached was given
     logical, private :: warned_of_border = .false.
     !> Looks after the energy that integrators create
@@ -74,17 +74,19 @@ module simulations
 contains
 
   !> Sets a run up from the start.
-  subroutine initialize(self, deck, communicator, error)
+  subroutine initialize(self, deck, communicator, begun, error)
     !> The run
     class(simulation_t), intent(out) :: self
     !> The deck, checked
     type(deck_t), intent(in) :: deck
     !> The ranks
     type(communicator_t), intent(in) :: communicator
+    !> Clock at the program's start
+    real(wp), intent(in) :: begun
     !> Set if files cannot be written or the model cannot be set up
     type(error_t), allocatable, intent(out) :: error
 
-    call prepare(self, deck, communicator, append=.false., error=error)
+    call prepare(self, deck, communicator, begun, append=.false., error=error)
     if (allocated(error)) return
     call self%history%create(communicator, self%base//'_history.csv', column_names(), column_whole(), error)
     if (allocated(error)) return
@@ -94,13 +96,15 @@ contains
   end subroutine initialize
 
   !> What initialise and resume have in common: log, model, state at rest.
-  subroutine prepare(self, deck, communicator, append, error)
+  subroutine prepare(self, deck, communicator, begun, append, error)
     !> The run
     class(simulation_t), intent(inout) :: self
     !> The deck
     type(deck_t), intent(in) :: deck
     !> The ranks
     type(communicator_t), intent(in) :: communicator
+    !> Clock at the program's start
+    real(wp), intent(in) :: begun
     !> True: go on with the log that is there
     logical, intent(in) :: append
     !> Set if something cannot be set up
@@ -110,6 +114,7 @@ contains
     self%deck = deck
     self%communicator = communicator
     self%base = deck%output%directory//'/'//deck%name
+    self%wall_limit = wall_limit_t(deck%stepping%time%wall_limit, begun)
     self%history_clock%interval = deck%output%history_every
     self%fields_clock%interval = deck%output%fields_every
     self%checkpoint_clock%interval = deck%output%checkpoint_every
@@ -120,7 +125,7 @@ contains
     if (allocated(error)) return
     self%provenance = this_run(this_build(), deck%text, communicator%size)
     call self%provenance%report(self%log)
-    call log_echo(self)
+    call log_echo(deck, self%log)
     call create_model(deck%scene_t, communicator, self%model, error)
     if (allocated(error)) return
     call self%stepper%start(self%model, deck%stepping, deck%linear_solver, error)
@@ -130,26 +135,6 @@ contains
                        to_text(communicator%size)//' rank(s).')
     call self%progress%start(0.0_wp)
   end subroutine prepare
-
-  !> Lists every key in effect in the log, and zones and starters as they are.
-  subroutine log_echo(self)
-    !> The run
-    class(simulation_t), intent(inout) :: self
-    type(vocabulary_t) :: vocabulary
-    type(line_t), allocatable :: lines(:)
-    integer :: i
-
-    call load_deck_table(vocabulary)
-    call echo(vocabulary, self%deck%settings, lines)
-    if (self%deck%has_impactor .and. .not. self%deck%has_indentation) then
-      call append(lines, '&indentation law = ''hertz'' [default]')
-      call append(lines, '&indentation k = '//to_text(self%deck%indentation%k)//' [default]')
-    end if
-    lines = [lines, extent_lines(self%deck)]
-    do i = 1, size(lines)
-      call self%log%detail(lines(i)%text)
-    end do
-  end subroutine log_echo
 
   !> Part of the plate that the files hold.
   pure function part_of(self) result(part)
@@ -163,13 +148,15 @@ contains
   end function part_of
 
   !> Sets a run up from a checkpoint that has been opened for loading.
-  subroutine resume(self, deck, communicator, path, error)
+  subroutine resume(self, deck, communicator, begun, path, error)
     !> The run
     class(simulation_t), intent(out) :: self
     !> The deck that the checkpoint holds
     type(deck_t), intent(in) :: deck
     !> The ranks
     type(communicator_t), intent(in) :: communicator
+    !> Clock at the program's start
+    real(wp), intent(in) :: begun
     !> The checkpoint
     character(len=*), intent(in) :: path
     !> Set if the checkpoint cannot be used
@@ -177,7 +164,7 @@ contains
     type(checkpoint_archive_t) :: archive
     integer :: rows
 
-    call prepare(self, deck, communicator, append=.true., error=error)
+    call prepare(self, deck, communicator, begun, append=.true., error=error)
     if (allocated(error)) return
     call archive%open_for_loading(communicator, path, error)
     if (allocated(error)) return
@@ -223,53 +210,81 @@ contains
     if (.not. self%deck%has_static) end_of = self%deck%stepping%time%end
   end function end_of
 
-  !> Steps until the end, or until a queue's signal.
+  !> Steps until the end, or until a queue's signal or the time on the wall ends the run.
   subroutine run(self, error)
     !> The run
     class(simulation_t), intent(inout) :: self
-    !> Set if no step converges, a file cannot be written, or a signal came
+    !> Set if no step converges, a file cannot be written, or the run has to stop
     type(error_t), allocatable, intent(out) :: error
-    real(wp) :: event
+    real(wp) :: event, closest, step_begun
 
     call self%timers%stop('set-up')
+    closest = self%stepper%smallest_step(self%model)
     do while (self%stepper%now%time < end_of(self))
-      event = min(end_of(self), self%history_clock%next(), self%fields_clock%next(), self%checkpoint_clock%next())
+      event = next_event([self%history_clock, self%fields_clock, self%checkpoint_clock], end_of(self), closest)
+      step_begun = wall_time()
       call self%timers%start('steps')
       call self%stepper%advance(self%model, event, error)
       call self%timers%stop('steps')
       if (allocated(error)) return
       call self%timers%start('results')
-      call write_results(self, error)
+      call write_results(self, self%stepper%now%time >= event, error)
       call self%timers%stop('results')
       if (allocated(error)) return
-      call self%progress%update(self%log, self%stepper%now%time/end_of(self), 'step '//to_text(self%stepper%now%step)// &
-                                ', time '//to_text(self%stepper%now%time))
-      if (.not. self%communicator%any(stop_signal() /= 0)) cycle
-      call save_checkpoint(self, error)
-      call fail(error, exit_stopped, 'Stopped by a signal at time '//to_text(self%stepper%now%time)// &
-                '; go on with: implam restart '//self%base//'_restart.h5')
-      return
+      call self%progress%update(self%log, self%stepper%now%time/end_of(self), 'step '// &
+                                to_text(self%stepper%now%step)//', time '//to_text(self%stepper%now%time))
+      call self%wall_limit%learn(wall_time() - step_begun)
+      call stop_if_due(self, error)
+      if (allocated(error)) return
     end do
   end subroutine run
 
-  !> Writes what is due after an accepted step. The clocks move before the checkpoint is saved, so that
-  !> a run that goes on from it does not write twice.
-  subroutine write_results(self, error)
+  !> Ends the run with a checkpoint if a queue's signal has come or another step might take too long.
+  subroutine stop_if_due(self, error)
     !> The run
     class(simulation_t), intent(inout) :: self
+    !> Set if the run ends
+    type(error_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: cause
+    logical :: signalled, late
+
+    signalled = self%communicator%any(stop_signal() /= 0)
+    late = self%communicator%any(self%wall_limit%is_up(wall_time())) .and. self%stepper%now%time < end_of(self)
+    if (.not. (signalled .or. late)) return
+    cause = 'as the time on the wall is up'
+    if (signalled) cause = 'by a signal'
+    call save_checkpoint(self, error)
+    call fail(error, exit_stopped, 'Stopped '//cause//' at time '//to_text(self%stepper%now%time)// &
+              '; go on with: implam restart '//self%base//'_restart.h5')
+  end subroutine stop_if_due
+
+  !> Writes what is due after an accepted step. The clocks move before the checkpoint is saved, so that
+  !> a run that goes on from it does not write twice.
+  subroutine write_results(self, at_event, error)
+    !> The run
+    class(simulation_t), intent(inout) :: self
+    !> True if the step has reached an output time or the end
+    logical, intent(in) :: at_event
     !> Set if a file cannot be written
     type(error_t), allocatable, intent(out) :: error
-    logical :: row_due
+    real(wp) :: closest
+    logical :: row_due, fields_due, checkpoint_due
 
     call warn(self)
     row_due = self%history_clock%interval <= 0 .or. self%stepper%now%time >= end_of(self)
-    if (self%history_clock%strikes_at(self%stepper%now%time)) row_due = .true.
+    fields_due = .false.
+    checkpoint_due = .false.
+    if (at_event) then
+      closest = self%stepper%smallest_step(self%model)
+      if (self%history_clock%strikes_at(self%stepper%now%time, closest)) row_due = .true.
+      fields_due = self%fields_clock%strikes_at(self%stepper%now%time, closest)
+      checkpoint_due = self%checkpoint_clock%strikes_at(self%stepper%now%time, closest)
+    end if
     if (row_due) call self%history%write_row(row_of(self%model, self%stepper), error)
     if (allocated(error)) return
-    if (self%fields_clock%strikes_at(self%stepper%now%time)) &
-      call write_fields(self%model, self%stepper, self%deck%output, self%fields, error)
+    if (fields_due) call write_fields(self%model, self%stepper, self%deck%output, self%fields, error)
     if (allocated(error)) return
-    if (self%checkpoint_clock%strikes_at(self%stepper%now%time)) call save_checkpoint(self, error)
+    if (checkpoint_due) call save_checkpoint(self, error)
   end subroutine write_results
 
   !> Warns, once each, of what a user must not overlook.
@@ -323,45 +338,10 @@ contains
       call write_fields(self%model, self%stepper, self%deck%output, self%fields, error)
     if (allocated(error)) return
     call self%history%close(error)
-    call self%progress%finish(self%log, summary(self))
-    call log_costs(self)
+    call self%progress%finish(self%log, summary(self%stepper))
+    call log_costs(self%timers, self%stepper%operator, self%log)
     call self%log%note('Results: '//self%base//'_history.csv, '//self%base//'.xdmf, '//self%base//'.log')
     call self%stepper%operator%solver%release()
   end subroutine finalize
 
-  !> Lists in the log where time and memory went; the second part of the list is contained in the steps.
-  subroutine log_costs(self)
-    !> The run
-    class(simulation_t), intent(inout) :: self
-    real(wp) :: factor_entries, megabytes
-    integer :: matrix_entries, i
-
-    associate (operator => self%stepper%operator)
-      call operator%solver%statistics(factor_entries, megabytes)
-      matrix_entries = operator%numbering%row_start(operator%numbering%rows + 1) - 1
-      call self%log%detail('Factor: '//to_text(factor_entries)//' numbers, '//to_text(megabytes)//' MB; matrix: '// &
-                           to_text(matrix_entries)//' numbers on this rank.')
-      associate (lines => [self%timers%lines(), operator%timers%lines()])
-        call self%log%detail(repeat(' ', 37)//'times    on the wall      processor')
-        do i = 1, size(lines)
-          call self%log%detail(lines(i))
-        end do
-      end associate
-    end associate
-  end subroutine log_costs
-
-  !> What a run took, in one line.
-  function summary(self) result(line)
-    !> The run
-    class(simulation_t), intent(in) :: self
-    !> The line
-    character(len=:), allocatable :: line
-
-    associate (now => self%stepper%now, operator => self%stepper%operator)
-      line = to_text(now%step)//' steps ('//to_text(self%stepper%rejected)//' rejected), '// &
-             to_text(now%all_iterations)//' iterations of equilibrium, '//to_text(now%all_force_iterations)// &
-             ' of the force, '//to_text(operator%factorizations)//' factorizations, '// &
-             to_text(operator%solves)//' solves.'
-    end associate
-  end function summary
 end module simulations

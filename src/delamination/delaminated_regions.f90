@@ -3,14 +3,13 @@ module delaminated_regions
   use archives, only: archive_t
   use kinds, only: wp
   use layered_meshes, only: layered_mesh_t
+  use nine_node_grids, only: nine_node_grid_t, cells_around
   implicit none
   private
   public :: delaminated_region_t, create_region, cells_within, extent_of_cells
 
-  !> The cells of a zone, intact or delaminated. Only ever grows.
-  type :: delaminated_region_t
-    !> Cells of the model along x and y
-    integer :: cells(2) = 0
+  !> The cells of a zone, intact or delaminated, within the grid of the whole model. Only ever grows.
+  type, extends(nine_node_grid_t) :: delaminated_region_t
     !> First and last column, then row, of the zone's cells
     integer :: columns(2) = 0, rows(2) = 0
     !> True where the interface has come apart, (columns(1):columns(2), rows(1):rows(2))
@@ -22,8 +21,6 @@ module delaminated_regions
     procedure :: is_delaminated
     !> True for a node whose two faces are apart.
     procedure :: released
-    !> Node on two lines of nodes, in the numbering of the mesh.
-    procedure :: node_at
     !> Takes a cell apart.
     procedure :: release
     !> Saves or loads.
@@ -134,26 +131,6 @@ contains
     end do
     released = .true.
   end function released
-
-  !> First and last of the model's cells around a line of nodes.
-  pure function cells_around(line, cells) result(range)
-    !> Line of nodes, 0 to 2*cells
-    integer, intent(in) :: line
-    !> Cells along this direction
-    integer, intent(in) :: cells
-    !> First and last cell
-    integer :: range(2)
-    range = [max(1, (line + 1)/2), min(cells, line/2 + 1)]
-  end function cells_around
-
-  !> Node on two lines of nodes, as the mesh numbers them.
-  pure integer function node_at(self, i, j) result(node)
-    !> The region
-    class(delaminated_region_t), intent(in) :: self
-    !> Lines of nodes, 0 to twice the cells along x and y
-    integer, intent(in) :: i, j
-    node = 1 + i + (2*self%cells(1) + 1)*j
-  end function node_at
 
   !> Takes a cell of the zone apart. Nothing happens if it is outside the zone.
   pure subroutine release(self, cell)

@@ -2,8 +2,8 @@
 module impact_coupling
   use kinds, only: wp
   use errors, only: error_t
-  use contact_forces, only: solve_contact_force
-  use impactors, only: predict, takes_mean_force
+  use impact_force, only: solve_impact_force
+  use impactor_integrators, only: predict, takes_mean_force
   use newmark_integrators, only: plate_integrator_t
   use models, only: model_t
   use states, only: state_t
@@ -88,7 +88,7 @@ contains
     compliance = self%share*operator%compliance
     new%patch_mean = model%patch_mean(new%motion%displacement) + model%patch_mean(correction)
     alpha_free = self%free_displacement - new%patch_mean + before*compliance
-    call solve_contact_force(model%scene%indentation, old%indentation, old%indentation%alpha, alpha_free, &
+    call solve_impact_force(model%scene%indentation, old%indentation, old%indentation%alpha, alpha_free, &
                              self%compliance + compliance, self%mean, self%unknown, alpha_end, &
                              self%force_end, iterations, error)
     correction = correction + (self%share*(self%unknown - before))*operator%response

@@ -21,6 +21,8 @@ module stepping_parameters
     integer :: integrator = integrator_generalized_alpha
     !> Newmark's parameters
     real(wp) :: beta = 0.25_wp, gamma = 0.5_wp
+    !> Seconds on the wall after which the run ends with a checkpoint; 0: none
+    real(wp) :: wall_limit = 0
     !> Spectral radius at infinite frequency of generalised-alpha, 0 (most damping) to 1 (none)
     real(wp) :: rho_infinity = 1
   end type time_t

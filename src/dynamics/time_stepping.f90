@@ -4,7 +4,7 @@ module time_stepping
   use errors, only: error_t, fail, exit_convergence
   use archives, only: archive_t
   use text, only: to_text
-  use impactors, only: largest_safe_step
+  use impactor_integrators, only: largest_safe_step
   use stepping_parameters, only: stepping_t
   use linear_solver_parameters, only: linear_solver_parameters_t
   use newmark_integrators, only: plate_integrator_t, plate_integrator
@@ -45,6 +45,8 @@ module time_stepping
     procedure :: start
     !> One accepted step.
     procedure :: advance
+    !> Smallest step worth trying.
+    procedure :: smallest_step
     !> Saves or loads all that evolves.
     procedure :: visit
   end type time_stepper_t
@@ -120,7 +122,7 @@ contains
       self%rejected = self%rejected + 1
       call self%controller%reject(step)
       self%operator%ready = .false.
-      if (step <= smallest_step(self, model)*(1 + 1.0e-9_wp)) then
+      if (step <= self%smallest_step(model)*(1 + 1.0e-9_wp)) then
         call fail(error, exit_convergence, 'No equilibrium from time '//to_text(self%now%time)// &
                   ' on with the smallest step, '//to_text(step)//'.')
         return
@@ -157,7 +159,7 @@ contains
   !> Smallest step worth trying.
   pure real(wp) function smallest_step(self, model) result(step)
     !> The stepper
-    type(time_stepper_t), intent(in) :: self
+    class(time_stepper_t), intent(in) :: self
     !> The model
     type(model_t), intent(in) :: model
 
@@ -199,7 +201,8 @@ contains
     problem = new_dynamic_step(self%integrator, step, self%stepping%adapt%iterations)
     call solve_step(problem, model, self%stepping%equilibrium, self%operator, self%now, self%trial, converged, error)
     if (converged .and. model%map%layered) &
-      call grow_in_step(problem, model, self%stepping%equilibrium, self%operator, self%now, self%trial, converged, error)
+      call grow_in_step(problem, model, self%stepping%equilibrium, self%operator, self%now, self%trial, converged, &
+                        error)
   end subroutine try_step
 
   !> Longest step that the impactor's integrator bears now, as a binary fraction of the step wanted so that
@@ -273,7 +276,8 @@ contains
                                   self%now%iterations - self%operator%switches, change)
       ! What a step took until it renewed the operator itself does not speak against the new one.
       if (self%operator%factorizations /= self%factorizations_begun) call self%controller%renewed()
-      if (grows_by_steps(model)) call self%controller%heed_fronts(self%stepping, self%now%interfaces%growth_ratio, extended)
+      if (grows_by_steps(model)) &
+        call self%controller%heed_fronts(self%stepping, self%now%interfaces%growth_ratio, extended)
     end if
   end subroutine accept
 

@@ -110,7 +110,8 @@ contains
 
     force = 0
     if (self%map%layered) then
-      call add_internal_force(self%elements, stiffness, self%scene%kinematics, self%motion_of(displacement), force, energy)
+      call add_internal_force(self%elements, stiffness, self%scene%kinematics, self%motion_of(displacement), force, &
+                              energy)
       call self%map%to_unknowns(force)
     else
       call add_internal_force(self%elements, stiffness, self%scene%kinematics, displacement, force, energy)

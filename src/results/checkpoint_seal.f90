@@ -14,7 +14,7 @@ module checkpoint_seal
   !> First line of the head.
   character(len=*), parameter :: title = 'IMPLAM CHECKPOINT'
   !> Second line of the head; the number changes whenever older files can't be read any more.
-  character(len=*), parameter :: format_line = 'format 1'
+  character(len=*), parameter :: format_line = 'format 2'
   !> What ends a line.
   character(len=*), parameter :: end_of_line = new_line('a')
   !> Bytes read at a time.

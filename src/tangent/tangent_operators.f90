@@ -16,7 +16,7 @@ module tangent_operators
   use contact_and_ties, only: contact_and_ties_t
   use anderson_acceleration, only: anderson_t
   use operator_assembly, only: assemble_elements, assemble_diagonal
-  use woodbury_updates, only: woodbury_updates_t, list_changes
+  use woodbury_updates, only: woodbury_updates_t, list_changes, gather_changes
   implicit none
   private
   public :: tangent_operator_t
@@ -196,31 +196,48 @@ contains
     real(wp), allocatable :: wanted(:, :)
     integer, allocatable :: equations(:)
     real(wp), allocatable :: stiffness(:)
-    logical, allocatable :: missing(:)
-    integer :: k, first
+    integer :: k
 
     possible = .true.
     if (.not. model%map%layered) return
     allocate (wanted, mold=self%added)
     call faces%added_stiffness(model, self%diagonal, wanted)
     call list_changes(model%communicator, self%numbering, self%diagonal, self%added, wanted, equations, stiffness)
-    missing = [(self%changes%column_of(equations(k)) == 0, k=1, size(equations))]
-    possible = size(equations) <= most_changes .and. self%changes%kept + count(missing) &
+    possible = size(equations) <= most_changes .and. &
+               self%changes%kept + count([(self%changes%column_of(equations(k)) == 0, k=1, size(equations))]) &
                <= min(most_columns, int(most_numbers/self%numbering%total))
     if (.not. possible .or. self%changes%same(equations, stiffness)) return
-    associate (wanting => pack(equations, missing))
+    call put_in_force(self, model, equations, stiffness, error)
+    if (allocated(error)) return
+    self%switches = self%switches + 1
+    call self%anderson%forget()
+  end subroutine follow
+
+  !> Puts changes in force, after finding the columns that they lack, and finds the response to a unit force anew.
+  subroutine put_in_force(self, model, equations, stiffness, error)
+    !> The operator
+    type(tangent_operator_t), intent(inout) :: self
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Equations changed, the same on every rank, ascending
+    integer, intent(in) :: equations(:)
+    !> Stiffness added to their diagonals, none zero
+    real(wp), intent(in) :: stiffness(:)
+    !> Set if a solve fails
+    type(error_t), allocatable, intent(inout) :: error
+    integer :: k, first
+
+    associate (wanting => pack(equations, [(self%changes%column_of(equations(k)) == 0, k=1, size(equations))]))
       do first = 1, size(wanting), columns_at_once
         call find_columns(self, model, wanting(first:min(first + columns_at_once - 1, size(wanting))), error)
         if (allocated(error)) return
       end do
     end associate
     call self%changes%set(equations, stiffness)
-    self%switches = self%switches + 1
-    call self%anderson%forget()
     self%response = self%fresh_response
     call follow_changes(self, model, self%response)
     self%compliance = model%patch_mean(self%response)
-  end subroutine follow
+  end subroutine put_in_force
 
   !> Finds columns together.
   subroutine find_columns(self, model, equations, error)
@@ -319,50 +336,65 @@ contains
     type(model_t), intent(in) :: model
     !> Set if the factor cannot be made again
     type(error_t), allocatable, intent(out) :: error
+    real(wp), allocatable :: changed(:, :)
     integer, allocatable :: columns(:)
+    integer :: ranks
 
     call archive%item('operator/ready', self%ready)
     call archive%item('operator/stiffness_factor', self%stiffness_factor)
     call archive%item('operator/mass_factor', self%mass_factor)
-    call archive%item('operator/factorizations', self%factorizations)
-    call archive%item('operator/solves', self%solves)
+    allocate (changed, mold=self%added)
+    call self%changes%spread_out(self%numbering, changed)
     associate (share => model%distribution)
       call archive%field('operator/displacement', share%points(:share%owned), model%mesh%points(), self%displacement)
-      if (model%map%layered) &
+      if (model%map%layered) then
         call archive%field('operator/added', share%points(:share%owned), model%mesh%points(), self%added)
+        call archive%field('operator/changed', share%points(:share%owned), model%mesh%points(), changed)
+      end if
     end associate
     if (model%scene%has_ply_damage) call visit_stiffness(archive, 'operator/stiffness', model, self%stiffness)
+    ranks = model%communicator%size
     columns = self%changes%list()
+    call archive%item('operator/ranks', ranks)
     call archive%item('operator/columns', columns)
-    if (archive%loading .and. self%ready) call remake(self, model, columns, error)
+    ! On another number of ranks the equations have other numbers: only the columns in use are found again.
+    if (ranks /= model%communicator%size) columns = [integer ::]
+    if (archive%loading .and. self%ready) call remake(self, model, columns, changed, error)
+    ! Last, so that the factor made again is not counted.
+    call archive%item('operator/factorizations', self%factorizations)
+    call archive%item('operator/solves', self%solves)
   end subroutine visit
 
   !> Makes the factor again from what was loaded.
-  subroutine remake(self, model, columns, error)
+  subroutine remake(self, model, columns, changed, error)
     !> The operator
     type(tangent_operator_t), intent(inout) :: self
     !> The model
     type(model_t), intent(in) :: model
     !> Equation and company of each column found since, (2 columns)
     integer, intent(in) :: columns(:)
+    !> Changes in force, zero where there is none, (3, points)
+    real(wp), intent(in) :: changed(:, :)
     !> Set if it cannot be made
     type(error_t), allocatable, intent(inout) :: error
-    integer :: factorizations, solves, k
+    integer, allocatable :: equations(:)
+    real(wp), allocatable :: stiffness(:)
+    integer :: k
 
-    factorizations = self%factorizations
-    solves = self%solves
     call model%halo%update(self%displacement)
     self%deflection = model%deflection(self%displacement)
     call self%solver%clear()
-    call assemble_elements(model, self%stiffness, self%numbering, self%displacement, self%stiffness_factor, self%mass_factor, &
-                           self%solver, self%diagonal)
+    call assemble_elements(model, self%stiffness, self%numbering, self%displacement, self%stiffness_factor, &
+                           self%mass_factor, self%solver, self%diagonal)
     call factorize(self, model, error)
     k = 1
     do while (k < size(columns) .and. .not. allocated(error))
       call find_columns(self, model, columns(k:k + 2*columns(k + 1) - 2:2), error)
       k = k + 2*columns(k + 1)
     end do
-    self%factorizations = factorizations
-    self%solves = solves
+    if (.not. allocated(error) .and. model%map%layered) then
+      call gather_changes(model%communicator, self%numbering, changed(:, :self%numbering%owned), equations, stiffness)
+      if (size(equations) > 0) call put_in_force(self, model, equations, stiffness, error)
+    end if
   end subroutine remake
 end module tangent_operators

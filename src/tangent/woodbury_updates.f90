@@ -7,7 +7,7 @@ module woodbury_updates
   use numberings, only: numbering_t
   implicit none
   private
-  public :: woodbury_updates_t, list_changes
+  public :: woodbury_updates_t, list_changes, gather_changes
 
   !> Part of a stiffness below which its change is left to the iterations: a law whose slope falls off
   !> exponentially goes to and fro without end where 0.2 of it is.
@@ -51,6 +51,8 @@ module woodbury_updates
     procedure :: keep
     !> Equation and company of each column kept.
     procedure :: list
+    !> The changes in force as a field.
+    procedure :: spread_out
     !> Puts changes in force whose columns are all kept.
     procedure :: set
     !> Turns a solution of the factored operator into one of the changed operator.
@@ -107,10 +109,29 @@ contains
       changed = .not. abs(want(:, :owned) - have(:, :owned)) <= noticed*max(want(:, :owned), have(:, :owned), &
                                                                           0.1_wp*diagonal(1:3, :owned)) &
                 .and. numbering%equation(1:3, :owned) >= 0
-      call communicator%allgather(pack(numbering%equation(1:3, :owned), changed), equations)
-      call communicator%allgather(pack(want(:, :owned) - have(:, :owned), changed), stiffness)
+      call gather_changes(communicator, numbering, merge(want(:, :owned) - have(:, :owned), 0.0_wp, changed), &
+                          equations, stiffness)
     end associate
   end subroutine list_changes
+
+  !> Lists changes of the jumps' stiffness, those that are not zero, on every rank.
+  subroutine gather_changes(communicator, numbering, change, equations, stiffness)
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> Equations of this rank's points
+    type(numbering_t), intent(in) :: numbering
+    !> Change of stiffness, (3, owned points)
+    real(wp), intent(in) :: change(:, :)
+    !> Equations, ascending
+    integer, allocatable, intent(out) :: equations(:)
+    !> Change of stiffness of each
+    real(wp), allocatable, intent(out) :: stiffness(:)
+    logical, allocatable :: changed(:, :)
+
+    changed = .not. abs(change) <= 0
+    call communicator%allgather(pack(numbering%equation(1:3, :numbering%owned), changed), equations)
+    call communicator%allgather(pack(change, changed), stiffness)
+  end subroutine gather_changes
 
   !> Position of the column of an equation; 0: not found yet.
   pure integer function column_of(self, equation) result(position)
@@ -172,6 +193,25 @@ contains
 
     columns = [([self%columns(k)%equation, self%columns(k)%company], k=1, self%kept)]
   end function list
+
+  !> The changes in force as a field, which holds for any number of ranks.
+  pure subroutine spread_out(self, numbering, field)
+    !> The changes
+    class(woodbury_updates_t), intent(in) :: self
+    !> Equations of this rank's points
+    type(numbering_t), intent(in) :: numbering
+    !> Change of the stiffness of the jumps, zero where there is none and at ghosts, (3, points)
+    real(wp), intent(out) :: field(:, :)
+    integer :: k, point, component
+
+    field = 0
+    if (.not. allocated(self%equations)) return
+    do k = 1, size(self%equations)
+      if (.not. numbering%owns(self%equations(k))) cycle
+      call numbering%place_of(self%equations(k), point, component)
+      field(component, point) = self%stiffness(k)
+    end do
+  end subroutine spread_out
 
   !> Puts changes in force whose columns are all kept.
   subroutine set(self, equations, stiffness)

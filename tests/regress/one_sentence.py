@@ -72,6 +72,8 @@ def main(implam, folder):
     say([implam], 1)
     say([implam, deck, "--output"], 1)
     say([implam, deck, "--output", ""], 1)
+    for seconds in ([], [""], ["0"], ["-5"], ["1h"], ["1e999"], ["nan"]):
+        say([implam, deck, "--output", folder, "--wall-limit", *seconds], 1)
     say([implam, deck, "--output", deck], 4)
     blocked = folder / "blocked"
     (blocked / "ply_damage_history.csv").mkdir(parents=True)

@@ -6,6 +6,7 @@ contact      delaminated faces in contact by both laws: bitwise
 ranks        on 2 ranks, and from 1 rank to 2 and back: to 1e-9
 rejected     from checkpoints on either side of rejected steps: bitwise
 signal       SIGTERM ends a run with a checkpoint and its own exit code: bitwise
+limit        the time on the wall ends runs in time with a checkpoint and that exit code: bitwise
 kill         SIGKILL at any moment leaves a checkpoint that can be used: bitwise
 damaged      a checkpoint that isn't one, or not whole, ends with the exit code for files and a sentence"""
 
@@ -234,6 +235,48 @@ def check_signal(implam, folder, _):
     require_same(history_of(deck.parent), reference, "signals")
 
 
+# Options that end a run after its next step.
+SINGLE_STEP = ["--wall-limit", "1e-3"]
+
+
+def stop_by_limit(implam, folder, command, seconds):
+    """Run a command that the time on the wall must end; return the rows written."""
+    begun = time.monotonic()
+    said = run([implam, *command], EXIT_STOPPED)
+    took = time.monotonic() - begun
+    require("time on the wall" in said, f"The sentence does not name the time on the wall: {said}")
+    require(took < seconds or seconds == 0, f"With {seconds} s the run took {took:.2f} s.")
+    rows = len(read_history(history_of(folder))["time"])
+    print(f"Stopped after {took:.2f} of {seconds} s with {rows} rows", flush=True)
+    return rows
+
+
+def check_limit(implam, folder, _):
+    """Stopped by the time on the wall: by the deck's, by the command line's, and after every single step."""
+    begun = time.monotonic()
+    reference = run_deck(implam, write_deck(folder / "uninterrupted", IMPACT, LONG))
+    # Two seconds of each are kept for the start and the end of the program.
+    seconds = max(0.25 * (time.monotonic() - begun), 3.0)
+    deck = write_deck(folder / "limited", IMPACT, [*LONG, f"time%wall_limit={seconds!r}"])
+    rows = [stop_by_limit(implam, deck.parent, [deck, "--output", deck.parent], seconds)]
+    checkpoint = checkpoint_of(deck.parent)
+    seconds *= 1.2
+    rows.append(stop_by_limit(implam, deck.parent, ["restart", checkpoint, "--wall-limit", seconds], seconds))
+    require(rows[0] > 10 and rows[1] > rows[0] + 10, f"Stopped too early: {rows} rows.")
+    run([implam, "restart", checkpoint, "--wall-limit", PATIENCE])
+    require_same(history_of(deck.parent), reference, "limits")
+    settings = [*SHORT, "time%end=10e-6", "case%kinematics='von_karman'"]
+    reference = run_deck(implam, write_deck(folder / "few_steps", IMPACT, settings))
+    deck = write_deck(folder / "each_step", IMPACT, settings)
+    command = [deck, "--output", deck.parent]
+    for step in range(1, 5):
+        rows = stop_by_limit(implam, deck.parent, [*command, *SINGLE_STEP], 0)
+        require(rows == step, f"{rows} steps were taken where each was to be the last of its run.")
+        command = ["restart", checkpoint_of(deck.parent)]
+    run([implam, *command, *SINGLE_STEP])
+    require_same(history_of(deck.parent), reference, "a run for each step")
+
+
 def check_kill(implam, folder, _):
     """Killed at random moments, on and on, until the end is reached."""
     settings = [*LONG, "output%checkpoint_every=5e-6"]
@@ -281,7 +324,7 @@ def check_damaged(implam, folder, _):
 
 
 TRIALS = {"integrators": check_integrators, "contact": check_contact, "ranks": check_ranks, "rejected": check_rejected,
-          "signal": check_signal, "kill": check_kill, "damaged": check_damaged}
+          "signal": check_signal, "limit": check_limit, "kill": check_kill, "damaged": check_damaged}
 
 
 def main(trials, trial, implam, folder, *launcher):

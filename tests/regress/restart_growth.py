@@ -1,6 +1,7 @@
 """Runs whose delaminations grow and plies fail, split anywhere, must give the history of the run that was not.
 Usage: restart_growth.py TRIAL IMPLAM FOLDER [LAUNCHER...]     (LAUNCHER takes the number of ranks as its last word)
 
+every    from the checkpoint after each step of a run whose operator follows releases and contact: bitwise
 splits   just before and just after a step with the most growth, by every rule of growth and of energy release: bitwise
 moments  SIGTERM and SIGKILL while a step with several releases is being computed: bitwise, the same cells apart
 ranks    from 2 ranks to 1, from 1 to 2: to 1e-9
@@ -14,7 +15,9 @@ from itertools import pairwise
 
 from released_cells import damage_of, least_releases, released_cells
 from restart import (
+    SINGLE_STEP,
     check_next_to_rejections,
+    copy_run,
     exit_code,
     go_on,
     main,
@@ -27,9 +30,11 @@ from restart import (
 from solver_runs import (
     EXIT_STOPPED,
     TrialError,
+    checkpoint_of,
     history_of,
     read_history,
     require,
+    run,
     run_deck,
     write_deck,
 )
@@ -44,6 +49,12 @@ RUNNING = ["mesh%elements=20,20", "impactor%velocity=3", "delamination%G_c=100",
            f"output%checkpoint_every={STEP!r}", f"output%fields_every={STEP!r}"]
 
 
+# The operator follows what comes apart and touches over many steps before it is factored anew.
+FOLLOWING = ["mesh%elements=8,8", "plate%edges='simple'", "plate%symmetry='none'", "impactor%velocity=6",
+             "delamination%G_c=50", "time%end=100e-6", "time%step=5e-6", "time%integrator='newmark'",
+             "time%beta=0.28", "time%gamma=0.55"]
+
+
 def growth(history):
     """Return the area that came apart in each step but the first."""
     area = history["delaminated_area"]
@@ -53,6 +64,27 @@ def growth(history):
 def split_after(step, settings):
     """Add a single checkpoint after a step, some steps before the end, to the settings of a deck."""
     return [*settings, f"output%checkpoint_every={step * STEP!r}", f"time%end={min(2 * step - 1, step + 7) * STEP!r}"]
+
+
+def check_every(implam, folder, _):
+    """From every checkpoint of a run to its end."""
+    reference = run_deck(implam, write_deck(folder / "uninterrupted", DECK, FOLLOWING))
+    history = read_history(reference)
+    steps = len(history["time"])
+    require(max(growth(history)) > 0 and max(history["contact_iterations"]) > 0
+            and history["refactorisations"][-1] < steps / 2,
+            "Nothing grew or touched, or the operator followed nothing: the trial proves nothing.")
+    deck = write_deck(folder / "step_by_step", DECK, FOLLOWING)
+    words = [deck, "--output", deck.parent]
+    for step in range(1, steps):
+        run([implam, *words, *SINGLE_STEP], EXIT_STOPPED)
+        words = ["restart", checkpoint_of(deck.parent)]
+        copy = copy_run(deck.parent, folder / "again")
+        require_same(go_on(implam, copy), reference, f"from the checkpoint after step {step}")
+        require(damage_of(history_of(copy)) == damage_of(reference), f"Other cells came apart after step {step}.")
+    run([implam, *words])
+    require_same(history_of(deck.parent), reference, "a run for each step")
+    print(f"From {steps - 1} checkpoints, each of a run restarted after every step: the same to the last bit")
 
 
 def check_splits(implam, folder, _):
@@ -178,8 +210,8 @@ def check_rejected(implam, folder, _):
     require(max(growth(read_history(histories[-1]))) > 0, "Nothing grew: the trial proves nothing.")
 
 
-TRIALS = {"splits": check_splits, "moments": check_moments, "ranks": check_ranks, "rejected": check_rejected,
-          "fading": check_fading, "averages": check_averages}
+TRIALS = {"every": check_every, "splits": check_splits, "moments": check_moments, "ranks": check_ranks,
+          "rejected": check_rejected, "fading": check_fading, "averages": check_averages}
 
 
 if __name__ == "__main__":

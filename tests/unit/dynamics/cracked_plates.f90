@@ -177,7 +177,7 @@ contains
 
     associate (mesh => self%model%mesh, share => self%model%distribution)
       do j = 0, 2
-        associate (node => 1 + line + (2*mesh%cells(1) + 1)*j)
+        associate (node => mesh%node_at(line, j))
           point = mesh%first_point(node)
           if (lower) point = mesh%lower_point(node, 1)
         end associate

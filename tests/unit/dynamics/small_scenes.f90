@@ -124,7 +124,8 @@ contains
 
     call operator%create(model, factorization_mumps, error)
     if (allocated(error)) return
-    call operator%renew(model, model%elements%stiffness, new_contact_and_ties(model), displacement, stiffness_factor, mass_factor, error)
+    call operator%renew(model, model%elements%stiffness, new_contact_and_ties(model), displacement, stiffness_factor, &
+                        mass_factor, error)
   end subroutine factor
 
   !> Deflection of m half-waves along x and n along y of a simply supported plate.

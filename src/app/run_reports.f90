@@ -1,0 +1,77 @@
+!> What a run tells of itself in its log: the keys in effect at its start, what it took at its end.
+module run_reports
+  use text, only: line_t, to_text
+  use logger, only: log_t
+  use timers, only: timer_set_t
+  use deck_contents, only: deck_t
+  use deck_echo, only: echo
+  use deck_extents, only: extent_lines
+  use deck_table, only: load_deck_table
+  use deck_vocabulary, only: vocabulary_t
+  use indentation_deck, only: echo_without_group
+  use kinds, only: wp
+  use tangent_operators, only: tangent_operator_t
+  use time_stepping, only: time_stepper_t
+  implicit none
+  private
+  public :: log_echo, log_costs, summary
+
+contains
+
+  !> Lists every key in effect in the log, and zones and starters as they are.
+  subroutine log_echo(deck, log)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> The log
+    type(log_t), intent(inout) :: log
+    type(vocabulary_t) :: vocabulary
+    type(line_t), allocatable :: lines(:)
+    integer :: i
+
+    call load_deck_table(vocabulary)
+    call echo(vocabulary, deck%settings, lines)
+    if (deck%has_impactor .and. .not. deck%has_indentation) call echo_without_group(deck%indentation, lines)
+    lines = [lines, extent_lines(deck)]
+    do i = 1, size(lines)
+      call log%detail(lines(i)%text)
+    end do
+  end subroutine log_echo
+
+  !> Lists in the log where time and memory went; the second part of the list is contained in the steps.
+  subroutine log_costs(timers, operator, log)
+    !> Time spent in set-up, steps and results
+    type(timer_set_t), intent(in) :: timers
+    !> The factored operator
+    type(tangent_operator_t), intent(inout) :: operator
+    !> The log
+    type(log_t), intent(inout) :: log
+    real(wp) :: factor_entries, megabytes
+    integer :: matrix_entries, i
+
+    call operator%solver%statistics(factor_entries, megabytes)
+    matrix_entries = operator%numbering%row_start(operator%numbering%rows + 1) - 1
+    call log%detail('Factor: '//to_text(factor_entries)//' numbers, '//to_text(megabytes)//' MB; matrix: '// &
+                    to_text(matrix_entries)//' numbers on this rank.')
+    associate (lines => [timers%lines(), operator%timers%lines()])
+      call log%detail(repeat(' ', 37)//'times    on the wall      processor')
+      do i = 1, size(lines)
+        call log%detail(lines(i))
+      end do
+    end associate
+  end subroutine log_costs
+
+  !> What a run took, in one line.
+  function summary(stepper) result(line)
+    !> What the run has stepped with
+    type(time_stepper_t), intent(in) :: stepper
+    !> The line
+    character(len=:), allocatable :: line
+
+    associate (now => stepper%now, operator => stepper%operator)
+      line = to_text(now%step)//' steps ('//to_text(stepper%rejected)//' rejected), '// &
+             to_text(now%all_iterations)//' iterations of equilibrium, '//to_text(now%all_force_iterations)// &
+             ' of the force, '//to_text(operator%factorizations)//' factorizations, '// &
+             to_text(operator%solves)//' solves.'
+    end associate
+  end function summary
+end module run_reports

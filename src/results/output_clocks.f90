@@ -1,0 +1,92 @@
+!> Output times: steps land on them exactly. Those that all but coincide are one event, since a step of their
+!> distance would be no step of the plate: fronts would go on growing in it.
+module output_clocks
+  use kinds, only: wp
+  use archives, only: archive_t
+  implicit none
+  private
+  public :: clock_t, next_event
+
+  !> Distance of two events, relative to their time, that rounding may bring about.
+  real(wp), parameter :: rounding = 1.0e-12_wp
+
+  !> A clock that strikes at every multiple of an interval.
+  type :: clock_t
+    !> Interval; 0: the clock never strikes
+    real(wp) :: interval = 0
+    !> Strikes so far
+    integer :: strikes = 0
+  contains
+    !> Time of the next strike.
+    procedure :: next
+    !> True, once, when the event has been reached that the next strike is part of.
+    procedure :: strikes_at
+    !> Saves or loads the clock.
+    procedure :: visit
+    procedure, private :: margin
+  end type clock_t
+
+contains
+
+  !> Time of the next event: the earliest strike of some clocks, or the end if that is one event with it.
+  pure real(wp) function next_event(clocks, end, closest) result(event)
+    !> The clocks
+    type(clock_t), intent(in) :: clocks(:)
+    !> End of the run
+    real(wp), intent(in) :: end
+    !> Distance up to which events are one, >= 0
+    real(wp), intent(in) :: closest
+    integer :: i
+
+    event = end
+    do i = 1, size(clocks)
+      if (clocks(i)%next() < end - clocks(i)%margin(closest)) event = min(event, clocks(i)%next())
+    end do
+  end function next_event
+
+  !> Time of the next strike; huge if there is none.
+  pure real(wp) function next(self)
+    !> The clock
+    class(clock_t), intent(in) :: self
+
+    next = huge(next)
+    if (self%interval > 0) next = self%interval*(self%strikes + 1)
+  end function next
+
+  !> Distance of an event up to which the next strike is part of it. Half an interval at most, or strikes of the clock
+  !> itself would be lost.
+  pure real(wp) function margin(self, closest)
+    !> The clock
+    class(clock_t), intent(in) :: self
+    !> Distance up to which events are one, >= 0
+    real(wp), intent(in) :: closest
+
+    margin = 0
+    if (self%interval > 0) margin = max(min(closest, self%interval/2), rounding*self%next())
+  end function margin
+
+  !> True if the next strike is part of the event that has been reached; it is then past.
+  logical function strikes_at(self, event, closest)
+    !> The clock
+    class(clock_t), intent(inout) :: self
+    !> Time of the event, from `next_event`
+    real(wp), intent(in) :: event
+    !> Distance up to which events are one, >= 0
+    real(wp), intent(in) :: closest
+
+    strikes_at = self%next() <= event + self%margin(closest)
+    if (strikes_at) self%strikes = self%strikes + 1
+  end function strikes_at
+
+  !> Saves or loads the clock.
+  subroutine visit(self, archive, name)
+    !> The clock
+    class(clock_t), intent(inout) :: self
+    !> Where to or where from
+    class(archive_t), intent(inout) :: archive
+    !> Name of the clock
+    character(len=*), intent(in) :: name
+
+    call archive%item('clock/'//name, self%strikes)
+  end subroutine visit
+end module output_clocks

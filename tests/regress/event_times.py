@@ -1,0 +1,42 @@
+"""Runs whose output times all but coincide with the end, or with each other, take no step between them.
+Usage: event_times.py IMPLAM FOLDER"""
+
+import sys
+from itertools import pairwise
+from pathlib import Path
+
+from solver_runs import read_history, require, run_deck, write_deck
+
+DECK = "../small/delamination.nml"
+STEP = 2e-6
+END = 240e-6
+
+
+def run_with(implam, folder, *settings):
+    """Run the deck with steps of which 120 times one is just below the end, and return its history."""
+    return read_history(run_deck(implam, write_deck(folder, DECK, [f"time%step={STEP!r}", *settings])))
+
+
+def main(implam, folder):
+    """The last row lands where the end is, and fronts come as far as without it."""
+    folder = Path(folder)
+    require(120 * STEP < END, "The last row is not below the end: the trial proves nothing.")
+    reference = run_with(implam, folder / "no_rows_asked")
+    require(reference["delaminated_area"][-1] > 1.1 * reference["delaminated_area"][0], "Nothing grew.")
+    trials = {"rows": [f"output%history_every={STEP!r}"],
+              "fields": [f"output%fields_every={STEP!r}"],
+              # Ten times the interval of the one is that of the other but for rounding or a part of the smallest step.
+              "both": [f"output%history_every={STEP!r}", "output%checkpoint_every=20.0000001e-6"]}
+    for name, settings in trials.items():
+        history = run_with(implam, folder / name, *settings)
+        shortest = min(after - before for before, after in pairwise([0.0, *history["time"]]))
+        area = history["delaminated_area"][-1] / reference["delaminated_area"][-1]
+        print(f"{name}: {history['step'][-1]:.0f} steps, the shortest of {shortest:.3e} s, area {area:.3f} of that "
+              "with even steps")
+        require(history["step"][-1] == 120 and shortest > 0.999 * STEP, f"{name}: a step between events that are one.")
+        require(abs(area - 1) < 1e-12, f"{name}: fronts grew in it.")
+        require(history["time"][-1] == END, f"{name}: the end was missed.")
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
