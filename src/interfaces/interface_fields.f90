@@ -18,18 +18,18 @@ module interface_fields
   !> The fields. A new one comes with its writing below, and touches no other folder but the choices of &output.
   character(len=result_row_length), parameter, public :: interface_field_rows(*) = &
     [character(len=result_row_length) :: &
-    'jump | points | length | gap | &delamination | Displacement below less that above the interface on top of a &
-      &layer; its z is the gap.', &
-    'contact_pressure | points | pressure | contact_pressure | &delamination | Contact pressure in the interface on &
-      &top of a layer.', &
-    'delaminated_above | cells | - | delamination | &delamination | 1 in elements whose interface on top has come &
-      &apart, else 0; with a cohesive law the part of its toughness that is gone.', &
-    'damage_above | points | - | delamination | &delamination | Damage of the cohesive interface on top of a layer: &
-      &part of its stiffness that is lost, 0 to 1; 0 where fronts release ties.', &
-    'shear_share_above | points | - | delamination | &delamination | Share of shear in the energy of the jumps of the &
-      &cohesive interface on top of a layer.', &
-    'energy_release_above | cells | - | energy_release | &delamination | G/G_c of the interface on top in the &
-      &intact elements next to a front, 0 elsewhere.']
+    'jump | points | length | '//field_gap//' | &delamination | Displacement below less that above the interface on &
+      &top of a layer; its z is the gap.', &
+    'contact_pressure | points | pressure | '//field_contact_pressure//' | &delamination | Contact pressure in the &
+      &interface on top of a layer.', &
+    'delaminated_above | cells | - | '//field_delamination//' | &delamination | 1 in elements whose interface on top &
+      &has come apart, else 0; with a cohesive law the part of its toughness that is gone.', &
+    'damage_above | points | - | '//field_delamination//' | &delamination | Damage of the cohesive interface on top of &
+      &a layer: part of its stiffness that is lost, 0 to 1; 0 where fronts release ties.', &
+    'shear_share_above | points | - | '//field_delamination//' | &delamination | Share of shear in the energy of the &
+      &jumps of the cohesive interface on top of a layer.', &
+    'energy_release_above | cells | - | '//field_energy_release//' | &delamination | G/G_c of the interface on top in &
+      &the intact elements next to a front, 0 elsewhere.']
 
 contains
 
