@@ -4,7 +4,8 @@ module output_deck
   use deck_remarks, only: remark
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
-  use output_parameters, only: output_t
+  use output_parameters, only: output_t, field_displacement, field_rotation, field_velocity, field_gap, &
+                               field_contact_pressure, field_delamination, field_energy_release, field_ply_damage
   use text, only: joined, lower_case, words_of
   implicit none
   private
@@ -28,8 +29,9 @@ module output_deck
       &contact_pressure delamination energy_release ply_damage stress face_stress | Fields written, parted by commas.']
 
   !> Fields written unless the deck chooses: all but the stresses, which are many.
-  character(len=*), parameter :: usual_fields = 'displacement,rotation,velocity,gap,contact_pressure,delamination,'// &
-                                                'energy_release,ply_damage'
+  character(len=*), parameter :: usual_fields = &
+    field_displacement//','//field_rotation//','//field_velocity//','//field_gap//','//field_contact_pressure//','// &
+    field_delamination//','//field_energy_release//','//field_ply_damage
 
 contains
 
@@ -60,15 +62,15 @@ contains
     logical, intent(in) :: has_ply_damage
     !> Remarks are added
     type(problems_t), intent(inout) :: problems
-    character(len=*), parameter :: of_interfaces(*) = [character(len=16) :: 'gap', 'contact_pressure', &
-                                                       'delamination', 'energy_release']
+    character(len=*), parameter :: of_interfaces(*) = [character(len=16) :: field_gap, field_contact_pressure, &
+                                                       field_delamination, field_energy_release]
     integer :: i
 
     if (.not. (settings%is_given(group, 'fields') .and. settings%is_known(group, 'fields'))) return
     do i = 1, size(of_interfaces)
       if (.not. has_interfaces) call idle(trim(of_interfaces(i)), '&delamination')
     end do
-    if (.not. has_ply_damage) call idle('ply_damage', '&ply_damage')
+    if (.not. has_ply_damage) call idle(field_ply_damage, '&ply_damage')
 
   contains
 

@@ -135,7 +135,8 @@ contains
     !> Words parted by blanks
     character(len=*), intent(in) :: words
 
-    is_one_of = len_trim(word) > 0 .and. index(' '//words//' ', ' '//trim(word)//' ') > 0
+    is_one_of = len_trim(word) > 0 .and. scan(trim(word), ' ') == 0 .and. &
+                index(' '//words//' ', ' '//trim(word)//' ') > 0
   end function is_one_of
 
   !> Number of cells of a row.

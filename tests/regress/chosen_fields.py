@@ -1,6 +1,8 @@
-"""The fields that a deck chooses: those and no others are written, and stresses and energy release rates are right.
-Usage: chosen_fields.py IMPLAM FOLDER"""
+"""The fields that a deck chooses: those and no others are written, as `implam explain fields` says, and stresses and
+energy release rates are right. Usage: chosen_fields.py IMPLAM FOLDER"""
 
+import re
+import subprocess
 import sys
 from pathlib import Path
 
@@ -173,9 +175,43 @@ def check_energy_release(implam, folder):
     print(f"energy release: {np.count_nonzero(ratio)} cells ahead of the front, G/G_c up to {np.max(ratio):.3f}")
 
 
+def table_of(implam, topic):
+    """Return the rows of a table of results, each a list of cells, without the heading."""
+    text = subprocess.run([implam, "explain", topic, "--markdown"], stdout=subprocess.PIPE, text=True, check=True).stdout
+    return [[cell.strip(" `") for cell in line.strip("| ").split(" | ")] for line in text.splitlines()[2:]]
+
+
+def fields_of(history_path):
+    """Return what a field file says of its fields: place, unit and meaning by their names, N for the number of a ply."""
+    found = {}
+    with h5py.File(str(history_path).removesuffix("_history.csv") + ".h5") as file:
+        last = file["times"][max(file["times"])]
+        groups = {"cells": [file["meshes/00000001/cells"], last.get("cells", {})], "points": [last.get("points", {})]}
+        for place, name, item in ((p, *pair) for p, held in groups.items() for group in held for pair in group.items()):
+            texts = (item.attrs[what].decode() for what in ("unit", "meaning"))
+            found[re.sub(r"^ply_\d+_", "ply_N_", name)] = (place, *texts)
+    return found
+
+
+def check_table(implam, folder):
+    """Each choice writes the fields that the table gives it, with their units and meanings; likewise the columns."""
+    rows = table_of(implam, "fields")
+    for choice in sorted({row[3] for row in rows} - {"-"}):
+        history_path = run_deck(implam, write_deck(folder / choice, "../small/damage.nml",
+                                                   [f"output%fields='{choice}'", "time%end=20e-6"]))
+        expected = {name: (place, unit, meaning) for name, place, unit, its_choice, _, meaning in rows
+                    if its_choice in ("-", choice)}
+        found = fields_of(history_path)
+        require(found == expected, f"{choice}: there are {found} and not {expected}.")
+    columns = list(read_history(history_path))
+    expected = [row[0] for row in table_of(implam, "history")]
+    require(columns == expected, f"The columns are {columns} and not {expected}.")
+    print(f"{len(rows)} fields and {len(columns)} columns are those of the tables")
+
+
 def main(implam, folder):
     """Run the trials; the exit code is 1 if one fails."""
-    trials = check_navier, check_damaged_layers, check_energy_release
+    trials = check_navier, check_damaged_layers, check_energy_release, check_table
     return max(exit_code_of(trial, implam, Path(folder)) for trial in trials)
 
 

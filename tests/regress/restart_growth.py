@@ -51,7 +51,8 @@ RUNNING = ["mesh%elements=20,20", "impactor%velocity=3", "delamination%G_c=100",
 
 # The operator follows what comes apart and touches over many steps before it is factored anew.
 FOLLOWING = ["mesh%elements=8,8", "plate%edges='simple'", "plate%symmetry='none'", "impactor%velocity=6",
-             "delamination%G_c=50", "time%end=100e-6", "time%step=5e-6", "time%integrator='newmark'", "time%beta=0.28", "time%gamma=0.55"]
+             "delamination%G_c=50", "time%end=100e-6", "time%step=5e-6", "time%integrator='newmark'",
+             "time%beta=0.28", "time%gamma=0.55"]
 
 
 def growth(history):
@@ -209,8 +210,8 @@ def check_rejected(implam, folder, _):
     require(max(growth(read_history(histories[-1]))) > 0, "Nothing grew: the trial proves nothing.")
 
 
-TRIALS = {"every": check_every, "splits": check_splits, "moments": check_moments, "ranks": check_ranks, "rejected": check_rejected,
-          "fading": check_fading, "averages": check_averages}
+TRIALS = {"every": check_every, "splits": check_splits, "moments": check_moments, "ranks": check_ranks,
+          "rejected": check_rejected, "fading": check_fading, "averages": check_averages}
 
 
 if __name__ == "__main__":

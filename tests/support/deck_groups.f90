@@ -1,5 +1,5 @@
-!> Decks of one group.
-module small_decks
+!> Decks of one group, for the tests of the folder that brings its rows.
+module deck_groups
   use deck_problems, only: problems_t
   use deck_rules, only: settle
   use deck_scanner, only: scan_t, scan_deck
@@ -24,4 +24,4 @@ contains
     call scan_deck(content, scan, problems)
     call settle(scan, vocabulary, settings, problems)
   end subroutine read_group
-end module small_decks
+end module deck_groups
