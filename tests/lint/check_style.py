@@ -21,7 +21,7 @@ MAX_FOLDER, SMALL_PROGRAM = 0.15, 5000
 INDENT = 2
 SUFFIXES = (".f90", ".F90", ".pf")
 # Words that have one spelling, but for names of public columns (refactorisations).
-SPELLINGS = {"factorization": re.compile(r"factoris(?!ations \|)", re.IGNORECASE)}
+SPELLINGS = {"factorization": re.compile(r"(?<!re)factoris|factoris(?!ations\b)", re.IGNORECASE)}
 # Libraries whose modules are made to be used whole.
 WHOLE_MODULES = {"mpi", "mpi_f08", "hdf5"}
 

@@ -166,7 +166,7 @@ class StyleTest(unittest.TestCase):
 
     def test_the_public_column_keeps_its_name(self):
         """It was spelt otherwise."""
-        self.assertEqual(self.check("! refactorisations | integer\n" + GOOD)[0], 0)
+        self.assertEqual(self.check("! 'refactorisations', but not a refactorization\n" + GOOD)[0], 0)
 
     def test_an_empty_folder_fails(self):
         """A check of nothing is no check."""

@@ -3,7 +3,8 @@
 program strike_rigid_base
   use example_checks, only: require
   use impact_parameters, only: impactor_parameters_t, integrator_conserving
-  use impactors, only: impactor_t, new_impactor, predict, advance, impactor_energy
+  use impactor_integrators, only: predict, advance
+  use impactors, only: impactor_t, new_impactor, impactor_energy
   use kinds, only: wp
   use yigit_christoforou, only: plastic_law_t, plastic_contact_t, touch_indentation, contact_force, &
                                 contact_stiffness, mean_force, commit

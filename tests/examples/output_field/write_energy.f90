@@ -13,7 +13,6 @@ program write_energy
   use hdf5_data, only: read_real_columns
   use hdf5_file, only: hdf5_file_t
   use kinds, only: wp
-  use load_vectors, only: element_areas
   use model_building, only: create_model
   use models, only: model_t
   use run_provenance, only: build_t, this_run
@@ -48,8 +47,11 @@ program write_energy
   stiffness(:, 20, :) = stiffness(:, 20, :) + 0.1_wp*stiffness(:, 21, :)
   density = strain_energy_density(model, stiffness, bent)
   call model%internal(stiffness, bent, force, energy)
-  call require('field times areas over strain energy', sum(density(1, :)*element_areas(model%elements))/energy, &
-               1.0_wp, 1e-13_wp)
+  associate (mesh => model%mesh, cells => model%mesh%element_cell(model%distribution%elements))
+    call require('field times areas over strain energy', &
+                 sum(density(1, :)*[(mesh%cell_area(mesh%place_of(cells(i))), i=1, size(cells))])/energy, &
+                 1.0_wp, 1e-13_wp)
+  end associate
   call write_and_read('example_output_field')
   call finish_mpi()
 
