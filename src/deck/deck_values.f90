@@ -200,6 +200,7 @@ contains
     largest = '1e'//to_text(most)
     if (.not. is_number .or. abs(decade) < most) return
     if (decade < 0) then
+      if (.not. in_range(key%allowed, 10.0_wp**(1 - most))) return
       limit = ', at least 1e'//to_text(1 - most)//' in size'
       if (in_range(key%allowed, 0.0_wp)) limit = ', 0 or'//limit(2:)
     else if (key%allowed == 'any') then
