@@ -20,8 +20,12 @@ MAX_COMPONENTS = 15
 MAX_FOLDER, SMALL_PROGRAM = 0.15, 5000
 INDENT = 2
 SUFFIXES = (".f90", ".F90", ".pf")
-# Words that have one spelling, but for names of public columns (refactorisations).
-SPELLINGS = {"factorization": re.compile(r"(?<!re)factoris|factoris(?!ations\b)", re.IGNORECASE)}
+# What has one name and one spelling, and the others; a public column is refactorisations.
+SPELLINGS = {
+    "factorization": re.compile(r"(?<!re)factoris|factoris(?!ations\b)", re.IGNORECASE),
+    "time stepping": re.compile(r"\bmarch(es|ed|ing)?\b", re.IGNORECASE),
+    "contact and ties": re.compile(r"\bseparations\b", re.IGNORECASE),
+}
 # Libraries whose modules are made to be used whole.
 WHOLE_MODULES = {"mpi", "mpi_f08", "hdf5"}
 
@@ -166,7 +170,7 @@ class Checker:
                 self.report(number, f"more than {MAX_COLUMNS} columns")
             for word, other in SPELLINGS.items():
                 if other.search(line):
-                    self.report(number, f"another spelling of {word}")
+                    self.report(number, f"another name or spelling of {word}")
 
     def check_indent(self, statement):
         """Check the indentation of a statement's first line."""

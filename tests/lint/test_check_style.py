@@ -107,7 +107,8 @@ BREACHES = {
     "long procedure": ("        twice = 3\n", "        twice = 3\n" * 100, "more than 100 lines"),
     "long file": ("!> A thing.\n", "! Why\n" * 400 + "!> A thing.\n", "more than 400 lines"),
     "many components": ("    real(wp) :: size = 0\n", f"    real(wp) :: {MANY}\n", "more than 15 components"),
-    "spelling": ("!> A thing.\n", "!> A Factorised thing.\n", "another spelling of factorization"),
+    "spelling": ("!> A thing.\n", "!> A Factorised thing.\n", "another name or spelling of factorization"),
+    "march": ("    !> Size\n", "    !> The march\n", "another name or spelling of time stepping"),
 }
 
 
