@@ -5,7 +5,7 @@ check_pages.py [ROOT] [--write] [--sentences]
 - Relative links lead to files, and to headings, that exist.
 - Files named in quotes exist: with their path from the root or from src/, or by a bare name somewhere in the project.
 - A block of code after <!-- from PATH --> stands in that file, line by line; "..." stands for lines left out.
-- doc/index.md lists every page of doc/, every group and key of the manual and every term of the glossary.
+- doc/index.md lists every page of doc/, every key, column and field of the manual and every term of the glossary.
 - Pages say what holds now: the words of a diary ("as it was then") are refused outside CHANGELOG.md and doc/news/.
 
 --write writes the lists of doc/index.md anew. --sentences counts the sentences of more than 30 words and prints them.
@@ -24,17 +24,18 @@ FENCE = re.compile(r"^ *```")
 ORIGIN = re.compile(r"^<!-- from (\S+) -->$")
 # A file in a folder of the project, a source by the folder of src/ that it is in, or a bare name of one.
 PATHS = re.compile(r"^(?:src|tests|input|doc|cmake|postproc|\.ci)/[\w./*-]*$")
-SOURCES = re.compile(r"^(?:[a-z_]+/)?[\w-]+\.(?:f90|pf|c|nml|py|toml)$")
-# Names that stand for a user's own files.
-PLACEHOLDERS = {"deck.nml", "my.nml"}
+SOURCES = re.compile(r"^(?:[a-z_]+/)?[\w-]+\.(?:f90|pf|c|py)$")
+# Names that stand for others: <name>, GROUP_deck.f90.
+PLACEHOLDER = re.compile(r"<|[A-Z]{2}")
+# Files that a patch of an example makes.
+PATCHED = re.compile(r"^\+\+\+ \w/(\S+)", re.MULTILINE)
 DIARY = re.compile(
     r"\b(?:as it was then|was then|as it was when|before the deck had|before (?:that|this) change|formerly|used to be|"
     r"up to now|until now|has now been)\b",
     re.IGNORECASE,
 )
 BEGIN, END = "<!-- lists: written by tests/lint/check_pages.py --write -->", "<!-- end of the lists -->"
-KEY_TABLE = re.compile(r"^\| key \|.*?(?=\n\n|\Z)", re.MULTILINE | re.DOTALL)
-KEY_ROW = re.compile(r"^\| `(\w+)` \|", re.MULTILINE)
+ROW = re.compile(r"^\| `(\w+)` \|", re.MULTILINE)
 TERM = re.compile(r"^\*\*(.+?)\*\*(.*?)(?=^\*\*|^#|\Z)", re.MULTILINE | re.DOTALL)
 # What ends with a full stop without ending a sentence.
 SHORT = re.compile(r"\b(?:et al|Eqs?|Sec|Fig|No|e\.g|i\.e|vs|cf|J|Proc|Comput|Mech|Appl|Int|Numer|Meth|Eng)\.")
@@ -91,12 +92,14 @@ class Names:
         """List them."""
         self.root = root
         self.bare = set()
-        for folder in ("src", "tests", "input", "postproc", "cmake"):
+        for folder in ("src", "tests", "postproc", "cmake"):
             self.bare |= {path.name for path in (root / folder).rglob("*") if ".venv" not in path.parts}
+        patches = (root / "tests" / "examples").glob("*.patch")
+        self.patched = {name for path in patches for name in PATCHED.findall(path.read_text(encoding="utf-8"))}
 
     def missing(self, word):
         """Does a quoted word name a file that is not there?"""
-        if "<" in word or word in PLACEHOLDERS:
+        if PLACEHOLDER.search(word) or word in self.patched:
             return False
         if PATHS.match(word):
             return not (any(self.root.glob(word)) if "*" in word else (self.root / word).exists())
@@ -188,19 +191,26 @@ def wrapped(text, width=118):
     return "\n".join(lines)
 
 
+def listed_rows(page, heading, label):
+    """The rows of a page's table as one item of a list, if it has a table with this first heading."""
+    table = re.search(rf"^\| {heading} \|.*?(?=\n\n|\Z)", page.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
+    rows = ROW.findall(table.group()) if table else []
+    target = f"{page.parent.name}/{page.name}"
+    return [wrapped(f"- [{label}]({target}): " + ", ".join(f"`{row}`" for row in rows) + ".")] if rows else []
+
+
 def index_lists(doc):
-    """The lists of the index: pages, groups with their keys, terms."""
+    """The lists of the index: pages, groups with their keys, columns and fields, terms."""
     listed = [page for page in sorted(doc.rglob("*.md")) if "news" not in page.parts and page.name != "index.md"]
     parts = ["## Pages", ""]
     for page in sorted(listed, key=lambda page: (page.parent, page.name)):
         parts.append(f"- [{title(page)}]({page.relative_to(doc).as_posix()})")
     parts += ["", "## Groups and keys of the deck", ""]
     for page in sorted((doc / "manual").glob("*.md")):
-        table = KEY_TABLE.search(page.read_text(encoding="utf-8"))
-        keys = KEY_ROW.findall(table.group()) if table else []
-        if keys:
-            target = page.relative_to(doc).as_posix()
-            parts.append(wrapped(f"- [&{page.stem}]({target}): " + ", ".join(f"`{key}`" for key in keys) + "."))
+        parts += listed_rows(page, "key", f"&{page.stem}")
+    parts += ["", "## Columns and fields of the results", ""]
+    for page in sorted((doc / "manual").glob("*.md")):
+        parts += listed_rows(page, "name", page.stem)
     parts += ["", "## Terms", ""]
     glossary = doc / "glossary.md"
     if glossary.exists():

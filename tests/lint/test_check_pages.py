@@ -13,7 +13,7 @@ GOOD = """\
 # Page
 
 See [below](#a-heading--with-signs), [the manual](manual/case.md#case-the-case) and `base/kinds.f90`, `kinds.f90`,
-`src/base`, `src/*/kinds.f90`, `implam deck.nml`, `tests/<kind>/x.py`.
+`src/base`, `src/*/kinds.f90`, `implam deck.nml`, `tests/<kind>/x.py`, `GROUP_deck.f90`, `src/base/new.f90`.
 
 <!-- from src/base/kinds.f90 -->
 ```fortran
@@ -30,6 +30,8 @@ FILES = {
     "doc/page.md": GOOD,
     "doc/glossary.md": "# Glossary\n\n**term**: its meaning. [page](page.md#page)\n\n**other**: without a page.\n",
     "doc/manual/case.md": "# &case: the case\n\n| key | type |\n|---|---|\n| `name` | text |\n\n| `no_key` | of it |\n",
+    "doc/manual/history.md": "# History\n\n| name | type |\n|---|---|\n| `time` | real |\n| `step` | integer |",
+    "tests/examples/new.patch": "--- /dev/null\n+++ b/src/base/new.f90\n@@ -0,0 +1 @@\n+module new\n",
     "src/base/kinds.f90": "module kinds\n  implicit none\n  integer, parameter :: wp = 8\nend module kinds\n",
 }
 
@@ -63,10 +65,11 @@ class PagesTest(unittest.TestCase):
 
     def test_good_pages(self):
         """Good pages are accepted, and the index lists pages, keys and terms."""
-        self.assertEqual(self.said(), (0, "5 pages keep the rules\n"))
+        self.assertEqual(self.said(), (0, "6 pages keep the rules\n"))
         for entry in (
             "- [Page](page.md)",
             "- [&case](manual/case.md): `name`.",
+            "- [history](manual/history.md): `time`, `step`.",
             "[term](page.md#page)",
             "[other](glossary.md)",
         ):

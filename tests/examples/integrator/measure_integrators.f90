@@ -2,15 +2,15 @@
 !> formula gives the energy that it takes.
 program measure_integrators
   use bdf2_impactors, only: bdf2_impactor_t, new_bdf2_impactor, bdf2_predict, bdf2_advance
-  use impact_force, only: solve_impact_force
   use errors, only: error_t
   use example_checks, only: require
   use hht_integrators, only: hht_integrator
+  use impact_force, only: solve_impact_force
   use impact_parameters, only: impactor_parameters_t, indentation_law_t, law_hertz
-  use tan_sun_indentation, only: indentation_t
   use kinds, only: wp
   use motions, only: motion_t
   use newmark_integrators, only: plate_integrator_t
+  use tan_sun_indentation, only: indentation_t
   implicit none
   type(impactor_parameters_t) :: ball
   type(bdf2_impactor_t) :: impactor
@@ -59,7 +59,7 @@ contains
     do step = 1, steps
       call bdf2_predict(ball, impactor, dt, free, compliance)
       call solve_impact_force(law, contact, contact%alpha, free, compliance, .false., force, alpha, force_end, &
-                               iterations, error)
+                              iterations, error)
       impactor = bdf2_advance(ball, impactor, dt, force)
       contact%alpha = impactor%displacement
     end do

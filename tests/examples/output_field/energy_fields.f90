@@ -1,14 +1,41 @@
 !> A field for the results: the strain energy of each element per area of the plate.
 module energy_fields
-  use kinds, only: wp
   use element_batches, only: lanes, first_element
-  use strain_recovery, only: gauss_strains
+  use errors, only: error_t
+  use fields_file, only: fields_file_t
+  use kinds, only: wp
   use models, only: model_t
+  use output_parameters, only: output_t
+  use result_tables, only: result_row_length
+  use strain_recovery, only: gauss_strains
   implicit none
   private
-  public :: strain_energy_density, packed_energy
+  public :: strain_energy_density, write_energy_fields
+
+  !> The field.
+  character(len=result_row_length), parameter, public :: energy_field_rows(*) = [character(len=result_row_length) :: &
+    'strain_energy_density | cells | energy/area | energy | - | Strain energy of the element per area of the plate.']
 
 contains
+
+  !> Writes the field if it is wanted.
+  subroutine write_energy_fields(model, stiffness, displacement, output, fields, error)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Section stiffness left in the elements, (lanes, 21, batches)
+    real(wp), intent(in) :: stiffness(:, :, :)
+    !> Displacement, ghosts up to date, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> Which fields
+    type(output_t), intent(in) :: output
+    !> The file
+    type(fields_file_t), intent(inout) :: fields
+    !> Set if the file cannot be written
+    type(error_t), allocatable, intent(inout) :: error
+
+    if (output%wants('energy')) call fields%write_cell_field( &
+      'strain_energy_density', strain_energy_density(model, stiffness, displacement), error)
+  end subroutine write_energy_fields
 
   !> Strain energy per area, with the stiffness that plies have left.
   function strain_energy_density(model, stiffness, displacement) result(density)
