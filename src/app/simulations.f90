@@ -28,7 +28,7 @@ module simulations
   private
   public :: simulation_t
 
-  !> A run with all that it has open.
+  !> A run with all that it has open. It has many components because nothing else owns files, clocks and timers.
   type :: simulation_t
     !> The deck
     type(deck_t) :: deck
