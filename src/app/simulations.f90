@@ -17,7 +17,7 @@ module simulations
   use run_reports, only: log_echo, log_costs, summary
   use history_file, only: history_file_t
   use fields_file, only: fields_file_t
-  use checkpoints, only: checkpoint_archive_t
+  use checkpoints, only: checkpoint_archive_t, retire_checkpoint
   use wall_limits, only: wall_limit_t
   use queue_signals, only: stop_signal
   use output_clocks, only: clock_t, next_event
@@ -85,9 +85,13 @@ contains
     real(wp), intent(in) :: begun
     !> Set if files cannot be written or the model cannot be set up
     type(error_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: retired
 
     call prepare(self, deck, communicator, begun, append=.false., error=error)
     if (allocated(error)) return
+    call retire_checkpoint(communicator, self%base//'_restart.h5', retired, error)
+    if (allocated(error)) return
+    if (retired /= '') call self%log%note('The checkpoint of an earlier run is now '//retired//'.')
     call self%history%create(communicator, self%base//'_history.csv', column_names, column_whole, error)
     if (allocated(error)) return
     call self%fields%create(communicator, self%base, self%provenance, part_of(self), error)
@@ -161,6 +165,7 @@ contains
     !> Set if the checkpoint cannot be used
     type(error_t), allocatable, intent(out) :: error
     type(checkpoint_archive_t) :: archive
+    real(wp), allocatable :: last_row(:)
     integer :: rows
 
     call prepare(self, deck, communicator, begun, append=.true., error=error)
@@ -172,7 +177,11 @@ contains
     call archive%close(error)
     if (allocated(error)) return
     self%warned_of_border = self%stepper%now%interfaces%border_reached
-    call self%history%resume(communicator, self%base//'_history.csv', column_names, column_whole, rows, error)
+    call self%fields%check_deck(communicator, self%base, deck%text, error)
+    if (allocated(error)) return
+    last_row = self%history%last_row
+    call self%history%resume(communicator, self%base//'_history.csv', column_names, column_whole, rows, last_row, &
+                             error)
     if (allocated(error)) return
     if (self%history%rows /= rows) &
       call self%log%warning('The history before the checkpoint is not there; it goes on from here.')
@@ -198,6 +207,7 @@ contains
     call self%fields_clock%visit(archive, 'fields')
     call self%checkpoint_clock%visit(archive, 'checkpoint')
     call archive%item('history/rows', rows)
+    call archive%item('history/last_row', self%history%last_row)
   end subroutine visit
 
   !> Time, or load factor, at which the run ends.

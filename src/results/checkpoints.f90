@@ -5,7 +5,7 @@ module checkpoints
   use checkpoint_seal, only: head_length, seal, synchronise_folder, verify_seal
   use communicators, only: communicator_t
   use errors, only: error_t, exit_files, fail
-  use files, only: rename_file
+  use files, only: file_exists, rename_file
   use hdf5_data, only: read_integers, read_real_columns, read_reals, write_integers, write_real_columns, write_reals
   use hdf5_file, only: hdf5_file_t
   use hdf5_transfers, only: stored_shape
@@ -14,7 +14,7 @@ module checkpoints
   use stored_provenance, only: read_provenance, write_provenance
   implicit none
   private
-  public :: checkpoint_archive_t
+  public :: checkpoint_archive_t, retire_checkpoint
 
   !> Group of the items in the file.
   character(len=*), parameter :: items = 'state/'
@@ -102,6 +102,27 @@ contains
       call self%file%communicator%agree(error)
     end if
   end subroutine close
+
+  !> Gives the checkpoint of an earlier run another name: what a new run leaves must not be taken for its end.
+  subroutine retire_checkpoint(communicator, path, retired, error)
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> Path of the checkpoint
+    character(len=*), intent(in) :: path
+    !> Its new path, whose file is replaced; empty: there was no checkpoint
+    character(len=:), allocatable, intent(out) :: retired
+    !> Raised if it can't be renamed
+    type(error_t), allocatable, intent(inout) :: error
+
+    retired = ''
+    if (communicator%is_root()) then
+      if (file_exists(path)) then
+        retired = path//'.old'
+        call rename_file(path, retired, error)
+      end if
+    end if
+    call communicator%agree(error)
+  end subroutine retire_checkpoint
 
   !> Seals the new file and gives it its name.
   subroutine put_in_place(path, error)

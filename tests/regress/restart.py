@@ -8,6 +8,7 @@ rejected     from checkpoints on either side of rejected steps: bitwise
 signal       SIGTERM ends a run with a checkpoint and its own exit code: bitwise
 limit        the time on the wall ends runs in time with a checkpoint and that exit code: bitwise
 kill         SIGKILL at any moment leaves a checkpoint that can be used: bitwise
+mixed        results of another run are neither gone on with nor left with a checkpoint that isn't theirs
 damaged      a checkpoint that isn't one, or not whole, ends with the exit code for files and a sentence"""
 
 import filecmp
@@ -38,6 +39,7 @@ from solver_runs import (
 
 TOLERANCE = 1e-9
 IMPACT = "sun_chen_tan_sun.nml"
+DAMAGE = "../small/damage.nml"
 # Seconds that a run may take on a busy machine, within the time limit of the test.
 PATIENCE = 240
 # A strong blow on a coarse mesh: von Karman strains of several thicknesses where asked for.
@@ -323,8 +325,48 @@ def check_damaged(implam, folder, _):
     print(f"absent: {said.strip()}")
 
 
+def one_sentence_of(said, what):
+    """Return what was said, which must be one sentence."""
+    lines = [line for line in said.splitlines() if line.startswith("implam: ")]
+    require(len(lines) == 1 and lines[0].endswith("."), f"{what}: not one sentence is said but\n{said}")
+    return lines[0]
+
+
+def refuse(implam, checkpoint, what):
+    """Restart where it must be refused; no result may change."""
+    def results():
+        return {path.name: path.read_bytes() for path in checkpoint.parent.iterdir() if path.suffix != ".log"}
+
+    before = results()
+    print(f"{what}: {one_sentence_of(run([implam, 'restart', checkpoint], EXIT_FILES), what)}")
+    require(results() == before, f"{what}: results were changed.")
+
+
+def check_mixed(implam, folder, _):
+    """A run with checkpoints, another one in its folder without, then a restart."""
+    deck = write_deck(folder / "both", DAMAGE, ["output%checkpoint_every=50e-6", "output%fields_every=50e-6"])
+    run_deck(implam, deck)
+    alone = copy_run(deck.parent, folder / "alone")
+    checkpoint = checkpoint_of(deck.parent)
+    content = checkpoint.read_bytes()
+    other = write_deck(folder / "other", DAMAGE, ["impactor%velocity=4"])
+    said = run([implam, other, "--output", deck.parent])
+    old = checkpoint.with_name(checkpoint.name + ".old")
+    require(not checkpoint.exists() and old.read_bytes() == content and old.name in said,
+            f"The older checkpoint is still there, or nobody says where it is:\n{said}")
+    refuse(implam, old, "history")
+    history_of(deck.parent).rename(folder / "history.csv")
+    refuse(implam, old, "fields")
+    (deck.parent / "damage.h5").unlink()
+    (folder / "history.csv").rename(deck.parent / "damage_history.csv")
+    refuse(implam, old, "history alone")
+    reference = history_of(alone).read_bytes()
+    require(go_on(implam, alone).read_bytes() == reference, "Alone it does not go on as it was.")
+
+
 TRIALS = {"integrators": check_integrators, "contact": check_contact, "ranks": check_ranks, "rejected": check_rejected,
-          "signal": check_signal, "limit": check_limit, "kill": check_kill, "damaged": check_damaged}
+          "signal": check_signal, "limit": check_limit, "kill": check_kill, "mixed": check_mixed,
+          "damaged": check_damaged}
 
 
 def main(trials, trial, implam, folder, *launcher):
