@@ -176,7 +176,7 @@ contains
   !> What the program tells of its use.
   pure function usage() result(text)
     !> Lines of the text
-    character(len=96) :: text(17)
+    character(len=96) :: text(18)
 
     text = [character(len=96) :: &
             'Usage: implam [run] DECK.nml       run a deck', &
@@ -189,12 +189,13 @@ contains
             '  --wall-limit SECONDS  end with a checkpoint before so many seconds have passed on the wall', &
             '  --markdown     explain as a table for the manual', &
             '  -mat_..., -ksp_..., -log_view and other words with one dash go to PETSc', &
-            'Under mpirun the same. Exit codes:', &
+            'Under mpirun the same but for signals. Exit codes:', &
             '  0 done  1 usage  2 deck  3 no convergence at the smallest step  4 files  5 internal', &
             '  75 stopped by a signal of the queue or the time on the wall, with a checkpoint written:', &
             '     go on with restart', &
             'Signals: TERM, INT, USR1, USR2 and XCPU end the run after the step at hand, with a', &
-            '  checkpoint.', &
+            '  checkpoint. Under mpirun send USR1 to mpirun, or any of them to every rank: mpirun itself', &
+            '  takes TERM and INT, kills the ranks a second later and ends with code 1.', &
             '']
   end function usage
 end module command_lines

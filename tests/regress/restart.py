@@ -6,6 +6,7 @@ contact      delaminated faces in contact by both laws: bitwise
 ranks        on 2 ranks, and from 1 rank to 2 and back: to 1e-9
 rejected     from checkpoints on either side of rejected steps: bitwise
 signal       SIGTERM ends a run with a checkpoint and its own exit code: bitwise
+ranks_signal two ranks that get TERM twice, as from a queue, and mpirun that gets USR1, end the same way: to 1e-9
 limit        the time on the wall ends runs in time with a checkpoint and that exit code: bitwise
 kill         SIGKILL at any moment leaves a checkpoint that can be used: bitwise
 mixed        results of another run are neither gone on with nor left with a checkpoint that isn't theirs
@@ -241,6 +242,51 @@ def check_signal(implam, folder, _):
 SINGLE_STEP = ["--wall-limit", "1e-3"]
 
 
+def ranks_of(process, implam):
+    """Return the processes of the program that a launcher has started."""
+    found = []
+    for status in Path("/proc").glob("[0-9]*/stat"):
+        try:
+            # The name of a process is in brackets and may hold anything.
+            name, rest = status.read_text(encoding="utf-8").split("(", 1)[1].rsplit(")", 1)
+        except (OSError, IndexError):
+            continue
+        if int(rest.split()[1]) == process.pid and Path(implam).name.startswith(name):
+            found.append(int(status.parent.name))
+    return found
+
+
+def signal_twice(process, implam):
+    """Send TERM to every rank, and once more."""
+    ranks = ranks_of(process, implam)
+    require(len(ranks) == 2, f"mpirun has started {len(ranks)} ranks.")
+    for _ in range(2):
+        for rank in ranks:
+            os.kill(rank, signal.SIGTERM)
+        time.sleep(0.001)
+
+
+def check_ranks_signal(implam, folder, launcher):
+    """Signals to two ranks and to their launcher."""
+    reference = run_deck(implam, write_deck(folder / "uninterrupted", IMPACT, LONG))
+    deck = write_deck(folder / "stopped", IMPACT, LONG)
+    words = [deck, "--output", deck.parent]
+    stops = {"TERM twice": lambda process: signal_twice(process, implam),
+             "USR1 to mpirun": lambda process: process.send_signal(signal.SIGUSR1)}
+    for runs, (name, stop) in enumerate(stops.items(), start=1):
+        process = start(*launcher, "2", implam, *words)
+        # Rows are written at intervals, but the first one comes after METIS has been at work.
+        wait_until(lambda runs=runs: model_lines(deck.parent) >= runs, process)
+        time.sleep(0.5)
+        stop(process)
+        code = exit_code(process)
+        require(code == EXIT_STOPPED, f"After {name} the exit code is {code}, not {EXIT_STOPPED}.")
+        print(f"{name} after {len(read_history(history_of(deck.parent))['time'])} rows", flush=True)
+        words = ["restart", checkpoint_of(deck.parent)]
+    run([implam, *words])
+    require_close(history_of(deck.parent), reference, "signals")
+
+
 def stop_by_limit(implam, folder, command, seconds):
     """Run a command that the time on the wall must end; return the rows written."""
     begun = time.monotonic()
@@ -366,7 +412,7 @@ def check_mixed(implam, folder, _):
 
 TRIALS = {"integrators": check_integrators, "contact": check_contact, "ranks": check_ranks, "rejected": check_rejected,
           "signal": check_signal, "limit": check_limit, "kill": check_kill, "mixed": check_mixed,
-          "damaged": check_damaged}
+          "ranks_signal": check_ranks_signal, "damaged": check_damaged}
 
 
 def main(trials, trial, implam, folder, *launcher):
