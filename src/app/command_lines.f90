@@ -14,7 +14,7 @@ module command_lines
   type :: command_t
     !> One of the verbs
     integer :: verb = verb_run
-    !> Deck, checkpoint or topic
+    !> Deck, checkpoint or its folder, topic; empty: none
     character(len=:), allocatable :: target
     !> Folder that overrides the deck's; unallocated: the deck's
     character(len=:), allocatable :: output
@@ -121,8 +121,6 @@ contains
     select case (command%verb)
     case (verb_run, verb_check)
       call fail(error, exit_usage, 'No deck given; see implam --help.')
-    case (verb_restart)
-      call fail(error, exit_usage, 'No checkpoint given: implam restart NAME_restart.h5')
     end select
   end subroutine require_target
 
@@ -176,13 +174,14 @@ contains
   !> What the program tells of its use.
   pure function usage() result(text)
     !> Lines of the text
-    character(len=96) :: text(18)
+    character(len=96) :: text(19)
 
     text = [character(len=96) :: &
             'Usage: implam [run] DECK.nml       run a deck', &
             '       implam check DECK.nml       read and check a deck, list every fault, run nothing', &
             '       implam explain [GROUP[%KEY]] what a deck can say: keys, units, defaults, meaning', &
-            '       implam restart FILE         go on from a checkpoint (NAME_restart.h5)', &
+            '       implam restart [FILE]       go on from a checkpoint (NAME_restart.h5), or from the newest', &
+            '                                   of a folder: the one named, that of --output, or this one', &
             '       implam --version | --help', &
             'Options:', &
             '  --output DIR   folder of the results, instead of the deck''s', &

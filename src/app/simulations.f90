@@ -17,7 +17,7 @@ module simulations
   use run_reports, only: log_echo, log_costs, summary
   use history_file, only: history_file_t
   use fields_file, only: fields_file_t
-  use checkpoints, only: checkpoint_archive_t, retire_checkpoint
+  use checkpoints, only: checkpoint_archive_t, checkpoint_ending, retire_checkpoint
   use wall_limits, only: wall_limit_t
   use queue_signals, only: catch_stop_signals, stop_signal
   use output_clocks, only: clock_t, next_event
@@ -89,7 +89,7 @@ contains
 
     call prepare(self, deck, communicator, begun, append=.false., error=error)
     if (allocated(error)) return
-    call retire_checkpoint(communicator, self%base//'_restart.h5', retired, error)
+    call retire_checkpoint(communicator, self%base//checkpoint_ending, retired, error)
     if (allocated(error)) return
     if (retired /= '') call self%log%note('The checkpoint of an earlier run is now '//retired//'.')
     call self%history%create(communicator, self%base//'_history.csv', column_names, column_whole, error)
@@ -127,6 +127,7 @@ contains
     call communicator%agree(error)
     if (allocated(error)) return
     self%provenance = this_run(this_build(), deck%text, communicator%size)
+    self%provenance%case_name = deck%name
     call self%provenance%report(self%log)
     call log_echo(deck, self%log)
     call create_model(deck%scene_t, communicator, self%model, error)
@@ -267,7 +268,7 @@ contains
     if (signalled) cause = 'by a signal'
     call save_checkpoint(self, error)
     call fail(error, exit_stopped, 'Stopped '//cause//' at time '//to_text(self%stepper%now%time)// &
-              '; go on with: implam restart '//self%base//'_restart.h5')
+              '; go on with: implam restart '//self%base//checkpoint_ending)
   end subroutine stop_if_due
 
   !> Writes what is due after an accepted step. The clocks move before the checkpoint is saved, so that
@@ -332,7 +333,7 @@ contains
     call self%history%flush(error)
     if (allocated(error)) return
     rows = self%history%rows
-    call archive%open_for_saving(self%communicator, self%base//'_restart.h5', self%provenance, error)
+    call archive%open_for_saving(self%communicator, self%base//checkpoint_ending, self%provenance, error)
     if (allocated(error)) return
     call visit(self, archive, rows, error)
     if (allocated(error)) return

@@ -9,6 +9,7 @@ signal       SIGTERM ends a run with a checkpoint and its own exit code: bitwise
 ranks_signal two ranks that get TERM twice, as from a queue, and mpirun that gets USR1, end the same way: to 1e-9
 limit        the time on the wall ends runs in time with a checkpoint and that exit code: bitwise
 kill         SIGKILL at any moment leaves a checkpoint that can be used: bitwise
+found        without a file the newest whole checkpoint of a folder is taken, and results keep the name of the case
 mixed        results of another run are neither gone on with nor left with a checkpoint that isn't theirs
 damaged      a checkpoint that isn't one, or not whole, ends with the exit code for files and a sentence"""
 
@@ -388,6 +389,37 @@ def refuse(implam, checkpoint, what):
     require(results() == before, f"{what}: results were changed.")
 
 
+def check_found(implam, folder, _):
+    """A case named by its deck's file, and another one beside it that is older, newer or damaged."""
+    deck = write_deck(folder / "whole", DAMAGE, ["time%end=60e-6"])
+    text = deck.read_text(encoding="utf-8")
+    unnamed = text.replace("name='damage'", "")
+    require(unnamed != text, "The deck has a name still.")
+    references = {}
+    for name, content in (("rs", unnamed), ("damage", text)):
+        deck = deck.with_name(f"{name}.nml")
+        deck.write_text(content, encoding="utf-8")
+        run([implam, deck, "--output", folder / "whole"])
+        references[name] = (folder / "whole" / f"{name}_history.csv").read_bytes()
+        run([implam, deck, "--output", folder / "stopped", *SINGLE_STEP], EXIT_STOPPED)
+    os.utime(folder / "stopped" / "rs_restart.h5", (0, 0))
+    content = (folder / "stopped" / "damage_restart.h5").read_bytes()
+    for name, way in (("damage", ["restart"]), ("rs", ["restart"]), ("rs", ["restart", "."]),
+                      ("rs", ["restart", "--output", folder.resolve() / "here"])):
+        here = copy_run(folder / "stopped", folder / "here")
+        if name == "rs":
+            (here / "damage_restart.h5").write_bytes(content[:-1])
+        said = run([implam, *way], folder=here)
+        require(f"{name}_restart.h5" in said, f"Nobody says what it goes on from:\n{said}")
+        require((here / f"{name}_history.csv").read_bytes() == references[name], f"{name} did not go on as it was.")
+        histories = sorted(path.name for path in here.glob("*_history.csv"))
+        require(histories == ["damage_history.csv", "rs_history.csv"], f"There are {histories}.")
+        print(f"{name} by {way}: the same to the last bit")
+    for path in here.glob("*_restart.h5"):
+        path.write_bytes(content[:-1])
+    print(one_sentence_of(run([implam, "restart"], EXIT_FILES, here), "no checkpoint"))
+
+
 def check_mixed(implam, folder, _):
     """A run with checkpoints, another one in its folder without, then a restart."""
     deck = write_deck(folder / "both", DAMAGE, ["output%checkpoint_every=50e-6", "output%fields_every=50e-6"])
@@ -411,8 +443,8 @@ def check_mixed(implam, folder, _):
 
 
 TRIALS = {"integrators": check_integrators, "contact": check_contact, "ranks": check_ranks, "rejected": check_rejected,
-          "signal": check_signal, "limit": check_limit, "kill": check_kill, "mixed": check_mixed,
-          "ranks_signal": check_ranks_signal, "damaged": check_damaged}
+          "signal": check_signal, "ranks_signal": check_ranks_signal, "limit": check_limit, "kill": check_kill,
+          "found": check_found, "mixed": check_mixed, "damaged": check_damaged}
 
 
 def main(trials, trial, implam, folder, *launcher):
