@@ -77,7 +77,7 @@ contains
   subroutine write_fields(model, stepper, output, fields, error)
     !> The model
     type(model_t), intent(in) :: model
-    !> The march
+    !> The time stepper
     type(time_stepper_t), intent(in) :: stepper
     !> Which fields
     type(output_t), intent(in) :: output

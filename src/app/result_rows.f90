@@ -45,7 +45,7 @@ contains
   function row_of(model, stepper) result(row)
     !> The model
     type(model_t), intent(in) :: model
-    !> The march
+    !> The time stepper
     type(time_stepper_t), intent(in) :: stepper
     !> Values in the order of the columns
     real(wp) :: row(size(column_rows))

@@ -1,4 +1,4 @@
-!> The delaminated cells of one interface, and the nodes whose two faces have come apart there.
+!> The delaminated cells of one interface, and the nodes whose two faces are released there.
 module delaminated_regions
   use archives, only: archive_t
   use kinds, only: wp
@@ -12,16 +12,16 @@ module delaminated_regions
   type, extends(nine_node_grid_t) :: delaminated_region_t
     !> First and last column, then row, of the zone's cells
     integer :: columns(2) = 0, rows(2) = 0
-    !> True where the interface has come apart, (columns(1):columns(2), rows(1):rows(2))
+    !> True where the interface is delaminated, (columns(1):columns(2), rows(1):rows(2))
     logical, allocatable :: delaminated(:, :)
   contains
     !> True for a cell of the zone; false also for a cell outside the model.
     procedure :: in_zone
     !> True for a delaminated cell; false also outside the zone.
     procedure :: is_delaminated
-    !> True for a node whose two faces are apart.
+    !> True for a node whose two faces are released.
     procedure :: released
-    !> Takes a cell apart.
+    !> Delaminates a cell.
     procedure :: release
     !> Saves or loads.
     procedure :: visit
@@ -113,7 +113,7 @@ contains
   end function is_delaminated
 
   !> True if all cells around a node are delaminated. Beyond the model's border and its symmetry lines
-  !> there is no cell to ask; nodes on the zone's own border never come apart, as both layers share them.
+  !> there is no cell to ask; nodes on the zone's own border are never released, as both layers share them.
   pure logical function released(self, i, j)
     !> The region
     class(delaminated_region_t), intent(in) :: self
@@ -132,7 +132,7 @@ contains
     released = .true.
   end function released
 
-  !> Takes a cell of the zone apart. Nothing happens if it is outside the zone.
+  !> Delaminates a cell of the zone. Nothing happens if it is outside the zone.
   pure subroutine release(self, cell)
     !> The region
     class(delaminated_region_t), intent(inout) :: self

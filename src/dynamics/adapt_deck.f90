@@ -1,4 +1,4 @@
-!> Adaptive steps and refactorisation in the deck: rows of its table and their filling.
+!> Adaptive steps and refactorization in the deck: rows of its table and their filling.
 module adapt_deck
   use deck_choices, only: code_of
   use deck_settings, only: settings_t

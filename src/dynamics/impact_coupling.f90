@@ -41,7 +41,7 @@ contains
     type(state_t), intent(in) :: old
     !> Time step
     real(wp), intent(in) :: step
-    !> The strike
+    !> The impactor's side of the step
     type(impact_coupling_t) :: coupling
 
     call predict(model%scene%impactor, old%impactor, step, coupling%free_displacement, coupling%compliance)
@@ -56,7 +56,7 @@ contains
 
   !> Force on the plate in its equation of motion.
   pure real(wp) function load(self)
-    !> The strike
+    !> The impactor's side of the step
     class(impact_coupling_t), intent(in) :: self
 
     load = self%share*self%unknown + self%inherited
@@ -65,7 +65,7 @@ contains
   !> Solves for the impact force, given the correction of the plate for the force assumed, and adds the
   !> plate's response to the change of the force.
   subroutine solve(self, model, integrator, operator, old, new, correction, error)
-    !> The strike
+    !> The impactor's side of the step
     class(impact_coupling_t), intent(inout) :: self
     !> The model
     type(model_t), intent(in) :: model

@@ -14,7 +14,8 @@ module states
   private
   public :: state_t, new_state
 
-  !> The state of plate, impactor and contact at one time.
+  !> The state of plate, impactor and contact at one time. It has many components because a step that fails must leave
+  !> none of them changed.
   type :: state_t
     !> Time, or load factor of a static analysis
     real(wp) :: time = 0

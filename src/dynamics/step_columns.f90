@@ -27,7 +27,7 @@ module step_columns
     'energy_kinetic | real | energy | Kinetic energy of the plate.', &
     'energy_strain | real | energy | Strain energy of the plate with the stiffness that failures have left.', &
     'energy_indentation | real | energy | Work of the contact force on the indentation so far, stored and lost.', &
-    'energy_delamination | real | energy | Fracture energy of the cells that came apart: critical energy release &
+    'energy_delamination | real | energy | Fracture energy of the delaminated cells: critical energy release &
       &rate times area.', &
     'energy_ply_damage | real | energy | Strain energy lost as failures of plies took stiffness away.', &
     'energy_contact | real | energy | Work done against contact of separated faces and against penalty ties.', &

@@ -55,7 +55,7 @@ contains
 
   !> Puts the plate at rest and the impactor at first touch.
   subroutine start(self, model, stepping, linear_solver, error)
-    !> The march
+    !> The time stepper
     class(time_stepper_t), intent(out) :: self
     !> The model
     type(model_t), intent(in) :: model
@@ -79,7 +79,7 @@ contains
 
   !> Acceleration of the plate under a pressure that is there from the start.
   subroutine start_acceleration(self, model, error)
-    !> The march
+    !> The time stepper
     class(time_stepper_t), intent(inout) :: self
     !> The model
     type(model_t), intent(in) :: model
@@ -100,7 +100,7 @@ contains
   !> Takes one step, at most to the next event; the step is tried again with half its length until
   !> equilibrium is reached or the smallest step of the deck has failed.
   subroutine advance(self, model, event, error)
-    !> The march
+    !> The time stepper
     class(time_stepper_t), intent(inout) :: self
     !> The model
     type(model_t), intent(in) :: model
@@ -135,7 +135,7 @@ contains
 
   !> Brings a plate whose plies have failed under a load back into equilibrium with it, until no more of them fail.
   subroutine settle(self, model, error)
-    !> The march
+    !> The time stepper
     class(time_stepper_t), intent(inout) :: self
     !> The model
     type(model_t), intent(in) :: model
@@ -169,7 +169,7 @@ contains
 
   !> Tries one time step.
   subroutine try_step(self, model, event, step, converged, error)
-    !> The march
+    !> The time stepper
     class(time_stepper_t), intent(inout) :: self
     !> The model
     type(model_t), intent(in) :: model
@@ -208,7 +208,7 @@ contains
   !> Longest step that the impactor's integrator bears now, as a binary fraction of the step wanted so that
   !> the factored operator need not follow every small change.
   pure real(wp) function impactor_limit(self, model) result(limit)
-    !> The march
+    !> The time stepper
     type(time_stepper_t), intent(in) :: self
     !> The model
     type(model_t), intent(in) :: model
@@ -223,7 +223,7 @@ contains
 
   !> Tries one load step.
   subroutine try_load(self, model, event, step, converged, error)
-    !> The march
+    !> The time stepper
     class(time_stepper_t), intent(inout) :: self
     !> The model
     type(model_t), intent(in) :: model
@@ -244,7 +244,7 @@ contains
 
   !> Makes the state tried the state reached.
   subroutine accept(self, model, step)
-    !> The march
+    !> The time stepper
     class(time_stepper_t), intent(inout) :: self
     !> The model
     type(model_t), intent(in) :: model
@@ -299,7 +299,7 @@ contains
 
   !> Saves or loads all that evolves.
   subroutine visit(self, archive, model, error)
-    !> The march
+    !> The time stepper
     class(time_stepper_t), intent(inout) :: self
     !> Where to or where from
     class(archive_t), intent(inout) :: archive

@@ -20,7 +20,8 @@ module models
   private
   public :: model_t
 
-  !> A scene made ready for computing on this rank's share of the mesh.
+  !> A scene made ready for computing on this rank's share of the mesh. It has many components because all that steps
+  !> share is found once, before them.
   type :: model_t
     !> What the deck asked for
     type(scene_t) :: scene

@@ -152,12 +152,12 @@ def quietly(main, arguments):
 def check_damage(apart, failed):
     """Fail unless the example's panel is damaged as the bulk data that pyNastran reads."""
     from pyNastran.bdf.bdf import read_bdf
-    require(apart > 20 and failed > 20, f"{apart} cells came apart and {failed} have failed plies.")
+    require(apart > 20 and failed > 20, f"{apart} delaminated cells and {failed} have failed plies.")
     model = read_bdf("results/panel_panel.bdf", debug=None)
     layers = [sum(len(element.pid_ref.thicknesses) == plies for element in model.elements.values())
               for plies in (8, 6, 2)]
     require(layers == [4 * (320 - apart), 4 * apart, 4 * apart], f"There are {layers} elements of 8, 6 and 2 plies.")
-    print(f"{apart} of 320 cells came apart, {failed} have failed plies")
+    print(f"{apart} of 320 cells have delaminated, {failed} have failed plies")
 
 
 # What each trial needs, as a program or a module of Python.
