@@ -388,6 +388,7 @@ contains
     real(wp), allocatable :: stiffness(:)
     integer :: k
 
+    self%present = self%added
     call model%halo%update(self%displacement)
     self%deflection = model%deflection(self%displacement)
     call self%solver%clear()

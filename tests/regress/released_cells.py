@@ -5,6 +5,7 @@ import numpy as np
 
 CORNERS = 4  # the first nodes of an element in the file
 PLACE = 1e-9  # lengths that are told apart
+DIGITS = 5  # of a cohesive cell's part that is gone
 
 
 def fields_of(history_path):
@@ -26,7 +27,7 @@ def fields_of_times(history_path, words):
             for name, item in time.get("cells", {}).items():
                 if name.endswith(words):
                     values |= {(name, int(layer), int(x), int(y)): float(value) for layer, (x, y), value
-                               in zip(layers, places, item[()].ravel(), strict=True) if value != 0}
+                               in zip(layers, places, item[()].ravel().round(DIGITS), strict=True) if value != 0}
             found.append(values)
     return found
 
