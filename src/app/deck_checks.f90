@@ -4,6 +4,7 @@ module deck_checks
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
   use deck_remarks, only: tell, remark
+  use deck_run_checks, only: check_intervals, check_petsc_options
   use delamination_parameters, only: growth_one_per_step
   use stepping_parameters, only: integrator_newmark, integrator_generalized_alpha
   use impact_parameters, only: law_tan_sun, law_hertz, dent_yang_sun
@@ -42,6 +43,8 @@ contains
     if (deck%has_impactor) call check_impact(deck, problems)
     if (deck%has_indentation) call check_indentation(deck, problems)
     if (deck%has_time .and. .not. problems%concern('time')) call check_time(deck, problems)
+    call check_intervals(deck, problems)
+    call check_petsc_options(deck, problems)
   end subroutine check_deck
 
   !> Loads, supports and time: is there a task, and which?
