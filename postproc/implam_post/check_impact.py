@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from implam_post.deck import Deck, read_deck
-from implam_post.errors import EXIT_DONE, EXIT_USAGE, CommandParser, run
+from implam_post.errors import EXIT_DONE, EXIT_USAGE, CommandParser, count, run
 from implam_post.history import History, read_history
 from implam_post.quantities import QUANTITIES, contact, peak, rms_force_difference
 from implam_post.semi_analytic import semi_analytic
@@ -110,20 +110,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--history", type=Path, metavar="CSV",
                         help="history to check (default: NAME_history.csv in the deck's output folder or here)")
     parser.add_argument("--output", type=Path, metavar="DIR", help="folder of the plot (default: beside the history)")
-    parser.add_argument("--modes", type=_count, metavar="N",
+    parser.add_argument("--modes", type=count, metavar="N",
                         help="odd half-wave numbers a side that answer dynamically (default: two half waves a patch)")
     parser.add_argument("--no-plot", action="store_true", help="only print")
     parser.add_argument("--tolerance", type=float, metavar="FRACTION",
                         help="exit with 1 if a difference exceeds this fraction of its scale")
     return run(_command, parser, arguments)
-
-
-def _count(text: str) -> int:
-    """Return a whole number greater than zero."""
-    number = int(text)
-    if number < 1:
-        raise argparse.ArgumentTypeError(f"{text} isn't greater than zero")
-    return number
 
 
 if __name__ == "__main__":

@@ -11,6 +11,8 @@ from implam_post.indentation import IndentationLaw
 from implam_post.laminate import Material, Ply, Section, section_of
 from implam_post.namelist import Group, Value, read_namelist
 
+STRENGTHS = ("XT", "XC", "YT", "YC", "S12", "Sf", "Sm23")
+
 
 @dataclass(frozen=True)
 class Impactor:
@@ -56,7 +58,11 @@ class Deck:
 
     def number(self, group: str, key: str, default: float | None = None) -> float:
         """Return a number, as `value` does."""
-        return _number(self.value(group, key, default), f"{self.path.name}: &{group} {key}")
+        return as_number(self.value(group, key, default), f"{self.path.name}: &{group} {key}")
+
+    def numbers(self, group: str, key: str) -> list[float]:
+        """Return all values of a key as numbers; empty if the deck doesn't give it."""
+        return [as_number(value, f"{self.path.name}: &{group} {key}") for value in self.values(group, key)]
 
     def choice(self, group: str, key: str, allowed: Iterable[str]) -> str:
         """Return a word out of `allowed`, the first of which is the default."""
@@ -68,7 +74,7 @@ class Deck:
 
     def lengths(self) -> tuple[float, float]:
         """Return the sides of the whole plate along x and y."""
-        sides = [_number(side, f"{self.path.name}: &plate length") for side in self.values("plate", "length")]
+        sides = self.numbers("plate", "length")
         if len(sides) != 2 or min(sides) <= 0:
             raise self.error("plate", "length needs the two sides of the plate, greater than zero.")
         return sides[0], sides[1]
@@ -88,8 +94,8 @@ class Deck:
         for name, angle, thickness in zip(names, angles, thicknesses, strict=True):
             if str(name).lower() not in materials:
                 raise self.error("laminate", f"no &material is named '{name}'.")
-            plies.append(Ply(materials[str(name).lower()], _number(angle, f"{where} angles"),
-                             _number(thickness, f"{where} thicknesses")))
+            plies.append(Ply(materials[str(name).lower()], as_number(angle, f"{where} angles"),
+                             as_number(thickness, f"{where} thicknesses")))
         if not plies:
             raise self.error("laminate", "angles are needed, one a ply.")
         if min(ply.thickness for ply in plies) <= 0:
@@ -155,17 +161,22 @@ class Deck:
         """Return one ply material, isotropic if the group gives E and nu."""
         def number(key: str, default: float | None = None) -> float:
             where = f"{self.path.name}: &material {key}"
-            return _number(self._single(group.get(key.lower(), []), "material", key, default), where)
+            return as_number(self._single(group.get(key.lower(), []), "material", key, default), where)
 
+        moves = self.has("time") or self.has("impactor")
+        density = number("density", None if moves else 0.0)
+        name = str(self._single(group.get("name", []), "material", "name", ""))
+        strengths = tuple((key, number(key)) for key in STRENGTHS if key.lower() in group)
         if "e" in group:
             modulus, ratio = number("E"), number("nu")
             shear = modulus / (2 * (1 + ratio))
-            material = Material(number("density"), modulus, modulus, shear, shear, shear, ratio)
+            material = Material(density, modulus, modulus, shear, shear, shear, ratio, name, strengths, isotropic=True)
         else:
             shear = number("G12")
-            material = Material(number("density"), number("E1"), number("E2"), shear, number("G13", shear),
-                                number("G23"), number("nu12"))
-        if min(material.density, material.e1, material.e2, material.g12, material.g13, material.g23) <= 0:
+            material = Material(density, number("E1"), number("E2"), shear, number("G13", shear), number("G23"),
+                                number("nu12"), name, strengths)
+        if min(material.e1, material.e2, material.g12, material.g13, material.g23) <= 0 or (
+                density < 0 or (moves and density == 0)):
             raise self.error("material", "density and moduli must be greater than zero.")
         if material.nu12**2 * material.e2 >= material.e1:
             raise self.error("material", "nu12**2 must be smaller than E1/E2.")
@@ -188,7 +199,7 @@ class Deck:
         return values if len(values) == count else count * values
 
 
-def _number(value: Value, where: str) -> float:
+def as_number(value: Value, where: str) -> float:
     """Return `value` if it is a finite number."""
     if isinstance(value, (bool, str)) or not np.isfinite(value):
         raise DeckError(f"{where}: {value!r} isn't a number.")

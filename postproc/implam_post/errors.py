@@ -4,7 +4,7 @@ import argparse
 import sys
 from collections.abc import Callable, Sequence
 
-EXIT_DONE, EXIT_USAGE, EXIT_DECK, EXIT_FILES = 0, 1, 2, 4
+EXIT_DONE, EXIT_USAGE, EXIT_DECK, EXIT_FILES, EXIT_INTERRUPTED = 0, 1, 2, 4, 130
 
 
 class ImplamError(Exception):
@@ -34,6 +34,14 @@ class CommandParser(argparse.ArgumentParser):
         self.exit(EXIT_USAGE, f"{self.prog}: {message}\n")
 
 
+def count(text: str) -> int:
+    """Return a whole number greater than zero, out of a command line."""
+    number = int(text)
+    if number < 1:
+        raise argparse.ArgumentTypeError(f"{text} isn't greater than zero")
+    return number
+
+
 def run(command: Callable[[argparse.Namespace], int], parser: CommandParser, arguments: Sequence[str] | None) -> int:
     """Run `command` on the parsed `arguments` and return the exit code; errors become one sentence."""
     options = parser.parse_args(arguments)
@@ -42,3 +50,5 @@ def run(command: Callable[[argparse.Namespace], int], parser: CommandParser, arg
     except ImplamError as error:
         print(f"{parser.prog}: {error}", file=sys.stderr)
         return error.exit_code
+    except KeyboardInterrupt:
+        return EXIT_INTERRUPTED

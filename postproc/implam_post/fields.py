@@ -8,7 +8,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from implam_post.errors import FileError
+from implam_post.errors import FileError, ImplamError
 
 MODES = {"fibre failure": 1, "matrix cracking": 2, "matrix crushing": 4}
 
@@ -65,6 +65,13 @@ class Fields:
     quarter: bool
     snapshots: list[Snapshot]
 
+    def place(self, time: float) -> int:
+        """Return the place among the snapshots of the one nearest to a time."""
+        stored = np.array([snapshot.time for snapshot in self.snapshots])
+        if not stored[0] * (1 - 1e-6) <= time <= stored[-1] * (1 + 1e-6):
+            raise ImplamError(f"time {time:g} is outside the fields, which reach from {stored[0]:g} to {stored[-1]:g}.")
+        return int(np.argmin(np.abs(stored - time)))
+
     def whole(self, cells: np.ndarray) -> np.ndarray:
         """Return the cells of the whole plate: those of a quarter mirrored on both axes."""
         if not self.quarter:
@@ -111,7 +118,7 @@ def outline(cells: np.ndarray) -> np.ndarray:
 def read_fields(path: Path | str) -> Fields:
     """Read interfaces and plies from the solver's NAME.h5."""
     path = Path(path)
-    with _opened(path) as file:
+    with opened(path) as file:
         meshes = {number: _mesh(group) for number, group in enumerate(_in_order(file["meshes"]), start=1)}
         snapshots = [_snapshot(group, meshes) for group in _in_order(file["times"])]
         quarter = file["part"][()] == b"quarter"
@@ -121,7 +128,7 @@ def read_fields(path: Path | str) -> Fields:
 
 
 @contextmanager
-def _opened(path: Path) -> Iterator[h5py.File]:
+def opened(path: Path) -> Iterator[h5py.File]:
     """Open an HDF5 file; whatever is wrong with it becomes one sentence."""
     try:
         with h5py.File(path, "r") as file:

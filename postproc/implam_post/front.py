@@ -10,7 +10,6 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.ticker import MultipleLocator
 
-from implam_post.errors import ImplamError
 from implam_post.fields import Fields, Snapshot, extents, outline
 from implam_post.plan import frame
 
@@ -77,9 +76,5 @@ def _chosen(fields: Fields, below_ply: int, times: Sequence[float] | None) -> li
         all_loaded = loaded(fields.snapshots)
         places = np.linspace(0, len(all_loaded) - 1, min(len(all_loaded), _MOST_TIMES)).astype(int)
         return [all_loaded[place] for place in places]
-    stored = np.array([snapshot.time for snapshot in fields.snapshots])
-    if outside := [time for time in times if not stored[0] * (1 - 1e-6) <= time <= stored[-1] * (1 + 1e-6)]:
-        raise ImplamError(f"time {outside[0]:g} is outside the fields, which reach from {stored[0]:g} to "
-                          f"{stored[-1]:g}.")
-    nearest = sorted({int(np.argmin(np.abs(stored - time))) for time in times})
+    nearest = sorted({fields.place(time) for time in times})
     return loaded([fields.snapshots[place] for place in nearest])

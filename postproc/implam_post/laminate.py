@@ -1,7 +1,7 @@
 """Stiffness and mass of a laminate by first-order shear theory."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from implam_post.errors import DeckError
 
 @dataclass(frozen=True)
 class Material:
-    """An orthotropic ply, 1 along the fibres."""
+    """An orthotropic ply, 1 along the fibres. Materials of equal density and stiffness are equal."""
 
     density: float
     e1: float
@@ -19,19 +19,22 @@ class Material:
     g13: float
     g23: float
     nu12: float
+    name: str = field(default="", compare=False)
+    strengths: tuple[tuple[str, float], ...] = field(default=(), compare=False)
+    isotropic: bool = field(default=False, compare=False)
 
     def reduced_stiffness(self, angle: float) -> np.ndarray:
         """Return the plane-stress stiffness (xx, yy, xy) of a ply with its fibres at `angle` degrees from x."""
         compliance = np.array([[1 / self.e1, -self.nu12 / self.e1, 0],
                                [-self.nu12 / self.e1, 1 / self.e2, 0],
                                [0, 0, 1 / self.g12]])
-        c, s = _direction(angle)
+        c, s = direction(angle)
         strain = np.array([[c * c, s * s, c * s], [s * s, c * c, -c * s], [-2 * c * s, 2 * c * s, c * c - s * s]])
         return strain.T @ np.linalg.inv(compliance) @ strain
 
     def transverse_shear_stiffness(self, angle: float) -> np.ndarray:
         """Return the stiffness against transverse shear (xz, yz) of a ply at `angle`."""
-        c, s = _direction(angle)
+        c, s = direction(angle)
         rotation = np.array([[c, s], [-s, c]])
         return rotation.T @ np.diag([self.g13, self.g23]) @ rotation
 
@@ -117,7 +120,7 @@ def _faces(plies: Sequence[Ply]) -> np.ndarray:
     return heights - heights[-1] / 2
 
 
-def _direction(angle: float) -> tuple[float, float]:
+def direction(angle: float) -> tuple[float, float]:
     """Return cosine and sine of an angle in degrees, exact at multiples of 90."""
     quarter, rest = divmod(angle, 90)
     c, s = np.cos(np.radians(rest)), np.sin(np.radians(rest))

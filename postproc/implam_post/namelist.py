@@ -28,16 +28,24 @@ _LOGICALS = {".true.": True, ".t.": True, "t": True, "true": True,
 
 
 @dataclass(frozen=True)
-class _Token:
+class Token:
+    """A piece of a deck: its kind (a name of the groups above), text, line and the place of its first letter."""
+
     kind: str
     text: str
     line: int
+    start: int
+
+    @property
+    def end(self) -> int:
+        """Return the place after its last letter."""
+        return self.start + len(self.text)
 
 
 def read_namelist(text: str, name: str = "deck") -> dict[str, list[Group]]:
     """Return the groups of `text` by name, each name with its groups in order; `name` is used in messages."""
     groups: dict[str, list[Group]] = {}
-    tokens = _tokens(text, name)
+    tokens = read_tokens(text, name)
     position = 0
     while position < len(tokens):
         token = tokens[position]
@@ -49,7 +57,7 @@ def read_namelist(text: str, name: str = "deck") -> dict[str, list[Group]]:
     return groups
 
 
-def _tokens(text: str, name: str) -> list[_Token]:
+def read_tokens(text: str, name: str) -> list[Token]:
     """Split `text` into tokens, leaving out blanks, commas and comments."""
     tokens = []
     position = 0
@@ -59,36 +67,36 @@ def _tokens(text: str, name: str) -> list[_Token]:
         if match is None:
             raise DeckError(f"{name}:{line}: cannot read {text[position:].splitlines()[0]!r}.")
         if match.lastgroup != "space":
-            tokens.append(_Token(match.lastgroup, match.group(), line))
+            tokens.append(Token(match.lastgroup, match.group(), line, position))
         line += match.group().count("\n")
         position = match.end()
     return tokens
 
 
-def _read_group(tokens: list[_Token], position: int, opening: _Token, name: str) -> tuple[Group, int]:
+def _read_group(tokens: list[Token], position: int, opening: Token, name: str) -> tuple[Group, int]:
     """Read keys and values up to the closing slash; return them and the position after it."""
     group: Group = {}
     while position < len(tokens):
         token = tokens[position]
         if token.kind == "end":
             return group, position + 1
-        if not _is_key(tokens, position):
+        if not is_key(tokens, position):
             raise DeckError(f"{name}:{token.line}: {opening.text}: a key and '=' expected, found '{token.text}'.")
         values, position = _read_values(tokens, position + 2, name)
         _assign(group, token, values, name)
     raise DeckError(f"{name}:{opening.line}: {opening.text} has no closing '/'.")
 
 
-def _is_key(tokens: list[_Token], position: int) -> bool:
+def is_key(tokens: list[Token], position: int) -> bool:
     """Tell whether a key stands at `position`: a name with an equals sign after it."""
     return (tokens[position].kind in ("word", "subscripted") and position + 1 < len(tokens)
             and tokens[position + 1].kind == "equals")
 
 
-def _read_values(tokens: list[_Token], position: int, name: str) -> tuple[list[Value], int]:
+def _read_values(tokens: list[Token], position: int, name: str) -> tuple[list[Value], int]:
     """Read the values of one key; return them and the position after the last."""
     values: list[Value] = []
-    while position < len(tokens) and not _is_key(tokens, position):
+    while position < len(tokens) and not is_key(tokens, position):
         token = tokens[position]
         repeats = 1
         if token.kind == "repeat" and position + 1 < len(tokens):
@@ -104,7 +112,7 @@ def _read_values(tokens: list[_Token], position: int, name: str) -> tuple[list[V
     return values, position
 
 
-def _value(token: _Token, name: str) -> Value:
+def _value(token: Token, name: str) -> Value:
     """Return the value that a token stands for."""
     if token.kind == "string":
         quote = token.text[0]
@@ -118,7 +126,7 @@ def _value(token: _Token, name: str) -> Value:
                         ) from None
 
 
-def _assign(group: Group, key: _Token, values: list[Value], name: str) -> None:
+def _assign(group: Group, key: Token, values: list[Value], name: str) -> None:
     """Store the values of a key, from its subscript on if it has one."""
     if not values:
         raise DeckError(f"{name}:{key.line}: {key.text} has no value.")

@@ -88,6 +88,23 @@ def rebound_velocity(history: History) -> float:
     return history.at("impactor_velocity", found[-1].end) if found else np.nan
 
 
+def contact_duration(history: History) -> float:
+    """Return the time from the first touch to the end of the last contact."""
+    found = contacts(history)
+    return found[-1].end - found[0].begin if found else np.nan
+
+
+def impact_energy(history: History) -> float:
+    """Return the energy the impactor brings: all that is there in the first row, less the pressure's work."""
+    return float(sum(history[column][0] for column in ENERGIES) - history["work_external"][0])
+
+
+def absorbed_energy(history: History) -> float:
+    """Return the energy the impactor has left behind, kinetic and of gravity, at the end of the last contact."""
+    found = contacts(history)
+    return impact_energy(history) - history.at("energy_impactor", found[-1].end) if found else np.nan
+
+
 def energy_error(history: History) -> float:
     """Return the largest energy the ledger fails to account for, as a fraction of the total at the start."""
     initial = sum(history[column][0] for column in ENERGIES)
@@ -146,7 +163,10 @@ QUANTITIES: dict[str, Callable[[History], float]] = {
     "max_deflection_time": lambda history: peak(history, "deflection").time,
     "first_growth_force": lambda history: first_growth(history).value,
     "first_growth_time": lambda history: first_growth(history).time,
+    "contact_duration": contact_duration,
     "rebound_velocity": rebound_velocity,
+    "impact_energy": impact_energy,
+    "absorbed_energy": absorbed_energy,
     "energy_error": energy_error,
     "energy_rise": energy_rise,
 }

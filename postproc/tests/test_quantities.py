@@ -54,6 +54,24 @@ class QuantitiesTest(unittest.TestCase):
         columns["energy_kinetic"] = np.full(6, np.nan)
         self.assertTrue(np.isnan(QUANTITIES["energy_rise"](History(columns))))
 
+    def test_energy_of_the_impactor(self) -> None:
+        """What is there in the first row, without the pressure's work, less what is left at the last release."""
+        columns = dict(pulses(0, 8, 8, 0, 0, 8, 0, 0).columns)
+        columns |= {name: np.zeros(8) for name in (*ENERGIES, "work_external")}
+        columns["energy_impactor"] = np.array([9.0, 5, 4, 3, 3, 2, 1, 1])
+        columns["energy_strain"][0], columns["work_external"][0] = 1.5, 0.5
+        history = History(columns)
+        self.assertEqual(QUANTITIES["impact_energy"](history), 10)
+        begin, end = contacts(history)[0].begin, contacts(history)[-1].end
+        self.assertEqual(QUANTITIES["contact_duration"](history), end - begin)
+        self.assertAlmostEqual(QUANTITIES["absorbed_energy"](history), 10 - np.interp(end, history.time, columns[
+            "energy_impactor"]), delta=1e-14)
+        untouched = History(columns | {"force": np.zeros(8)})
+        lasting = History(columns | {"force": np.full(8, 8.0)})
+        for one in (untouched, lasting):
+            for name in ("contact_duration", "absorbed_energy"):
+                self.assertTrue(np.isnan(QUANTITIES[name](one)), name)
+
     def test_first_growth(self) -> None:
         """The largest force up to the first growth; without growth, area or a number there is none."""
         columns = dict(pulses(0, 5, 3, 9).columns)

@@ -174,12 +174,13 @@ contains
   !> What the program tells of its use.
   pure function usage() result(text)
     !> Lines of the text
-    character(len=96) :: text(19)
+    character(len=96) :: text(20)
 
     text = [character(len=96) :: &
             'Usage: implam [run] DECK.nml       run a deck', &
             '       implam check DECK.nml       read and check a deck, list every fault, run nothing', &
             '       implam explain [GROUP[%KEY]] what a deck can say: keys, units, defaults, meaning', &
+            '       implam explain history|fields  what results hold: names, units, meaning', &
             '       implam restart [FILE]       go on from a checkpoint (NAME_restart.h5), or from the newest', &
             '                                   of a folder: the one named, that of --output, or this one', &
             '       implam --version | --help', &

@@ -1,21 +1,149 @@
-!> Zones and starters as the mesh gives them: both are whole cells, so their sizes may differ from the deck's.
+!> Sizes of plate, laminate, mesh and interfaces against each other. Zones and starters are whole cells of the mesh, so
+!> their sizes may differ from the deck's.
 module deck_extents
   use cell_grids, only: cell_edges
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
-  use deck_remarks, only: remark
+  use deck_remarks, only: tell, remark, are_clear
   use delaminated_regions, only: extent_of_cells
+  use delamination_deck, only: delamination_group, key_starter, key_zone
   use delamination_parameters, only: delamination_t
+  use gradings, only: core_elements
   use kinds, only: wp
+  use laminate_deck, only: laminate_group, key_thicknesses
+  use mesh_deck, only: mesh_group, key_elements, key_patch, key_core, key_cell, most_elements
+  use mesh_parameters, only: symmetry_quarter
+  use plate_deck, only: plate_group, key_length, key_symmetry
   use text, only: line_t, to_text
   implicit none
   private
-  public :: check_extents, extent_lines
+  public :: check_sizes, check_extents, extent_lines
 
+  !> Length over thickness beyond which rounding spoils the answer, and below which plate theory does.
+  real(wp), parameter :: most_slender = 1.0e5_wp, least_slender = 5
+  !> Smallest patch, fraction of the plate's shorter side.
+  real(wp), parameter :: least_patch = 1.0e-5_wp
+  !> Side of a starter over the loaded patch's below which growth may never start.
+  real(wp), parameter :: least_starter = 1.5_wp
   !> Difference from the size asked for, relative to it, that a user is warned of.
   real(wp), parameter :: noticeable = 0.05_wp
 
 contains
+
+  !> Sizes as the deck gives them.
+  subroutine check_sizes(deck, problems)
+    !> The deck, filled
+    type(deck_t), intent(in) :: deck
+    !> Faults and remarks are added
+    type(problems_t), intent(inout) :: problems
+
+    if (are_clear(deck%settings, problems, plate_group, key_length)) then
+      call check_thickness(deck, problems)
+      call check_patch(deck, problems)
+      call check_core(deck, problems)
+    end if
+    call check_zones(deck, problems)
+  end subroutine check_sizes
+
+  !> Thickness of the laminate against the plate.
+  subroutine check_thickness(deck, problems)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Faults and remarks are added
+    type(problems_t), intent(inout) :: problems
+    real(wp) :: thickness, shorter, longer
+
+    if (.not. allocated(deck%laminate%thickness)) return
+    thickness = sum(deck%laminate%thickness)
+    shorter = minval(deck%plate%length)
+    longer = maxval(deck%plate%length)
+    if (thickness > shorter) then
+      call tell(deck%settings, problems, laminate_group, key_thicknesses, 'the laminate is '//to_text(thickness)// &
+                ' thick, more than the plate is wide; this is no plate.')
+    else if (longer > most_slender*thickness) then
+      call tell(deck%settings, problems, laminate_group, key_thicknesses, 'the laminate is '//to_text(thickness)// &
+                ' thick, less than '//to_text(1/most_slender)//' of the plate''s length, where rounding spoils it.')
+    else if (thickness*least_slender > shorter) then
+      call remark(deck%settings, problems, laminate_group, key_thicknesses, 'the plate is less than '// &
+                  to_text(least_slender)//' thicknesses wide; plate theory is inaccurate there.')
+    end if
+  end subroutine check_thickness
+
+  !> Loaded patch: not larger than the plate nor next to nothing, and with elements left for the rest.
+  subroutine check_patch(deck, problems)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    real(wp) :: shorter
+
+    shorter = minval(deck%plate%length)
+    associate (s => deck%settings, patch => deck%mesh%patch)
+      if (patch <= 0) return
+      if (patch > shorter) then
+        call tell(s, problems, mesh_group, key_patch, 'is larger than the plate; allowed: up to '// &
+                  to_text(shorter)//'.')
+      else if (patch < least_patch*shorter) then
+        call tell(s, problems, mesh_group, key_patch, 'is too small for the plate; allowed: from '// &
+                  to_text(least_patch*shorter)//'.')
+      else if (deck%plate%symmetry /= symmetry_quarter .and. any(deck%mesh%elements == 2 .and. &
+               patch < deck%plate%length) .and. are_clear(s, problems, mesh_group, key_elements) .and. &
+               are_clear(s, problems, plate_group, key_symmetry)) then
+        call tell(s, problems, mesh_group, key_elements, 'a loaded patch with plate around it takes at least 3 '// &
+                  'elements each way.')
+      end if
+    end associate
+  end subroutine check_patch
+
+  !> Core of equal elements: in the plate, and with elements left for the rest.
+  subroutine check_core(deck, problems)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    integer :: direction, parts, least
+
+    associate (s => deck%settings, mesh => deck%mesh)
+      if (minval(mesh%core) <= 0 .or. mesh%cell <= 0) return
+      if (any(mesh%core >= deck%plate%length)) then
+        call tell(s, problems, mesh_group, key_core, 'is as large as the plate; give it smaller or leave it out.')
+      else if (any(mesh%core/mesh%cell > most_elements)) then
+        call tell(s, problems, mesh_group, key_cell, 'is too small for the core.')
+      else if (are_clear(s, problems, mesh_group, key_elements//' '//key_patch) .and. &
+               are_clear(s, problems, plate_group, key_symmetry)) then
+        parts = merge(1, 2, deck%plate%symmetry == symmetry_quarter)
+        do direction = 1, 2
+          least = parts*(sum(core_elements(mesh%patch/2, mesh%core(direction)/2, mesh%cell)) + 1)
+          if (mesh%elements(direction) >= least .and. modulo(mesh%elements(direction), parts) == 0) cycle
+          call tell(s, problems, mesh_group, key_elements, 'the core needs at least '//to_text(least)//' along '// &
+                    merge('x', 'y', direction == 1)//trim(merge(', and an even number.', '.                    ', &
+                                                                parts == 2)))
+          return
+        end do
+      end if
+    end associate
+  end subroutine check_core
+
+  !> Zones against the plate, and starters against the loaded patch.
+  subroutine check_zones(deck, problems)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Faults and remarks are added
+    type(problems_t), intent(inout) :: problems
+    integer :: place
+
+    do place = 1, size(deck%delaminations)
+      associate (s => deck%settings, d => deck%delaminations(place))
+        if (any(d%zone > deck%plate%length) .and. are_clear(s, problems, plate_group, key_length) .and. &
+            are_clear(s, problems, delamination_group, key_zone, place)) &
+          call tell(s, problems, delamination_group, key_zone, 'the zone must not be larger than the plate.', place)
+        if (deck%has_impactor .and. d%starter < least_starter*deck%mesh%patch .and. &
+            are_clear(s, problems, delamination_group, key_starter, place)) &
+          call remark(s, problems, delamination_group, key_starter, 'the starter is hardly larger than the loaded '// &
+                      'patch: most of the shear then passes inside it, and growth may never start.', place)
+      end associate
+    end do
+  end subroutine check_zones
 
   !> Warns of zones and starters that the mesh makes noticeably larger or smaller than the deck asks.
   subroutine check_extents(deck, problems)
@@ -33,10 +161,11 @@ contains
     do place = 1, size(deck%delaminations)
       associate (d => deck%delaminations(place))
         call extents_of(x_edges, y_edges, deck%delaminations(place), zone, starter)
-        if (differs(zone, d%zone)) call remark(deck%settings, problems, 'delamination', 'zone', &
+        if (differs(zone, d%zone)) call remark(deck%settings, problems, delamination_group, key_zone, &
           'a zone is whole cells; this mesh makes it '//shown(zone)//'.', place)
-        if (deck%settings%is_given('delamination', 'starter', place) .and. differs(starter, [d%starter, d%starter])) &
-          call remark(deck%settings, problems, 'delamination', 'starter', &
+        if (deck%settings%is_given(delamination_group, key_starter, place) .and. &
+            differs(starter, [d%starter, d%starter])) &
+          call remark(deck%settings, problems, delamination_group, key_starter, &
                       'a starter is whole cells; this mesh makes it '//shown(starter)//'.', place)
       end associate
     end do

@@ -1,19 +1,33 @@
 !> Reads a deck: scan, rules, parameters, checks across groups. All faults are told, none stops the reading.
 module deck_reader
-  use deck_checks, only: check_deck
+  use adapt_deck, only: adapt_group, fill_adapt
+  use case_deck, only: fill_case
   use deck_contents, only: deck_t
-  use deck_extents, only: check_extents
-  use deck_filling, only: fill_case, fill_plate, fill_loads, fill_control
-  use deck_damage, only: fill_damage
-  use deck_laminate, only: fill_materials, fill_laminate
-  use deck_output, only: fill_output
+  use deck_cross_checks, only: check_across_groups
+  use deck_extents, only: check_sizes, check_extents
   use deck_problems, only: problems_t
   use deck_rules, only: settle
   use deck_scanner, only: scan_t, scan_deck, most_bytes
   use deck_table, only: load_deck_table
   use deck_vocabulary, only: vocabulary_t
+  use delamination_deck, only: fill_delaminations, check_delaminations, delamination_group
+  use element_deck, only: fill_kinematics, fill_element
+  use equilibrium_deck, only: fill_equilibrium
   use errors, only: error_t
   use files, only: read_whole_file
+  use impactor_deck, only: fill_impactor, impactor_group
+  use indentation_deck, only: fill_indentation, check_indentation, indentation_group
+  use kinds, only: wp
+  use laminate_deck, only: fill_laminate
+  use linear_solver_deck, only: check_petsc_options, fill_linear_solver
+  use material_deck, only: fill_materials, normal_compliance
+  use mesh_deck, only: fill_mesh, check_mesh
+  use output_deck, only: fill_output
+  use plate_deck, only: fill_plate, check_plate
+  use ply_damage_deck, only: fill_ply_damage, ply_damage_group
+  use pressure_deck, only: fill_pressure, check_pressure, pressure_group
+  use static_deck, only: fill_static, static_group
+  use time_deck, only: fill_time, check_time, time_group
   implicit none
   private
   public :: deck_t, problems_t, read_deck, read_deck_text
@@ -63,15 +77,89 @@ contains
     if (size(scan%blocks) == 0 .or. problems%is_full()) return
     call settle(scan, vocabulary, deck%settings, problems)
     if (problems%is_full()) return
-    call fill_case(deck)
-    call fill_plate(deck)
-    call fill_materials(deck, problems)
-    call fill_laminate(deck, problems)
+    call note_groups(deck)
+    call fill_bodies(deck, problems)
     call fill_loads(deck)
-    call fill_control(deck)
-    call fill_damage(deck, problems)
-    call fill_output(deck, problems)
-    call check_deck(deck, problems)
+    call fill_steps(deck)
+    call check_groups(deck, problems)
+    call check_sizes(deck, problems)
+    call check_across_groups(deck, problems)
     call check_extents(deck, problems)
   end subroutine read_deck_text
+
+  !> Which groups the deck has, of those that bring physics or a kind of analysis.
+  subroutine note_groups(deck)
+    !> Receives it
+    type(deck_t), intent(inout) :: deck
+
+    deck%has_impactor = deck%settings%has_group(impactor_group)
+    deck%has_indentation = deck%settings%has_group(indentation_group)
+    deck%has_pressure = deck%settings%has_group(pressure_group)
+    deck%has_static = deck%settings%has_group(static_group)
+    deck%has_ply_damage = deck%settings%has_group(ply_damage_group)
+    deck%has_time = deck%settings%has_group(time_group)
+    deck%has_adapt = deck%settings%has_group(adapt_group)
+  end subroutine note_groups
+
+  !> Case, plate, mesh, materials, plies and interfaces.
+  subroutine fill_bodies(deck, problems)
+    !> Receives them
+    type(deck_t), intent(inout) :: deck
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+
+    call fill_case(deck%settings, deck%source, deck%name, deck%title)
+    call fill_kinematics(deck%settings, deck%kinematics)
+    call fill_plate(deck%settings, deck%plate)
+    call fill_mesh(deck%settings, deck%mesh)
+    call fill_element(deck%settings, deck%mesh%shear, deck%mesh%mass)
+    call fill_materials(deck%settings, deck%materials, problems)
+    call fill_laminate(deck%settings, deck%materials, deck%laminate, problems)
+    call fill_ply_damage(deck%settings, deck%ply_damage)
+    call fill_delaminations(deck%settings, deck%plate%length, deck%delaminations)
+  end subroutine fill_bodies
+
+  !> Time, impactor, indentation, pressure and load steps, as far as the deck has them.
+  subroutine fill_loads(deck)
+    !> Receives them
+    type(deck_t), intent(inout) :: deck
+    real(wp) :: compliance
+
+    if (deck%has_time) call fill_time(deck%settings, size(deck%delaminations) > 0, deck%stepping%time)
+    call fill_impactor(deck%settings, deck%impactor)
+    call fill_pressure(deck%settings, deck%stepping%time%end, deck%pressure)
+    if (deck%has_static) call fill_static(deck%settings, deck%stepping%static_steps)
+    if (.not. deck%has_impactor) return
+    compliance = 0
+    if (allocated(deck%laminate%material)) compliance = normal_compliance( &
+      deck%settings, deck%laminate%material(1), deck%materials(deck%laminate%material(1)))
+    call fill_indentation(deck%settings, deck%impactor%radius, compliance, deck%indentation)
+  end subroutine fill_loads
+
+  !> How steps are taken and written.
+  subroutine fill_steps(deck)
+    !> Receives it
+    type(deck_t), intent(inout) :: deck
+
+    call fill_adapt(deck%settings, deck%stepping%adapt)
+    call fill_equilibrium(deck%settings, deck%stepping%equilibrium)
+    call fill_linear_solver(deck%settings, deck%linear_solver)
+    call fill_output(deck%settings, deck%output)
+  end subroutine fill_steps
+
+  !> Checks of each group by itself.
+  subroutine check_groups(deck, problems)
+    !> The deck, filled
+    type(deck_t), intent(in) :: deck
+    !> Faults and remarks are added
+    type(problems_t), intent(inout) :: problems
+
+    call check_plate(deck%settings, deck%plate, problems)
+    call check_mesh(deck%settings, deck%mesh, problems)
+    call check_delaminations(deck%settings, deck%delaminations, problems)
+    if (deck%has_impactor .and. deck%has_indentation) call check_indentation(deck%settings, deck%indentation, problems)
+    if (deck%has_pressure) call check_pressure(deck%settings, deck%pressure, problems)
+    if (deck%has_time) call check_time(deck%settings, deck%stepping%time, problems)
+    call check_petsc_options(deck%settings, deck%linear_solver, problems)
+  end subroutine check_groups
 end module deck_reader

@@ -1,17 +1,27 @@
-!> What the fields file holds of a run.
+!> What the field file holds of a run, joined from what each folder brings.
 module field_results
-  use kinds, only: wp
   use errors, only: error_t
-  use text, only: to_text
-  use element_stresses, only: element_strains, stresses_of_ply
-  use models, only: model_t
-  use time_stepping, only: time_stepper_t
-  use output_parameters, only: output_t
   use fields_file, only: fields_file_t
-  use interface_results, only: jumps, delaminated_above, release_ahead
+  use interface_fields, only: interface_field_rows, write_interface_fields
+  use kinds, only: wp
+  use models, only: model_t
+  use motion_fields, only: motion_field_rows, write_motion_fields
+  use output_parameters, only: output_t
+  use ply_fields, only: ply_field_rows, write_ply_fields
+  use result_tables, only: result_row_length
+  use time_stepping, only: time_stepper_t
   implicit none
   private
   public :: write_mesh, write_fields
+
+  !> Fields that stay with the mesh.
+  character(len=*), parameter :: mesh_field_rows(*) = [character(len=result_row_length) :: &
+    'first_ply | cells | - | - | - | First ply of the element''s layer, from the struck face.', &
+    'last_ply | cells | - | - | - | Last ply of the element''s layer.']
+
+  !> The table of fields.
+  character(len=*), parameter, public :: field_rows(*) = [character(len=result_row_length) :: &
+    mesh_field_rows, motion_field_rows, interface_field_rows, ply_field_rows]
 
 contains
 
@@ -67,7 +77,7 @@ contains
   subroutine write_fields(model, stepper, output, fields, error)
     !> The model
     type(model_t), intent(in) :: model
-    !> The march
+    !> The time stepper
     type(time_stepper_t), intent(in) :: stepper
     !> Which fields
     type(output_t), intent(in) :: output
@@ -75,72 +85,13 @@ contains
     type(fields_file_t), intent(inout) :: fields
     !> Set if the file cannot be written
     type(error_t), allocatable, intent(out) :: error
-    real(wp), allocatable :: motion(:, :)
 
     associate (now => stepper%now)
       call fields%begin(now%time, now%step, error)
-      motion = model%motion_of(now%motion%displacement)
-      if (output%wants('displacement')) call fields%write_point_field('displacement', motion(1:3, :), error)
-      if (output%wants('rotation')) call fields%write_point_field('rotation', motion(4:5, :), error)
-      motion = model%motion_of(now%motion%velocity)
-      if (output%wants('velocity')) call fields%write_point_field('velocity', motion(1:3, :), error)
-      if (model%map%layered) then
-        if (output%wants('gap')) call fields%write_point_field('jump', jumps(model, now), error)
-        if (output%wants('contact_pressure')) call fields%write_point_field( &
-          'contact_pressure', reshape(now%interfaces%faces%pressure, [1, size(now%interfaces%faces%pressure)]), error)
-        if (output%wants('delamination')) &
-          call fields%write_cell_field('delaminated_above', delaminated_above(model, now), error)
-        if (output%wants('energy_release')) &
-          call fields%write_cell_field('energy_release_above', release_ahead(model, now), error)
-      end if
+      call write_motion_fields(model, now%motion, output, fields, error)
+      call write_interface_fields(model, now%plies%stiffness, now%interfaces, now%motion, output, fields, error)
+      call write_ply_fields(model, now%plies, now%motion%displacement, output, fields, error)
+      call fields%finish(error)
     end associate
-    call write_plies(model, stepper, output, fields, error)
-    call fields%finish(error)
   end subroutine write_fields
-
-  !> Writes the failures of every ply, 1 for fibre failure, 2 for matrix cracking, 4 for crushing, added up, and its
-  !> stresses in its own axes: all in its mid-plane, and those in the plane on its faces.
-  subroutine write_plies(model, stepper, output, fields, error)
-    !> The model
-    type(model_t), intent(in) :: model
-    !> The march
-    type(time_stepper_t), intent(in) :: stepper
-    !> Which fields
-    type(output_t), intent(in) :: output
-    !> The file
-    type(fields_file_t), intent(inout) :: fields
-    !> Set if the file cannot be written
-    type(error_t), allocatable, intent(inout) :: error
-    character(len=*), parameter :: components(5) = [character(len=7) :: 'sigma11', 'sigma22', 'tau12', 'tau13', 'tau23']
-    character(len=*), parameter :: places(3) = [character(len=7) :: '', '_top', '_bottom']
-    logical :: wanted(3)
-    real(wp), allocatable :: strains(:, :), stresses(:, :, :)
-    integer :: ply, place, i
-
-    wanted = [output%wants('stress'), output%wants('face_stress'), output%wants('face_stress')]
-    if (any(wanted)) strains = element_strains(model, stepper%now%plies, stepper%now%motion%displacement)
-    do ply = 1, size(model%plies)
-      associate (name => 'ply_'//to_text(ply)//'_')
-        if (output%wants('ply_damage') .and. model%scene%has_ply_damage) &
-          call fields%write_cell_field(name//'failure', failure_code(stepper%now%plies%onset%failed(ply)), error)
-        if (any(wanted)) stresses = stresses_of_ply(model, stepper%now%plies, strains, ply)
-        do place = 1, 3
-          if (.not. wanted(place)) cycle
-          do i = 1, merge(5, 3, place == 1)
-            call fields%write_cell_field(name//trim(components(i))//trim(places(place)), stresses(i:i, place, :), error)
-          end do
-        end do
-      end associate
-    end do
-  end subroutine write_plies
-
-  !> 1 for fibre failure, 2 for matrix cracking, 4 for crushing, added up.
-  pure function failure_code(failed) result(code)
-    !> What failed in one ply, (3, elements)
-    logical, intent(in) :: failed(:, :)
-    !> The sum, (1, elements)
-    real(wp) :: code(1, size(failed, 2))
-
-    code(1, :) = merge(1, 0, failed(1, :)) + merge(2, 0, failed(2, :)) + merge(4, 0, failed(3, :))
-  end function failure_code
 end module field_results

@@ -8,11 +8,10 @@ module programs
   use timers, only: wall_time
   use launchers, only: launched
   use petsc_session, only: start_petsc, finish_petsc
-  use linear_solver_parameters, only: factorization_cholmod
+  use linear_solver_deck, only: check_ranks
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
   use deck_reader, only: read_deck, read_deck_text
-  use deck_remarks, only: tell
   use deck_table, only: load_deck_table
   use deck_vocabulary, only: vocabulary_t
   use deck_explain, only: explain, explain_table
@@ -23,6 +22,7 @@ module programs
   use command_lines, only: command_t, read_command_line, usage, verb_run, verb_check, verb_explain, verb_restart, &
                            verb_version, verb_help
   use queue_signals, only: catch_stop_signals
+  use result_explain, only: explain_results, is_result_topic, result_topics_sentence
   use simulations, only: simulation_t
   implicit none
   private
@@ -91,7 +91,7 @@ contains
     if (communicator%is_root()) write (output_unit, '(a)') usage()
   end subroutine print_usage
 
-  !> Explains a group or key of the deck.
+  !> Explains a group or key of the deck, or what results hold.
   subroutine explain_topic(command, communicator, error)
     !> What is asked
     type(command_t), intent(in) :: command
@@ -103,12 +103,20 @@ contains
     type(line_t), allocatable :: lines(:)
 
     call load_deck_table(vocabulary)
+    if (is_result_topic(command%target)) then
+      call explain_results(command%target, command%markdown, lines)
+      call print_lines(communicator, lines)
+      if (command%markdown .or. size(vocabulary%groups_with(command%target)) == 0) return
+      call print_lines(communicator, [line_t('The deck has keys of this name too:')])
+    end if
     if (command%markdown) then
       call explain_table(vocabulary, command%target, lines, error)
     else
       call explain(vocabulary, command%target, lines, error)
     end if
-    if (.not. allocated(error)) call print_lines(communicator, lines)
+    if (allocated(error)) return
+    call print_lines(communicator, lines)
+    if (command%target == '') call print_lines(communicator, [line_t(result_topics_sentence)])
   end subroutine explain_topic
 
   !> Reads and checks a deck, lists what is wrong with it.
@@ -175,8 +183,7 @@ contains
     else
       call read_deck_everywhere(command%target, communicator, deck, problems)
     end if
-    if (deck%linear_solver%factorization == factorization_cholmod .and. communicator%size > 1) call tell(deck%settings, problems, &
-      'solver', 'factorization', 'works on one rank only; run on one rank, or take ''mumps''.')
+    call check_ranks(deck%settings, deck%linear_solver, communicator%size, problems)
     code = problems%exit_code()
     call print_lines(communicator, problems%lines())
     if (code /= exit_done) return

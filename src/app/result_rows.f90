@@ -1,53 +1,60 @@
-!> The columns of the history and the row of an accepted step.
+!> The columns of the history, joined from the rows that each folder brings, and the values of an accepted step.
 module result_rows
+  use interface_columns, only: area_rows, area_values, border_rows, border_values, release_rows, release_values
   use kinds, only: wp
   use models, only: model_t
+  use operator_columns, only: operator_rows, operator_values
+  use ply_columns, only: ply_rows, ply_values
+  use result_tables, only: cell, column_name, column_type, result_name_length, result_row_length
+  use step_columns, only: iteration_rows, iteration_values, ledger_rows, ledger_values, motion_rows, motion_values, &
+                          step_rows, step_values
   use time_stepping, only: time_stepper_t
   implicit none
   private
-  public :: row_of
+  public :: column_names, column_whole, row_of
 
-  !> Number of columns.
-  integer, parameter, public :: columns = 38
-  !> Their names; the first seventeen and their order are the public interface.
-  character(len=*), parameter, public :: column_names(columns) = [character(len=24) :: &
-    'time', 'step', 'force', 'indentation', 'impactor_displacement', 'impactor_velocity', 'deflection', &
-    'delaminated_area', 'energy_impactor', 'energy_kinetic', 'energy_strain', 'energy_indentation', &
-    'energy_delamination', 'energy_ply_damage', 'energy_contact', 'energy_algorithmic', 'energy_error', &
-    'patch_deflection', 'work_external', 'step_length', 'stress', 'release_ratio', &
-    'energy_released', 'penetration', 'complementarity', 'iterations', 'force_iterations', &
-    'contact_iterations', 'total_iterations', 'total_force_iterations', 'total_contact_iterations', 'rejected', &
-    'refactorisations', 'solves', 'fibre_failures', 'matrix_cracks', 'matrix_crushings', &
-    'border_reached']
-  !> Which of them are whole numbers.
-  logical, parameter, public :: column_whole(columns) = &
-    [.false., .true., spread(.false., 1, 23), spread(.true., 1, 13)]
+  !> The table of columns in their order, of which the first seventeen are the public interface.
+  character(len=*), parameter, public :: column_rows(*) = [character(len=result_row_length) :: &
+    motion_rows, area_rows, ledger_rows, step_rows, release_rows, iteration_rows, operator_rows, ply_rows, border_rows]
 
 contains
 
-  !> Row of the state reached.
+  !> Names of the columns.
+  pure function column_names() result(names)
+    !> In the order of the table
+    character(len=result_name_length) :: names(size(column_rows))
+    integer :: i
+
+    do i = 1, size(names)
+      names(i) = cell(column_rows(i), column_name)
+    end do
+  end function column_names
+
+  !> Which columns hold whole numbers.
+  pure function column_whole() result(whole)
+    !> In the order of the table
+    logical :: whole(size(column_rows))
+    integer :: i
+
+    do i = 1, size(whole)
+      whole(i) = cell(column_rows(i), column_type) /= 'real'
+    end do
+  end function column_whole
+
+  !> Row of the state reached. Collective.
   function row_of(model, stepper) result(row)
     !> The model
     type(model_t), intent(in) :: model
-    !> The march
+    !> The time stepper
     type(time_stepper_t), intent(in) :: stepper
     !> Values in the order of the columns
-    real(wp) :: row(columns)
+    real(wp) :: row(size(column_rows))
 
-    associate (now => stepper%now, ledger => stepper%now%ledger)
-      row(1:7) = [now%time, real(now%step, wp), now%force, now%indentation%alpha, now%impactor%displacement, &
-                  now%impactor%velocity, now%deflection]
-      row(8) = now%interfaces%faces%area(model)
-      row(9:12) = [ledger%impactor, ledger%kinetic, ledger%strain, ledger%indentation]
-      row(13:15) = [ledger%delamination, ledger%ply_damage, ledger%contact]
-      row(16:25) = [ledger%algorithmic, ledger%error(), now%patch_mean, ledger%external_work, &
-                    stepper%controller%last, now%stress, now%interfaces%release_ratio, sum(now%interfaces%ties%set_free), &
-                    now%interfaces%faces%penetration(model, now%motion%displacement), &
-                    now%interfaces%faces%complementarity(model, now%motion%displacement)]
-      row(26:37) = real([now%iterations, now%force_iterations, now%contact_iterations, now%all_iterations, &
-                         now%all_force_iterations, now%all_contact_iterations, stepper%rejected, &
-                         stepper%operator%factorizations, stepper%operator%solves, stepper%now%plies%counts(model)], wp)
-      row(38) = merge(1.0_wp, 0.0_wp, now%interfaces%border_reached)
+    associate (now => stepper%now)
+      row = [motion_values(now), area_values(model, now%interfaces), ledger_values(now%ledger), &
+             step_values(now, stepper%controller%last), &
+             release_values(model, now%interfaces, now%motion%displacement), iteration_values(now, stepper%rejected), &
+             operator_values(stepper%operator), ply_values(model, now%plies), border_values(now%interfaces)]
     end associate
   end function row_of
 end module result_rows

@@ -1,6 +1,6 @@
 !> What a run tells of itself in its log: the keys in effect at its start, what it took at its end.
 module run_reports
-  use text, only: line_t, append, to_text
+  use text, only: line_t, to_text
   use logger, only: log_t
   use timers, only: timer_set_t
   use deck_contents, only: deck_t
@@ -8,6 +8,7 @@ module run_reports
   use deck_extents, only: extent_lines
   use deck_table, only: load_deck_table
   use deck_vocabulary, only: vocabulary_t
+  use indentation_deck, only: echo_without_group
   use kinds, only: wp
   use tangent_operators, only: tangent_operator_t
   use time_stepping, only: time_stepper_t
@@ -29,10 +30,7 @@ contains
 
     call load_deck_table(vocabulary)
     call echo(vocabulary, deck%settings, lines)
-    if (deck%has_impactor .and. .not. deck%has_indentation) then
-      call append(lines, '&indentation law = ''hertz'' [default]')
-      call append(lines, '&indentation k = '//to_text(deck%indentation%k)//' [default]')
-    end if
+    if (deck%has_impactor .and. .not. deck%has_indentation) call echo_without_group(deck%indentation, lines)
     lines = [lines, extent_lines(deck)]
     do i = 1, size(lines)
       call log%detail(lines(i)%text)

@@ -25,12 +25,12 @@ module simulations
   use output_clocks, only: clock_t, next_event
   use energy_watches, only: energy_watch_t
   use result_rows, only: row_of, column_names, column_whole
-  use field_results, only: write_mesh, write_fields
+  use field_results, only: write_mesh, write_fields, field_rows
   implicit none
   private
   public :: simulation_t
 
-  !> A run with all that it has open.
+  !> A run with all that it has open. It has many components because nothing else owns files, clocks and timers.
   type :: simulation_t
     !> The deck
     type(deck_t) :: deck
@@ -94,7 +94,7 @@ contains
     call retire_checkpoint(communicator, self%base//checkpoint_ending, retired, error)
     if (allocated(error)) return
     if (retired /= '') call self%log%note('The checkpoint of an earlier run is now '//retired//'.')
-    call self%history%create(communicator, self%base//'_history.csv', column_names, column_whole, error)
+    call self%history%create(communicator, self%base//'_history.csv', column_names(), column_whole(), error)
     if (allocated(error)) return
     call self%fields%create(communicator, self%base, self%provenance, part_of(self), error)
     if (allocated(error)) return
@@ -124,6 +124,7 @@ contains
     self%history_clock%interval = deck%output%history_every
     self%fields_clock%interval = deck%output%fields_every
     self%checkpoint_clock%interval = deck%output%checkpoint_every
+    call self%fields%describe(field_rows)
     if (communicator%is_root()) call make_directory(deck%output%directory, error)
     if (communicator%is_root()) call refuse_pipes(self%base, error)
     if (.not. allocated(error)) call self%log%open(self%base//'.log', communicator%is_root(), append, error)
@@ -186,7 +187,7 @@ contains
     call self%fields%check_deck(communicator, self%base, deck%text, error)
     if (allocated(error)) return
     last_row = self%history%last_row
-    call self%history%resume(communicator, self%base//'_history.csv', column_names, column_whole, rows, last_row, &
+    call self%history%resume(communicator, self%base//'_history.csv', column_names(), column_whole(), rows, last_row, &
                              error)
     if (allocated(error)) return
     if (self%history%rows /= rows) &

@@ -18,6 +18,8 @@ module deck_problems
   type :: problem_t
     !> Line of the deck; 0: the deck as a whole
     integer :: line = 0
+    !> Which of the groups of this name it belongs to; 0: any
+    integer :: place = 0
     !> True: the deck can still run
     logical :: is_warning = .false.
     !> Group and key it belongs to, in lower case; empty if none
@@ -41,7 +43,6 @@ module deck_problems
     procedure :: error => add_error
     procedure :: warning => add_warning
     procedure :: errors => number_of_errors
-    procedure :: warnings => number_of_warnings
     procedure :: concern
     procedure :: is_full
     procedure :: exit_code
@@ -75,7 +76,7 @@ contains
   end subroutine cannot_read
 
   !> Adds a fault that forbids a run.
-  subroutine add_error(self, line, group, key, message)
+  subroutine add_error(self, line, group, key, message, place)
     class(problems_t), intent(inout) :: self
     !> Line of the deck; 0: the deck as a whole
     integer, intent(in) :: line
@@ -83,8 +84,10 @@ contains
     character(len=*), intent(in) :: group, key
     !> What the user reads after `file:line:`
     character(len=*), intent(in) :: message
+    !> Which of the groups of this name it belongs to; absent: any
+    integer, intent(in), optional :: place
 
-    call self%add(.false., line, group, key, message)
+    call self%add(.false., line, group, key, message, place)
   end subroutine add_error
 
   !> Adds a remark on a deck that can run.
@@ -101,7 +104,7 @@ contains
   end subroutine add_warning
 
   !> Adds a fault or remark.
-  subroutine add(self, is_warning, line, group, key, message)
+  subroutine add(self, is_warning, line, group, key, message, place)
     class(problems_t), intent(inout) :: self
     !> True: a remark
     logical, intent(in) :: is_warning
@@ -111,11 +114,14 @@ contains
     character(len=*), intent(in) :: group, key
     !> What the user reads
     character(len=*), intent(in) :: message
+    !> Which of the groups of this name it belongs to; absent: any
+    integer, intent(in), optional :: place
     type(problem_t) :: problem
 
     if (size(self%list) > most_problems) return
     problem%is_warning = is_warning
     problem%line = line
+    if (present(place)) problem%place = place
     problem%group = lower_case(group)
     problem%key = lower_case(key)
     problem%message = message
@@ -131,12 +137,14 @@ contains
   end function is_full
 
   !> True: an error belongs to this group, or to this key of it, so checks that build on it would mislead.
-  pure logical function concern(self, group, key)
+  pure logical function concern(self, group, key, place)
     class(problems_t), intent(in) :: self
     !> Name of the group
     character(len=*), intent(in) :: group
     !> Name of the key; absent: any
     character(len=*), intent(in), optional :: key
+    !> Which of the groups of this name; absent: any
+    integer, intent(in), optional :: place
     integer :: i
 
     concern = .false.
@@ -144,6 +152,9 @@ contains
       if (self%list(i)%is_warning .or. self%list(i)%group /= lower_case(group)) cycle
       if (present(key)) then
         if (self%list(i)%key /= lower_case(key) .and. self%list(i)%key /= any_key) cycle
+      end if
+      if (present(place)) then
+        if (self%list(i)%place > 0 .and. self%list(i)%place /= place) cycle
       end if
       concern = .true.
     end do
@@ -155,13 +166,6 @@ contains
 
     number = count(.not. self%list%is_warning)
   end function number_of_errors
-
-  !> Number of remarks.
-  pure integer function number_of_warnings(self) result(number)
-    class(problems_t), intent(in) :: self
-
-    number = count(self%list%is_warning)
-  end function number_of_warnings
 
   !> Exit code that the program ends with after a mere check.
   pure integer function exit_code(self)

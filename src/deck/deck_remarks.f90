@@ -3,9 +3,10 @@ module deck_remarks
   use deck_entries, only: value_t, shown_values
   use deck_problems, only: problems_t
   use deck_settings, only: settings_t
+  use text, only: line_t, words_of
   implicit none
   private
-  public :: tell, remark
+  public :: tell, remark, remark_idle, are_clear
 
 contains
 
@@ -22,7 +23,8 @@ contains
     !> Which of the groups of this name
     integer, intent(in), optional :: place
 
-    call problems%error(line_of(settings, group, key, place), group, key, head(settings, group, key, place)//fault)
+    call problems%error(line_of(settings, group, key, place), group, key, head(settings, group, key, place)//fault, &
+                        place)
   end subroutine tell
 
   !> Adds a warning that belongs to a key, or to a group if the key is empty.
@@ -40,6 +42,59 @@ contains
 
     call problems%warning(line_of(settings, group, key, place), group, key, head(settings, group, key, place)//message)
   end subroutine remark
+
+  !> Adds a warning for each of some keys that is soundly given but changes nothing.
+  subroutine remark_idle(settings, problems, group, keys, message, place)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+    !> Receives the warnings
+    type(problems_t), intent(inout) :: problems
+    !> Name of the group
+    character(len=*), intent(in) :: group
+    !> Names of keys, separated by blanks
+    character(len=*), intent(in) :: keys
+    !> Why
+    character(len=*), intent(in) :: message
+    !> Which of the groups of this name
+    integer, intent(in), optional :: place
+    type(line_t), allocatable :: names(:)
+    integer :: i
+
+    names = words_of(keys, ' ')
+    do i = 1, size(names)
+      if (settings%is_given(group, names(i)%text, place) .and. settings%is_known(group, names(i)%text, place)) &
+        call remark(settings, problems, group, names(i)%text, message, place)
+    end do
+  end subroutine remark_idle
+
+  !> True: the values of some keys, or their absence, are what the user meant, as far as one can know. A check that
+  !> asks this first tells no fault that another one brings along.
+  pure logical function are_clear(settings, problems, group, keys, place)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+    !> Faults told so far
+    type(problems_t), intent(in) :: problems
+    !> Name of the group
+    character(len=*), intent(in) :: group
+    !> Names of keys, separated by blanks
+    character(len=*), intent(in) :: keys
+    !> Which of the groups of this name
+    integer, intent(in), optional :: place
+    type(line_t), allocatable :: names(:)
+    integer :: i
+
+    names = words_of(keys, ' ')
+    are_clear = .true.
+    do i = 1, size(names)
+      if (settings%is_given(group, names(i)%text, place)) then
+        are_clear = are_clear .and. settings%is_known(group, names(i)%text, place)
+      else if (settings%line_of_group(group, place) > 0) then
+        are_clear = are_clear .and. .not. problems%concern(group, names(i)%text, place)
+      else
+        are_clear = are_clear .and. .not. problems%concern(group)
+      end if
+    end do
+  end function are_clear
 
   !> Line to name.
   pure integer function line_of(settings, group, key, place) result(line)

@@ -4,7 +4,7 @@ module deck_rules
   use deck_problems, only: problems_t
   use deck_scanner, only: scan_t
   use deck_settings, only: settings_t, setting_t, present_group_t
-  use deck_values, only: fault_of_value, fault_of_count, allowed_sentence, literal_value
+  use deck_values, only: fault_of_value, fault_of_count, allowed_sentence, limit_of_size, literal_value
   use deck_vocabulary, only: vocabulary_t, key_entry_t
   use text, only: line_t, append, joined, lower_case, nearest_name, to_text
   implicit none
@@ -35,7 +35,8 @@ contains
       if (problems%is_full()) return
     end do
     do i = 1, size(scan%entries)
-      if (accepted(scan%entries(i)%block)) call judge_key(scan, i, vocabulary, problems)
+      if (accepted(scan%entries(i)%block)) call judge_key(scan, i, place_of(scan, accepted, scan%entries(i)%block), &
+                                                          vocabulary, problems)
       if (problems%is_full()) return
     end do
     do i = 1, size(vocabulary%groups)
@@ -104,11 +105,13 @@ contains
   end subroutine tell_unknown_group
 
   !> Whether a key belongs to its group and comes once.
-  subroutine judge_key(scan, entry, vocabulary, problems)
+  subroutine judge_key(scan, entry, place, vocabulary, problems)
     !> What the deck consists of
     type(scan_t), intent(in) :: scan
     !> Index of the key in it
     integer, intent(in) :: entry
+    !> Which of the groups of this name the key stands in
+    integer, intent(in) :: place
     !> The table
     type(vocabulary_t), intent(in) :: vocabulary
     !> Faults found are added
@@ -118,19 +121,21 @@ contains
     associate (this => scan%entries(entry), group => scan%blocks(scan%entries(entry)%block)%name)
       if (this%key == '') return
       if (vocabulary%key_index(group, this%key) == 0) then
-        call tell_unknown_key(lower_case(group), this, vocabulary, problems)
+        call tell_unknown_key(lower_case(group), place, this, vocabulary, problems)
         return
       end if
       earlier = entry_of(scan, this%block, this%key)
       if (earlier /= entry) call problems%error(this%line, group, this%key, message_head(group, this)// &
-        'the key was already given in line '//to_text(scan%entries(earlier)%line)//'; give it once.')
+        'the key was already given in line '//to_text(scan%entries(earlier)%line)//'; give it once.', place)
     end associate
   end subroutine judge_key
 
   !> A key that its group doesn't have.
-  subroutine tell_unknown_key(group, entry, vocabulary, problems)
+  subroutine tell_unknown_key(group, place, entry, vocabulary, problems)
     !> Name of the group
     character(len=*), intent(in) :: group
+    !> Which of the groups of this name
+    integer, intent(in) :: place
     !> The key
     type(entry_t), intent(in) :: entry
     !> The table
@@ -144,13 +149,13 @@ contains
     others = vocabulary%groups_with(entry%key)
     if (nearest /= '' .and. size(others) == 0) then
       call problems%error(entry%line, group, nearest, message_head(group, entry)// &
-                          'the group has no such key; did you mean '//nearest//'?')
+                          'the group has no such key; did you mean '//nearest//'?', place)
     else if (size(others) > 0) then
       call problems%error(entry%line, group, entry%key, message_head(group, entry)// &
-                          'the group has no such key; it belongs to &'//joined(others, ', &')//'.')
+                          'the group has no such key; it belongs to &'//joined(others, ', &')//'.', place)
     else
       call problems%error(entry%line, group, entry%key, message_head(group, entry)// &
-                          'the group has no such key; allowed: '//joined(vocabulary%key_names(group), ', ')//'.')
+                          'the group has no such key; allowed: '//joined(vocabulary%key_names(group), ', ')//'.', place)
     end if
   end subroutine tell_unknown_key
 
@@ -221,7 +226,7 @@ contains
           setting%line = scan%entries(entry)%line
           setting%sound = scan%entries(entry)%sound
           setting%values = scan%entries(entry)%values
-          if (setting%sound) call judge_values(key, scan%entries(entry), vocabulary, setting%sound, problems)
+          if (setting%sound) call judge_values(key, place, scan%entries(entry), vocabulary, setting%sound, problems)
         else
           setting%line = settings%line_of_group(group, place)
           call take_default(key, setting, problems)
@@ -242,16 +247,18 @@ contains
 
     allocate (setting%values(merge(1, 0, key%has_literal_default())))
     if (key%has_literal_default()) setting%values(1) = literal_value(key%default)
-    if (key%default == 'required' .and. .not. problems%concern(key%group, key%name)) then
+    if (key%default == 'required' .and. .not. problems%concern(key%group, key%name, setting%place)) then
       call problems%error(setting%line, key%group, key%name, '&'//key%group//' '//key%name//' is missing; '// &
-                          allowed_sentence(key)//'.')
+                          allowed_sentence(key)//'.', setting%place)
     end if
   end subroutine take_default
 
   !> Number and values of a given key.
-  subroutine judge_values(key, entry, vocabulary, sound, problems)
+  subroutine judge_values(key, place, entry, vocabulary, sound, problems)
     !> The key as the table has it
     type(key_entry_t), intent(in) :: key
+    !> Which of the groups of this name
+    integer, intent(in) :: place
     !> The key as the deck gives it
     type(entry_t), intent(in) :: entry
     !> The table
@@ -260,25 +267,43 @@ contains
     logical, intent(out) :: sound
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
-    character(len=:), allocatable :: fault
+    character(len=:), allocatable :: fault, limit
     integer :: i, forgotten
 
     fault = ''
+    limit = ''
     do i = 1, size(entry%values)
-      if (fault == '') fault = fault_of_value(key, entry%values(i))
+      if (fault == '') then
+        fault = fault_of_value(key, entry%values(i))
+        limit = limit_of_size(key, entry%values(i))
+      end if
       forgotten = 0
       if (.not. entry%values(i)%quoted) forgotten = vocabulary%key_index(key%group, entry%values(i)%text)
       if (forgotten == 0) cycle
       call problems%error(entry%line, key%group, entry%values(i)%text, message_head(key%group, entry)// &
-                          'there is no = behind '//entry%values(i)%text//'; write key = value.')
+                          'there is no = behind '//entry%values(i)%text//'; write key = value.', place)
       sound = .false.
       return
     end do
     if (fault == '') fault = fault_of_count(key, size(entry%values))
     sound = fault == ''
     if (.not. sound) call problems%error(entry%line, key%group, key%name, message_head(key%group, entry)// &
-                                         fault//'; '//allowed_sentence(key)//'.')
+                                         fault//'; '//allowed_sentence(key)//limit//'.', place)
   end subroutine judge_values
+
+  !> Which of the groups of its name a group is.
+  pure integer function place_of(scan, accepted, block) result(place)
+    !> What the deck consists of
+    type(scan_t), intent(in) :: scan
+    !> Which of its groups count
+    logical, intent(in) :: accepted(:)
+    !> Index of the group in it
+    integer, intent(in) :: block
+    integer :: i
+
+    place = count([(accepted(i) .and. lower_case(scan%blocks(i)%name) == lower_case(scan%blocks(block)%name), &
+                    i=1, block)])
+  end function place_of
 
   !> First key of this name in a group, 0 if it has none.
   pure integer function entry_of(scan, block, key) result(index)

@@ -3,13 +3,15 @@ module deck_values
   use deck_entries, only: value_t, shown
   use deck_vocabulary, only: key_entry_t
   use kinds, only: wp
-  use text, only: line_t, append, words_of, lower_case, joined, nearest_name
+  use text, only: line_t, append, words_of, lower_case, joined, nearest_name, to_text
   implicit none
   private
-  public :: fault_of_value, fault_of_count, allowed_sentence, literal_value, real_value, integer_value, logical_value
+  public :: fault_of_value, fault_of_count, allowed_sentence, limit_of_size, literal_value, real_value, &
+            integer_value, logical_value
 
-  !> Numbers other than 0 lie between 10**-30 and 10**30, so that their products stay finite and nonzero.
-  integer, parameter :: most_decades = 30
+  !> Decades that numbers keep within, so that their products stay finite and nonzero: reals other than 0 are at least
+  !> 10**-29 and less than 10**30 in size, whole numbers less than 10**9.
+  integer, parameter :: most_decades = 30, most_integer_decades = 9
   !> Characters of a name, in lower case
   character(len=*), parameter :: name_characters = 'abcdefghijklmnopqrstuvwxyz0123456789._-'
   !> Longest number, name and text
@@ -65,7 +67,7 @@ contains
       fault = shown(value%text)//' is not a number'
     else if (key%kind == 'integer' .and. verify(value%text, '+-0123456789') > 0) then
       fault = shown(value%text)//' is not a whole number'
-    else if (abs(decade) >= merge(9, most_decades, key%kind == 'integer')) then
+    else if (abs(decade) >= merge(most_integer_decades, most_decades, key%kind == 'integer')) then
       fault = shown(value%text)//' is too '//trim(merge('large', 'small', decade > 0))//' a number'
     else if (.not. in_range(key%allowed, real_value(value))) then
       fault = shown(value%text)//' is outside the range'
@@ -178,6 +180,35 @@ contains
     end if
     if (key%kind == 'text') sentence = sentence//' in quotes'
   end function allowed_sentence
+
+  !> What the size of numbers adds to the range of a key, if a value breaks it; else an empty text.
+  pure function limit_of_size(key, value) result(limit)
+    !> The key as the table has it
+    type(key_entry_t), intent(in) :: key
+    !> A value at fault
+    type(value_t), intent(in) :: value
+    !> End of a sentence, such as `, < 1e30`
+    character(len=:), allocatable :: limit
+    character(len=:), allocatable :: largest
+    logical :: is_number
+    integer :: decade, most
+
+    limit = ''
+    if (value%quoted .or. .not. any(key%kind == [character(len=7) :: 'real', 'integer'])) return
+    call measure_number(value%text, is_number, decade)
+    most = merge(most_integer_decades, most_decades, key%kind == 'integer')
+    largest = '1e'//to_text(most)
+    if (.not. is_number .or. abs(decade) < most) return
+    if (decade < 0) then
+      if (.not. in_range(key%allowed, 10.0_wp**(1 - most))) return
+      limit = ', at least 1e'//to_text(1 - most)//' in size'
+      if (in_range(key%allowed, 0.0_wp)) limit = ', 0 or'//limit(2:)
+    else if (key%allowed == 'any') then
+      limit = ' > -'//largest//', < '//largest
+    else if (index(key%allowed, '<') == 0) then
+      limit = ', < '//largest
+    end if
+  end function limit_of_size
 
   !> The value that the default of a key stands for.
   pure function literal_value(default) result(value)

@@ -5,11 +5,15 @@ module deck_vocabulary
   private
   public :: group_entry_t, key_entry_t, vocabulary_t, load_vocabulary
 
+  !> Characters of a row of a group and of a key, enough for the longest.
+  integer, parameter, public :: group_row_length = 220, key_row_length = 240
+
   !> A group of the deck.
   type :: group_entry_t
     !> Name without &
     character(len=:), allocatable :: name
-    !> required, repeatable, settings or optional
+    !> required; repeatable: required and may come again; settings: in effect even if left out; optional: physics that
+    !> is only modelled if the group is there; several: optional and may come again
     character(len=:), allocatable :: presence
     !> One sentence
     character(len=:), allocatable :: meaning
@@ -25,7 +29,8 @@ module deck_vocabulary
     character(len=:), allocatable :: values
     !> Physical dimension, - if none
     character(len=:), allocatable :: unit
-    !> required, none, = and what it is worked out from, or the value as it would stand in a deck
+    !> required; none: the key may be left out; = and what it is worked out from; or the value as it would stand in a
+    !> deck
     character(len=:), allocatable :: default
     !> Choices separated by blanks, or conditions separated by commas
     character(len=:), allocatable :: allowed

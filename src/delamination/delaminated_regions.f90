@@ -1,30 +1,27 @@
-!> The delaminated cells of one interface, and the nodes whose two faces have come apart there.
+!> The delaminated cells of one interface, and the nodes whose two faces are released there.
 module delaminated_regions
   use archives, only: archive_t
   use kinds, only: wp
   use layered_meshes, only: layered_mesh_t
+  use nine_node_grids, only: nine_node_grid_t, cells_around
   implicit none
   private
   public :: delaminated_region_t, create_region, cells_within, extent_of_cells
 
-  !> The cells of a zone, intact or delaminated. Only ever grows.
-  type :: delaminated_region_t
-    !> Cells of the model along x and y
-    integer :: cells(2) = 0
+  !> The cells of a zone, intact or delaminated, within the grid of the whole model. Only ever grows.
+  type, extends(nine_node_grid_t) :: delaminated_region_t
     !> First and last column, then row, of the zone's cells
     integer :: columns(2) = 0, rows(2) = 0
-    !> True where the interface has come apart, (columns(1):columns(2), rows(1):rows(2))
+    !> True where the interface is delaminated, (columns(1):columns(2), rows(1):rows(2))
     logical, allocatable :: delaminated(:, :)
   contains
     !> True for a cell of the zone; false also for a cell outside the model.
     procedure :: in_zone
     !> True for a delaminated cell; false also outside the zone.
     procedure :: is_delaminated
-    !> True for a node whose two faces are apart.
+    !> True for a node whose two faces are released.
     procedure :: released
-    !> Node on two lines of nodes, in the numbering of the mesh.
-    procedure :: node_at
-    !> Takes a cell apart.
+    !> Delaminates a cell.
     procedure :: release
     !> Saves or loads.
     procedure :: visit
@@ -116,7 +113,7 @@ contains
   end function is_delaminated
 
   !> True if all cells around a node are delaminated. Beyond the model's border and its symmetry lines
-  !> there is no cell to ask; nodes on the zone's own border never come apart, as both layers share them.
+  !> there is no cell to ask; nodes on the zone's own border are never released, as both layers share them.
   pure logical function released(self, i, j)
     !> The region
     class(delaminated_region_t), intent(in) :: self
@@ -135,27 +132,7 @@ contains
     released = .true.
   end function released
 
-  !> First and last of the model's cells around a line of nodes.
-  pure function cells_around(line, cells) result(range)
-    !> Line of nodes, 0 to 2*cells
-    integer, intent(in) :: line
-    !> Cells along this direction
-    integer, intent(in) :: cells
-    !> First and last cell
-    integer :: range(2)
-    range = [max(1, (line + 1)/2), min(cells, line/2 + 1)]
-  end function cells_around
-
-  !> Node on two lines of nodes, as the mesh numbers them.
-  pure integer function node_at(self, i, j) result(node)
-    !> The region
-    class(delaminated_region_t), intent(in) :: self
-    !> Lines of nodes, 0 to twice the cells along x and y
-    integer, intent(in) :: i, j
-    node = 1 + i + (2*self%cells(1) + 1)*j
-  end function node_at
-
-  !> Takes a cell of the zone apart. Nothing happens if it is outside the zone.
+  !> Delaminates a cell of the zone. Nothing happens if it is outside the zone.
   pure subroutine release(self, cell)
     !> The region
     class(delaminated_region_t), intent(inout) :: self

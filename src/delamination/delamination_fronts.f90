@@ -3,6 +3,7 @@ module delamination_fronts
   use delaminated_regions, only: delaminated_region_t
   use kinds, only: wp
   use layered_meshes, only: layered_mesh_t
+  use nine_node_grids, only: first_line, middle_line, last_line
   implicit none
   private
   public :: front_segment_t, find_front
@@ -85,8 +86,8 @@ contains
     segment%sign = sign
     segment%at_border = .not. region%in_zone(segment%outside(1), segment%outside(2))
     do line = 1, 3
-      ! The middle of a cell is on lines 2*cell - 1, its edge one line further.
-      place = 2*inside - 1 + step + (line - 2)*along
+      ! The edge is one line further than the middle of the cell.
+      place = middle_line(inside) + step + (line - 2)*along
       segment%edge(line) = region%node_at(place(1), place(2))
       segment%behind(1, line) = region%node_at(place(1) - step(1), place(2) - step(2))
       segment%behind(2, line) = region%node_at(place(1) - 2*step(1), place(2) - 2*step(2))
@@ -133,8 +134,8 @@ contains
     integer :: first, last, s
 
     ! One line of cells around the zone, so that the nodes ahead of its border are covered too.
-    first = region%node_at(0, max(0, 2*region%rows(1) - 4))
-    last = region%node_at(2*region%cells(1), min(2*region%cells(2), 2*region%rows(2) + 2))
+    first = region%node_at(0, first_line(max(1, region%rows(1) - 1)))
+    last = region%node_at(last_line(region%cells(1)), last_line(min(region%cells(2), region%rows(2) + 1)))
     allocate (edge_widths(first:last), ahead_widths(first:last), source=0.0_wp)
     do s = 1, size(segments)
       associate (segment => segments(s))

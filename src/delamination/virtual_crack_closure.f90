@@ -1,7 +1,7 @@
 !> Energy release rates at the front of a delamination.
 !>
 !> Virtual crack closure. Tying the faces over the cell ahead of a segment holds back forces F on jumps d
-!> that the cell would have as soon as it came apart; it would then look like the delaminated cell behind,
+!> that the cell would have as soon as it delaminated; it would then look like the delaminated cell behind,
 !> so d is taken from there. Closing it again takes the work of forces that grow in proportion to the
 !> closing, 1/2 sum F.d, hence G A = 1/2 sum F.d with A the area of the cell ahead. In a nine-node cell a
 !> line of nodes that crosses the front gets two pairs: the force on the front with the jump one cell

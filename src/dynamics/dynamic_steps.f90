@@ -3,8 +3,8 @@
 module dynamic_steps
   use kinds, only: wp
   use errors, only: error_t
-  use impactors, only: advance
-  use tan_sun_hertz_indentation, only: commit_indentation
+  use impactor_integrators, only: advance
+  use tan_sun_indentation, only: commit_indentation
   use stepping_parameters, only: equilibrium_t
   use newmark_integrators, only: plate_integrator_t
   use models, only: model_t

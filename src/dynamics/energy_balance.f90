@@ -55,8 +55,9 @@ contains
            + (products%strain - old%ledger%strain - products%mean_internal)
     new%ledger%algorithmic = old%ledger%algorithmic - gain
     if (model%map%layered) then
-      ! What fracture takes has been booked, and taken off here, when the ties were let go.
-      call new%interfaces%ties%book(model, old%interfaces%ties, new%motion%displacement - old%motion%displacement, taken)
+      ! What fracture takes has been booked, and taken off here, when the ties were released.
+      call new%interfaces%ties%book(model, old%interfaces%ties, &
+                                    new%motion%displacement - old%motion%displacement, taken)
       new%ledger%algorithmic = new%ledger%algorithmic + taken
     end if
     if (.not. model%scene%has_impactor) return

@@ -2,8 +2,8 @@
 module impact_coupling
   use kinds, only: wp
   use errors, only: error_t
-  use contact_forces, only: solve_contact_force
-  use impactors, only: predict, takes_mean_force
+  use impact_force, only: solve_impact_force
+  use impactor_integrators, only: predict, takes_mean_force
   use newmark_integrators, only: plate_integrator_t
   use models, only: model_t
   use states, only: state_t
@@ -41,7 +41,7 @@ contains
     type(state_t), intent(in) :: old
     !> Time step
     real(wp), intent(in) :: step
-    !> The strike
+    !> The impactor's side of the step
     type(impact_coupling_t) :: coupling
 
     call predict(model%scene%impactor, old%impactor, step, coupling%free_displacement, coupling%compliance)
@@ -56,7 +56,7 @@ contains
 
   !> Force on the plate in its equation of motion.
   pure real(wp) function load(self)
-    !> The strike
+    !> The impactor's side of the step
     class(impact_coupling_t), intent(in) :: self
 
     load = self%share*self%unknown + self%inherited
@@ -65,7 +65,7 @@ contains
   !> Solves for the impact force, given the correction of the plate for the force assumed, and adds the
   !> plate's response to the change of the force.
   subroutine solve(self, model, integrator, operator, old, new, correction, error)
-    !> The strike
+    !> The impactor's side of the step
     class(impact_coupling_t), intent(inout) :: self
     !> The model
     type(model_t), intent(in) :: model
@@ -88,7 +88,7 @@ contains
     compliance = self%share*operator%compliance
     new%patch_mean = model%patch_mean(new%motion%displacement) + model%patch_mean(correction)
     alpha_free = self%free_displacement - new%patch_mean + before*compliance
-    call solve_contact_force(model%scene%indentation, old%indentation, old%indentation%alpha, alpha_free, &
+    call solve_impact_force(model%scene%indentation, old%indentation, old%indentation%alpha, alpha_free, &
                              self%compliance + compliance, self%mean, self%unknown, alpha_end, &
                              self%force_end, iterations, error)
     correction = correction + (self%share*(self%unknown - before))*operator%response

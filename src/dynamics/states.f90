@@ -4,7 +4,7 @@ module states
   use kinds, only: wp
   use archives, only: archive_t
   use impactors, only: impactor_t, new_impactor, impactor_energy
-  use tan_sun_hertz_indentation, only: indentation_t
+  use tan_sun_indentation, only: indentation_t
   use energy_ledgers, only: ledger_t
   use motions, only: motion_t
   use models, only: model_t
@@ -14,7 +14,8 @@ module states
   private
   public :: state_t, new_state
 
-  !> The state of plate, impactor and contact at one time.
+  !> The state of plate, impactor and contact at one time. It has many components because a step that fails must leave
+  !> none of them changed.
   type :: state_t
     !> Time, or load factor of a static analysis
     real(wp) :: time = 0

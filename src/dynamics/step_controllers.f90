@@ -2,7 +2,7 @@
 module step_controllers
   use kinds, only: wp
   use archives, only: archive_t
-  use impactors, only: largest_growth_ratio
+  use gear_integrator, only: largest_growth_ratio
   use stepping_parameters, only: stepping_t, adapt_t, refactor_deflection
   implicit none
   private

@@ -4,7 +4,7 @@ module time_stepping
   use errors, only: error_t, fail, exit_convergence
   use archives, only: archive_t
   use text, only: to_text
-  use impactors, only: largest_safe_step
+  use impactor_integrators, only: largest_safe_step
   use stepping_parameters, only: stepping_t
   use linear_solver_parameters, only: linear_solver_parameters_t
   use newmark_integrators, only: plate_integrator_t, plate_integrator
@@ -55,7 +55,7 @@ contains
 
   !> Puts the plate at rest and the impactor at first touch.
   subroutine start(self, model, stepping, linear_solver, error)
-    !> The march
+    !> The time stepper
     class(time_stepper_t), intent(out) :: self
     !> The model
     type(model_t), intent(in) :: model
@@ -79,7 +79,7 @@ contains
 
   !> Acceleration of the plate under a pressure that is there from the start.
   subroutine start_acceleration(self, model, error)
-    !> The march
+    !> The time stepper
     class(time_stepper_t), intent(inout) :: self
     !> The model
     type(model_t), intent(in) :: model
@@ -100,7 +100,7 @@ contains
   !> Takes one step, at most to the next event; the step is tried again with half its length until
   !> equilibrium is reached or the smallest step of the deck has failed.
   subroutine advance(self, model, event, error)
-    !> The march
+    !> The time stepper
     class(time_stepper_t), intent(inout) :: self
     !> The model
     type(model_t), intent(in) :: model
@@ -135,7 +135,7 @@ contains
 
   !> Brings a plate whose plies have failed under a load back into equilibrium with it, until no more of them fail.
   subroutine settle(self, model, error)
-    !> The march
+    !> The time stepper
     class(time_stepper_t), intent(inout) :: self
     !> The model
     type(model_t), intent(in) :: model
@@ -169,7 +169,7 @@ contains
 
   !> Tries one time step.
   subroutine try_step(self, model, event, step, converged, error)
-    !> The march
+    !> The time stepper
     class(time_stepper_t), intent(inout) :: self
     !> The model
     type(model_t), intent(in) :: model
@@ -201,13 +201,14 @@ contains
     problem = new_dynamic_step(self%integrator, step, self%stepping%adapt%iterations)
     call solve_step(problem, model, self%stepping%equilibrium, self%operator, self%now, self%trial, converged, error)
     if (converged .and. model%map%layered) &
-      call grow_in_step(problem, model, self%stepping%equilibrium, self%operator, self%now, self%trial, converged, error)
+      call grow_in_step(problem, model, self%stepping%equilibrium, self%operator, self%now, self%trial, converged, &
+                        error)
   end subroutine try_step
 
   !> Longest step that the impactor's integrator bears now, as a binary fraction of the step wanted so that
   !> the factored operator need not follow every small change.
   pure real(wp) function impactor_limit(self, model) result(limit)
-    !> The march
+    !> The time stepper
     type(time_stepper_t), intent(in) :: self
     !> The model
     type(model_t), intent(in) :: model
@@ -222,7 +223,7 @@ contains
 
   !> Tries one load step.
   subroutine try_load(self, model, event, step, converged, error)
-    !> The march
+    !> The time stepper
     class(time_stepper_t), intent(inout) :: self
     !> The model
     type(model_t), intent(in) :: model
@@ -243,7 +244,7 @@ contains
 
   !> Makes the state tried the state reached.
   subroutine accept(self, model, step)
-    !> The march
+    !> The time stepper
     class(time_stepper_t), intent(inout) :: self
     !> The model
     type(model_t), intent(in) :: model
@@ -275,13 +276,14 @@ contains
                                   self%now%iterations - self%operator%switches, change)
       ! What a step took until it renewed the operator itself does not speak against the new one.
       if (self%operator%factorizations /= self%factorizations_begun) call self%controller%renewed()
-      if (grows_by_steps(model)) call self%controller%heed_fronts(self%stepping, self%now%interfaces%growth_ratio, extended)
+      if (grows_by_steps(model)) &
+        call self%controller%heed_fronts(self%stepping, self%now%interfaces%growth_ratio, extended)
     end if
   end subroutine accept
 
   !> Saves or loads all that evolves.
   subroutine visit(self, archive, model, error)
-    !> The march
+    !> The time stepper
     class(time_stepper_t), intent(inout) :: self
     !> Where to or where from
     class(archive_t), intent(inout) :: archive

@@ -62,12 +62,11 @@ contains
     class(interface_ties_t), intent(inout) :: self
     !> The model
     type(model_t), intent(in) :: model
-    integer :: i, line(2), node
+    integer :: i, line(2)
 
     do i = 1, size(self%free)
       if (model%zone(i) == 0) cycle
-      node = model%mesh%point_node(model%distribution%points(i)) - 1
-      line = [modulo(node, 2*model%mesh%cells(1) + 1), node/(2*model%mesh%cells(1) + 1)]
+      line = model%mesh%lines_of(model%mesh%point_node(model%distribution%points(i)))
       self%free(i) = self%regions(model%zone(i))%released(line(1), line(2))
     end do
   end subroutine free_jumps

@@ -5,7 +5,8 @@ module material_parameters
   private
   public :: material_t
 
-  !> An orthotropic ply, 1 along the fibres. A strength that the deck does not give is zero or less.
+  !> An orthotropic ply, 1 along the fibres. A strength that the deck does not give is zero or less. It has many
+  !> components because the deck gives that many constants.
   type :: material_t
     !> Name that &laminate refers to
     character(len=:), allocatable :: name

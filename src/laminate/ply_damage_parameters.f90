@@ -3,7 +3,7 @@ module ply_damage_parameters
   use kinds, only: wp
   implicit none
   private
-  public :: ply_damage_t, ply_damage_objection
+  public :: ply_damage_t
 
   !> Ways a ply fails (Table 1 of the paper), and their number.
   integer, parameter, public :: fibre_failure = 1, matrix_cracking = 2, matrix_crushing = 3, failure_modes = 3
@@ -28,25 +28,4 @@ module ply_damage_parameters
     !> stress_at_middle or stress_at_faces
     integer :: stress = stress_at_middle
   end type ply_damage_t
-
-contains
-
-  !> What is wrong with these parameters, or an empty text.
-  pure function ply_damage_objection(damage) result(objection)
-    !> The parameters
-    type(ply_damage_t), intent(in) :: damage
-    !> One clause for the user; empty: nothing is wrong
-    character(len=:), allocatable :: objection
-
-    objection = ''
-    if (.not. (damage%d >= 1 .and. damage%d <= huge(damage%d))) then
-      objection = 'the divisor d must be at least 1'
-    else if (.not. (damage%e > 0 .and. damage%e <= 1)) then
-      objection = 'the least fraction e must be positive and at most 1'
-    else if (.not. (damage%fade >= 0 .and. damage%fade <= huge(damage%fade))) then
-      objection = 'the time fade must not be negative'
-    else if (.not. (damage%average >= 0 .and. damage%average <= huge(damage%average))) then
-      objection = 'the length average must not be negative'
-    end if
-  end function ply_damage_objection
 end module ply_damage_parameters

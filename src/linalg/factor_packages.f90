@@ -8,10 +8,10 @@ module factor_packages
   public :: prepare_mumps, prepare_cholmod, mumps_report, why_not_factored
 
   !> MUMPS' controls: room beyond the estimate in %, and whether the root of the elimination tree stays on
-  !> one rank, as its negative pivots are counted only then.
+  !> one rank and is factored like the rest of it.
   integer, parameter :: control_room = 14, control_root = 13
-  !> MUMPS' reports: outcome, negative pivots, memory in MB, entries of the factor
-  integer, parameter, public :: mumps_outcome = 1, mumps_negative = 12, mumps_memory = 22, mumps_entries = 29
+  !> MUMPS' reports: outcome, memory in MB, entries of the factor
+  integer, parameter, public :: mumps_outcome = 1, mumps_memory = 22, mumps_entries = 29
   !> MUMPS' outcome for a singular matrix
   integer, parameter, public :: mumps_singular = -10
   !> Outcomes of MUMPS that more room cures

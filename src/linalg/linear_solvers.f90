@@ -30,10 +30,6 @@ module linear_solvers
     procedure(solve), deferred :: solve
     !> Solves for several right-hand sides with the factor; called by all ranks together.
     procedure(solve_many), deferred :: solve_many
-    !> Multiplies the matrix as it was assembled last; called by all ranks together.
-    procedure(multiply), deferred :: multiply
-    !> Number of negative pivots of the factor, the same on every rank.
-    procedure(negative_pivots), deferred :: negative_pivots
     !> Size of the factor, the same on every rank.
     procedure(statistics), deferred :: statistics
     !> Frees matrix and factor.
@@ -108,22 +104,6 @@ module linear_solvers
       !> Raised on all ranks when there is no finite solution
       type(error_t), allocatable, intent(inout) :: error
     end subroutine solve_many
-
-    !> Multiplies the matrix as it was assembled last; called by all ranks together.
-    subroutine multiply(self, vector, product)
-      import :: linear_solver_t, wp
-      class(linear_solver_t), intent(inout) :: self
-      !> Owned part of the vector
-      real(wp), intent(in) :: vector(:)
-      !> Owned part of matrix times vector
-      real(wp), intent(out) :: product(:)
-    end subroutine multiply
-
-    !> Number of negative pivots of the factor, the same on every rank.
-    integer function negative_pivots(self)
-      import :: linear_solver_t
-      class(linear_solver_t), intent(in) :: self
-    end function negative_pivots
 
     !> Size of the factor, the same on every rank.
     subroutine statistics(self, factor_entries, megabytes)

@@ -17,7 +17,7 @@ module petsc_matrices
   type :: petsc_matrix_t
     !> The matrix as PETSc knows it
     type(tMat) :: object
-    !> Vectors that the matrix multiplies, and that it gives
+    !> Vectors of its rows: right-hand side and solution
     type(tVec) :: right, left
     !> All ranks
     type(communicator_t), private :: communicator
@@ -34,8 +34,6 @@ module petsc_matrices
     procedure :: add
     !> Brings the matrix together.
     procedure :: finish_assembly
-    !> Multiplies a vector.
-    procedure :: multiply
     !> Frees the matrix and its vectors.
     procedure :: release
   end type petsc_matrix_t
@@ -153,20 +151,6 @@ contains
     end if
     call self%communicator%agree(error)
   end subroutine finish_assembly
-
-  !> Multiplies the matrix as it was assembled last.
-  subroutine multiply(self, vector, product)
-    class(petsc_matrix_t), intent(inout) :: self
-    !> Owned part of the vector
-    real(wp), intent(in) :: vector(:)
-    !> Owned part of matrix times vector
-    real(wp), intent(out) :: product(:)
-    integer :: ierr
-
-    call put(self%right, vector, ierr)
-    call MatMult(self%object, self%right, self%left, ierr)
-    call take(self%left, product, ierr)
-  end subroutine multiply
 
   !> Frees the matrix and its vectors.
   subroutine release(self)

@@ -1,10 +1,10 @@
-!> Begin and end of PETSc within a run: our communicator, our command line, our error messages.
+!> Begin and end of PETSc within a run: our communicator, our command line, our error messages, one thread a rank.
 module petsc_session
   use, intrinsic :: iso_c_binding, only: c_int, c_ptr, c_null_ptr, c_char, c_null_char, c_funptr, c_funloc, &
-                                         c_associated, c_f_pointer
-  use blas_threads, only: use_one_thread
+                                         c_associated, c_f_pointer, c_f_procpointer
   use communicators, only: communicator_t
   use errors, only: error_t, fail, exit_usage, exit_internal
+  use found_procedures, only: address_of
   implicit none
   private
   public :: start_petsc, finish_petsc, report_petsc
@@ -56,6 +56,15 @@ module petsc_session
     end function error_message
   end interface
 
+  abstract interface
+    !> Sets the number of threads of a library.
+    subroutine set_threads(count) bind(c)
+      import :: c_int
+      !> Number of threads
+      integer(c_int), value :: count
+    end subroutine set_threads
+  end interface
+
 contains
 
   !> Starts PETSc, unless it runs already. The command line stays ours.
@@ -85,6 +94,30 @@ contains
     if (ierr /= 0) call fail(error, exit_usage, 'PETSc does not start with the options "'//trim(options)//'".')
     call communicator%agree(error)
   end subroutine start_petsc
+
+  !> Lets OpenBLAS work with one thread, unless the environment says how many; other libraries are left as they are.
+  !> Ranks share the work out already, and threads beside them wait more than they do.
+  subroutine use_one_thread()
+    procedure(set_threads), pointer :: set
+    type(c_funptr) :: address
+
+    if (is_set('OMP_NUM_THREADS')) return
+    if (is_set('OPENBLAS_NUM_THREADS')) return
+    address = address_of('openblas_set_num_threads')
+    if (.not. c_associated(address)) return
+    call c_f_procpointer(address, set)
+    call set(1_c_int)
+  end subroutine use_one_thread
+
+  !> True if a variable of the environment has a value.
+  logical function is_set(name)
+    !> Its name
+    character(len=*), intent(in) :: name
+    integer :: length
+
+    call get_environment_variable(name, length=length)
+    is_set = length > 0
+  end function is_set
 
   !> Ends PETSc; its objects must have been freed before.
   subroutine finish_petsc()

@@ -8,7 +8,7 @@ module petsc_solvers
   use communicators, only: communicator_t
   use errors, only: error_t, fail, exit_convergence, exit_internal, exit_usage
   use factor_packages, only: prepare_mumps, prepare_cholmod, mumps_report, why_not_factored, mumps_outcome, &
-                             mumps_negative, mumps_memory, mumps_entries, mumps_singular, mumps_short_of_room
+                             mumps_memory, mumps_entries, mumps_singular, mumps_short_of_room
   use freed_memory, only: give_back_freed, keep_freed
   use kinds, only: wp
   use linear_solvers, only: linear_solver_t
@@ -57,8 +57,6 @@ module petsc_solvers
     procedure :: factorize
     procedure :: solve
     procedure :: solve_many
-    procedure :: multiply
-    procedure :: negative_pivots
     procedure :: statistics
     procedure :: release
     procedure, private :: create_solver
@@ -339,26 +337,6 @@ contains
     call self%communicator%agree(error)
   end subroutine finish_solve
 
-  !> Multiplies the matrix as it was assembled last.
-  subroutine multiply(self, vector, product)
-    class(petsc_solver_t), intent(inout) :: self
-    !> Owned part of the vector
-    real(wp), intent(in) :: vector(:)
-    !> Owned part of matrix times vector
-    real(wp), intent(out) :: product(:)
-
-    call self%matrix%multiply(vector, product)
-  end subroutine multiply
-
-  !> Number of negative pivots of the factor, the same on every rank.
-  integer function negative_pivots(self)
-    class(petsc_solver_t), intent(in) :: self
-
-    ! Without MUMPS only positive definite matrices have a factor.
-    negative_pivots = 0
-    if (self%by_mumps) negative_pivots = mumps_report(self%factorization, mumps_negative)
-  end function negative_pivots
-
   !> Size of the factor, the same on every rank.
   subroutine statistics(self, factor_entries, megabytes)
     class(petsc_solver_t), intent(in) :: self
@@ -396,5 +374,4 @@ contains
     self%factored = .false.
     if (allocated(self%mode)) deallocate (self%mode)
   end subroutine release
-
 end module petsc_solvers

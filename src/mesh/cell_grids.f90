@@ -3,14 +3,13 @@ module cell_grids
   use kinds, only: wp
   use mesh_parameters, only: plate_t, mesh_t, symmetry_quarter
   use gradings, only: graded_half_line, graded_line, cored_half_line
+  use nine_node_grids, only: nine_node_grid_t, last_line
   implicit none
   private
   public :: cell_grid_t, create_grid, cell_edges
 
   !> Cells and their nodes.
-  type :: cell_grid_t
-    !> Cells along x and y
-    integer :: cells(2) = 0
+  type, extends(nine_node_grid_t) :: cell_grid_t
     !> Edges of the cells along x and y, (cells + 1)
     real(wp), allocatable :: x_edges(:), y_edges(:)
     !> Coordinates of the nodes, (2, nodes), x fastest
@@ -22,9 +21,6 @@ module cell_grids
   contains
     !> Number of nodes.
     procedure :: nodes
-    !> Cells of a column and row, and the nine nodes of a cell.
-    procedure :: cell_at
-    procedure :: cell_nodes
     !> Area of a cell.
     procedure :: cell_area
     !> True where a cell lies under the loaded patch.
@@ -80,27 +76,26 @@ contains
     class(cell_grid_t), intent(inout) :: self
     !> True: the struck point is the corner of the model
     logical, intent(in) :: quarter
-    real(wp) :: x(0:2*self%cells(1)), y(0:2*self%cells(2))
-    integer :: i, j, along
+    real(wp) :: x(0:last_line(self%cells(1))), y(0:last_line(self%cells(2)))
+    integer :: i, j
 
     call edges_and_middles(self%x_edges, x)
     call edges_and_middles(self%y_edges, y)
-    along = size(x)
-    allocate (self%node_coordinates(2, along*size(y)))
+    allocate (self%node_coordinates(2, size(x)*size(y)))
     do j = 0, size(y) - 1
-      do i = 0, along - 1
-        self%node_coordinates(:, 1 + i + along*j) = [x(i), y(j)]
+      do i = 0, size(x) - 1
+        self%node_coordinates(:, self%node_at(i, j)) = [x(i), y(j)]
       end do
     end do
     self%struck_node = 1
-    if (.not. quarter) self%struck_node = 1 + self%cells(1) + along*self%cells(2)
+    if (.not. quarter) self%struck_node = self%node_at(size(x)/2, size(y)/2)
   end subroutine place_nodes
 
   !> Coordinates of the cells' edges with their middles in between.
   pure subroutine edges_and_middles(edges, coordinates)
     !> Edges, (0:cells)
     real(wp), intent(in) :: edges(0:)
-    !> Edges and middles, (0:2*cells)
+    !> Edges and middles, one a line of nodes
     real(wp), intent(out) :: coordinates(0:)
 
     coordinates(0::2) = edges
@@ -113,30 +108,6 @@ contains
     class(cell_grid_t), intent(in) :: self
     nodes = size(self%node_coordinates, 2)
   end function nodes
-
-  !> Cell of a column and a row.
-  pure integer function cell_at(self, column, row) result(cell)
-    !> The grid
-    class(cell_grid_t), intent(in) :: self
-    !> Column and row, from 1
-    integer, intent(in) :: column, row
-    cell = column + self%cells(1)*(row - 1)
-  end function cell_at
-
-  !> The nine nodes of a cell, tensor order.
-  pure function cell_nodes(self, cell) result(nodes)
-    !> The grid
-    class(cell_grid_t), intent(in) :: self
-    !> Cell
-    integer, intent(in) :: cell
-    !> Nodes
-    integer :: nodes(9)
-    integer :: corner, along, i, j
-
-    along = 2*self%cells(1) + 1
-    corner = 1 + 2*modulo(cell - 1, self%cells(1)) + along*2*((cell - 1)/self%cells(1))
-    nodes = [((corner + i + along*j, i=0, 2), j=0, 2)]
-  end function cell_nodes
 
   !> Area of a cell.
   pure real(wp) function cell_area(self, place) result(area)

@@ -76,8 +76,8 @@ contains
       do i = 1, mesh%cells(1)
         cell = mesh%cell_at(i, j)
         row_start(cell) = found + 1
-        nearby = [merge(cell - 1, 0, i > 1), merge(cell + 1, 0, i < mesh%cells(1)), &
-                  merge(cell - mesh%cells(1), 0, j > 1), merge(cell + mesh%cells(1), 0, j < mesh%cells(2))]
+        nearby = [merge(mesh%cell_at(i - 1, j), 0, i > 1), merge(mesh%cell_at(i + 1, j), 0, i < mesh%cells(1)), &
+                  merge(mesh%cell_at(i, j - 1), 0, j > 1), merge(mesh%cell_at(i, j + 1), 0, j < mesh%cells(2))]
         neighbours(found + 1:found + count(nearby > 0)) = pack(nearby, nearby > 0)
         found = found + count(nearby > 0)
       end do

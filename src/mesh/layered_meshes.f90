@@ -3,6 +3,7 @@
 module layered_meshes
   use mesh_parameters, only: plate_t, mesh_t
   use cell_grids, only: cell_grid_t, create_grid
+  use nine_node_grids, only: cells_around
   implicit none
   private
   public :: layered_mesh_t, zone_t, create_mesh
@@ -95,7 +96,7 @@ contains
     end do
   end subroutine number_points
 
-  !> True if every cell around a node belongs to a zone.
+  !> True if every cell around a node belongs to a zone; the model's own border counts as inside.
   pure logical function inside_zone(self, zone, node) result(inside)
     !> The mesh
     type(layered_mesh_t), intent(in) :: self
@@ -103,24 +104,21 @@ contains
     integer, intent(in) :: zone
     !> Node
     integer, intent(in) :: node
-    integer :: i, j
+    integer :: lines(2)
 
-    i = modulo(node - 1, 2*self%cells(1) + 1)
-    j = (node - 1)/(2*self%cells(1) + 1)
-    inside = within(i, self%zones(zone)%columns, self%cells(1)) .and. within(j, self%zones(zone)%rows, self%cells(2))
+    lines = self%lines_of(node)
+    inside = within(cells_around(lines(1), self%cells(1)), self%zones(zone)%columns) .and. &
+             within(cells_around(lines(2), self%cells(2)), self%zones(zone)%rows)
   end function inside_zone
 
-  !> True if all cells around a line of nodes are in a range; the model's own border counts as inside.
-  pure logical function within(line, range, cells)
-    !> Line of nodes, 0 to 2*cells
-    integer, intent(in) :: line
-    !> First and last cell of the range
+  !> True if a range of cells is part of another.
+  pure logical function within(range, whole)
+    !> First and last cell
     integer, intent(in) :: range(2)
-    !> Cells along this direction
-    integer, intent(in) :: cells
+    !> First and last cell of the other
+    integer, intent(in) :: whole(2)
 
-    within = (line > 2*(range(1) - 1) .or. (line == 0 .and. range(1) == 1)) .and. &
-             (line < 2*range(2) .or. (line == 2*cells .and. range(2) == cells))
+    within = range(1) >= whole(1) .and. range(2) <= whole(2)
   end function within
 
   !> One element for each layer over each cell.
@@ -138,7 +136,7 @@ contains
         if (pass == 2) self%first_element(cell) = elements + 1
         do zone = 1, size(self%zones) + 1
           if (zone <= size(self%zones)) then
-            if (.not. covers(self%zones(zone), cell, self%cells(1))) cycle
+            if (.not. covers(self%zones(zone), self%place_of(cell))) cycle
           end if
           elements = elements + 1
           if (pass == 1) cycle
@@ -187,16 +185,12 @@ contains
   end function lower_point
 
   !> True if a zone covers a cell.
-  pure logical function covers(zone, cell, columns)
+  pure logical function covers(zone, place)
     !> The zone
     type(zone_t), intent(in) :: zone
-    !> Cell
-    integer, intent(in) :: cell
-    !> Cells along x
-    integer, intent(in) :: columns
-    integer :: place(2)
+    !> Column and row of the cell
+    integer, intent(in) :: place(2)
 
-    place = [modulo(cell - 1, columns) + 1, (cell - 1)/columns + 1]
     covers = all(place >= [zone%columns(1), zone%rows(1)]) .and. all(place <= [zone%columns(2), zone%rows(2)])
   end function covers
 

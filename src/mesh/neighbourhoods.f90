@@ -75,7 +75,7 @@ contains
     integer :: place(2), i, j, other
 
     associate (cell => mesh%element_cell(element), quarter => mesh%multiplicity > 1)
-      place = [modulo(cell - 1, mesh%cells(1)) + 1, (cell - 1)/mesh%cells(1) + 1]
+      place = mesh%place_of(cell)
       call find_lines(mesh%x_edges, place(1), length, quarter, columns, x)
       call find_lines(mesh%y_edges, place(2), length, quarter, rows, y)
     end associate

@@ -4,6 +4,7 @@ module numberings
   use kinds, only: wp
   use layered_meshes, only: layered_mesh_t
   use distributions, only: distribution_t
+  use matrix_patterns, only: find_pattern
   implicit none
   private
   public :: numbering_t, number_equations
@@ -51,7 +52,8 @@ contains
     self%first_row = first_row_of(equation, distribution)
     self%equation = equation(:, distribution%points)
     call find_places(self)
-    call find_pattern(mesh, distribution, equation, self)
+    call find_pattern(mesh, equation, mesh%point_node(distribution%points(self%places(1, :))), &
+                      self%row_start, self%columns)
   end subroutine number_equations
 
   !> Point and component of each row.
@@ -129,99 +131,6 @@ contains
       if (distribution%number(point) < start) first = first + count(equation(:, point) >= 0)
     end do
   end function first_row_of
-
-  !> Columns of this rank's rows: all unknowns at the nodes of the cells around.
-  subroutine find_pattern(mesh, distribution, equation, self)
-    !> The mesh
-    type(layered_mesh_t), intent(in) :: mesh
-    !> Owners
-    type(distribution_t), intent(in) :: distribution
-    !> Equations of every point
-    integer, intent(in) :: equation(:, :)
-    !> Receives the pattern
-    type(numbering_t), intent(inout) :: self
-    integer, allocatable :: nearby(:)
-    integer :: pass, i, component, row, entries
-
-    do pass = 1, 2
-      row = 0
-      entries = 0
-      do i = 1, distribution%owned
-        if (all(self%equation(:, i) < 0)) cycle
-        nearby = columns_around(mesh, equation, mesh%point_node(distribution%points(i)))
-        do component = 1, 5
-          if (self%equation(component, i) < 0) cycle
-          row = row + 1
-          if (pass == 2) then
-            self%row_start(row) = entries + 1
-            self%columns(entries + 1:entries + size(nearby)) = nearby
-          end if
-          entries = entries + size(nearby)
-        end do
-      end do
-      if (pass == 1) allocate (self%row_start(self%rows + 1), self%columns(entries))
-    end do
-    self%row_start(self%rows + 1) = entries + 1
-  end subroutine find_pattern
-
-  !> Equations of all points at the nodes that share a cell with a node, ascending.
-  pure function columns_around(mesh, equation, node) result(columns)
-    !> The mesh
-    type(layered_mesh_t), intent(in) :: mesh
-    !> Equations of every point
-    integer, intent(in) :: equation(:, :)
-    !> The node
-    integer, intent(in) :: node
-    !> Equations, from 0
-    integer, allocatable :: columns(:)
-    integer :: i(2), j(2), line(2), along, row, first, last
-
-    along = 2*mesh%cells(1) + 1
-    line = [modulo(node - 1, along), (node - 1)/along]
-    i = reach(line(1), mesh%cells(1))
-    j = reach(line(2), mesh%cells(2))
-    allocate (columns(0))
-    do row = j(1), j(2)
-      first = mesh%first_point(1 + i(1) + along*row)
-      last = mesh%first_point(2 + i(2) + along*row) - 1
-      columns = [columns, pack(equation(:, first:last), equation(:, first:last) >= 0)]
-    end do
-    call sort(columns)
-  end function columns_around
-
-  !> Lines of nodes that share a cell with a line.
-  pure function reach(line, cells) result(range)
-    !> Line of nodes, from 0
-    integer, intent(in) :: line
-    !> Cells along this direction
-    integer, intent(in) :: cells
-    !> First and last line
-    integer :: range(2)
-
-    if (modulo(line, 2) == 1) then
-      range = [line - 1, line + 1]
-    else
-      range = [max(0, line - 2), min(2*cells, line + 2)]
-    end if
-  end function reach
-
-  !> Sorts a short list that is made of few ascending runs (insertion, which is linear for such).
-  pure subroutine sort(list)
-    !> The list
-    integer, intent(inout) :: list(:)
-    integer :: i, j, value
-
-    do i = 2, size(list)
-      value = list(i)
-      j = i - 1
-      do while (j >= 1)
-        if (list(j) <= value) exit
-        list(j + 1) = list(j)
-        j = j - 1
-      end do
-      list(j + 1) = value
-    end do
-  end subroutine sort
 
   !> Rows of this rank from a field over its points.
   pure subroutine gather(self, field, vector)

@@ -4,6 +4,7 @@ module supports
   use kinds, only: wp
   use mesh_parameters, only: plate_t, edge_free, edge_clamped, symmetry_quarter
   use layered_meshes, only: layered_mesh_t
+  use nine_node_grids, only: last_line
   implicit none
   private
   public :: held_unknowns
@@ -22,13 +23,11 @@ contains
     logical, intent(in) :: pin_plane
     !> (5, points): u, v, w, theta_x, theta_y
     logical, allocatable :: held(:, :)
-    integer :: point, line(2)
+    integer :: point
 
     allocate (held(5, mesh%points()), source=.false.)
     do point = 1, mesh%points()
-      line(1) = modulo(mesh%point_node(point) - 1, 2*mesh%cells(1) + 1)
-      line(2) = (mesh%point_node(point) - 1)/(2*mesh%cells(1) + 1)
-      held(:, point) = held_on_borders(mesh, plate, line)
+      held(:, point) = held_on_borders(mesh, plate, mesh%lines_of(mesh%point_node(point)))
       if (membrane_idle) held(1:2, point) = .true.
     end do
     if (pin_plane) call pin(mesh, held)
@@ -54,7 +53,7 @@ contains
         else
           held = held .or. held_by_edge(plate%edges(2*direction - 1), direction, plate%in_plane_fixed)
         end if
-      else if (line(direction) == 2*mesh%cells(direction)) then
+      else if (line(direction) == last_line(mesh%cells(direction))) then
         held = held .or. held_by_edge(plate%edges(2*direction), direction, plate%in_plane_fixed)
       end if
     end do

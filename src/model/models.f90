@@ -19,7 +19,8 @@ module models
   private
   public :: model_t
 
-  !> A scene made ready for computing on this rank's share of the mesh.
+  !> A scene made ready for computing on this rank's share of the mesh. It has many components because all that steps
+  !> share is found once, before them.
   type :: model_t
     !> What the deck asked for
     type(scene_t) :: scene
@@ -110,7 +111,8 @@ contains
 
     force = 0
     if (self%map%layered) then
-      call add_internal_force(self%elements, stiffness, self%scene%kinematics, self%motion_of(displacement), force, energy)
+      call add_internal_force(self%elements, stiffness, self%scene%kinematics, self%motion_of(displacement), force, &
+                              energy)
       call self%map%to_unknowns(force)
     else
       call add_internal_force(self%elements, stiffness, self%scene%kinematics, displacement, force, energy)

@@ -3,7 +3,7 @@
 module communicators
   use mpi_f08, only: MPI_COMM_WORLD, MPI_DOUBLE_PRECISION, MPI_INTEGER, MPI_LOGICAL, MPI_CHARACTER, MPI_Init, &
                      MPI_Initialized, MPI_Finalize, MPI_Comm_rank, MPI_Comm_size, MPI_Bcast, MPI_Allgather, &
-                     MPI_Allgatherv, MPI_Gatherv
+                     MPI_Allgatherv
   use errors, only: error_t
   use kinds, only: wp
   use rank_groups, only: rank_group_t
@@ -19,15 +19,13 @@ module communicators
       broadcast_logical, broadcast_characters
     !> Copies a text of rank 0, whatever its length, to every rank.
     procedure :: broadcast_text
-    !> Strings the parts of all ranks together on rank 0, in the order of ranks; empty elsewhere.
-    generic :: gather => gather_reals, gather_integers, gather_table
     !> Strings the parts of all ranks together on every rank, in the order of ranks.
     generic :: allgather => allgather_reals, allgather_integers
     !> If any rank failed, gives every rank the error of the lowest rank that did.
     procedure :: agree
     procedure, private :: broadcast_real, broadcast_reals, broadcast_integer, broadcast_integers
     procedure, private :: broadcast_logical, broadcast_characters
-    procedure, private :: gather_reals, gather_integers, gather_table, allgather_reals, allgather_integers
+    procedure, private :: allgather_reals, allgather_integers
     procedure, private :: counts_of_ranks
   end type communicator_t
 
@@ -155,62 +153,6 @@ contains
     if (.not. self%is_root()) text = repeat(' ', length)
     call self%broadcast(text)
   end subroutine broadcast_text
-
-  !> Strings lists of reals together on rank 0.
-  subroutine gather_reals(self, part, whole)
-    class(communicator_t), intent(in) :: self
-    !> This rank's list
-    real(wp), contiguous, intent(in) :: part(:)
-    !> The lists of all ranks in the order of ranks; empty on ranks other than 0
-    real(wp), allocatable, intent(out) :: whole(:)
-    integer :: counts(self%size), offsets(self%size)
-
-    call self%counts_of_ranks(size(part), counts, offsets)
-    allocate (whole(merge(sum(counts), 0, self%is_root())))
-    if (self%size == 1) then
-      whole = part
-    else
-      call MPI_Gatherv(part, size(part), MPI_DOUBLE_PRECISION, whole, counts, offsets, MPI_DOUBLE_PRECISION, 0, &
-                       self%group)
-    end if
-  end subroutine gather_reals
-
-  !> Strings lists of integers together on rank 0.
-  subroutine gather_integers(self, part, whole)
-    class(communicator_t), intent(in) :: self
-    !> This rank's list
-    integer, contiguous, intent(in) :: part(:)
-    !> The lists of all ranks in the order of ranks; empty on ranks other than 0
-    integer, allocatable, intent(out) :: whole(:)
-    integer :: counts(self%size), offsets(self%size)
-
-    call self%counts_of_ranks(size(part), counts, offsets)
-    allocate (whole(merge(sum(counts), 0, self%is_root())))
-    if (self%size == 1) then
-      whole = part
-    else
-      call MPI_Gatherv(part, size(part), MPI_INTEGER, whole, counts, offsets, MPI_INTEGER, 0, self%group)
-    end if
-  end subroutine gather_integers
-
-  !> Strings tables together on rank 0, column after column.
-  subroutine gather_table(self, part, whole)
-    class(communicator_t), intent(in) :: self
-    !> This rank's columns, of the same height on every rank
-    real(wp), contiguous, intent(in) :: part(:, :)
-    !> The columns of all ranks in the order of ranks; no columns on ranks other than 0
-    real(wp), allocatable, intent(out) :: whole(:, :)
-    integer :: counts(self%size), offsets(self%size)
-
-    call self%counts_of_ranks(size(part), counts, offsets)
-    allocate (whole(size(part, 1), merge(sum(counts)/max(size(part, 1), 1), 0, self%is_root())))
-    if (self%size == 1) then
-      whole = part
-    else
-      call MPI_Gatherv(part, size(part), MPI_DOUBLE_PRECISION, whole, counts, offsets, MPI_DOUBLE_PRECISION, 0, &
-                       self%group)
-    end if
-  end subroutine gather_table
 
   !> Strings lists of reals together on every rank.
   subroutine allgather_reals(self, part, whole)

@@ -1,39 +1,16 @@
 !> Who computes what: elements are shared out among the ranks so that few neighbours are separated,
 !> by METIS (Karypis and Kumar, SIAM J. Sci. Comput. 20, 1998), which is deterministic.
 module partitions
-  use, intrinsic :: iso_c_binding, only: c_int32_t, c_ptr, c_null_ptr, c_loc, c_f_pointer
+  use, intrinsic :: iso_c_binding, only: c_int32_t, c_ptr, c_null_ptr, c_loc
   use errors, only: error_t, fail, exit_usage, exit_internal
   implicit none
   private
-  public :: element_graph, partition_graph
+  public :: partition_graph
 
   !> METIS' code for success
   integer(c_int32_t), parameter :: metis_ok = 1
-  !> Two elements are neighbours when they share an edge, which has three nodes
-  integer(c_int32_t), parameter :: nodes_of_edge = 3
 
   interface
-    !> Graph of the elements of a mesh; `row_start` and `neighbours` are allocated by METIS.
-    integer(c_int32_t) function metis_mesh_to_dual(elements, nodes, element_start, element_nodes, common, numbering, &
-                                                   row_start, neighbours) bind(c, name='METIS_MeshToDual')
-      import :: c_int32_t, c_ptr
-      !> Numbers of elements and of nodes
-      integer(c_int32_t), intent(in) :: elements, nodes
-      !> Where each element's nodes begin, and the nodes
-      integer(c_int32_t), intent(inout) :: element_start(*), element_nodes(*)
-      !> Nodes that neighbours have in common; first index of all lists
-      integer(c_int32_t), intent(in) :: common, numbering
-      !> Where each element's neighbours begin, and the neighbours
-      type(c_ptr), intent(out) :: row_start, neighbours
-    end function metis_mesh_to_dual
-
-    !> Frees what METIS allocated.
-    integer(c_int32_t) function metis_free(memory) bind(c, name='METIS_Free')
-      import :: c_int32_t, c_ptr
-      !> Memory of METIS
-      type(c_ptr), value :: memory
-    end function metis_free
-
     !> Partition of a graph into parts of equal weight, few edges being cut.
     integer(c_int32_t) function metis_partition(vertices, constraints, row_start, neighbours, vertex_weights, &
                                                 vertex_sizes, edge_weights, parts, target_weights, imbalance, &
@@ -57,41 +34,6 @@ module partitions
   end interface
 
 contains
-
-  !> Which elements share an edge.
-  subroutine element_graph(connectivity, nodes, row_start, neighbours, error)
-    !> Nodes of each element, shape (9, elements), from 1
-    integer, intent(in) :: connectivity(:, :)
-    !> Number of nodes
-    integer, intent(in) :: nodes
-    !> Where each element's neighbours begin, shape (elements + 1)
-    integer, allocatable, intent(out) :: row_start(:)
-    !> Neighbours of all elements, one after the other, from 1
-    integer, allocatable, intent(out) :: neighbours(:)
-    !> Raised when METIS fails
-    type(error_t), allocatable, intent(inout) :: error
-    integer(c_int32_t) :: element_start(size(connectivity, 2) + 1), status
-    integer(c_int32_t), allocatable :: element_nodes(:)
-    integer(c_int32_t), pointer :: starts(:), list(:)
-    type(c_ptr) :: starts_memory, list_memory
-    integer :: e, elements
-
-    elements = size(connectivity, 2)
-    element_start = [(size(connectivity, 1)*(e - 1), e=1, elements + 1)]
-    element_nodes = reshape(connectivity, [size(connectivity)]) - 1
-    status = metis_mesh_to_dual(elements, nodes, element_start, element_nodes, nodes_of_edge, 0_c_int32_t, &
-                                starts_memory, list_memory)
-    if (status /= metis_ok) then
-      call fail(error, exit_internal, 'METIS could not build the graph of the elements.')
-      return
-    end if
-    call c_f_pointer(starts_memory, starts, [elements + 1])
-    row_start = starts + 1
-    call c_f_pointer(list_memory, list, [starts(elements + 1)])
-    neighbours = list + 1
-    status = metis_free(starts_memory)
-    status = metis_free(list_memory)
-  end subroutine element_graph
 
   !> Shares the vertices of a graph out among parts of about equal weight, none of them empty.
   subroutine partition_graph(row_start, neighbours, parts, part_of, error, weights)

@@ -29,8 +29,6 @@ module timers
     procedure :: start
     !> Stops it and adds the run.
     procedure :: stop => stop_timer
-    !> Seconds on the wall of all its runs.
-    procedure :: seconds
     !> A table for the log, one line a stopwatch.
     procedure :: lines
     procedure, private :: position
@@ -80,18 +78,6 @@ contains
       timer%runs = timer%runs + 1
     end associate
   end subroutine stop_timer
-
-  !> Seconds on the wall of all finished runs; 0 for a name that never ran.
-  pure real(wp) function seconds(self, name)
-    class(timer_set_t), intent(in) :: self
-    !> What was timed
-    character(len=*), intent(in) :: name
-    integer :: i
-
-    seconds = 0
-    i = self%position(name)
-    if (i > 0) seconds = self%list(i)%wall
-  end function seconds
 
   !> A table for the log, one line a stopwatch.
   pure function lines(self)

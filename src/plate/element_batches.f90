@@ -37,7 +37,8 @@ module element_batches
     real(wp), allocatable :: shear_inverse_jacobian(:, :, :, :), shear_weight(:, :, :)
     !> Tangent vector x, y of the coordinate line at each sample of the assumed strains (lanes, 12, 2, batches)
     real(wp), allocatable :: shear_tangents(:, :, :, :)
-    !> Section stiffness before any damage: A, B, D (11, 12, 16, 22, 26, 66 each), S (xz-xz, xz-yz, yz-yz) (lanes, 21, batches)
+    !> Section stiffness before any damage: A, B, D (11, 12, 16, 22, 26, 66 each), S (xz-xz, xz-yz, yz-yz),
+    !> (lanes, 21, batches)
     real(wp), allocatable :: stiffness(:, :, :)
     !> Section mass I0, I1, I2 (lanes, 3, batches)
     real(wp), allocatable :: mass(:, :, :)

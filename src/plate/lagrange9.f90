@@ -4,7 +4,7 @@ module lagrange9
   use kinds, only: wp
   implicit none
   private
-  public :: line_values, line_slopes, shape_functions, shape_gradients, gauss_interpolation
+  public :: line_values, line_slopes, shape_gradients
 
   !> Outer abscissa of the 3-point Gauss rule.
   real(wp), parameter, public :: gauss3 = sqrt(0.6_wp)
@@ -27,10 +27,6 @@ module lagrange9
   real(wp), parameter :: slopes2(3, 2) = reshape( &
     [-gauss2 - 0.5_wp, 2.0_wp*gauss2, -gauss2 + 0.5_wp, &
      gauss2 - 0.5_wp, -2.0_wp*gauss2, gauss2 + 0.5_wp], [3, 2])
-  !> Quadratics through the three Gauss points at the three nodes (point, node): extrapolation along a line.
-  real(wp), parameter :: extrapolation3(3, 3) = reshape( &
-    [(1.0_wp + gauss3)/1.2_wp, -2.0_wp/3.0_wp, (1.0_wp - gauss3)/1.2_wp, 0.0_wp, 1.0_wp, 0.0_wp, &
-     (1.0_wp - gauss3)/1.2_wp, -2.0_wp/3.0_wp, (1.0_wp + gauss3)/1.2_wp], [3, 3])
 
   !> Place along xi and eta of each of nine nodes or Gauss points, and of each of four Gauss points.
   integer, parameter :: i9(9) = [1, 2, 3, 1, 2, 3, 1, 2, 3], j9(9) = [1, 1, 1, 2, 2, 2, 3, 3, 3]
@@ -91,16 +87,6 @@ contains
     slopes = [x - 0.5_wp, -2.0_wp*x, x + 0.5_wp]
   end function line_slopes
 
-  !> Shape functions of the element.
-  pure function shape_functions(xi, eta) result(shapes)
-    !> Where
-    real(wp), intent(in) :: xi, eta
-    !> One value a node
-    real(wp) :: shapes(9)
-
-    shapes = products(line_values(xi), line_values(eta))
-  end function shape_functions
-
   !> Derivatives of the shape functions.
   pure function shape_gradients(xi, eta) result(gradients)
     !> Where
@@ -111,19 +97,6 @@ contains
     gradients(:, 1) = products(line_slopes(xi), line_values(eta))
     gradients(:, 2) = products(line_values(xi), line_slopes(eta))
   end function shape_gradients
-
-  !> Weights that carry the values at the 3x3 Gauss points to any place of the element, corners and edges included.
-  pure function gauss_interpolation(xi, eta) result(weights)
-    !> Where
-    real(wp), intent(in) :: xi, eta
-    !> One weight a Gauss point
-    real(wp) :: weights(9)
-    real(wp) :: along_xi(3), along_eta(3)
-
-    along_xi = line_values(xi)
-    along_eta = line_values(eta)
-    weights = products(matmul(extrapolation3, along_xi), matmul(extrapolation3, along_eta))
-  end function gauss_interpolation
 
   !> Tensor product of two lines.
   pure function products(along_xi, along_eta) result(both)

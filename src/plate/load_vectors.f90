@@ -5,24 +5,9 @@ module load_vectors
   use element_batches, only: element_batches_t, lanes, first_element, batch_of, lane_of
   implicit none
   private
-  public :: add_uniform_pressure, add_pressure, gauss_coordinates, add_patch_weights, element_areas
+  public :: add_pressure, gauss_coordinates, add_patch_weights
 
 contains
-
-  !> Adds the consistent forces of one pressure on all elements.
-  pure subroutine add_uniform_pressure(batches, pressure, f)
-    !> The elements
-    type(element_batches_t), intent(in) :: batches
-    !> Pressure, positive downward
-    real(wp), intent(in) :: pressure
-    !> Forces (5, points)
-    real(wp), intent(inout) :: f(:, :)
-    integer :: element
-
-    do element = 1, batches%elements
-      call add_nodal_shares(batches, element, spread(pressure, 1, 9), f(3, :))
-    end do
-  end subroutine add_uniform_pressure
 
   !> Adds the consistent forces of a pressure that varies.
   pure subroutine add_pressure(batches, pressure, f)
@@ -93,19 +78,4 @@ contains
       end do
     end do
   end subroutine gauss_coordinates
-
-  !> Area of each element.
-  pure function element_areas(batches) result(areas)
-    !> The elements
-    type(element_batches_t), intent(in) :: batches
-    !> One area an element
-    real(wp) :: areas(batches%elements)
-    integer :: b, lane
-
-    do b = 1, batches%batches
-      do lane = 1, batches%lanes_used(b)
-        areas(first_element(b) + lane - 1) = sum(batches%weight(lane, :, b))
-      end do
-    end do
-  end function element_areas
 end module load_vectors

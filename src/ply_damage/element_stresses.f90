@@ -27,8 +27,8 @@ contains
 
     strains = mean_strains_of_elements(model, displacement)
     do element = 1, size(strains, 2)
-      strains(:, element) = strains_of_plies(model, failures%stiffness, element, failures%onset%elasticities(model, element), &
-                                             strains(:, element))
+      strains(:, element) = strains_of_plies(model, failures%stiffness, element, &
+                                             failures%onset%elasticities(model, element), strains(:, element))
     end do
   end function element_strains
 

@@ -3,7 +3,7 @@ module ply_criteria
   use kinds, only: wp
   use element_batches, only: batch_of, lane_of
   use plies, only: elasticity_t
-  use ply_damage_parameters, only: failure_modes, stress_at_faces
+  use ply_damage_parameters, only: failure_modes, criteria_hou, stress_at_faces
   use ply_stresses, only: middle_stress, face_stresses, mean_shear_strain
   use hou_criteria, only: failure_indices, largest_failure_indices
   use models, only: model_t
@@ -32,15 +32,19 @@ contains
     integer :: i
 
     local = strains_of_plies(model, stiffness, element, elasticity, strains)
+    measures = 0
     associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
       do i = 1, size(elasticity)
         associate (ply => model%plies(range(1) + i - 1))
           associate (strength => model%scene%materials(ply%material))
-            if (model%scene%ply_damage%stress == stress_at_faces) then
-              measures(:, i) = largest_failure_indices(strength, face_stresses(ply, elasticity(i), local))
-            else
-              measures(:, i) = failure_indices(strength, middle_stress(ply, elasticity(i), local))
-            end if
+            select case (model%scene%ply_damage%criteria)
+            case (criteria_hou)
+              if (model%scene%ply_damage%stress == stress_at_faces) then
+                measures(:, i) = largest_failure_indices(strength, face_stresses(ply, elasticity(i), local))
+              else
+                measures(:, i) = failure_indices(strength, middle_stress(ply, elasticity(i), local))
+              end if
+            end select
           end associate
         end associate
       end do

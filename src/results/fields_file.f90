@@ -3,16 +3,19 @@
 !> still closes what is open.
 !>
 !> In NAME.h5: `provenance`, `part`, `restarts/N` (provenance of the runs that went on), `meshes/N` (coordinates,
-!> connectivity, cells/...), `times/N` (time, step, mesh, points/..., cells/...).
+!> connectivity, cells/...), `times/N` (time, step, mesh, points/..., cells/...). Fields bear the attributes `unit` and
+!> `meaning` if there is a table of them.
 module fields_file
   use communicators, only: communicator_t
   use errors, only: error_t, exit_files, fail
+  use field_datasets, only: explain_dataset, write_field
   use fields_file_xdmf, only: grid_of_time, numbered, write_xdmf
   use files, only: file_exists
   use hdf5_data, only: read_reals, read_text, write_integer_columns, write_integers, write_real_columns, write_reals, &
                        write_text
   use hdf5_file, only: hdf5_file_t
   use kinds, only: wp
+  use result_tables, only: result_row_length
   use run_provenance, only: provenance_t
   use stored_provenance, only: write_provenance
   use text, only: append, line_t, to_text
@@ -34,6 +37,8 @@ module fields_file
     character(len=:), allocatable :: part
     !> The HDF5 file
     type(hdf5_file_t) :: file
+    !> Table of the fields, one row each; unallocated: they bear no unit
+    character(len=result_row_length), allocatable :: rows(:)
     !> XDMF text of each time written
     type(line_t), allocatable :: grids(:)
     !> Number of the mesh that fields are on
@@ -49,6 +54,7 @@ module fields_file
     !> Number of elements on all ranks
     integer :: global_cells = 0
   contains
+    procedure :: describe
     procedure :: create
     procedure, nopass :: check_deck
     procedure :: resume
@@ -64,6 +70,16 @@ module fields_file
   end type fields_file_t
 
 contains
+
+  !> Takes the table of the fields: from now on each bears its unit and meaning, and a field without a row is refused.
+  pure subroutine describe(self, rows)
+    !> The fields
+    class(fields_file_t), intent(inout) :: self
+    !> Rows as in result_tables
+    character(len=result_row_length), intent(in) :: rows(:)
+
+    self%rows = rows
+  end subroutine describe
 
   !> Starts the file, replacing one of that name.
   subroutine create(self, communicator, base, provenance, part, error)
@@ -194,6 +210,7 @@ contains
     call write_integer_columns(self%file, group//'/connectivity', cells, global_cells, connectivity(xdmf_order, :) - 1)
     do i = 1, size(names)
       call write_integer_columns(self%file, group//'/cells/'//trim(names(i)), cells, global_cells, values(i:i, :))
+      call explain_dataset(self%file, self%rows, group//'/cells/'//trim(names(i)), error)
     end do
     call self%close_file(error, group)
   end subroutine write_mesh
@@ -231,7 +248,8 @@ contains
     type(error_t), allocatable, intent(inout) :: error
 
     if (allocated(error)) return
-    call write_field(self%file, self%time_group//'/points/'//name, self%points, self%global_points, values)
+    call write_field(self%file, self%rows, self%time_group//'/points/'//name, self%points, self%global_points, values, &
+                     error)
     call report(self, error)
   end subroutine write_point_field
 
@@ -247,33 +265,10 @@ contains
     type(error_t), allocatable, intent(inout) :: error
 
     if (allocated(error)) return
-    call write_field(self%file, self%time_group//'/cells/'//name, self%cells, self%global_cells, values)
+    call write_field(self%file, self%rows, self%time_group//'/cells/'//name, self%cells, self%global_cells, values, &
+                     error)
     call report(self, error)
   end subroutine write_cell_field
-
-  !> Writes a scalar or vector field as it is and any other by components.
-  subroutine write_field(file, path, columns, global_columns, values)
-    !> The file
-    type(hdf5_file_t), intent(inout) :: file
-    !> Path of the field in the file
-    character(len=*), intent(in) :: path
-    !> Global numbers of the leading columns
-    integer, intent(in) :: columns(:)
-    !> Number of columns on all ranks
-    integer, intent(in) :: global_columns
-    !> The field (components by columns)
-    real(wp), intent(in) :: values(:, :)
-    integer :: i
-
-    select case (size(values, 1))
-    case (1, 3)
-      call write_real_columns(file, path, columns, global_columns, values)
-    case default
-      do i = 1, size(values, 1)
-        call write_real_columns(file, path//'_'//to_text(i), columns, global_columns, values(i:i, :))
-      end do
-    end select
-  end subroutine write_field
 
   !> Ends the time: from now on the files show it.
   subroutine finish(self, error)

@@ -5,6 +5,13 @@ module output_parameters
   private
   public :: output_t
 
+  !> Names of the fields, by which the deck chooses them.
+  character(len=*), parameter, public :: &
+    field_displacement = 'displacement', field_rotation = 'rotation', field_velocity = 'velocity', &
+    field_gap = 'gap', field_contact_pressure = 'contact_pressure', field_delamination = 'delamination', &
+    field_energy_release = 'energy_release', field_ply_damage = 'ply_damage', field_stress = 'stress', &
+    field_face_stress = 'face_stress'
+
   !> Outputs; an interval of 0 means never (fields, checkpoint) or every accepted step (history).
   type :: output_t
     !> Folder of the results, made if it is not there

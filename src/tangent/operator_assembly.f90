@@ -15,7 +15,8 @@ module operator_assembly
 contains
 
   !> Adds the elements' matrices and a lumped mass to a cleared solver; ghosts' diagonals go to their owners.
-  subroutine assemble_elements(model, stiffness, numbering, displacement, stiffness_factor, mass_factor, solver, diagonal)
+  subroutine assemble_elements(model, stiffness, numbering, displacement, stiffness_factor, mass_factor, solver, &
+                               diagonal)
     !> The model
     type(model_t), intent(in) :: model
     !> Section stiffness left in the elements, (lanes, 21, batches)

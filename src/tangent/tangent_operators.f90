@@ -29,7 +29,7 @@ module tangent_operators
   !> Columns found at once: more no longer are found faster.
   integer, parameter :: columns_at_once = 64
 
-  !> A factor of `stiffness_factor * tangent stiffness + mass_factor * mass`.
+  !> A factor of `stiffness_factor*tangent + mass_factor*mass`, with many components because it keeps what made it.
   type :: tangent_operator_t
     !> Equations of the unknowns that are not held
     type(numbering_t) :: numbering

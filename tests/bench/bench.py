@@ -255,6 +255,40 @@ def growth(program, arguments):
               f'{rows[-1]["energy_algorithmic"]:.4f} |', flush=True)
 
 
+def growth_force(rows):
+    """Force at which G/G_c first reaches 1, from the last row before growth; NaN if nothing grows."""
+    # G is short of its critical value by a little there, and goes with the force squared.
+    for row, later in itertools.pairwise(rows):
+        if later['delaminated_area'] > 1.001*rows[0]['delaminated_area']:
+            return row['force']/row['release_ratio']**0.5
+    return float('nan')
+
+
+def one_deck(program, arguments):
+    """Figures of one deck with keys set anew: growth, forces, area, energies, steps and cost."""
+    sys.path.insert(0, str(pathlib.Path(__file__).parents[1]/'regress'))
+    from solver_runs import change_deck
+    print('| set | G = G_c, first growth by, N | peak force, N | mean force of growth, N | area, mm^2 | '
+          'released over booked | algorithmic, J | fibre failures, cracks | steps, factorizations | processor, s |')
+    print('|---|---|---|---|---|---|---|---|---|---|')
+    for settings in arguments.set or [[]]:
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            seconds = run_deck(program, change_deck(arguments.deck.read_text(), settings), folder)
+            rows = history(folder)
+        forces, areas, last = [row['force'] for row in rows], [row['delaminated_area'] for row in rows], rows[-1]
+        grown = [place for place in range(1, len(rows)) if areas[place] > areas[place - 1]]
+        first, by, mean, released = growth_force(rows), float('nan'), float('nan'), float('nan')
+        if grown:
+            by = max(forces[:grown[0] + 1])
+            mean = sum(forces[i]*(areas[i] - areas[i - 1]) for i in grown)/(areas[-1] - areas[0])
+            released = last['energy_released']/last['energy_delamination']
+        print(f'| {" ".join(settings) or "as it is"} | {first:.0f}, {by:.0f} | {max(forces):.0f} | {mean:.0f} | '
+              f'{1e6*last["delaminated_area"]:.0f} | {released:.3f} | {last["energy_algorithmic"]:.4f} | '
+              f'{last["fibre_failures"]:.0f}, {last["matrix_cracks"]:.0f} | {last["step"]:.0f}, '
+              f'{last["refactorisations"]:.0f} | {seconds:.1f} |', flush=True)
+
+
 class Peanut:
     """input/peanut.nml on a mesh of its own; prints a row of the table."""
 
@@ -286,10 +320,7 @@ class Peanut:
         self.unknowns = int(re.search(r'(\d+) unknowns', folder.joinpath('peanut.log').read_text())[1])
         rows = history(folder)
         self.peak = max(row['force'] for row in rows)
-        # In the last step before growth G is short of its critical value by a little, and goes with the force squared.
-        still = next(row for row, later in itertools.pairwise(rows)
-                     if later['delaminated_area'] > 1.001*rows[0]['delaminated_area'])
-        self.growth = still['force']/still['release_ratio']**0.5
+        self.growth = growth_force(rows)
         self.area = 1e6*rows[-1]['delaminated_area']
         self.cracks, self.fibres = (int(rows[-1][name]) for name in ('matrix_cracks', 'fibre_failures'))
         fields = read_fields(folder/'peanut.h5')
@@ -336,6 +367,11 @@ def main():
     part = parts.add_parser('growth', help=growth.__doc__)
     part.add_argument('--step', type=float, nargs='*', default=[16, 8, 4, 2, 1], help='us')
     part.set_defaults(act=growth)
+    part = parts.add_parser('deck', help=one_deck.__doc__)
+    part.add_argument('deck', type=pathlib.Path)
+    part.add_argument('--set', nargs='+', action='append', metavar='GROUP%%KEY=VALUE',
+                      help='keys set anew; given again: another run')
+    part.set_defaults(act=one_deck)
     arguments = parser.parse_args()
     arguments.act(os.path.abspath(arguments.program), arguments)
 

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Holds the manual's page of every group against the program.
+"""Holds the manual's page of every group, and those of the results, against the program.
 
 usage: check_manual.py IMPLAM [--write]
 
 The table of a page must be what `implam explain --markdown GROUP` prints, and every ```fortran block of a page must
 be a deck that `implam check` passes, once the groups it leaves out are filled in from tests/decks/good/impact.nml.
-With --write the tables are replaced.
+The same holds for the tables of `history` and `fields`, and the page of the energy ledger must define each of its
+entries. With --write the tables are replaced.
 """
 import os
 import re
@@ -15,7 +16,10 @@ import tempfile
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 MANUAL = os.path.join(HERE, "..", "..", "doc", "manual")
-TABLE = re.compile(r"^\| key \|.*?(?=\n\n|\Z)", re.DOTALL | re.MULTILINE)
+TABLE = re.compile(r"^\| (?:key|name) \|.*?(?=\n\n|\Z)", re.DOTALL | re.MULTILINE)
+RESULTS = ("history", "fields")
+# Columns of the history that belong to the ledger.
+ENTRY = re.compile(r"^\| `(energy_\w+|work_external)`", re.MULTILINE)
 EXAMPLE = re.compile(r"^```fortran\n(.*?)^```", re.DOTALL | re.MULTILINE)
 GROUP = re.compile(r"^&(\w+).*?/[ ]*$", re.DOTALL | re.MULTILINE)
 # Groups that a static example puts in place of these of the deck that fills in the rest.
@@ -42,37 +46,61 @@ def completed(example):
     return example
 
 
+def check_table(program, topic, wrong):
+    """Hold the table of a page against the program's and return the page; note in `wrong` what differs."""
+    path = os.path.join(MANUAL, topic + ".md")
+    if not os.path.exists(path):
+        wrong.append(f"{path}: there is no such page")
+        return None
+    with open(path, encoding="utf-8") as page:
+        text = page.read()
+    table = ask(program, "explain", "--markdown", topic)[1].strip()
+    if "--write" in sys.argv:
+        text = TABLE.sub(table.replace("\\", r"\\"), text)
+        with open(path, "w", encoding="utf-8") as page:
+            page.write(text)
+    written = TABLE.search(text)
+    if not written or written.group(0).strip() != table:
+        wrong.append(f"{path}: the table isn't the program's; run check_manual.py IMPLAM --write")
+    return text
+
+
+def check_examples(program, topic, text, wrong):
+    """Note in `wrong` which examples of a page aren't decks."""
+    path = os.path.join(MANUAL, topic + ".md")
+    examples = EXAMPLE.findall(text)
+    if not examples:
+        wrong.append(f"{path}: there is no example")
+    for example in examples:
+        with tempfile.NamedTemporaryFile("w", suffix=".nml", encoding="utf-8") as deck:
+            deck.write(completed(example))
+            deck.flush()
+            code, output = ask(program, "check", deck.name)
+        if code != 0 or ": warning: " in output:
+            wrong.append(f"{path}: the example doesn't pass: {output}")
+
+
+def check_ledger(program, wrong):
+    """Note in `wrong` which entries of the energy ledger its page doesn't define."""
+    path = os.path.join(MANUAL, "energy_ledger.md")
+    with open(path, encoding="utf-8") as page:
+        defined = re.findall(r"^\*\*(\w+)\*\*", page.read(), re.MULTILINE)
+    entries = ENTRY.findall(ask(program, "explain", "--markdown", "history")[1])
+    if not entries or sorted(entries) != sorted(defined):
+        wrong.append(f"{path}: it defines {sorted(defined)}, and the history has {sorted(entries)}")
+
+
 def main():
     program = os.path.abspath(sys.argv[1])
     overview = ask(program, "explain")[1]
     groups = re.findall(r"^  &(\w+)", overview, re.MULTILINE)
     wrong = [] if groups else [f"`implam explain` names no groups: {overview}"]
-    for group in groups:
-        path = os.path.join(MANUAL, group + ".md")
-        if not os.path.exists(path):
-            wrong.append(f"{path}: there is no such page")
-            continue
-        with open(path, encoding="utf-8") as page:
-            text = page.read()
-        table = ask(program, "explain", "--markdown", group)[1].strip()
-        if "--write" in sys.argv:
-            text = TABLE.sub(table.replace("\\", r"\\"), text)
-            with open(path, "w", encoding="utf-8") as page:
-                page.write(text)
-        written = TABLE.search(text)
-        if not written or written.group(0).strip() != table:
-            wrong.append(f"{path}: the table isn't the program's; run check_manual.py IMPLAM --write")
-        examples = EXAMPLE.findall(text)
-        if not examples:
-            wrong.append(f"{path}: there is no example")
-        for example in examples:
-            with tempfile.NamedTemporaryFile("w", suffix=".nml", encoding="utf-8") as deck:
-                deck.write(completed(example))
-                deck.flush()
-                code, output = ask(program, "check", deck.name)
-            if code != 0 or ": warning: " in output:
-                wrong.append(f"{path}: the example doesn't pass: {output}")
-    print("\n".join(wrong) or f"{len(groups)} pages agree with the program")
+    for topic in (*groups, *RESULTS):
+        text = check_table(program, topic, wrong)
+        if text is not None and topic not in RESULTS:
+            check_examples(program, topic, text, wrong)
+    check_ledger(program, wrong)
+    print("\n".join(wrong) or f"{len(groups) + len(RESULTS)} pages agree with the program, so does that of the ledger")
     return 1 if wrong else 0
 
 

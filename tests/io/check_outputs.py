@@ -37,6 +37,17 @@ def check_h5(folder):
         assert len(file["restarts"]) == 1
         assert [file["times"][name]["time"][()] for name in sorted(file["times"])] == TIMES
         assert [file["times"][name]["step"][()] for name in sorted(file["times"])] == [0, 1, 2]
+        for group in file["times"].values():
+            assert described(group["points"]) == {"displacement": ("length", "Displacement."),
+                                                  "gap": ("length", "Product of x and y.")}
+            meaning = "Number of the element, growing with time."
+            assert described(group["cells"]) == dict.fromkeys(STRESSES, ("pressure", meaning))
+        for mesh in file["meshes"].values():
+            assert described(mesh["cells"]) == {"layer": ("-", "Number of the layer.")}
+
+
+def described(group):
+    return {name: tuple(field.attrs[what].decode() for what in ("unit", "meaning")) for name, field in group.items()}
 
 
 STRESSES = [f"stress_{i}" for i in range(1, 7)]

@@ -8,6 +8,7 @@ program write_samples
   use errors, only: error_t
   use fields_file, only: fields_file_t
   use kinds, only: wp
+  use result_tables, only: result_row_length
   use run_provenance, only: this_run
   use sample_builds, only: sample_build
   implicit none
@@ -16,6 +17,12 @@ program write_samples
   integer, parameter :: across = 6, along = 4, layers = 2
   !> Points along x and y
   integer, parameter :: points_across = 2*across + 1, points_along = 2*along + 1
+  !> Table of the fields
+  character(len=*), parameter :: rows(4) = [character(len=result_row_length) :: &
+    'layer | cells | - | - | - | Number of the layer.', &
+    'displacement | points | length | displacement | - | Displacement.', &
+    'gap | points | length | gap | - | Product of x and y.', &
+    'stress_N | cells | pressure | stress | - | Number of the element, growing with time.']
   !> Text that stands for a deck
   character(len=*), parameter :: deck = "&case name='sample' /"//new_line('a')
   type(communicator_t) :: communicator
@@ -47,6 +54,8 @@ contains
 
     points = dealt(points_across*points_along*layers)
     cells = dealt(across*along*layers)
+    call fields%describe(rows)
+    call again%describe(rows)
     call fields%create(communicator, base, this_run(sample_build(), deck, communicator%size), 'quarter', error)
     call write_mesh(fields, points, cells, error)
     call write_time(fields, 0.0_wp, 0, points, cells, error)

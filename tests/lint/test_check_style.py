@@ -79,6 +79,7 @@ contains
 end module good
 """
 
+MANY = ", &\n      ".join(f"size{i} = {i}" for i in range(15))
 # name of the breach: (text in GOOD, its replacement, words of the report)
 BREACHES = {
     "tab": ("    integer :: i\n", "    integer ::\ti\n", "tab"),
@@ -104,7 +105,10 @@ BREACHES = {
     "plain comment is no doc": ("    !> The value\n", "    ! The value\n", "argument value has no"),
     "indent": ("        twice = 3", "       twice = 3", "indented by 7, not 8"),
     "long procedure": ("        twice = 3\n", "        twice = 3\n" * 100, "more than 100 lines"),
-    "long file": ("!> A thing.\n", "! Why\n" * 600 + "!> A thing.\n", "more than 600 lines"),
+    "long file": ("!> A thing.\n", "! Why\n" * 400 + "!> A thing.\n", "more than 400 lines"),
+    "many components": ("    real(wp) :: size = 0\n", f"    real(wp) :: {MANY}\n", "more than 15 components"),
+    "spelling": ("!> A thing.\n", "!> A Factorised thing.\n", "another name or spelling of factorization"),
+    "march": ("    !> Size\n", "    !> The march\n", "another name or spelling of time stepping"),
 }
 
 
@@ -139,6 +143,31 @@ class StyleTest(unittest.TestCase):
             self.assertEqual(check_style.main(["--layout", folder]), 0)
             path.write_text("module test_good \n", encoding="utf-8")
             self.assertEqual(check_style.main(["--layout", folder]), 1)
+
+    def test_many_components_may_have_a_reason(self):
+        """Fifteen are few, and a type with more says because of what."""
+        few = GOOD.replace("    real(wp) :: size = 0\n", f"    real(wp) :: {MANY.rpartition(', &')[0]}\n")
+        self.assertEqual(self.check(few)[0], 0)
+        many = GOOD.replace("    real(wp) :: size = 0\n", f"    real(wp) :: {MANY}\n")
+        self.assertEqual(self.check(many)[0], 1)
+        self.assertEqual(
+            self.check(many.replace("!> Thing\n", "!> Thing with much, because it is\n  !> large\n"))[0], 0
+        )
+
+    def test_large_folders_are_found(self):
+        """A folder with 16 % of the lines, but not one with 14 %, nor any of a small program."""
+        for heights, code in (([160] + 20 * [42], 1), ([140] + 20 * [43], 0), ([16] + 20 * [4], 0)):
+            with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()) as out:
+                for i, height in enumerate(heights):
+                    Path(folder, f"part{i}").mkdir()
+                    for j in range(10):
+                        Path(folder, f"part{i}", f"good{j}.f90").write_text("! Why\n" * height, encoding="utf-8")
+                self.assertEqual(check_style.main([folder]), code)
+                self.assertEqual("part0:1: 1600 of 10000 lines are more than 15%" in out.getvalue(), code == 1)
+
+    def test_the_public_column_keeps_its_name(self):
+        """It was spelt otherwise."""
+        self.assertEqual(self.check("! 'refactorisations', but not a refactorization\n" + GOOD)[0], 0)
 
     def test_an_empty_folder_fails(self):
         """A check of nothing is no check."""

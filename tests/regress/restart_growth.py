@@ -49,14 +49,14 @@ RUNNING = ["mesh%elements=20,20", "impactor%velocity=3", "delamination%G_c=100",
            f"output%checkpoint_every={STEP!r}", f"output%fields_every={STEP!r}"]
 
 
-# The operator follows what comes apart and touches over many steps before it is factored anew.
+# The operator follows what delaminates and touches over many steps before it is factored anew.
 FOLLOWING = ["mesh%elements=8,8", "plate%edges='simple'", "plate%symmetry='none'", "impactor%velocity=6",
              "delamination%G_c=50", "time%end=100e-6", "time%step=5e-6", "time%integrator='newmark'",
              "time%beta=0.28", "time%gamma=0.55"]
 
 
 def growth(history):
-    """Return the area that came apart in each step but the first."""
+    """Return the area that delaminated in each step but the first."""
     area = history["delaminated_area"]
     return [0.0, *(after - before for before, after in pairwise(area))]
 
@@ -81,7 +81,7 @@ def check_every(implam, folder, _):
         words = ["restart", checkpoint_of(deck.parent)]
         copy = copy_run(deck.parent, folder / "again")
         require_same(go_on(implam, copy), reference, f"from the checkpoint after step {step}")
-        require(damage_of(history_of(copy)) == damage_of(reference), f"Other cells came apart after step {step}.")
+        require(damage_of(history_of(copy)) == damage_of(reference), f"Other cells delaminated after step {step}.")
     run([implam, *words])
     require_same(history_of(deck.parent), reference, "a run for each step")
     print(f"From {steps - 1} checkpoints, each of a run restarted after every step: the same to the last bit")
@@ -109,7 +109,7 @@ def split_around_growth(implam, folder, name, choices):
     for step in (most - 1, most):
         reference, again = run_split(implam, folder / f"{name}_{step}", DECK, split_after(step, settings))
         require_same(again, reference, f"{name} split after step {step}")
-        require(damage_of(again) == damage_of(reference), f"{name}: other cells came apart.")
+        require(damage_of(again) == damage_of(reference), f"{name}: other cells delaminated.")
         history = read_history(reference)
         later = history["delaminated_area"][-1] - history["delaminated_area"][step - 1]
         require(later > 0, f"{name}: nothing grew after the split, the trial proves nothing.")
@@ -128,7 +128,7 @@ def steps_of_fading(history):
 
 def check_fading(implam, folder, _):
     """Where the stiffness is half gone, and other than that of the lagging operator."""
-    # Tough faces: where cells come apart the operator is made anew.
+    # Tough faces: where cells delaminate the operator is made anew.
     settings = [*GROWING, "delamination%G_c=2000", "impactor%velocity=4", f"ply_damage%fade={8 * STEP!r}"]
     scout = run_deck(implam, write_deck(folder / "scout", DECK, [*settings, f"time%end={30 * STEP!r}"]))
     steps = [step for step in steps_of_fading(read_history(scout)) if step > 2]
@@ -136,7 +136,7 @@ def check_fading(implam, folder, _):
     for step in {steps[0], steps[-1]}:
         reference, again = run_split(implam, folder / f"fading_{step}", DECK, split_after(step, settings))
         require_same(again, reference, f"split after step {step}")
-        require(damage_of(again) == damage_of(reference), "Other cells came apart or plies failed.")
+        require(damage_of(again) == damage_of(reference), "Other cells delaminated or plies failed.")
         print(f"Split after step {step}, while plies fade: the same to the last bit")
 
 
@@ -187,7 +187,7 @@ def check_moments(implam, folder, _):
             raise TrialError(f"{stop.name} never came within the step.")
         go_on(implam, deck.parent)
         require_same(history_of(deck.parent), reference, stop.name)
-        require(released_cells(history_of(deck.parent)) == cells, f"{stop.name}: other cells came apart.")
+        require(released_cells(history_of(deck.parent)) == cells, f"{stop.name}: other cells delaminated.")
         print(f"{stop.name} within step {step}: the same to the last bit, the same cells in every step")
 
 
@@ -198,7 +198,7 @@ def check_ranks(implam, folder, launcher):
         launchers = [*launcher, str(first)], [*launcher, str(second)]
         reference, again = run_split(implam, folder / f"ranks_{first}_{second}", DECK, settings, launchers)
         require_close(again, reference, f"from {first} to {second} ranks")
-        require(damage_of(again) == damage_of(reference), "Other cells came apart.")
+        require(damage_of(again) == damage_of(reference), "Other cells delaminated.")
         require(read_history(reference)["delaminated_area"][-1] > read_history(reference)["delaminated_area"][10],
                 "Nothing grew after the split, the trial proves nothing.")
 

@@ -72,7 +72,7 @@ def compare(kind, implam, deck, folder, tolerance, *words):
     _, reference, reference_damage = next(runs)
     area = reference["delaminated_area"]
     require(area[0] == 0 or area[-1] > area[0], "Nothing grew: the trial proves nothing.")
-    require(bool(reference_damage) >= (area[-1] > 0), "The fields don't tell what came apart.")
+    require(bool(reference_damage) >= (area[-1] > 0), "The fields don't tell what delaminated.")
     for name, history, damage in runs:
         difference, column = largest_difference(history, reference, left_out)
         within = difference <= float(tolerance) and damage == reference_damage

@@ -39,7 +39,7 @@ contains
     end do
   end subroutine drawn_region
 
-  !> Nodes whose faces are apart, in ascending order.
+  !> Nodes whose faces are released, in ascending order.
   pure function released_nodes(region) result(nodes)
     type(delaminated_region_t), intent(in) :: region
     integer, allocatable :: nodes(:)

@@ -1,4 +1,4 @@
-!> Plates with an interface partly come apart, at rest under given forces, for the tests of energy release rates.
+!> Plates with an interface partly delaminated, at rest under given forces, for the tests of energy release rates.
 module cracked_plates
   use kinds, only: wp
   use errors, only: error_t
@@ -37,7 +37,7 @@ module cracked_plates
   contains
     !> Builds the model of a scene, without forces and delaminated cells.
     procedure :: create
-    !> Takes cells apart.
+    !> Delaminates cells.
     procedure :: release
     !> Adds a force along a line of nodes across the strip.
     procedure :: pull
@@ -143,7 +143,7 @@ contains
     if (allocated(error)) error stop 'no operator'
   end subroutine create
 
-  !> Takes all cells of a range of columns and rows apart whose middle is within a radius of the origin.
+  !> Delaminates all cells of a range of columns and rows whose middle is within a radius of the origin.
   subroutine release(self, columns, rows, radius)
     class(cracked_plate_t), intent(inout) :: self
     integer, intent(in) :: columns(2), rows(2)
@@ -177,7 +177,7 @@ contains
 
     associate (mesh => self%model%mesh, share => self%model%distribution)
       do j = 0, 2
-        associate (node => 1 + line + (2*mesh%cells(1) + 1)*j)
+        associate (node => mesh%node_at(line, j))
           point = mesh%first_point(node)
           if (lower) point = mesh%lower_point(node, 1)
         end associate

@@ -1,4 +1,4 @@
-!> Small plates for the tests of dynamics: scenes, vibration modes, and plates let go from a shape.
+!> Small plates for the tests of dynamics: scenes, vibration modes, and plates released from a shape.
 module small_scenes
   use kinds, only: wp
   use errors, only: error_t
@@ -16,7 +16,7 @@ module small_scenes
   use time_stepping, only: time_stepper_t
   implicit none
   private
-  public :: isotropic, cross_ply_material, unit_plate, press, coupling, factor, find_mode, shaped_like, let_go
+  public :: isotropic, cross_ply_material, unit_plate, press, coupling, factor, find_mode, shaped_like, release_from
 
   real(wp), parameter, public :: pi = acos(-1.0_wp)
 
@@ -124,7 +124,8 @@ contains
 
     call operator%create(model, factorization_mumps, error)
     if (allocated(error)) return
-    call operator%renew(model, model%elements%stiffness, new_contact_and_ties(model), displacement, stiffness_factor, mass_factor, error)
+    call operator%renew(model, model%elements%stiffness, new_contact_and_ties(model), displacement, stiffness_factor, &
+                        mass_factor, error)
   end subroutine factor
 
   !> Deflection of m half-waves along x and n along y of a simply supported plate.
@@ -182,9 +183,9 @@ contains
     call operator%solver%release()
   end subroutine find_mode
 
-  !> Puts a plate that has been started into a shape from which it is let go.
-  subroutine let_go(stepper, model, displacement, error)
-    !> The march, started
+  !> Puts a plate that has been started into a shape from which it is released.
+  subroutine release_from(stepper, model, displacement, error)
+    !> The time stepper, started
     type(time_stepper_t), intent(inout) :: stepper
     !> The model
     type(model_t), intent(in) :: model
@@ -206,5 +207,5 @@ contains
     end associate
     stepper%now%ledger%strain = energy*model%mesh%multiplicity
     stepper%now%ledger%initial = stepper%now%ledger%strain
-  end subroutine let_go
+  end subroutine release_from
 end module small_scenes

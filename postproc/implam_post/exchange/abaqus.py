@@ -1,0 +1,97 @@
+"""A panel as Abaqus' input, in the words that CalculiX understands too."""
+
+import re
+from collections.abc import Iterator, Sequence
+
+from implam_post.exchange.panel import MaterialState, Panel, Section
+from implam_post.exchange.shell_mesh import ShellMesh, shell_mesh
+from implam_post.laminate import Material, direction
+
+
+def abaqus_input(panel: Panel, source: str) -> Iterator[str]:
+    """Return the lines of the input: shells S8R with composite sections, and a static step under the pressure."""
+    mesh, sections = shell_mesh(panel, with_middles=False), panel.sections()
+    yield from (f"** {panel.name}: panel from {source}", "** z points from the struck face to the back; the first "
+                "layer of each section is the one nearest to the struck face.", "*HEADING", panel.name)
+    yield "*NODE, NSET=PANEL"
+    yield from (f"{number}, {x:.12g}, {y:.12g}, 0." for number, (x, y) in enumerate(mesh.coordinates, 1))
+    yield from _elements(panel, mesh, sections)
+    names = {state: _material_name(number, state) for number, state in enumerate(panel.materials(), 1)}
+    for state, material in panel.materials().items():
+        yield from _material(names[state], state, material)
+    for angle in sorted({layer.angle for section in sections for layer in section.layers}):
+        yield from _orientation(angle)
+    for number, section in enumerate(sections, 1):
+        yield from _section(number, section, names)
+    for components, grids in mesh.supports.items():
+        yield f"*NSET, NSET=HELD_{components}"
+        yield from _rows(grids)
+    yield "*BOUNDARY"
+    yield from (f"HELD_{components}, {component}, {component}" for components in mesh.supports
+                for component in components)
+    if panel.pressure is not None:
+        yield from _step(panel.pressure, mesh)
+
+
+def _elements(panel: Panel, mesh: ShellMesh, sections: Sequence[Section]) -> Iterator[str]:
+    """Return the elements, a set a section."""
+    members: dict[Section, list[int]] = {section: [] for section in sections}
+    yield "*ELEMENT, TYPE=S8R, ELSET=ALL_SHELLS"
+    for number, element in enumerate(mesh.elements, 1):
+        yield ", ".join(map(str, [number, *element.eight]))
+        members[panel.section(element.stack)].append(number)
+    for place, section in enumerate(sections, 1):
+        yield f"*ELSET, ELSET=SECTION_{place}"
+        yield from _rows(members[section])
+
+
+def _material_name(number: int, state: MaterialState) -> str:
+    """Return a name that tells materials apart by their number, since Abaqus' names are short and case-blind."""
+    return f"M{number}_" + re.sub("[^A-Z0-9]", "_", state.name.upper())[:60]
+
+
+def _material(name: str, state: MaterialState, material: Material) -> Iterator[str]:
+    """Return the elastic constants; those through the thickness, which plane stress does without, couple nothing."""
+    yield from (f"** {state.name} {state.told}".rstrip(), f"*MATERIAL, NAME={name}",
+                "*ELASTIC, TYPE=ENGINEERING CONSTANTS")
+    constants = [material.e1, material.e2, material.e2, material.nu12, 0.0, 0.0, material.g12, material.g13]
+    yield ", ".join(f"{value:.12g}" for value in constants)
+    yield f"{material.g23:.12g}"
+    if material.density > 0:
+        yield from ("*DENSITY", f"{material.density:.12g}")
+
+
+def _orientation_name(angle: float) -> str:
+    """Return the name of the axes at an angle."""
+    return "AT_" + f"{angle:g}".replace("-", "MINUS_").replace(".", "_")
+
+
+def _orientation(angle: float) -> Iterator[str]:
+    """Return the axes of plies at an angle from x; the last line names the axis along the normal."""
+    c, s = direction(angle)
+    yield f"*ORIENTATION, NAME={_orientation_name(angle)}"
+    yield ", ".join(f"{value + 0.0:.12g}" for value in (c, s, 0.0, -s, c, 0.0))
+    yield "3, 0."
+
+
+def _section(number: int, section: Section, names: dict[MaterialState, str]) -> Iterator[str]:
+    """Return a composite section; the offset is that of the grids from its middle, in its thicknesses."""
+    offset = f", OFFSET={-section.middle / section.thickness:.12g}" if section.middle else ""
+    yield f"** {section.title}"
+    yield f"*SHELL SECTION, ELSET=SECTION_{number}, COMPOSITE{offset}"
+    yield from (f"{layer.thickness:.12g}, 3, {names[layer.material]}, {_orientation_name(layer.angle)}"
+                for layer in section.layers)
+
+
+def _step(pressure: float, mesh: ShellMesh) -> Iterator[str]:
+    """Return a static step with the pressure on the struck face, positive downwards, and the displacements."""
+    yield "*ELSET, ELSET=STRUCK, GENERATE"
+    yield f"1, {mesh.struck}, 1"
+    yield from ("*STEP", "*STATIC", "*DLOAD", f"STRUCK, P, {pressure:.12g}", "*NODE PRINT, NSET=PANEL", "U",
+                "*NODE FILE", "U", "*END STEP")
+
+
+def _rows(numbers: Sequence[int]) -> Iterator[str]:
+    """Return numbers, sixteen a line."""
+    for start in range(0, len(numbers), 16):
+        yield ", ".join(map(str, numbers[start:start + 16]))

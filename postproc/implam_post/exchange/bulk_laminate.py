@@ -1,0 +1,133 @@
+"""Materials and lay-up out of bulk data: MAT1, MAT8, PCOMP and PCOMPG."""
+
+from collections.abc import Iterable
+from itertools import zip_longest
+from typing import Any
+
+from implam_post.exchange.bulk_data import BulkCard, BulkData
+from implam_post.exchange.remarks import Remarks
+from implam_post.laminate import Material, Ply
+
+_MAT8_STRENGTHS = {12: "XT", 13: "XC", 14: "YT", 15: "YC", 16: "S12"}
+_UNTAKEN = {
+    "MAT1": {6: "A", 7: "TREF", 8: "GE", 9: "ST", 10: "SC", 11: "SS", 12: "MCSID"},
+    "MAT8": {9: "A1", 10: "A2", 11: "TREF", 17: "GE", 18: "F12"},
+    "PCOMP": {3: "NSM", 4: "SB", 5: "FT", 6: "TREF", 7: "GE"},
+    "PCOMPG": {3: "NSM", 4: "SB", 5: "FT", 6: "TREF", 7: "GE"},
+}
+_NEAR = 0.01
+
+
+def read_laminate(bulk: BulkData, properties: Iterable[int], remarks: Remarks) -> list[Ply]:
+    """Return the plies of the property that all elements have; several may be there if they say the same."""
+    cards = _unique(bulk, "PCOMP", "PCOMPG")
+    found: list[tuple[BulkCard, list[Ply]]] = []
+    for number in sorted(set(properties)):
+        if number not in cards:
+            raise bulk.missing(f"the elements have property {number}, but there is no PCOMP or PCOMPG of that number.")
+        found.append((cards[number], _plies(bulk, cards[number], remarks)))
+    for card, plies in found[1:]:
+        if any(ply != other or ply.material.strengths != other.material.strengths
+               for ply, other in zip_longest(plies, found[0][1], fillvalue=None)):
+            first = found[0][0]
+            raise bulk.error(card, f"it isn't the lay-up of {first.name} {first.fields.field(1)} in line {first.line}: "
+                                   "a panel has one laminate.")
+    return found[0][1]
+
+
+def _unique(bulk: BulkData, *names: str) -> dict[int, BulkCard]:
+    """Return the cards of these names by their number, which none may share."""
+    cards: dict[int, BulkCard] = {}
+    for card in bulk.named(*names):
+        number = bulk.integer(card, 1)
+        if number in cards:
+            raise bulk.error(card, f"number {number} is taken by the {cards[number].name} in line "
+                                   f"{cards[number].line}.")
+        cards[number] = card
+    return cards
+
+
+def _plies(bulk: BulkData, card: BulkCard, remarks: Remarks) -> list[Ply]:
+    """Return the plies of a property, both halves of a symmetric one."""
+    from pyNastran.bdf.cards.properties.shell import PCOMP, PCOMPG
+    laminate = bulk.read(card, PCOMP if card.name == "PCOMP" else PCOMPG)
+    symmetric = (laminate.lam or "") == "SYM" and card.name == "PCOMP"
+    if laminate.lam and not symmetric:
+        raise bulk.error(card, f"LAM = {laminate.lam} isn't taken: a laminate's plies are written out, or half of them "
+                               "with SYM on a PCOMP.")
+    materials = _materials(bulk, {*laminate.mids}, card, remarks)
+    plies = [Ply(materials[mid], float(angle), float(thickness))
+             for mid, angle, thickness in zip(laminate.mids, laminate.thetas, laminate.thicknesses, strict=True)]
+    if symmetric:
+        plies += plies[::-1]
+    if min(ply.thickness for ply in plies) <= 0:
+        raise bulk.error(card, "every ply needs a thickness greater than zero.")
+    remarks.untaken(card, _UNTAKEN[card.name])
+    thickness = sum(ply.thickness for ply in plies)
+    if card.fields.field(2) and abs(laminate.z0 + thickness / 2) > 1e-6 * thickness:
+        remarks.add(card, "Z0 isn't taken: the panel lies about its grids with its middle, where it is supported")
+    return plies
+
+
+def _materials(bulk: BulkData, numbers: Iterable[int], user: BulkCard, remarks: Remarks) -> dict[int, Material]:
+    """Return the materials of these numbers."""
+    cards = _unique(bulk, "MAT1", "MAT8", "MAT2", "MAT9")
+    for number in numbers:
+        if number not in cards or cards[number].name not in ("MAT1", "MAT8"):
+            raise bulk.error(user, f"material {number} isn't there as a MAT1 or MAT8.")
+    return {number: (_isotropic if cards[number].name == "MAT1" else _orthotropic)(bulk, cards[number], remarks)
+            for number in numbers}
+
+
+def _isotropic(bulk: BulkData, card: BulkCard, remarks: Remarks) -> Material:
+    """Return the material of a MAT1; of E, G and NU one may be missing."""
+    from pyNastran.bdf.cards.materials import MAT1
+    found = bulk.read(card, MAT1)
+    e, g, nu = (bulk.real(card, number) for number in (2, 3, 4))
+    e = 2 * (1 + nu) * g if e is None and None not in (g, nu) else e
+    nu = e / (2 * g) - 1 if nu is None and None not in (e, g) else nu
+    if e is None or nu is None or e <= 0 or not -1 < nu < 0.5:
+        raise bulk.error(card, "two of E, G and NU are needed, E greater than zero, NU above -1 and below 0.5.")
+    shear = e / (2 * (1 + nu))
+    if g is not None and abs(g - shear) > _NEAR * shear:
+        raise bulk.error(card, f"G = {g:g} contradicts E and NU, which give {shear:.5g}.")
+    if g is not None and card.given(2) and card.given(4) and abs(g - shear) > 1e-6 * shear:
+        remarks.add(card, f"G isn't taken: E and NU give {shear:.5g}")
+    remarks.untaken(card, _UNTAKEN["MAT1"])
+    return Material(_density(bulk, card, found.rho, remarks), e, e, shear, shear, shear, nu, _name(card),
+                    isotropic=True)
+
+
+def _orthotropic(bulk: BulkData, card: BulkCard, remarks: Remarks) -> Material:
+    """Return the material of a MAT8."""
+    from pyNastran.bdf.cards.materials import MAT8
+    found = bulk.read(card, MAT8)
+    g13, g23 = (bulk.real(card, number) for number in (6, 7))
+    if not g23:
+        raise bulk.error(card, "G2Z is needed; without it Nastran takes the ply as rigid in transverse shear.")
+    if not g13:
+        remarks.add(card, "G1Z is blank: G12 is taken for it")
+        g13 = found.g12
+    if min(found.e11, found.e22, found.g12, g13, g23) <= 0:
+        raise bulk.error(card, "E1, E2, G12, G1Z and G2Z need to be greater than zero.")
+    if found.nu12**2 * found.e22 >= found.e11:
+        raise bulk.error(card, "NU12 squared must be smaller than E1/E2.")
+    remarks.untaken(card, _UNTAKEN["MAT8"] | (_MAT8_STRENGTHS if card.given(19) else {}))
+    strengths = () if card.given(19) else tuple(
+        (key, abs(bulk.real(card, number))) for number, key in _MAT8_STRENGTHS.items() if card.given(number))
+    return Material(_density(bulk, card, found.rho, remarks), found.e11, found.e22, found.g12, g13, g23, found.nu12,
+                    _name(card), strengths)
+
+
+def _density(bulk: BulkData, card: BulkCard, density: Any, remarks: Remarks) -> float:
+    """Return the density; 0 if there is none."""
+    if density < 0:
+        raise bulk.error(card, "RHO must not be below zero.")
+    if density == 0:
+        remarks.add(card, "no RHO: an impact needs the density")
+    return float(density)
+
+
+def _name(card: BulkCard) -> str:
+    """Return the name that the deck gives the material."""
+    return f"{card.name}_{card.fields.field(1)}"

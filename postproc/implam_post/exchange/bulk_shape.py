@@ -1,0 +1,196 @@
+"""The rectangle that the quadrilaterals of bulk data make up, and its axes."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from implam_post.exchange.bulk_data import BulkCard, BulkData
+from implam_post.exchange.remarks import Remarks
+
+_NEAR = 1e-6
+_UNTAKEN = {"CQUAD4": {8: "ZOFFS", 11: "T1", 12: "T2", 13: "T3", 14: "T4"},
+            "CQUAD8": {16: "ZOFFS", 11: "T1", 12: "T2", 13: "T3", 14: "T4"}}
+
+
+@dataclass(frozen=True)
+class Shape:
+    """The panel in its own axes: x and y along its edges, the origin in its middle, z from the struck face on.
+
+    Rows of `axes` are these axes in the file's basic system; `places` has x and y of each grid, `angle` is that of the
+    material axis from x, and `turn` is 1 if angles grow from x to y, -1 if the struck face is the last ply's.
+    """
+
+    lengths: tuple[float, float]
+    origin: np.ndarray
+    axes: np.ndarray
+    places: dict[int, np.ndarray]
+    elements: tuple[int, int]
+    angle: float
+    turn: int
+    properties: set[int]
+
+
+@dataclass(frozen=True)
+class _Quadrilateral:
+    """An element: its card, pyNastran's object, its corners (4, 3) and their normal."""
+
+    card: BulkCard
+    read: Any
+    corners: np.ndarray
+    normal: np.ndarray
+
+
+def read_shape(bulk: BulkData, grids: Mapping[int, tuple[BulkCard, Any]], struck_last: bool, remarks: Remarks) -> Shape:
+    """Return the rectangle; `struck_last` if the impactor comes from the side of the last ply."""
+    systems = _systems(bulk)
+    points = {number: _position(bulk, systems, *grid) for number, grid in grids.items()}
+    quads = _quadrilaterals(bulk, points, remarks)
+    normal = quads[0].normal
+    for quad in quads:
+        if quad.normal @ normal < 1 - _NEAR:
+            raise bulk.error(quad.card, f"its normal isn't that of the element in line {quads[0].card.line}: the panel "
+                                        "isn't flat, or its plies are counted from both sides.")
+    axes = _axes(bulk, normal, struck_last)
+    used = {number for quad in quads for number in quad.read.nodes if number}
+    local = {number: axes @ points[number] for number in used}
+    low, high = (limit(list(local.values()), axis=0) for limit in (np.min, np.max))
+    lengths = high - low
+    if lengths[2] > _NEAR * max(lengths):
+        raise bulk.missing("the grids of the panel don't lie in one plane.")
+    area = sum(np.linalg.norm(np.cross(quad.corners[2] - quad.corners[0], quad.corners[3] - quad.corners[1])) / 2
+               for quad in quads)
+    if abs(area - lengths[0] * lengths[1]) > _NEAR * area:
+        raise bulk.missing(f"the CQUAD4 and CQUAD8 don't make up a rectangle: they cover {area:.6g} of the "
+                           f"{lengths[0]:.6g} by {lengths[1]:.6g} around them.")
+    _refuse_cuts(bulk, local, max(lengths))
+    middle = (low + high) / 2
+    return Shape((_plain(lengths[0]), _plain(lengths[1])), axes.T @ middle, axes,
+                 {number: (place - middle)[:2] for number, place in local.items()}, _elements(quads, axes, lengths),
+                 _material_angle(bulk, quads, axes, systems), -1 if struck_last else 1,
+                 {quad.read.pid for quad in quads})
+
+
+def _refuse_cuts(bulk: BulkData, places: Mapping[int, np.ndarray], size: float) -> None:
+    """Refuse grids at the same place: elements that don't share a grid don't hold together."""
+    seen: dict[tuple[int, int], int] = {}
+    for number, place in sorted(places.items()):
+        first = seen.setdefault(tuple(np.round(place[:2] / (1e-5 * size)).astype(int)), number)
+        if first != number:
+            raise bulk.missing(f"the grids {first} and {number} are at the same place: the panel is cut there.")
+
+
+def read_grids(bulk: BulkData) -> dict[int, tuple[BulkCard, Any]]:
+    """Return the grids by number; equal ones may be there twice."""
+    from pyNastran.bdf.cards.nodes import GRID
+    for card in bulk.named("GRDSET"):
+        raise bulk.error(card, "it isn't taken: write what it sets on the GRIDs.")
+    grids: dict[int, tuple[BulkCard, Any]] = {}
+    for card in bulk.named("GRID"):
+        grid = bulk.read(card, GRID)
+        if grid.nid in grids and grids[grid.nid][0].fields.card != card.fields.card:
+            raise bulk.error(card, f"grid {grid.nid} is another one in line {grids[grid.nid][0].line}.")
+        grids[grid.nid] = card, grid
+    return grids
+
+
+def _systems(bulk: BulkData) -> dict[int, Any]:
+    """Return the basic system and those of CORD2R cards, ready to transform."""
+    from pyNastran.bdf.bdf import BDF
+    from pyNastran.bdf.cards.coordinate_systems import CORD2R
+    model = BDF(debug=None)
+    cards = list(bulk.named("CORD2R"))
+    for card in cards:
+        system = bulk.read(card, CORD2R)
+        model.coords[system.cid] = system
+    for card in cards:
+        system = model.coords[bulk.integer(card, 1)]
+        if system.rid not in model.coords:
+            raise bulk.error(card, f"coordinate system {system.rid}, which it refers to, isn't there as a CORD2R.")
+        system.cross_reference(model)
+    for system in model.coords.values():
+        system.setup()
+    return dict(model.coords)
+
+
+def _position(bulk: BulkData, systems: Mapping[int, Any], card: BulkCard, grid: Any) -> np.ndarray:
+    """Return the place of a grid in the basic system."""
+    if grid.cp not in systems:
+        raise bulk.error(card, f"coordinate system {grid.cp} isn't there as a CORD2R.")
+    return np.array(systems[grid.cp].transform_node_to_global(grid.xyz))
+
+
+def _quadrilaterals(bulk: BulkData, points: Mapping[int, np.ndarray], remarks: Remarks) -> list[_Quadrilateral]:
+    """Return the elements."""
+    from pyNastran.bdf.cards.elements.shell import CQUAD4, CQUAD8
+    quads = []
+    for card in bulk.named("CQUAD4", "CQUAD8"):
+        read = bulk.read(card, CQUAD4 if card.name == "CQUAD4" else CQUAD8)
+        for place, number in enumerate(read.nodes):
+            if number not in points and (number or place < 4):
+                raise bulk.error(card, f"grid {number or 0} isn't there.")
+        corners = np.array([points[number] for number in read.nodes[:4]])
+        normal = np.cross(corners[2] - corners[0], corners[3] - corners[1])
+        if not np.linalg.norm(normal) > 0:
+            raise bulk.error(card, "its corners have no area between them.")
+        remarks.untaken(card, _UNTAKEN[card.name])
+        quads.append(_Quadrilateral(card, read, corners, normal / np.linalg.norm(normal)))
+    if not quads:
+        raise bulk.missing("there is no CQUAD4 and no CQUAD8.")
+    return quads
+
+
+def _axes(bulk: BulkData, normal: np.ndarray, struck_last: bool) -> np.ndarray:
+    """Return the panel's axes: z along the plies from the struck face on, x the first basic axis in the plane."""
+    along = int(np.argmax(np.abs(normal)))
+    if abs(normal[along]) < 1 - _NEAR:
+        raise bulk.missing("the panel isn't parallel to a plane of the basic coordinate system.")
+    z = np.zeros(3)
+    z[along] = np.sign(normal[along]) * (-1 if struck_last else 1)
+    x = np.eye(3)[1 if along == 0 else 0]
+    return np.array([x, np.cross(z, x), z])
+
+
+def _elements(quads: Sequence[_Quadrilateral], axes: np.ndarray, lengths: np.ndarray) -> tuple[int, int]:
+    """Return how many elements of nine nodes have about as many nodes along x and y as these."""
+    corners = np.concatenate([quad.corners for quad in quads]) @ axes.T
+    cells = [np.count_nonzero(np.diff(np.sort(corners[:, axis])) > _NEAR * lengths[axis]) for axis in (0, 1)]
+    if cells[0] * cells[1] != len(quads):
+        cells = [round(np.sqrt(len(quads) * lengths[axis] / lengths[1 - axis])) for axis in (0, 1)]
+    share = 1 if quads[0].card.name == "CQUAD8" else 2
+    return max(2, -(-cells[0] // share)), max(2, -(-cells[1] // share))
+
+
+def _material_angle(bulk: BulkData, quads: Sequence[_Quadrilateral], axes: np.ndarray, systems: Mapping[int, Any]
+                    ) -> float:
+    """Return the angle from x to the material axis, which all elements have to share."""
+    angles = [_angle(bulk, quad, axes, systems) for quad in quads]
+    for quad, angle in zip(quads, angles, strict=True):
+        if abs((angle - angles[0] + 90) % 180 - 90) > 1e-4:
+            raise bulk.error(quad.card, f"its material axis is {_plain(angle):g} degrees from x, that of line "
+                                        f"{quads[0].card.line} {_plain(angles[0]):g}: a panel has one laminate.")
+    return _plain(angles[0])
+
+
+def _angle(bulk: BulkData, quad: _Quadrilateral, axes: np.ndarray, systems: Mapping[int, Any]) -> float:
+    """Return the angle of an element's material axis: MCID's x, or its first side turned by THETA about its normal."""
+    said = quad.read.theta_mcid
+    if isinstance(said, float):
+        direction = quad.corners[1] - quad.corners[0]
+        theta = np.radians(said)
+        direction = np.cos(theta) * direction + np.sin(theta) * np.cross(quad.normal, direction)
+    elif said in systems:
+        direction = systems[said].i
+    else:
+        raise bulk.error(quad.card, f"coordinate system {said} isn't there as a CORD2R.")
+    x, y, _ = axes @ direction
+    if np.hypot(x, y) < _NEAR * np.linalg.norm(direction):
+        raise bulk.error(quad.card, f"the x axis of coordinate system {said} is normal to the panel.")
+    return float(np.degrees(np.arctan2(y, x)))
+
+
+def _plain(number: float) -> float:
+    """Return a number without the rounding of its last digits."""
+    plain = float(f"{number:.10g}")
+    return plain if abs(plain) > 1e-9 else 0.0

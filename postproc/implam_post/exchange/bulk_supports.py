@@ -1,0 +1,180 @@
+"""Supports of the edges out of bulk data: SPC1, SPC and what GRIDs hold by themselves."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from implam_post.exchange.bulk_data import BulkCard, BulkData
+from implam_post.exchange.bulk_shape import Shape
+from implam_post.exchange.remarks import Remarks
+
+EDGES = ("x-min", "x-max", "y-min", "y-max")
+_RIGID_MOTIONS = 3
+Held = dict[int, dict[int, BulkCard]]
+
+
+@dataclass(frozen=True)
+class Supports:
+    """Kinds of the four edges, and whether the supported ones hold the panel in its plane."""
+
+    edges: tuple[str, ...]
+    in_plane_fixed: bool
+
+
+def read_supports(bulk: BulkData, grids: Mapping[int, tuple[BulkCard, Any]], shape: Shape, chosen: int | None,
+                  remarks: Remarks) -> Supports:
+    """Return the supports; `chosen` is the number of the set, if not that of the case control or the only one."""
+    held = _held(bulk, grids, shape, chosen, remarks)
+    on_edges = {number: _edges_of(shape, place) for number, place in shape.places.items()}
+    common = [_common(bulk, held, [grid for grid, edges in on_edges.items() if edges == [number]], number)
+              for number in range(4)]
+    in_plane = [{1, 2} & components for components in common]
+    kinds = tuple(_kind(bulk, components, number, remarks) for number, components in enumerate(common))
+    fixed = _in_plane(bulk, kinds, in_plane)
+    pins = _pins(bulk, held, on_edges, common, remarks)
+    if pins and (fixed or len(pins) > _RIGID_MOTIONS):
+        card, grid = pins[0]
+        raise bulk.error(card, f"it holds grid {grid} in the panel's plane, which isn't the support of a whole edge.")
+    for card, _ in pins:
+        remarks.add(card, "some of it holds rigid motion in the plane; Implam does so by itself")
+    return Supports(kinds, fixed or all(kind == "free" for kind in kinds))
+
+
+def _held(bulk: BulkData, grids: Mapping[int, tuple[BulkCard, Any]], shape: Shape, chosen: int | None,
+          remarks: Remarks) -> Held:
+    """Return the cards that hold each component, in the panel's axes, of each of its grids."""
+    held: Held = {}
+    for card, numbers, components in _constraints(bulk, _sets(bulk, chosen)):
+        if any(number not in shape.places for number in numbers):
+            remarks.add(card, "some of its grids aren't the panel's")
+        _hold(bulk, held, card, numbers, components, grids, shape)
+    for number in shape.places:
+        card, grid = grids[number]
+        _hold(bulk, held, card, [number], grid.ps, grids, shape)
+    return held
+
+
+def _sets(bulk: BulkData, chosen: int | None) -> set[int]:
+    """Return the numbers of the sets of supports that count."""
+    there = {bulk.integer(card, 1) for card in bulk.named("SPC1", "SPC")}
+    added = {bulk.integer(card, 1): card for card in bulk.named("SPCADD")}
+    wanted = bulk.support_set if chosen is None else chosen
+    if wanted is None:
+        if len(there) > 1 or added:
+            raise bulk.missing(f"there are the sets of supports {', '.join(map(str, sorted(there | set(added))))}: "
+                               "choose one by --spc.")
+        return there
+    sets = {wanted}
+    if wanted in added:
+        card = added[wanted]
+        sets = {bulk.integer(card, number) for number in range(2, len(card.fields))}
+    if absent := sets - there:
+        raise bulk.missing(f"there are no supports with the number {min(absent)}.")
+    return sets
+
+
+def _constraints(bulk: BulkData, sets: set[int]) -> Iterable[tuple[BulkCard, list[int], str]]:
+    """Return card, grids and components of each support in these sets."""
+    from pyNastran.bdf.cards.constraints import SPC, SPC1
+    for card in bulk.named("SPC1", "SPC"):
+        if bulk.integer(card, 1) not in sets:
+            continue
+        if card.name == "SPC1":
+            read = bulk.read(card, SPC1)
+            yield card, read.nodes, read.components
+            continue
+        read = bulk.read(card, SPC)
+        if any(read.enforced):
+            raise bulk.error(card, "it moves a grid; the supports of a panel stand still.")
+        for number, components in zip(read.nodes, read.components, strict=True):
+            yield card, [number], components
+
+
+def _hold(bulk: BulkData, held: Held, card: BulkCard, numbers: Iterable[int], components: str,
+          grids: Mapping[int, tuple[BulkCard, Any]], shape: Shape) -> None:
+    """Note what a card holds, in the panel's axes; the rotation about the normal has no stiffness and doesn't count."""
+    for number in numbers:
+        if number not in shape.places:
+            continue
+        if components.strip("06 ") and grids[number][1].cd:
+            raise bulk.error(card, f"grid {number} has displacements in coordinate system {grids[number][1].cd}: "
+                                   "supports count in the basic one only.")
+        for component in components:
+            turns, axis = divmod(int(component) - 1, 3) if component in "123456" else (0, None)
+            if axis is not None:
+                along = int(np.argmax(np.abs(shape.axes[:, axis])))
+                if (turns, along) != (1, 2):
+                    held.setdefault(number, {})[3 * turns + along + 1] = card
+
+
+def _edges_of(shape: Shape, place: np.ndarray) -> list[int]:
+    """Return the edges that a place lies on."""
+    return [2 * axis + far for axis in (0, 1) for far, sign in enumerate((-1, 1))
+            if abs(sign * place[axis] - shape.lengths[axis] / 2) < 1e-6 * max(shape.lengths)]
+
+
+def _common(bulk: BulkData, held: Held, along: list[int], number: int) -> set[int]:
+    """Return what an edge holds all along between its corners; in its plane, what it doesn't hold all along is none."""
+    if not along:
+        raise bulk.missing(f"the edge {EDGES[number]} has no grid between its corners that tells its support.")
+    each = [set(held.get(grid, {})) for grid in along]
+    common, somewhere = set.intersection(*each), set.union(*each)
+    for component in sorted((somewhere - common) & {3, 4, 5}):
+        grid, card = next((grid, held[grid][component]) for grid in along if component in held.get(grid, {}))
+        bare = next(grid for grid in along if component not in held.get(grid, {}))
+        raise bulk.error(card, f"it holds grid {grid} on the edge {EDGES[number]}, but grid {bare} there isn't held "
+                               "alike: only whole edges can be supported.")
+    return common
+
+
+def _kind(bulk: BulkData, components: set[int], number: int, remarks: Remarks) -> str:
+    """Return the kind of an edge; a simple support holds the rotation along the edge, a clamp the other one too."""
+    along, across = (4, 5) if number < 2 else (5, 4)
+    turns = components & {4, 5}
+    if 3 not in components:
+        if components:
+            raise bulk.missing(f"the edge {EDGES[number]} is held, but not against deflection: it is neither clamped "
+                               "nor simple nor free, nor are lines of symmetry taken.")
+        return "free"
+    kind = "clamped" if across in turns else "simple"
+    if along not in turns:
+        remarks.edge(EDGES[number], f"{kind}; in the file the rotation along the edge is free, Implam holds it")
+    return kind
+
+
+def _in_plane(bulk: BulkData, kinds: tuple[str, ...], in_plane: list[set[int]]) -> bool:
+    """Return whether the supported edges hold the panel in its plane, which they have to do alike and both ways."""
+    supported = [number for number, kind in enumerate(kinds) if kind != "free"]
+    for number in supported:
+        if len(in_plane[number]) == 1:
+            raise bulk.missing(f"the edge {EDGES[number]} is held one way in the plane of the panel, not both.")
+        if in_plane[number] != in_plane[supported[0]]:
+            raise bulk.missing(f"the edges {EDGES[supported[0]]} and {EDGES[number]} aren't held alike in the plane of "
+                               "the panel.")
+    return bool(supported) and bool(in_plane[supported[0]])
+
+
+def _pins(bulk: BulkData, held: Held, on_edges: Mapping[int, list[int]], common: list[set[int]], remarks: Remarks
+          ) -> list[tuple[BulkCard, int]]:
+    """Return card and grid of what is held in the plane beyond the edges; corners have to hold what their edges do."""
+    pins = []
+    for grid, edges in on_edges.items():
+        expected = set().union(*(common[number] for number in edges))
+        there = held.get(grid, {})
+        missing = expected - set(there)
+        if missing & {1, 2, 3}:
+            raise bulk.missing(f"the corner grid {grid} doesn't hold component {min(missing)} (in the panel's axes) as "
+                               f"its edges do: only whole edges can be supported.")
+        if missing:
+            remarks.edge(" and ".join(EDGES[number] for number in edges),
+                         f"the corner grid {grid} turns freely in the file, Implam holds it as its edges")
+        for component, card in there.items():
+            if component in expected:
+                continue
+            if component > 2:
+                raise bulk.error(card, f"it holds grid {grid}, which isn't on an edge supported like that: only whole "
+                                       "edges can be supported.")
+            pins.append((card, grid))
+    return pins

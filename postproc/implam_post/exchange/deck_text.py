@@ -1,0 +1,103 @@
+"""A deck of a panel that came from elsewhere."""
+
+import textwrap
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from implam_post.deck import STRENGTHS
+from implam_post.exchange.bulk_shape import Shape
+from implam_post.exchange.bulk_supports import Supports
+from implam_post.laminate import Material, Ply
+
+
+class Impact(NamedTuple):
+    """What strikes the panel, and for how long it is followed; what is None is left to fill in."""
+
+    mass: float | None = None
+    velocity: float | None = None
+    radius: float | None = None
+    end: float | None = None
+    step: float | None = None
+
+
+def deck_text(name: str, source: str, shape: Shape, supports: Supports, plies: Sequence[Ply], impact: Impact) -> str:
+    """Return the deck; groups of the impact are comments unless `impact` gives what they need."""
+    return "\n".join([*_header(source, shape), *_plate(name, shape, supports, impact), *_laminate(plies),
+                      *_impact(impact)]) + "\n"
+
+
+def number(value: float) -> str:
+    """Return a number with all its digits, in the shortest way."""
+    exact = repr(float(value))
+    digits = len(exact.replace("-", "").replace(".", "").partition("e")[0].strip("0"))
+    mantissa, _, exponent = f"{value:.{max(digits - 1, 0)}e}".partition("e")
+    short = f"{mantissa}e{int(exponent)}"
+    plain = exact.removesuffix(".0")
+    return plain if 0.01 <= abs(value) < 1e5 or len(plain) <= len(short) else short
+
+
+def _header(source: str, shape: Shape) -> Iterator[str]:
+    """Return the comments on where the panel comes from."""
+    axes = [("-" if row.sum() < 0 else "") + "xyz"[abs(row).argmax()] for row in shape.axes]
+    origin = ", ".join(f"{place:.10g}" for place in shape.origin)
+    yield f"! Panel of {source}. Its origin is the file's point ({origin});"
+    yield f"! x, y and z (from the struck face to the back) run along the file's {', '.join(axes)}."
+
+
+def _plate(name: str, shape: Shape, supports: Supports, impact: Impact) -> Iterator[str]:
+    """Return the groups of case, plate and mesh."""
+    edges = supports.edges if len(set(supports.edges)) > 1 else supports.edges[:1]
+    yield f"&case      name='{name}' /"
+    yield (f"&plate     length={', '.join(map(number, shape.lengths))}  edges={', '.join(map(repr, edges))}  "
+           f"in_plane='{'fixed' if supports.in_plane_fixed else 'free'}' /")
+    patch = f"  patch={number(impact.radius / 2)}" if impact.radius is not None else ""
+    yield f"&mesh      elements={shape.elements[0]}, {shape.elements[1]}{patch} /"
+
+
+def _laminate(plies: Sequence[Ply]) -> Iterator[str]:
+    """Return the materials and the plies."""
+    materials = {ply.material.name: ply.material for ply in plies}
+    for material in materials.values():
+        yield from _wrapped("&material  ", " ".join(_constants(material)))
+    lists = {"materials": [repr(ply.material.name) for ply in plies], "angles": [number(ply.angle) for ply in plies],
+             "thicknesses": [number(ply.thickness) for ply in plies]}
+    texts = (f"{key}={', '.join(values[:1] if key != 'angles' and len(set(values)) == 1 else values)}"
+             for key, values in lists.items())
+    yield from _wrapped("&laminate  ", "  ".join(texts))
+
+
+def _constants(material: Material) -> Iterator[str]:
+    """Return the keys of a material."""
+    yield f"name='{material.name}'"
+    if material.density > 0:
+        yield f"density={number(material.density)}"
+    constants = ({"E": material.e1, "nu": material.nu12} if material.isotropic else
+                 {"E1": material.e1, "E2": material.e2, "G12": material.g12, "G13": material.g13, "G23": material.g23,
+                  "nu12": material.nu12})
+    strengths = dict(material.strengths)
+    yield from (f"{key}={number(value)}" for key, value in constants.items())
+    yield from (f"{key}={number(strengths[key])}" for key in STRENGTHS if key in strengths)
+
+
+def _wrapped(head: str, text: str) -> list[str]:
+    """Return a group within the width of a line."""
+    # A blank that doesn't break keeps the closing slash with the last key.
+    lines = textwrap.wrap(f"{head}{text}\u00a0/", 110, subsequent_indent=len(head) * " ", break_long_words=False,
+                          break_on_hyphens=False)
+    return [line.replace("\u00a0", " ") for line in lines]
+
+
+def _impact(impact: Impact) -> Iterator[str]:
+    """Return the groups of the impact."""
+    if impact.radius is None:
+        yield from ("! To strike it, fill in and take away the marks; &mesh then needs patch=, the side of the loaded "
+                    "square,", "! about half the radius.", "! &impactor    mass=  velocity=  radius= /")
+    else:
+        yield (f"&impactor  mass={number(impact.mass)}  velocity={number(impact.velocity)}  "
+               f"radius={number(impact.radius)} /")
+    yield "! Left out, the contact is elastic: &indentation  alpha_cr= /"
+    if impact.end is None or impact.step is None:
+        yield "! &time        end=  step= /"
+    else:
+        yield f"&time      end={number(impact.end)}  step={number(impact.step)} /"
+    yield "! For damage: &delamination, and &ply_damage, which needs XT, YT, YC, S12, Sf and Sm23 of every &material."

@@ -1,0 +1,111 @@
+"""Turn the bulk data of a rectangular panel into a deck (`implam-from-nastran FILE.bdf`)."""
+
+import argparse
+import math
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from implam_post.errors import EXIT_DONE, CommandParser, FileError, ImplamError, run
+from implam_post.exchange.bulk_data import BulkData, ranges, read_bulk_data
+from implam_post.exchange.bulk_laminate import read_laminate
+from implam_post.exchange.bulk_shape import Shape, read_grids, read_shape
+from implam_post.exchange.bulk_supports import read_supports
+from implam_post.exchange.deck_text import Impact, deck_text
+from implam_post.exchange.remarks import Remarks
+from implam_post.laminate import Ply
+
+TAKEN = ("GRID", "CORD2R", "CQUAD4", "CQUAD8", "PCOMP", "PCOMPG", "MAT1", "MAT8", "SPC1", "SPC", "SPCADD")
+
+
+def deck_of(bulk: BulkData, name: str, impact: Impact, struck_last: bool = False, supports: int | None = None
+            ) -> tuple[str, Remarks]:
+    """Return the deck of a panel and what is to be told about its cards."""
+    for card in bulk.named("INCLUDE"):
+        raise bulk.error(card, "it isn't followed: put all bulk data into one file.")
+    remarks = Remarks()
+    grids = read_grids(bulk)
+    shape = read_shape(bulk, grids, struck_last, remarks)
+    plies = _turned(read_laminate(bulk, shape.properties, remarks), shape)
+    held = read_supports(bulk, grids, shape, supports, remarks)
+    return deck_text(name, bulk.path.name, shape, held, plies, impact), remarks
+
+
+def _turned(plies: list[Ply], shape: Shape) -> list[Ply]:
+    """Return the plies from the struck face on, their angles from the panel's x."""
+    if shape.turn > 0 and shape.angle == 0:
+        return plies
+    turned = [replace(ply, angle=_within(shape.angle + shape.turn * ply.angle)) for ply in plies]
+    return turned[::shape.turn]
+
+
+def _within(angle: float) -> float:
+    """Return an angle of fibres, which have no sense, above -90 and up to 90 degrees."""
+    return float(f"{90 - (90 - angle) % 180:.10g}")
+
+
+def report(bulk: BulkData, remarks: Remarks) -> Iterator[str]:
+    """Return which cards were taken, what of them wasn't, and which cards weren't, with their lines."""
+    lines = [card.line for card in bulk.cards]
+    if bulk.first_line > 1:
+        yield f"lines 1-{bulk.first_line - 1}: executive and case control, of which SPC counts"
+    yield "taken:"
+    for name in TAKEN:
+        if there := [card.line for card in bulk.named(name)]:
+            yield f"  {name:<8} {len(there)}, {ranges(there, lines)}"
+    told = remarks.told(bulk)
+    yield from ["taken in part or otherwise:", *(f"  {text}" for text in told)] if told else []
+    others = list(dict.fromkeys(card.name for card in bulk.cards if card.name not in TAKEN))
+    yield "not taken:" if others else "not taken: none"
+    for name in others:
+        there = [card.line for card in bulk.named(name)]
+        yield f"  {name:<8} {len(there)}, {ranges(there, lines)}"
+
+
+def _command(options: argparse.Namespace) -> int:
+    """Read, write and tell."""
+    impact = Impact(options.mass, options.velocity, options.radius, options.end, options.step)
+    if len({value is None for value in impact[:3]}) > 1:
+        raise ImplamError("--mass, --velocity and --radius go together.")
+    if (options.end is None) != (options.step is None):
+        raise ImplamError("--end and --step go together.")
+    output = options.output or options.bulk.with_suffix(".nml")
+    if options.output is None and output.exists():
+        raise FileError(f"{output} is already there: name another deck by -o, or this one to replace it.")
+    bulk = read_bulk_data(options.bulk)
+    text, remarks = deck_of(bulk, re.sub(r"[^\w.-]", "_", output.stem, flags=re.ASCII), impact,
+                            options.struck == "last", options.spc)
+    try:
+        output.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise FileError(f"{output} cannot be written ({error}).") from None
+    print(*report(bulk, remarks), f"deck: {output}", sep="\n")
+    return EXIT_DONE
+
+
+def _positive(text: str) -> float:
+    """Return a finite number greater than zero."""
+    value = float(text)
+    if not (math.isfinite(value) and value > 0):
+        raise argparse.ArgumentTypeError(f"{text} isn't a number greater than zero")
+    return value
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command."""
+    parser = CommandParser("implam-from-nastran", description="Turn Nastran's bulk data of a rectangular composite "
+                           "panel into a deck, and tell which cards were taken and which weren't.")
+    parser.add_argument("bulk", type=Path, metavar="FILE.bdf", help="bulk data, with or without case control")
+    parser.add_argument("-o", "--output", type=Path, metavar="DECK.nml", help="the deck (default: FILE.nml)")
+    parser.add_argument("--struck", choices=("first", "last"), default="first",
+                        help="ply of the face that is struck, as the property counts them (default: first)")
+    parser.add_argument("--spc", type=int, metavar="SET", help="set of supports (default: that of the case control)")
+    for key, words in (("mass", "mass of the impactor"), ("velocity", "its speed"), ("radius", "radius of its nose"),
+                       ("end", "end of the run"), ("step", "time step")):
+        parser.add_argument(f"--{key}", type=_positive, metavar="NUMBER", help=f"{words}, in the file's units")
+    return run(_command, parser, arguments)
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

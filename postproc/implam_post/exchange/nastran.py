@@ -1,0 +1,117 @@
+"""A panel as Nastran's bulk data, with the executive and case control of a static analysis."""
+
+import re
+from collections.abc import Iterator, Sequence
+
+from implam_post.exchange.panel import MaterialState, Panel, Section
+from implam_post.exchange.shell_mesh import ShellMesh, shell_mesh
+from implam_post.laminate import Material
+
+Field = int | float | str | None
+_SUPPORTS, _LOAD = 1, 1
+
+
+def nastran_deck(panel: Panel, source: str, with_z0: bool = False) -> Iterator[str]:
+    """Return the lines: CQUAD4 four a cell, a PCOMP a section, MAT8 or MAT1, SPC1, PLOAD2 if there is a pressure.
+
+    Stacks beside the middle have ZOFFS on their elements, or Z0 on their PCOMP.
+    """
+    mesh, sections = shell_mesh(panel, with_middles=True), panel.sections()
+    yield from (f"$ {panel.name}: panel from {source}", "$ z points from the struck face to the back; the first ply of "
+                "each PCOMP is the one", "$ nearest to the struck face.", "SOL 101", "CEND", f"TITLE = {panel.name}",
+                f"SPC = {_SUPPORTS}")
+    if panel.pressure is not None:
+        yield f"LOAD = {_LOAD}"
+    yield from ("DISPLACEMENT = ALL", "BEGIN BULK")
+    for grid, (x, y) in enumerate(mesh.coordinates, 1):
+        yield from card("GRID", grid, None, float(x), float(y), 0.0)
+    yield from _elements(panel, mesh, sections, with_z0)
+    numbers = {state: number for number, state in enumerate(panel.materials(), 1)}
+    for number, section in enumerate(sections, 1):
+        yield from _property(number, section, numbers, with_z0)
+    for state, material in panel.materials().items():
+        yield from _material(numbers[state], state, material)
+    yield from _supports(mesh)
+    if panel.pressure is not None:
+        yield from card("PLOAD2", _LOAD, panel.pressure, 1, "THRU", 4 * mesh.struck)
+    yield "ENDDATA"
+
+
+def _elements(panel: Panel, mesh: ShellMesh, sections: Sequence[Section], with_z0: bool) -> Iterator[str]:
+    """Return the elements; their material axis is x of the basic system."""
+    properties = {section: number for number, section in enumerate(sections, 1)}
+    number = 0
+    for element in mesh.elements:
+        section = panel.section(element.stack)
+        offset = None if with_z0 else section.middle or None
+        for corners in element.quarters:
+            number += 1
+            yield from card("CQUAD4", number, properties[section], *corners, 0, offset)
+
+
+def _property(number: int, section: Section, materials: dict[MaterialState, int], with_z0: bool) -> Iterator[str]:
+    """Return a PCOMP about its own middle, or with the place of its first face if `with_z0`."""
+    yield f"$ {section.title}"
+    plies = [field for layer in section.layers
+             for field in (materials[layer.material], layer.thickness, layer.angle, "YES")]
+    face = section.first_face if with_z0 and section.middle else None
+    yield from card("PCOMP", number, face, *6 * (None,), *plies)
+
+
+def _material(number: int, state: MaterialState, material: Material) -> Iterator[str]:
+    """Return a MAT8, or a MAT1 if the deck gave E and nu and nothing failed; strengths only where nothing failed."""
+    yield f"$ {state.name} {state.told}".rstrip()
+    strengths = dict(material.strengths)
+    for key in ("Sf", "Sm23"):
+        if key in strengths:
+            yield f"$ {key} = {strengths[key]!r} has no field"
+    density = material.density or None
+    if material.isotropic:
+        yield from card("MAT1", number, material.e1, None, material.nu12, density)
+        return
+    limits = [strengths.get(key) for key in ("XT", "XC", "YT", "YC", "S12")]
+    yield from card("MAT8", number, material.e1, material.e2, material.nu12, material.g12, material.g13, material.g23,
+                    density, None, None, None, *limits)
+
+
+def _supports(mesh: ShellMesh) -> Iterator[str]:
+    """Return the supports, and the rotation about the normal, which has no stiffness in a flat panel."""
+    for components, grids in mesh.supports.items():
+        yield from card("SPC1", _SUPPORTS, int(components), *grids)
+    yield from card("SPC1", _SUPPORTS, 6, 1, "THRU", len(mesh.coordinates))
+
+
+def card(name: str, *fields: Field) -> Iterator[str]:
+    """Return a card in small fields, or in large ones if a number needs them to keep its digits."""
+    while fields and fields[-1] is None:
+        fields = fields[:-1]
+    small = all(not isinstance(field, float) or same(field, 8) for field in fields)
+    width, count = (8, 8) if small else (16, 4)
+    texts = ["" if field is None else real(field, width) if isinstance(field, float) else str(field)
+             for field in fields]
+    # Lines of large fields come in pairs.
+    texts += ([] if small else -len(texts) % 8 * [""])
+    head = name if small else name + "*"
+    for start in range(0, len(texts), count):
+        yield (head.ljust(8) + "".join(text.ljust(width) for text in texts[start:start + count])).rstrip()
+        head = "+" if small else "*"
+
+
+def same(number: float, width: int) -> bool:
+    """Tell whether a field of `width` characters keeps a number as it is."""
+    mantissa, sign, exponent = re.fullmatch(r"(-?[0-9.]+)([+-]?)([0-9]*)", real(number, width)).groups()
+    return float(f"{mantissa}e{sign}{exponent or 0}") == number
+
+
+def real(number: float, width: int) -> str:
+    """Return a real number in at most `width` characters, all its digits if they fit."""
+    shortest = repr(number)
+    for text in (shortest, *(f"{number:.{digits}e}" for digits in range(width, -1, -1))):
+        mantissa, _, exponent = text.partition("e")
+        mantissa = mantissa if "." in mantissa else mantissa + "."
+        whole, _, fraction = mantissa.partition(".")
+        fraction = fraction if text is shortest and not exponent else fraction.rstrip("0")
+        written = f"{whole}.{fraction}" + (f"{int(exponent):+d}" if exponent else "")
+        if len(written) <= width:
+            return written
+    raise ValueError(f"{number} doesn't fit into {width} characters")

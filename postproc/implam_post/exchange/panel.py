@@ -1,0 +1,127 @@
+"""The panel that goes out to other programs: its cells, the plies that hold together in each, its supports."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from implam_post.exchange.degradation import Degradation, told
+from implam_post.laminate import Material, Ply
+
+Cell = tuple[int, int]
+
+
+class Stack(NamedTuple):
+    """Plies `first` to `last` that hold together, from the struck face down, and the modes each has failed in."""
+
+    first: int
+    last: int
+    failures: tuple[int, ...]
+
+
+class MaterialState(NamedTuple):
+    """A material of the deck after some modes of failure."""
+
+    name: str
+    failures: int
+
+    @property
+    def told(self) -> str:
+        """What failed, in words; empty if nothing did."""
+        return told(self.failures)
+
+
+class Layer(NamedTuple):
+    """A ply of a section."""
+
+    material: MaterialState
+    thickness: float
+    angle: float
+
+
+@dataclass(frozen=True)
+class Section:
+    """The plies of a stack and the z of its middle, from that of the whole laminate downwards."""
+
+    layers: tuple[Layer, ...]
+    middle: float
+    first: int
+
+    @property
+    def thickness(self) -> float:
+        """Thickness of the stack."""
+        return sum(layer.thickness for layer in self.layers)
+
+    @property
+    def first_face(self) -> float:
+        """The z of the face nearest to the struck one."""
+        return _plain(self.middle - self.thickness / 2, self.thickness)
+
+    @property
+    def title(self) -> str:
+        """Plies by their numbers and what failed in them."""
+        words = [f"plies {self.first} to {self.first + len(self.layers) - 1}"]
+        words += [f"{number} {layer.material.told}" for number, layer in enumerate(self.layers, self.first)
+                  if layer.material.failures]
+        return ", ".join(words)
+
+
+def _plain(place: float, thickness: float) -> float:
+    """Return a place without the rounding of sums of thicknesses."""
+    return 0.0 if abs(place) < 1e-9 * thickness else float(f"{place:.12g}")
+
+
+@dataclass(frozen=True)
+class Panel:
+    """A rectangular panel about the struck point in its cells; lines are those between cells, in ascending order."""
+
+    name: str
+    plies: Sequence[Ply]
+    x: np.ndarray
+    y: np.ndarray
+    stacks: dict[Cell, tuple[Stack, ...]]
+    edges: Sequence[str]
+    in_plane_fixed: bool
+    degradation: Degradation
+    pressure: float | None = None
+
+    @property
+    def cells(self) -> tuple[int, int]:
+        """Numbers of cells along x and y."""
+        return len(self.x) - 1, len(self.y) - 1
+
+    def section(self, stack: Stack) -> Section:
+        """Return plies and place of a stack."""
+        faces = np.concatenate([[0.0], np.cumsum([ply.thickness for ply in self.plies])])
+        plies = self.plies[stack.first - 1:stack.last]
+        layers = tuple(Layer(MaterialState(ply.material.name, failed), ply.thickness, ply.angle)
+                       for ply, failed in zip(plies, stack.failures, strict=True))
+        middle = (faces[stack.first - 1] + faces[stack.last] - faces[-1]) / 2
+        return Section(layers, _plain(middle, faces[-1]), stack.first)
+
+    def sections(self) -> list[Section]:
+        """Return the sections that occur, the most frequent first: the undamaged one, as a rule."""
+        count: dict[Section, int] = {}
+        for stacks in self.stacks.values():
+            for stack in stacks:
+                section = self.section(stack)
+                count[section] = count.get(section, 0) + 1
+        return sorted(count, key=lambda section: (-len(section.layers), -count[section], section.first))
+
+    def materials(self) -> dict[MaterialState, Material]:
+        """Return the materials that occur with what failures have left of them, undamaged ones first."""
+        originals = {ply.material.name: ply.material for ply in self.plies}
+        states = {MaterialState(name, 0) for name in originals}
+        states |= {layer.material for section in self.sections() for layer in section.layers}
+        order = list(originals)
+        return {state: self.degradation.degraded(originals[state.name], state.failures)
+                for state in sorted(states, key=lambda state: (state.failures, order.index(state.name)))}
+
+    def broken(self, cell: Cell) -> frozenset[int]:
+        """Return the interfaces of a cell that came apart, by the ply above each."""
+        return frozenset(stack.last for stack in self.stacks[cell][:-1])
+
+    def with_pressure(self, pressure: float | None) -> "Panel":
+        """Return the panel under another pressure; none leaves it as it is."""
+        return self if pressure is None else replace(self, pressure=pressure)

@@ -1,0 +1,35 @@
+"""What is to be told of the cards that were read: what of them counts otherwise, or doesn't count."""
+
+from collections.abc import Mapping
+
+from implam_post.exchange.bulk_data import BulkCard, BulkData, ranges
+
+
+class Remarks:
+    """Remarks on cards, equal ones on several cards as one, and on edges."""
+
+    def __init__(self) -> None:
+        """Begin with none."""
+        self._lines: dict[tuple[str, str], set[int]] = {}
+        self._edges: list[str] = []
+
+    def add(self, card: BulkCard, sentence: str) -> None:
+        """Add a remark on a card."""
+        self._lines.setdefault((card.name, sentence), set()).add(card.line)
+
+    def edge(self, edge: str, sentence: str) -> None:
+        """Add a remark on an edge."""
+        self._edges.append(f"edge {edge}: {sentence}")
+
+    def untaken(self, card: BulkCard, names: Mapping[int, str]) -> None:
+        """Add which of these fields of a card are there, for they aren't taken."""
+        for number, name in names.items():
+            if card.given(number):
+                self.add(card, f"{name} isn't taken")
+
+    def told(self, bulk: BulkData) -> list[str]:
+        """Return the remarks in the order of the file, those on edges at the end."""
+        everything = [card.line for card in bulk.cards]
+        found = [(min(lines), f"{name}, {ranges(lines, everything)}: {sentence}")
+                 for (name, sentence), lines in self._lines.items()]
+        return [*(text for _, text in sorted(found)), *self._edges]

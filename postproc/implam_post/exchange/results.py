@@ -1,0 +1,128 @@
+"""Panels out of results (NAME.h5, with the deck it holds) and out of decks."""
+
+from pathlib import Path
+
+import numpy as np
+
+from implam_post.deck import Deck, as_number, read_deck
+from implam_post.errors import FileError, ImplamError
+from implam_post.exchange.degradation import degradation_of
+from implam_post.exchange.panel import Cell, Panel, Stack
+from implam_post.fields import Snapshot, opened, read_fields
+from implam_post.laminate import Ply
+
+_STATES = {"ply_damage": "ply_1_failure", "delamination": "delaminated_above"}
+
+
+def read_panel(path: Path, time: float | None = None) -> Panel:
+    """Return the panel of a NAME.h5 at the time nearest to `time` (none: the last), or of a deck as it begins."""
+    if path.suffix.lower() == ".h5":
+        return _from_results(path, time)
+    if time is not None:
+        raise ImplamError("--time goes with a NAME.h5.")
+    return _from_deck(read_deck(path))
+
+
+def _from_results(path: Path, time: float | None) -> Panel:
+    """Return the panel in the cells of the run, mirrored if a quarter was modelled."""
+    fields = read_fields(path)
+    snapshot = fields.snapshots[-1 if time is None else fields.place(time)]
+    with opened(path) as file:
+        deck = Deck(file["provenance/deck"][()].decode(), path)
+        part = file["part"][()].decode()
+        written = set(file["times"][min(file["times"])].get("cells", {}))
+    if part not in ("whole", "quarter"):
+        raise FileError(f"{path} holds a part of the plate that isn't known here: {part}.")
+    for group, field in _STATES.items():
+        if deck.has(group) and field not in written:
+            raise FileError(f"{path} doesn't hold the state of &{group}: run again with '{group}' among the fields of "
+                            f"&output.")
+    plies = deck.plies()
+    x, y = (_lines(snapshot.mesh.corners[..., axis]) for axis in (0, 1))
+    stacks = _stacks(snapshot, x, y)
+    if fields.quarter:
+        x, y, stacks = _mirrored(x, y, stacks)
+    return _panel(deck, plies, x, y, stacks)
+
+
+def _lines(coordinates: np.ndarray) -> np.ndarray:
+    """Return the coordinates that differ by more than rounding, in ascending order."""
+    ordered = np.sort(coordinates.ravel())
+    return ordered[np.concatenate([[True], np.diff(ordered) > 1e-9 * np.ptp(ordered)])]
+
+
+def _stacks(snapshot: Snapshot, x: np.ndarray, y: np.ndarray) -> dict[Cell, tuple[Stack, ...]]:
+    """Return the stacks of each cell: its layers, joined where their interface holds."""
+    mesh = snapshot.mesh
+    low = mesh.corners.min(axis=1)
+    places = [np.argmin(np.abs(lines - low[:, axis, None]), axis=1) for axis, lines in enumerate((x, y))]
+    stacks: dict[Cell, list[Stack]] = {}
+    for element in np.argsort(mesh.first_ply, kind="stable"):
+        first, last = int(mesh.first_ply[element]), int(mesh.last_ply[element])
+        failures = tuple(int(snapshot.failures[ply][element]) if ply in snapshot.failures else 0
+                         for ply in range(first, last + 1))
+        found = stacks.setdefault((int(places[0][element]), int(places[1][element])), [])
+        if found and not snapshot.delaminated[element]:
+            above = found.pop()
+            first, failures = above.first, above.failures + failures
+        found.append(Stack(first, last, failures))
+    return {cell: tuple(found) for cell, found in stacks.items()}
+
+
+def _mirrored(x: np.ndarray, y: np.ndarray, stacks: dict[Cell, tuple[Stack, ...]]
+              ) -> tuple[np.ndarray, np.ndarray, dict[Cell, tuple[Stack, ...]]]:
+    """Return lines and stacks of the whole plate from those of the quarter x >= 0, y >= 0."""
+    columns, rows = len(x) - 1, len(y) - 1
+    whole = {(column, row): found for (i, j), found in stacks.items()
+             for column in (columns + i, columns - 1 - i) for row in (rows + j, rows - 1 - j)}
+    return np.concatenate([-x[:0:-1], x]), np.concatenate([-y[:0:-1], y]), whole
+
+
+def _from_deck(deck: Deck) -> Panel:
+    """Return the panel in equal cells, as many as the deck's elements make on the whole plate; starters are apart."""
+    plies = deck.plies()
+    lengths, elements = deck.lengths(), deck.numbers("mesh", "elements")
+    if len(elements) != 2 or min(elements) < 1 or any(count % 1 for count in elements):
+        raise deck.error("mesh", "elements needs two whole numbers greater than zero.")
+    parts = 2 if deck.choice("plate", "symmetry", ("none", "quarter")) == "quarter" else 1
+    x, y = (np.linspace(-length / 2, length / 2, parts * int(count) + 1)
+            for length, count in zip(lengths, elements, strict=True))
+    starters = _starters(deck, len(plies))
+    stacks = {}
+    for i, column in enumerate(_in_reach(x)):
+        for j, row in enumerate(_in_reach(y)):
+            apart = [ply for ply, side in starters if max(column, row) <= side / 2]
+            ends = [*sorted(apart), len(plies)]
+            stacks[i, j] = tuple(Stack(above + 1, end, (end - above) * (0,))
+                                 for above, end in zip([0, *ends], ends, strict=False))
+    return _panel(deck, plies, x, y, stacks)
+
+
+def _in_reach(lines: np.ndarray) -> np.ndarray:
+    """Return how far the middle of each cell is from the struck point; 0 for the cells that touch it."""
+    middles = (lines[1:] + lines[:-1]) / 2
+    touching = (lines[1:] >= -1e-9 * lines[-1]) & (lines[:-1] <= 1e-9 * lines[-1])
+    return np.where(touching, 0.0, np.abs(middles))
+
+
+def _starters(deck: Deck, plies: int) -> list[tuple[int, float]]:
+    """Return ply above and side of each starter delamination."""
+    found = []
+    for group in deck.groups.get("delamination", []):
+        where = f"{deck.path.name}: &delamination"
+        below_ply = as_number(group.get("below_ply", [0.0])[0], f"{where} below_ply")
+        if below_ply not in range(1, plies):
+            raise deck.error("delamination", f"below_ply needs a whole number from 1 to {plies - 1}.")
+        side = np.sqrt(0.0005 * np.prod(deck.lengths()))
+        found.append((int(below_ply), as_number(group.get("starter", [side])[0], f"{where} starter")))
+    return found
+
+
+def _panel(deck: Deck, plies: list[Ply], x: np.ndarray, y: np.ndarray, stacks: dict[Cell, tuple[Stack, ...]]) -> Panel:
+    """Put the panel together with what the deck says of supports and load."""
+    if unknown := [edge for edge in deck.edges() if edge not in ("clamped", "simple", "free")]:
+        raise deck.error("plate", f"edges = '{unknown[0]}' is none of clamped, simple, free.")
+    fixed = deck.choice("plate", "in_plane", ("fixed", "free")) == "fixed"
+    uniform = deck.has("pressure") and deck.choice("pressure", "distribution", ("uniform", "sine")) == "uniform"
+    return Panel(deck.name, plies, x, y, stacks, deck.edges(), fixed, degradation_of(deck),
+                 deck.number("pressure", "value") if uniform else None)

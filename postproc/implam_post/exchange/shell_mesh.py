@@ -1,0 +1,126 @@
+"""Grids and elements of a panel: one grid where the plies hold together, coincident ones where they came apart."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from implam_post.exchange.panel import Cell, Panel, Stack
+
+# Places of the corners and sides of a cell in its 3 by 3 nodes: counter-clockwise, the sides after the corners.
+EIGHT = ((0, 0), (2, 0), (2, 2), (0, 2), (1, 0), (2, 1), (1, 2), (0, 1))
+Place = tuple[int, int]
+
+
+class Element(NamedTuple):
+    """A stack over a cell and its 3 by 3 grids, the first index along x."""
+
+    stack: Stack
+    grids: tuple[tuple[int, int, int], ...]
+
+    @property
+    def eight(self) -> list[int]:
+        """Corners and sides, counter-clockwise from the corner of least x and y."""
+        return [self.grids[i][j] for i, j in EIGHT]
+
+    @property
+    def quarters(self) -> list[list[int]]:
+        """Corners of the four quadrilaterals that make up the cell, each as `eight` has them."""
+        return [[self.grids[i][j], self.grids[i + 1][j], self.grids[i + 1][j + 1], self.grids[i][j + 1]]
+                for j in (0, 1) for i in (0, 1)]
+
+
+@dataclass(frozen=True)
+class ShellMesh:
+    """Grids by their numbers from 1, elements of the struck face first, and the grids that share each support.
+
+    Supports are digits of the components held: 1 to 3 along x, y and z, 4 to 6 about them.
+    """
+
+    coordinates: np.ndarray
+    elements: list[Element]
+    struck: int
+    supports: dict[str, list[int]]
+
+
+def shell_mesh(panel: Panel, with_middles: bool) -> ShellMesh:
+    """Number the grids line by line and build the elements; `with_middles` keeps the grid amid each cell."""
+    numbers, coordinates = _numbered(panel, with_middles)
+    elements = [_element(cell, stack, numbers) for cell, stacks in sorted(panel.stacks.items()) for stack in stacks]
+    elements.sort(key=lambda element: element.stack.first > 1)
+    struck = sum(element.stack.first == 1 for element in elements)
+    return ShellMesh(np.array(coordinates), elements, struck, _supports(panel, numbers))
+
+
+def _numbered(panel: Panel, with_middles: bool) -> tuple[dict[Place, dict[int, int]], list[tuple[float, float]]]:
+    """Return the grid that each first ply of a stack has at each place, and the coordinates of the grids.
+
+    At the edge of a delamination, where some cell around still holds together, so does the grid.
+    """
+    x, y = (_halved(lines) for lines in (panel.x, panel.y))
+    numbers: dict[Place, dict[int, int]] = {}
+    coordinates: list[tuple[float, float]] = []
+    for j in range(len(y)):
+        for i in range(len(x)):
+            if i % 2 and j % 2 and not with_middles:
+                continue
+            apart = frozenset.intersection(*(panel.broken(cell) for cell in _around(panel, i, j)))
+            numbers[i, j] = {}
+            for first in (1, *(below + 1 for below in sorted(apart))):
+                coordinates.append((float(x[i]), float(y[j])))
+                numbers[i, j][first] = len(coordinates)
+    return numbers, coordinates
+
+
+def _halved(lines: np.ndarray) -> np.ndarray:
+    """Return the lines with one in the middle between each two."""
+    halved = np.empty(2 * len(lines) - 1)
+    halved[::2], halved[1::2] = lines, (lines[1:] + lines[:-1]) / 2
+    return halved
+
+
+def _around(panel: Panel, i: int, j: int) -> list[Cell]:
+    """Return the cells that a place belongs to."""
+    along, across = ([place for place in {(line - 1) // 2, line // 2} if 0 <= place < count]
+                     for line, count in zip((i, j), panel.cells, strict=True))
+    return [(column, row) for column in along for row in across]
+
+
+def _element(cell: Cell, stack: Stack, numbers: dict[Place, dict[int, int]]) -> Element:
+    """Return the element of a stack: at each place the lowest grid that isn't below the stack's top; 0 if none."""
+    def grid(place: Place) -> int:
+        at = numbers.get(place, {})
+        return at[max(first for first in at if first <= stack.first)] if at else 0
+
+    return Element(stack, tuple(tuple(grid((2 * cell[0] + i, 2 * cell[1] + j)) for j in range(3)) for i in range(3)))
+
+
+def _supports(panel: Panel, numbers: dict[Place, dict[int, int]]) -> dict[str, list[int]]:
+    """Return the grids on the edges by what is held there."""
+    held: dict[int, set[str]] = {}
+    last = tuple(2 * count for count in panel.cells)
+    for place, grids in numbers.items():
+        for number, edge in enumerate(panel.edges):
+            axis, far = divmod(number, 2)
+            if place[axis] == (last[axis] if far else 0):
+                for grid in grids.values():
+                    held.setdefault(grid, set()).update(held_by_edge(edge, axis, panel.in_plane_fixed))
+    if not any("1" in components for components in held.values()):
+        held.setdefault(numbers[0, 0][1], set()).update("12")
+        held.setdefault(numbers[last[0], 0][1], set()).add("2")
+    supports: dict[str, list[int]] = {}
+    for grid, components in sorted(held.items()):
+        if components:
+            supports.setdefault("".join(sorted(components)), []).append(grid)
+    return supports
+
+
+def held_by_edge(edge: str, axis: int, in_plane_fixed: bool) -> str:
+    """Return the components that an edge holds whose normal is x (`axis` 0) or y (1).
+
+    A simple support holds the rotation of the normal along the edge, which turns about the edge's own normal.
+    """
+    if edge == "free":
+        return ""
+    turns = "45" if edge == "clamped" else "45"[axis]
+    return ("12" if in_plane_fixed else "") + "3" + turns

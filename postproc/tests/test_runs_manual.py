@@ -1,0 +1,57 @@
+"""The worked examples of the manual are run, and give what the manual says."""
+
+import csv
+import re
+import shutil
+import tempfile
+import unittest
+from pathlib import Path
+
+from implam_post import regress, sweep
+from implam_post.sweep_plan import COLUMNS
+from tests.program import ROOT, SMALL, implam, run_quietly
+
+# Figures of the manual are rounded.
+TOLERANCE = 2e-3
+
+
+class ManualTest(unittest.TestCase):
+    """Each test has a folder, and runs the first TOML of a page."""
+
+    def setUp(self) -> None:
+        """Make the folder."""
+        self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
+
+    def write_example(self, page: str, deck: str, name: str) -> str:
+        """Put a page's example beside its deck; return the text of the page."""
+        text = (ROOT / "doc" / "manual" / page).read_text(encoding="utf-8")
+        shutil.copy(SMALL / deck, self.folder)
+        (self.folder / name).write_text(re.search(r"^```toml\n(.*?)^```", text, re.DOTALL | re.MULTILINE)[1])
+        return text
+
+    def test_sweep(self) -> None:
+        """The table has the rows and figures of the page."""
+        text = self.write_example("sweeps.md", "damage.nml", "energies.toml")
+        code, said = run_quietly(sweep.main, self.folder / "energies.toml", "--program", implam(), "--jobs", 2)
+        self.assertEqual(code, 0, said)
+        lines = re.search(r"^\| laminate\.angles \|.*?\n\n", text, re.DOTALL | re.MULTILINE)[0].strip().splitlines()
+        cells = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines]
+        with (self.folder / "energies" / "table.csv").open(newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(len(rows), len(cells) - 2)
+        for row, told in zip(rows, cells[2:], strict=True):
+            self.assertEqual(row["laminate.angles"], told[0])
+            for name, value in list(zip(cells[0], told, strict=True))[1:]:
+                self.assertAlmostEqual(float(row[name]) / float(value), 1, delta=TOLERANCE, msg=f"{told} {name}")
+        described = set(re.findall(r"`(\w+)`", text[text.index("## The table"):]))
+        self.assertEqual(set(COLUMNS) - described, set())
+
+    def test_regression(self) -> None:
+        """The example passes, and the line of the page is one of its table."""
+        text = self.write_example("regression.md", "ply_damage.nml", "ply_damage.toml")
+        code, said = run_quietly(regress.main, self.folder, "--program", implam(), "--output", self.folder / "runs")
+        self.assertEqual((code, said.count(" pass")), (0, 4), said)
+        heading, line = re.search(r"^```text\n(.*?)\n```", text, re.DOTALL | re.MULTILINE)[1].splitlines()
+        words = line.split()
+        self.assertIn(heading.split(), [one.split() for one in said.splitlines()])
+        self.assertTrue(any(one.split()[:3] == words[:3] and one.endswith("pass") for one in said.splitlines()), said)

@@ -1,0 +1,56 @@
+!> Name and title of the case: rows of the deck's table and their filling.
+module case_deck
+  use deck_settings, only: settings_t
+  use deck_vocabulary, only: group_row_length, key_row_length
+  use text, only: lower_case
+  implicit none
+  private
+  public :: fill_case
+
+  !> Name of the group.
+  character(len=*), parameter :: group = 'case'
+  !> Row of the group.
+  character(len=group_row_length), parameter, public :: case_group_row = &
+    'case | settings | The case: its name, its title and the strains used.'
+  !> Rows of the keys.
+  character(len=key_row_length), parameter, public :: case_rows(*) = [character(len=key_row_length) :: &
+    'case | name | name | 1 | - | = the deck''s file name | letters, digits, . _ - | &
+      &Names the output files.', &
+    'case | title | text | 1 | - | '''' | any text | &
+      &Free text kept with the results.']
+
+contains
+
+  !> Name and title; a case without a name is named after its deck.
+  subroutine fill_case(settings, source, name, title)
+    !> Keys in effect; gets the name that the deck doesn't give
+    type(settings_t), intent(inout) :: settings
+    !> Path of the deck
+    character(len=*), intent(in) :: source
+    !> Name of the case, which names its files
+    character(len=:), allocatable, intent(out) :: name
+    !> Title of the case
+    character(len=:), allocatable, intent(out) :: title
+
+    if (.not. settings%is_known(group, 'name')) call settings%derive(group, 'name', name_from(source), .true.)
+    name = settings%text_of(group, 'name')
+    title = settings%text_of(group, 'title')
+  end subroutine fill_case
+
+  !> File name of a path without folders and extension; characters that a case name can't have become _.
+  pure function name_from(path) result(name)
+    !> The path
+    character(len=*), intent(in) :: path
+    !> Name of the case
+    character(len=:), allocatable :: name
+    integer :: i
+
+    name = path(index(path, '/', back=.true.) + 1:)
+    if (index(name, '.', back=.true.) > 1) name = name(:index(name, '.', back=.true.) - 1)
+    name = name(:min(len(name), 80))
+    do i = 1, len(name)
+      if (verify(lower_case(name(i:i)), 'abcdefghijklmnopqrstuvwxyz0123456789._-') > 0) name(i:i) = '_'
+    end do
+    if (verify(name(:min(1, len(name))), '._-') == 0) name = 'case'//name
+  end function name_from
+end module case_deck

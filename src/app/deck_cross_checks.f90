@@ -1,0 +1,229 @@
+!> Checks across the groups of a deck: whether what it asks for can be modelled and makes sense together. Checks within
+!> a group stand beside its rows, those of sizes against each other in `deck_extents`.
+!> A check whose keys are already at fault is left out, so that one fault is told once.
+module deck_cross_checks
+  use adapt_deck, only: adapt_group, key_growth_step
+  use deck_contents, only: deck_t
+  use deck_problems, only: problems_t
+  use deck_remarks, only: tell, remark, remark_idle, are_clear
+  use delamination_deck, only: delamination_group, key_below_ply
+  use delamination_parameters, only: growth_one_per_step, interface_objection
+  use hou_criteria, only: missing_strengths
+  use impactor_deck, only: impactor_group, key_velocity, key_radius, key_gravity
+  use indentation_deck, only: indentation_group, key_k
+  use kinds, only: wp
+  use laminate_parameters, only: shear_five_sixths
+  use material_deck, only: material_group, require_densities
+  use material_parameters, only: material_t
+  use mesh_deck, only: mesh_group, key_patch
+  use mesh_parameters, only: symmetry_quarter
+  use output_deck, only: check_intervals, remark_idle_fields
+  use plate_deck, only: plate_group, key_symmetry, check_supports
+  use plies, only: ply_t, material_objection
+  use ply_damage_parameters, only: ply_damage_t, criteria_hou
+  use pressure_deck, only: pressure_group, key_history
+  use stacking, only: stacked_plies, section_stiffness
+  use static_deck, only: static_group
+  use text, only: line_t, append, joined, words_of
+  use time_deck, only: time_group
+  implicit none
+  private
+  public :: check_across_groups
+
+  !> Coupling stiffness that counts as none, relative to the stiffness it couples.
+  real(wp), parameter :: no_coupling = 1.0e-9_wp
+
+contains
+
+  !> All checks across groups but those of sizes.
+  subroutine check_across_groups(deck, problems)
+    !> The deck, filled
+    type(deck_t), intent(in) :: deck
+    !> Faults and remarks are added
+    type(problems_t), intent(inout) :: problems
+
+    call check_loads(deck, problems)
+    if (deck%has_static) then
+      call check_static(deck, problems)
+    else
+      call check_transient(deck, problems)
+    end if
+    call check_symmetry(deck, problems)
+    call check_impact(deck, problems)
+    call check_interfaces(deck, problems)
+    if (deck%has_ply_damage) call check_strengths(deck, problems)
+    call remark_idle_fields(deck%settings, deck%output, size(deck%delaminations) > 0, deck%has_ply_damage, problems)
+  end subroutine check_across_groups
+
+  !> Is there a load, and one only?
+  subroutine check_loads(deck, problems)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+
+    if (deck%has_static .and. deck%has_impactor) then
+      call tell(deck%settings, problems, static_group, '', 'an impactor needs time; leave out &static or &impactor.')
+    else if (deck%has_static .and. .not. (deck%has_pressure .or. problems%concern(pressure_group))) then
+      call tell(deck%settings, problems, static_group, '', 'there is no load; give &pressure.')
+    else if (.not. (deck%has_static .or. deck%has_impactor .or. deck%has_pressure .or. &
+                    problems%concern(static_group) .or. problems%concern(impactor_group) .or. &
+                    problems%concern(pressure_group))) then
+      call problems%error(0, pressure_group, '', 'nothing loads the plate; give &impactor or &pressure.')
+    end if
+  end subroutine check_loads
+
+  !> What a static analysis needs, and what has no effect on it.
+  subroutine check_static(deck, problems)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Faults and remarks are added
+    type(problems_t), intent(inout) :: problems
+
+    call check_supports(deck%settings, deck%plate, problems)
+    if (deck%has_time) call remark(deck%settings, problems, time_group, '', 'has no effect on a static analysis.')
+    call remark_idle(deck%settings, problems, pressure_group, key_history, 'has no effect on a static analysis.')
+    if (.not. problems%concern(static_group)) &
+      call check_intervals(deck%settings, 1.0_wp/deck%stepping%static_steps, 1.0_wp, problems)
+    if (size(deck%delaminations) > 0) call remark(deck%settings, problems, delamination_group, '', &
+                                                  'in a static analysis the starter does not grow.')
+  end subroutine check_static
+
+  !> What a run in time needs, and what has no effect on it.
+  subroutine check_transient(deck, problems)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Faults and remarks are added
+    type(problems_t), intent(inout) :: problems
+
+    if (problems%concern(static_group)) return
+    if (.not. (deck%has_time .or. problems%concern(time_group))) call problems%error(0, time_group, '', &
+      '&time is missing; give end and step, or &static for load steps in equilibrium.')
+    call require_densities(deck%settings, problems)
+    if (.not. deck%has_time) return
+    if (.not. problems%concern(time_group)) &
+      call check_intervals(deck%settings, deck%stepping%time%step, deck%stepping%time%end, problems)
+    if (size(deck%delaminations) > 0 .and. all(deck%delaminations%growth == growth_one_per_step)) return
+    call remark_idle(deck%settings, problems, adapt_group, key_growth_step, &
+                     'has no effect without growth = ''one_per_step''.')
+  end subroutine check_transient
+
+  !> A laminate that a quarter of the plate can stand for.
+  subroutine check_symmetry(deck, problems)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+
+    if (deck%plate%symmetry /= symmetry_quarter) return
+    if (is_coupled(deck)) call tell(deck%settings, problems, plate_group, key_symmetry, 'the laminate couples '// &
+      'bending or extension with shear or twist (A16, A26, B16, B26, D16, D26 or A45 isn''t 0), so a quarter '// &
+      'can''t stand for the plate; use ''none''.')
+  end subroutine check_symmetry
+
+  !> True: the laminate is clear and not symmetric about both axes of the plate.
+  pure logical function is_coupled(deck)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    type(ply_t), allocatable :: plies(:)
+    real(wp) :: stiffness(21), thickness, scales(7)
+    integer :: i
+
+    is_coupled = .false.
+    associate (laminate => deck%laminate)
+      if (.not. (allocated(laminate%angle) .and. allocated(laminate%thickness))) return
+      if (.not. allocated(laminate%material)) return
+      if (any([(material_objection(deck%materials(laminate%material(i))) /= '', i=1, size(laminate%material))])) return
+      plies = stacked_plies(laminate, deck%materials)
+      thickness = sum(laminate%thickness)
+    end associate
+    stiffness = section_stiffness(plies, plies%elasticity, shear_five_sixths)
+    scales(1:2) = maxval(stiffness(1:6))
+    scales(3:4) = scales(1)*thickness
+    scales(5:6) = scales(1)*thickness**2
+    scales(7) = maxval(stiffness(19:21))
+    is_coupled = any(abs(stiffness([3, 5, 9, 11, 15, 17, 20])) > no_coupling*scales)
+  end function is_coupled
+
+  !> Impactor, its patch and its contact stiffness.
+  subroutine check_impact(deck, problems)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Faults and remarks are added
+    type(problems_t), intent(inout) :: problems
+
+    associate (s => deck%settings)
+      if (.not. deck%has_impactor) then
+        if (deck%has_indentation .and. .not. problems%concern(impactor_group)) &
+          call remark(s, problems, indentation_group, '', 'has no effect without an impactor.')
+        return
+      end if
+      if (deck%mesh%patch <= 0 .and. s%has_group(mesh_group) .and. are_clear(s, problems, mesh_group, key_patch)) &
+        call tell(s, problems, mesh_group, key_patch, 'an impactor needs a loaded patch; give its side > 0.')
+      if (.not. (s%is_given(indentation_group, key_k) .or. s%is_given(impactor_group, key_radius)) .and. &
+          are_clear(s, problems, indentation_group, key_k) .and. are_clear(s, problems, impactor_group, key_radius)) &
+        call tell(s, problems, impactor_group, key_radius, &
+                  'is missing; give it, or the contact stiffness &indentation k.')
+      if (deck%impactor%velocity <= 0 .and. deck%impactor%gravity <= 0 .and. .not. deck%has_pressure .and. &
+          .not. problems%concern(pressure_group) .and. &
+          are_clear(s, problems, impactor_group, key_velocity//' '//key_gravity)) &
+        call tell(s, problems, impactor_group, key_velocity, &
+                  'nothing moves the impactor towards the plate; give a velocity or gravity > 0.')
+    end associate
+  end subroutine check_impact
+
+  !> Interfaces that lie within the laminate.
+  subroutine check_interfaces(deck, problems)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    integer :: place
+
+    if (.not. allocated(deck%laminate%angle)) return
+    do place = 1, size(deck%delaminations)
+      if (.not. are_clear(deck%settings, problems, delamination_group, key_below_ply, place)) cycle
+      if (interface_objection(deck%delaminations(place), size(deck%laminate%angle)) /= '') &
+        call tell(deck%settings, problems, delamination_group, '', &
+                  interface_objection(deck%delaminations(place), size(deck%laminate%angle))//'.', place)
+    end do
+  end subroutine check_interfaces
+
+  !> Strengths that the failure criteria need. Those given with another fault are left out.
+  subroutine check_strengths(deck, problems)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    type(line_t), allocatable :: needed(:), missing(:)
+    integer :: i, j
+
+    do i = 1, size(deck%materials)
+      needed = words_of(strengths_missing(deck%ply_damage, deck%materials(i)), ',')
+      allocate (missing(0))
+      do j = 1, size(needed)
+        if (needed(j)%text == '') cycle
+        if (are_clear(deck%settings, problems, material_group, needed(j)%text, i)) call append(missing, needed(j)%text)
+      end do
+      if (size(missing) > 0) call tell(deck%settings, problems, material_group, '', 'ply damage needs the '// &
+        'strengths '//joined(missing, ', ')//'; give them or leave &ply_damage out.', i)
+      deallocate (missing)
+    end do
+  end subroutine check_strengths
+
+  !> Names of the strengths that the chosen criteria need and a material lacks.
+  pure function strengths_missing(damage, material) result(names)
+    !> Damage of the plies
+    type(ply_damage_t), intent(in) :: damage
+    !> The material
+    type(material_t), intent(in) :: material
+    !> Separated by commas; empty: it has all
+    character(len=:), allocatable :: names
+
+    names = ''
+    select case (damage%criteria)
+    case (criteria_hou)
+      names = missing_strengths(material)
+    end select
+  end function strengths_missing
+end module deck_cross_checks

@@ -1,0 +1,203 @@
+!> Interfaces of the deck that may delaminate: rows of its table, filling and checks.
+module delamination_deck
+  use deck_choices, only: code_of
+  use deck_problems, only: problems_t
+  use deck_remarks, only: tell, remark_idle, are_clear
+  use deck_settings, only: settings_t
+  use deck_vocabulary, only: group_row_length, key_row_length
+  use delamination_parameters, only: delamination_t, default_starter, toughness_objection, release_two_state, &
+                                     release_vcct, growth_equilibrium, growth_one_per_step, tie_eliminate, &
+                                     tie_penalty, contact_augmented_lagrangian, contact_continuous_penalty, &
+                                     contact_none, unloading_contact, unloading_glued, account_debts, account_balance
+  use kinds, only: wp
+  use text, only: to_text
+  implicit none
+  private
+  public :: fill_delaminations, check_delaminations
+
+  !> Names that checks across groups use.
+  character(len=*), parameter, public :: delamination_group = 'delamination', key_below_ply = 'below_ply', &
+                                         key_zone = 'zone', key_starter = 'starter'
+  character(len=*), parameter :: group = delamination_group
+  !> Row of the group.
+  character(len=group_row_length), parameter, public :: delamination_group_row = &
+    'delamination | several | An interface that may delaminate; one group an interface.'
+  !> Rows of the keys.
+  character(len=key_row_length), parameter, public :: delamination_rows(*) = [character(len=key_row_length) :: &
+    'delamination | below_ply | integer | 1 | - | required | >= 1, <= 1000 | &
+      &The interface lies below this ply, counted from the struck face.', &
+    'delamination | G_c | real | 1 | energy/area | none | > 0 | &
+      &Critical energy release rate of every mode; given instead of G_Ic and G_IIc.', &
+    'delamination | G_Ic | real | 1 | energy/area | none | > 0 | &
+      &Critical energy release rate of pure opening.', &
+    'delamination | G_IIc | real | 1 | energy/area | none | > 0 | &
+      &Critical energy release rate of pure shear.', &
+    'delamination | eta | real | 1 | - | 1.75 | > 0, <= 10 | &
+      &Exponent of Benzeggagh and Kenane between opening and shear.', &
+    'delamination | zone | real | 2 | length | required | > 0 | &
+      &Full extents of the layered rectangle along x and y, centred on the struck point.', &
+    'delamination | starter | real | 1 | length | = 0.05 % of the plate | > 0 | &
+      &Side of the square starter delamination, centred on the struck point.', &
+    'delamination | energy_release | choice | 1 | - | ''vcct'' | two_state vcct | &
+      &Energy release rate: Eq. 11 with its sign put right, or virtual crack closure.', &
+    'delamination | growth | choice | 1 | - | ''equilibrium'' | equilibrium one_per_step | &
+      &Release at a frozen time until no front is above G_c, or one cell a step.', &
+    'delamination | tie | choice | 1 | - | ''eliminate'' | eliminate penalty | &
+      &Intact faces: exactly joined, or by penalty springs as in the paper.', &
+    'delamination | penalty | real | 1 | pressure/length | = from E2 | > 0 | &
+      &Stiffness of penalty ties; left out: a million times E2 over the thinner layer.', &
+    'delamination | contact | choice | 1 | - | ''augmented_lagrangian'' | &
+      &augmented_lagrangian continuous_penalty none | Contact of separated faces.', &
+    'delamination | contact_exponent | real | 1 | - | 1 | >= 1, <= 2 | &
+      &Exponent q of the continuous penalty (Eq. 12).', &
+    'delamination | unloading | choice | 1 | - | ''contact'' | contact glued | &
+      &While the impactor rebounds: real contact, or separated faces move together (Eq. 13b).', &
+    'delamination | account | choice | 1 | - | ''debts'' | debts balance | &
+      &Energy owed raises what the next cell must offer; with balance, energy in excess lowers it.']
+
+contains
+
+  !> All interfaces, in the order of the deck.
+  subroutine fill_delaminations(settings, length, delaminations)
+    !> Keys in effect; gets what the deck doesn't give
+    type(settings_t), intent(inout) :: settings
+    !> Lengths of the plate, for the usual starter
+    real(wp), intent(in) :: length(2)
+    !> Receives them
+    type(delamination_t), allocatable, intent(out) :: delaminations(:)
+    integer :: place
+
+    allocate (delaminations(settings%groups_named(group)))
+    do place = 1, size(delaminations)
+      call fill_delamination(settings, place, default_starter(length), delaminations(place))
+    end do
+  end subroutine fill_delaminations
+
+  !> One interface.
+  subroutine fill_delamination(settings, place, starter, delamination)
+    !> Keys in effect; gets what the deck doesn't give
+    type(settings_t), intent(inout) :: settings
+    !> Which of the groups
+    integer, intent(in) :: place
+    !> Side of the starter unless the deck gives it
+    real(wp), intent(in) :: starter
+    !> Receives it
+    type(delamination_t), intent(inout) :: delamination
+
+    if (.not. settings%is_given(group, key_starter, place)) &
+      call settings%derive(group, key_starter, to_text(starter), .false., place)
+    associate (s => settings, d => delamination)
+      d%below_ply = s%integer_of(group, key_below_ply, place)
+      d%toughness = s%real_of(group, 'G_c', place)
+      d%toughness_opening = s%real_of(group, 'G_Ic', place)
+      d%toughness_shear = s%real_of(group, 'G_IIc', place)
+      d%mixing_exponent = s%real_of(group, 'eta', place)
+      if (s%is_known(group, key_zone, place)) d%zone = s%reals_of(group, key_zone, place)
+      d%starter = starter
+      if (s%is_given(group, key_starter, place)) d%starter = s%real_of(group, key_starter, place)
+      d%penalty_stiffness = s%real_of(group, 'penalty', place)
+      d%contact_exponent = s%real_of(group, 'contact_exponent', place)
+    end associate
+    call fill_choices(settings, place, delamination)
+  end subroutine fill_delamination
+
+  !> The choices of one interface.
+  subroutine fill_choices(settings, place, delamination)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+    !> Which of the groups
+    integer, intent(in) :: place
+    !> Receives them
+    type(delamination_t), intent(inout) :: delamination
+
+    associate (s => settings, d => delamination)
+      d%energy_release = code_of(s%text_of(group, 'energy_release', place), 'two_state vcct', &
+                                 [release_two_state, release_vcct])
+      d%growth = code_of(s%text_of(group, 'growth', place), 'equilibrium one_per_step', &
+                         [growth_equilibrium, growth_one_per_step])
+      d%tie = code_of(s%text_of(group, 'tie', place), 'eliminate penalty', [tie_eliminate, tie_penalty])
+      d%contact = code_of(s%text_of(group, 'contact', place), 'augmented_lagrangian continuous_penalty none', &
+                          [contact_augmented_lagrangian, contact_continuous_penalty, contact_none])
+      d%unloading = code_of(s%text_of(group, 'unloading', place), 'contact glued', [unloading_contact, unloading_glued])
+      d%account = code_of(s%text_of(group, 'account', place), 'debts balance', [account_debts, account_balance])
+    end associate
+  end subroutine fill_choices
+
+  !> Each interface by itself, and their order.
+  subroutine check_delaminations(settings, delaminations, problems)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+    !> The interfaces
+    type(delamination_t), intent(in) :: delaminations(:)
+    !> Faults and remarks are added
+    type(problems_t), intent(inout) :: problems
+    integer :: place
+
+    do place = 1, size(delaminations)
+      call check_toughness(settings, delaminations(place), place, problems)
+      call remark_idle_keys(settings, delaminations(place), place, problems)
+      if (delaminations(place)%starter >= minval(delaminations(place)%zone) .and. &
+          are_clear(settings, problems, group, key_zone//' '//key_starter, place)) &
+        call tell(settings, problems, group, '', 'the starter must be smaller than the zone.', place)
+    end do
+    do place = 2, size(delaminations)
+      if (delaminations(place)%below_ply <= delaminations(place - 1)%below_ply .and. &
+          are_clear(settings, problems, group, key_below_ply, place) .and. &
+          are_clear(settings, problems, group, key_below_ply, place - 1)) &
+        call tell(settings, problems, group, key_below_ply, 'is not below the interface of the group before; give '// &
+                  'each interface once, in order from the struck face.', place)
+    end do
+  end subroutine check_delaminations
+
+  !> Toughnesses that go together, and that the energy release rate can be held against.
+  subroutine check_toughness(settings, delamination, place, problems)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+    !> The interface
+    type(delamination_t), intent(in) :: delamination
+    !> Which of the groups
+    integer, intent(in) :: place
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+
+    if (.not. are_clear(settings, problems, group, 'G_c G_Ic G_IIc', place)) return
+    if (toughness_objection(delamination) /= '') then
+      call tell(settings, problems, group, '', toughness_objection(delamination)//'.', place)
+    else if (delamination%energy_release == release_two_state .and. delamination%toughness <= 0) then
+      call tell(settings, problems, group, 'energy_release', 'Eq. 11 does not part the modes; give G_c, or take '// &
+                '''vcct''.', place)
+    end if
+  end subroutine check_toughness
+
+  !> What an interface asks for but has no effect.
+  subroutine remark_idle_keys(settings, delamination, place, problems)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+    !> The interface
+    type(delamination_t), intent(in) :: delamination
+    !> Which of the groups
+    integer, intent(in) :: place
+    !> Remarks are added
+    type(problems_t), intent(inout) :: problems
+
+    associate (d => delamination)
+      if (d%toughness > 0) call idle('eta', 'as G_c is given')
+      if (d%tie /= tie_penalty) call idle('penalty', 'without tie = ''penalty''')
+      if (d%contact /= contact_continuous_penalty) &
+        call idle('contact_exponent', 'without contact = ''continuous_penalty''')
+      if (d%growth /= growth_equilibrium) call idle('account', 'without growth = ''equilibrium''')
+    end associate
+
+  contains
+
+    !> Remarks on one key.
+    subroutine idle(key, reason)
+      !> The key
+      character(len=*), intent(in) :: key
+      !> Why it changes nothing
+      character(len=*), intent(in) :: reason
+
+      call remark_idle(settings, problems, group, key, 'has no effect '//reason//'.', place)
+    end subroutine idle
+  end subroutine remark_idle_keys
+end module delamination_deck

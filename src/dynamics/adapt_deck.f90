@@ -1,0 +1,49 @@
+!> Adaptive steps and refactorization in the deck: rows of its table and their filling.
+module adapt_deck
+  use deck_choices, only: code_of
+  use deck_settings, only: settings_t
+  use deck_vocabulary, only: group_row_length, key_row_length
+  use stepping_parameters, only: adapt_t, refactor_deflection, refactor_iterations
+  implicit none
+  private
+  public :: fill_adapt
+
+  !> Names that checks across groups use.
+  character(len=*), parameter, public :: adapt_group = 'adapt', key_growth_step = 'growth_step'
+  !> Row of the group.
+  character(len=group_row_length), parameter, public :: adapt_group_row = &
+    'adapt | settings | Adaptive time step and the rule for renewing the factored stiffness.'
+  !> Rows of the keys.
+  character(len=key_row_length), parameter, public :: adapt_rows(*) = [character(len=key_row_length) :: &
+    'adapt | on | logical | 1 | - | .true. | .true. .false. | &
+      &Whether the time step follows the stress rate at the struck point; left-out group: .false.', &
+    'adapt | refactor | choice | 1 | - | ''iterations'' | deflection iterations | &
+      &What renews the factored stiffness: the deflection''s growth, or slow convergence.', &
+    'adapt | stiffness_update | real | 1 | - | 0.003 | > 0, <= 10 | &
+      &Growth of the struck point''s deflection that renews it, as a fraction of the thickness.', &
+    'adapt | stress_change | real | 1 | - | 0.05 | > 0, <= 1 | &
+      &Change of the struck point''s stress wanted in a step, as a fraction of its largest so far.', &
+    'adapt | iterations | integer | 1 | - | 16 | >= 1, <= 1000 | &
+      &Iterations lost to an old factored stiffness that pay for a new one.', &
+    'adapt | growth_step | real | 1 | - | 0.25 | > 0, <= 1 | &
+      &Smallest part of a step to which growth = ''one_per_step'' shortens it; 1: not at all.']
+
+contains
+
+  !> Adaptivity; without the group the step stays as it is.
+  subroutine fill_adapt(settings, adapt)
+    !> Keys in effect; gets what holds without the group
+    type(settings_t), intent(inout) :: settings
+    !> Receives them
+    type(adapt_t), intent(inout) :: adapt
+
+    if (.not. settings%has_group(adapt_group)) call settings%derive(adapt_group, 'on', '.false.', .false.)
+    adapt%on = settings%logical_of(adapt_group, 'on')
+    adapt%refactor = code_of(settings%text_of(adapt_group, 'refactor'), 'deflection iterations', &
+                             [refactor_deflection, refactor_iterations])
+    adapt%stiffness_update = settings%real_of(adapt_group, 'stiffness_update')
+    adapt%stress_change = settings%real_of(adapt_group, 'stress_change')
+    adapt%iterations = settings%integer_of(adapt_group, 'iterations')
+    adapt%growth_step = settings%real_of(adapt_group, key_growth_step)
+  end subroutine fill_adapt
+end module adapt_deck

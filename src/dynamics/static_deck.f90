@@ -1,0 +1,30 @@
+!> Load steps of a static analysis in the deck: rows of its table and their filling.
+module static_deck
+  use deck_settings, only: settings_t
+  use deck_vocabulary, only: group_row_length, key_row_length
+  implicit none
+  private
+  public :: fill_static
+
+  !> Name that checks across groups use.
+  character(len=*), parameter, public :: static_group = 'static'
+  !> Row of the group.
+  character(len=group_row_length), parameter, public :: static_group_row = &
+    'static | optional | Load steps in equilibrium instead of time; takes the pressure as load.'
+  !> Rows of the keys.
+  character(len=key_row_length), parameter, public :: static_rows(*) = [character(len=key_row_length) :: &
+    'static | steps | integer | 1 | - | 1 | >= 1, <= 100000 | &
+      &Equal steps in which the load is put on.']
+
+contains
+
+  !> Load steps.
+  subroutine fill_static(settings, steps)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+    !> Their number
+    integer, intent(out) :: steps
+
+    steps = settings%integer_of(static_group, 'steps')
+  end subroutine fill_static
+end module static_deck

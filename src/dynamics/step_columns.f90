@@ -1,0 +1,108 @@
+!> What the history tells of an accepted step: motion, energies, the step itself and its iterations. The energies are
+!> defined in doc/manual/energy_ledger.md.
+module step_columns
+  use kinds, only: wp
+  use energy_ledgers, only: ledger_t
+  use result_tables, only: result_row_length
+  use states, only: state_t
+  implicit none
+  private
+  public :: motion_values, ledger_values, step_values, iteration_values
+
+  !> Motion of impactor and plate. These columns and their order are the public interface.
+  character(len=result_row_length), parameter, public :: motion_rows(*) = [character(len=result_row_length) :: &
+    'time | real | time | Time at the end of the step; in a static analysis the load over the full load.', &
+    'step | integer | - | Accepted steps so far.', &
+    'force | real | force | Contact force between impactor and plate, positive where they press on each other.', &
+    'indentation | real | length | Displacement of the impactor less the mean deflection of the patch; &
+      &negative: a gap.', &
+    'impactor_displacement | real | length | Displacement of the impactor towards the plate since first touch.', &
+    'impactor_velocity | real | length/time | Velocity of the impactor, positive towards the plate.', &
+    'deflection | real | length | Deflection of the struck point on the struck side, positive along the impact.']
+
+  !> The energy ledger. These columns and their order are the public interface.
+  character(len=result_row_length), parameter, public :: ledger_rows(*) = [character(len=result_row_length) :: &
+    'energy_impactor | real | energy | Kinetic energy of the impactor and its potential in gravity; the latter is 0 at &
+      &first touch.', &
+    'energy_kinetic | real | energy | Kinetic energy of the plate.', &
+    'energy_strain | real | energy | Strain energy of the plate with the stiffness that failures have left.', &
+    'energy_indentation | real | energy | Work of the contact force on the indentation so far, stored and lost.', &
+    'energy_delamination | real | energy | Fracture energy of the delaminated cells: critical energy release &
+      &rate times area.', &
+    'energy_ply_damage | real | energy | Strain energy lost as failures of plies took stiffness away.', &
+    'energy_contact | real | energy | Work done against contact of separated faces and against penalty ties.', &
+    'energy_algorithmic | real | energy | Energy that integrators and fading ties took out of the motion, less &
+      &energy_delamination.', &
+    'energy_error | real | energy | What the ledger fails to account for: the sum of the eight energies before less &
+      &work_external and the energy at the start.']
+
+  !> The rest of the state and the length of the step.
+  character(len=result_row_length), parameter, public :: step_rows(*) = [character(len=result_row_length) :: &
+    'patch_deflection | real | length | Mean deflection of the patch, positive along the impact.', &
+    'work_external | real | energy | Work of the pressure so far.', &
+    'step_length | real | time | Length of the step; 0 in a static analysis.', &
+    'stress | real | pressure | Bending stress 6 M/h^2 of the undamaged laminate around the struck point, which the &
+      &adaptive step follows.']
+
+  !> Iterations.
+  character(len=result_row_length), parameter, public :: iteration_rows(*) = [character(len=result_row_length) :: &
+    'iterations | integer | - | Corrections of the displacement in the step; after growth those of its last &
+      &computation.', &
+    'force_iterations | integer | - | Newton and bisection steps for the contact force in the step, &
+      &counted likewise.', &
+    'contact_iterations | integer | - | Rounds of contact pressures in the step that had something to &
+      &settle, counted likewise.', &
+    'total_iterations | integer | - | Sum of iterations over the accepted steps.', &
+    'total_force_iterations | integer | - | Sum of force_iterations over the accepted steps.', &
+    'total_contact_iterations | integer | - | Sum of contact_iterations over the accepted steps.', &
+    'rejected | integer | - | Steps tried in vain so far; each was tried again with half its length.']
+
+contains
+
+  !> Motion of impactor and plate.
+  pure function motion_values(now) result(values)
+    !> The state reached
+    type(state_t), intent(in) :: now
+    !> A value a column
+    real(wp) :: values(size(motion_rows))
+
+    values = [now%time, real(now%step, wp), now%force, now%indentation%alpha, now%impactor%displacement, &
+              now%impactor%velocity, now%deflection]
+  end function motion_values
+
+  !> The energy ledger.
+  pure function ledger_values(ledger) result(values)
+    !> The ledger
+    type(ledger_t), intent(in) :: ledger
+    !> A value a column
+    real(wp) :: values(size(ledger_rows))
+
+    values = [ledger%impactor, ledger%kinetic, ledger%strain, ledger%indentation, ledger%delamination, &
+              ledger%ply_damage, ledger%contact, ledger%algorithmic, ledger%error()]
+  end function ledger_values
+
+  !> The rest of the state and the length of the step.
+  pure function step_values(now, length) result(values)
+    !> The state reached
+    type(state_t), intent(in) :: now
+    !> Length of the last step
+    real(wp), intent(in) :: length
+    !> A value a column
+    real(wp) :: values(size(step_rows))
+
+    values = [now%patch_mean, now%ledger%external_work, length, now%stress]
+  end function step_values
+
+  !> Iterations.
+  pure function iteration_values(now, rejected) result(values)
+    !> The state reached
+    type(state_t), intent(in) :: now
+    !> Steps tried in vain
+    integer, intent(in) :: rejected
+    !> A value a column
+    real(wp) :: values(size(iteration_rows))
+
+    values = real([now%iterations, now%force_iterations, now%contact_iterations, now%all_iterations, &
+                   now%all_force_iterations, now%all_contact_iterations, rejected], wp)
+  end function iteration_values
+end module step_columns

@@ -1,0 +1,116 @@
+!> Time integration of the plate in the deck: rows of its table, filling and checks.
+module time_deck
+  use deck_choices, only: code_of
+  use deck_problems, only: problems_t
+  use deck_remarks, only: tell, remark_idle, are_clear
+  use deck_settings, only: settings_t
+  use deck_vocabulary, only: group_row_length, key_row_length
+  use kinds, only: wp
+  use stepping_parameters, only: time_t, integrator_newmark, integrator_generalized_alpha
+  use text, only: to_text
+  implicit none
+  private
+  public :: fill_time, check_time
+
+  !> Name that checks across groups use.
+  character(len=*), parameter, public :: time_group = 'time'
+  !> Row of the group.
+  character(len=group_row_length), parameter, public :: time_group_row = &
+    'time | optional | Time integration of the plate; needed unless the analysis is static.'
+  !> Rows of the keys.
+  character(len=key_row_length), parameter, public :: time_rows(*) = [character(len=key_row_length) :: &
+    'time | end | real | 1 | time | required | > 0 | &
+      &End of the run.', &
+    'time | step | real | 1 | time | required | > 0 | &
+      &First time step, and the step if it doesn''t adapt.', &
+    'time | step_min | real | 1 | time | = step/1024 | > 0 | &
+      &Smallest step tried before giving up.', &
+    'time | step_max | real | 1 | time | = step | > 0 | &
+      &Largest step taken.', &
+    'time | wall_limit | real | 1 | s | none | > 0 | &
+      &Seconds on the wall by which the run ends with a checkpoint; --wall-limit overrides it.', &
+    'time | integrator | choice | 1 | - | ''generalized_alpha'' | newmark generalized_alpha | &
+      &Time integrator of the plate.', &
+    'time | beta | real | 1 | - | 0.25 | > 0, <= 1 | &
+      &Newmark''s beta; 2 beta >= gamma keeps every step stable.', &
+    'time | gamma | real | 1 | - | 0.5 | >= 0.5, <= 1 | &
+      &Newmark''s gamma; above 0.5 it damps.', &
+    'time | rho_inf | real | 1 | - | = 1, with &delamination 0 | >= 0, <= 1 | &
+      &Generalised-alpha''s spectral radius at high frequency: 1 damps nothing, 0 most.']
+
+  !> Most steps of a run: more pass the range of default integers.
+  real(wp), parameter :: most_steps = 1.0e8_wp
+
+contains
+
+  !> Time integration of the plate.
+  subroutine fill_time(settings, layers_separate, time)
+    !> Keys in effect; gets what the deck doesn't give
+    type(settings_t), intent(inout) :: settings
+    !> True: layers of the plate may separate, which takes damping
+    logical, intent(in) :: layers_separate
+    !> Receives them
+    type(time_t), intent(inout) :: time
+
+    associate (s => settings)
+      time%end = s%real_of(time_group, 'end')
+      time%step = s%real_of(time_group, 'step')
+      if (.not. s%is_given(time_group, 'step_min')) &
+        call s%derive(time_group, 'step_min', to_text(time%step/1024), .false.)
+      if (.not. s%is_given(time_group, 'step_max')) call s%derive(time_group, 'step_max', to_text(time%step), .false.)
+      time%step_min = s%real_of(time_group, 'step_min')
+      time%step_max = s%real_of(time_group, 'step_max')
+      time%wall_limit = s%real_of(time_group, 'wall_limit')
+      time%integrator = code_of(s%text_of(time_group, 'integrator'), 'newmark generalized_alpha', &
+                                [integrator_newmark, integrator_generalized_alpha])
+      time%beta = s%real_of(time_group, 'beta')
+      time%gamma = s%real_of(time_group, 'gamma')
+      if (.not. s%is_given(time_group, 'rho_inf')) &
+        call s%derive(time_group, 'rho_inf', merge('0', '1', layers_separate), .false.)
+      time%rho_infinity = s%real_of(time_group, 'rho_inf')
+    end associate
+  end subroutine fill_time
+
+  !> Steps against each other, and the integrator's parameters.
+  subroutine check_time(settings, time, problems)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+    !> Time integration
+    type(time_t), intent(in) :: time
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+
+    if (clear('step end')) then
+      if (time%step > time%end) then
+        call tell(settings, problems, time_group, 'step', 'is longer than the run; allowed: up to end = '// &
+                  to_text(time%end)//'.')
+      else if (time%end > most_steps*time%step) then
+        call tell(settings, problems, time_group, 'step', 'makes more than '//to_text(most_steps)//' steps; '// &
+                  'allowed: from '//to_text(time%end/most_steps)//'.')
+      end if
+    end if
+    if (time%step_min > time%step .and. clear('step step_min')) call tell(settings, problems, time_group, 'step_min', &
+      'is larger than the first step; allowed: up to step = '//to_text(time%step)//'.')
+    if (time%step_max < time%step .and. clear('step step_max')) call tell(settings, problems, time_group, 'step_max', &
+      'is smaller than the first step; allowed: from step = '//to_text(time%step)//'.')
+    if (.not. clear('integrator')) return
+    if (time%integrator == integrator_newmark) then
+      if (2*time%beta < time%gamma .and. clear('beta gamma')) call tell(settings, problems, time_group, 'beta', &
+        'the plate''s motion would be unstable; allowed: from gamma/2 = '//to_text(time%gamma/2)//'.')
+      call remark_idle(settings, problems, time_group, 'rho_inf', 'has no effect with integrator = ''newmark''.')
+    else if (time%integrator == integrator_generalized_alpha) then
+      call remark_idle(settings, problems, time_group, 'beta gamma', &
+                       'has no effect with integrator = ''generalized_alpha''.')
+    end if
+
+  contains
+
+    !> True: none of some keys has a fault.
+    logical function clear(keys)
+      !> Names of keys, separated by blanks
+      character(len=*), intent(in) :: keys
+
+      clear = are_clear(settings, problems, time_group, keys)
+    end function clear
+  end subroutine check_time
+end module time_deck

@@ -1,0 +1,84 @@
+!> Hertz' contact of a sphere with a plate, F = k alpha**1.5, and Sun's formula for k on a laminate.
+module hertz_contact
+  use kinds, only: wp
+  implicit none
+  private
+  public :: hertz_force, hertz_stiffness, mean_power, sun_stiffness
+
+  !> Exponent of the law
+  real(wp), parameter, public :: hertz_exponent = 1.5_wp
+
+contains
+
+  !> Contact force.
+  elemental real(wp) function hertz_force(k, alpha) result(force)
+    !> Contact stiffness, force per length**1.5
+    real(wp), intent(in) :: k
+    !> Indentation, at least 0
+    real(wp), intent(in) :: alpha
+
+    force = k*alpha**hertz_exponent
+  end function hertz_force
+
+  !> Derivative of the contact force by the indentation.
+  elemental real(wp) function hertz_stiffness(k, alpha) result(stiffness)
+    !> Contact stiffness, force per length**1.5
+    real(wp), intent(in) :: k
+    !> Indentation, at least 0
+    real(wp), intent(in) :: alpha
+
+    stiffness = hertz_exponent*k*sqrt(alpha)
+  end function hertz_stiffness
+
+  !> Contact stiffness k of a sphere on a plate, (4/3) sqrt(R) / ((1 - nu**2)/E + c) (Sun and Yang).
+  pure function sun_stiffness(radius, struck_compliance, impactor_e, impactor_nu) result(k)
+    !> Radius of the impactor's nose
+    real(wp), intent(in) :: radius
+    !> What the struck ply gives way, c: 1/E2 of its transverse modulus; on an isotropic plate Hertz' (1 - nu**2)/E
+    real(wp), intent(in) :: struck_compliance
+    !> Young's modulus of the impactor; absent: rigid
+    real(wp), intent(in), optional :: impactor_e
+    !> Poisson's ratio of the impactor; absent: 0
+    real(wp), intent(in), optional :: impactor_nu
+    !> Contact stiffness, force per length**1.5
+    real(wp) :: k
+    real(wp) :: compliance, nu
+
+    compliance = struck_compliance
+    nu = 0
+    if (present(impactor_nu)) nu = impactor_nu
+    if (present(impactor_e)) compliance = compliance + (1 - nu**2)/impactor_e
+    k = 4*sqrt(radius)/(3*compliance)
+  end function sun_stiffness
+
+  !> Mean of x**exponent over an interval of positive numbers. Short intervals are summed as a
+  !> binomial series about the middle, since the difference of powers would cancel.
+  pure function mean_power(lower, upper, exponent) result(mean)
+    !> Start of the interval, at least 0
+    real(wp), intent(in) :: lower
+    !> End of the interval, larger than `lower` or equal
+    real(wp), intent(in) :: upper
+    !> Exponent
+    real(wp), intent(in) :: exponent
+    !> Mean
+    real(wp) :: mean
+    real(wp) :: middle, ratio, term, total
+    integer :: order
+
+    middle = 0.5_wp*(lower + upper)
+    ratio = 0.5_wp*(upper - lower)/middle
+    if (ratio > 0.25_wp) then
+      mean = (upper**(exponent + 1) - lower**(exponent + 1))/((exponent + 1)*(upper - lower))
+      return
+    end if
+    term = 1
+    total = 1
+    order = 0
+    do while (abs(term) > epsilon(term))
+      term = term*ratio**2*(exponent - order)*(exponent - order - 1)/real((order + 1)*(order + 2), wp)
+      order = order + 2
+      total = total + term/(order + 1)
+    end do
+    mean = middle**exponent*total
+  end function mean_power
+end module hertz_contact

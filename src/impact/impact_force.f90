@@ -1,0 +1,194 @@
+!> The impact force of a step: the one scalar unknown that ties impactor and plate together.
+module impact_force
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+  use errors, only: error_t, fail, exit_internal
+  use impact_parameters, only: indentation_law_t
+  use tan_sun_indentation, only: indentation_t, touch_indentation, indentation_force, indentation_stiffness, &
+                                 mean_indentation_force, indentation_work
+  use kinds, only: wp
+  implicit none
+  private
+  public :: solve_impact_force
+
+  !> Never reached: the worst found is 154, at a compliance of 1e100 (usual steps need 3 to 6).
+  integer, parameter :: most_iterations = 500
+
+contains
+
+  !> Finds the force x with alpha_end = alpha_free - compliance*x, where x is the contact force at
+  !> alpha_end or, for `mean_force`, the mean over the indentations from alpha_start to alpha_end.
+  !> Either is a non-decreasing function of alpha_end, so there is exactly one such force.
+  subroutine solve_impact_force(law, state, alpha_start, alpha_free, compliance, mean_force, &
+                                 x, alpha_end, force_end, iterations, error)
+    !> Indentation law
+    type(indentation_law_t), intent(in) :: law
+    !> Committed state of the contact
+    type(indentation_t), intent(in) :: state
+    !> Indentation at the start of the step
+    real(wp), intent(in) :: alpha_start
+    !> Indentation at the end of the step for a zero force
+    real(wp), intent(in) :: alpha_free
+    !> Fall of the indentation at the end of the step per unit of force, of impactor plus plate
+    real(wp), intent(in) :: compliance
+    !> Whether the unknown is the mean force
+    logical, intent(in) :: mean_force
+    !> The unknown
+    real(wp), intent(out) :: x
+    !> Indentation at the end of the step
+    real(wp), intent(out) :: alpha_end
+    !> Contact force at the end of the step
+    real(wp), intent(out) :: force_end
+    !> Newton and bisection steps taken
+    integer, intent(out) :: iterations
+    !> Raised if the input isn't finite or the compliance negative
+    type(error_t), allocatable, intent(inout) :: error
+    real(wp) :: touch
+
+    x = 0
+    force_end = 0
+    alpha_end = alpha_free
+    iterations = 0
+    if (.not. (all(ieee_is_finite([alpha_start, alpha_free, compliance, law%k, state%alpha_max, state%dent])) &
+               .and. compliance >= 0)) then
+      call fail(error, exit_internal, 'The contact force was asked for with a number that is not finite or negative.')
+      return
+    end if
+    touch = touch_indentation(law, state)
+    if (touch - alpha_free + compliance*force_of_step(law, state, alpha_start, touch, mean_force) >= 0) then
+      if (mean_force) call release(law, state, alpha_start, touch, compliance, x, alpha_end)
+    else
+      call solve_in_contact(law, state, alpha_start, alpha_free, compliance, mean_force, touch, &
+                            x, alpha_end, iterations)
+      force_end = indentation_force(law, state, alpha_end)
+    end if
+  end subroutine solve_impact_force
+
+  !> The step ends out of contact, where the work is that of the whole way down to zero force: a
+  !> quadratic equation for the way.
+  pure subroutine release(law, state, alpha_start, touch, compliance, x, alpha_end)
+    !> Indentation law
+    type(indentation_law_t), intent(in) :: law
+    !> Committed state of the contact
+    type(indentation_t), intent(in) :: state
+    !> Indentation at the start of the step
+    real(wp), intent(in) :: alpha_start
+    !> Indentation of zero force
+    real(wp), intent(in) :: touch
+    !> Fall of the indentation per unit of force
+    real(wp), intent(in) :: compliance
+    !> Mean force
+    real(wp), intent(out) :: x
+    !> On entry that for a zero force, on return the indentation at the end of the step
+    real(wp), intent(inout) :: alpha_end
+    real(wp) :: work, way, root
+
+    x = 0
+    if (alpha_start <= touch) return
+    work = indentation_work(law, state, touch, alpha_start)
+    way = alpha_start - alpha_end
+    root = hypot(way, 2*sqrt(compliance)*sqrt(work))
+    if (way >= 0) then
+      way = 0.5_wp*(way + root)
+    else
+      way = 2*compliance*work/(root - way)
+    end if
+    x = work/way
+    alpha_end = alpha_end - compliance*x
+  end subroutine release
+
+  !> Newton's iteration on the indentation, kept inside an interval that holds the solution.
+  pure subroutine solve_in_contact(law, state, alpha_start, alpha_free, compliance, mean_force, touch, &
+                                   x, alpha_end, iterations)
+    !> Indentation law
+    type(indentation_law_t), intent(in) :: law
+    !> Committed state of the contact
+    type(indentation_t), intent(in) :: state
+    !> Indentation at the start of the step
+    real(wp), intent(in) :: alpha_start
+    !> Indentation at the end of the step for a zero force
+    real(wp), intent(in) :: alpha_free
+    !> Fall of the indentation per unit of force
+    real(wp), intent(in) :: compliance
+    !> Whether the unknown is the mean force
+    logical, intent(in) :: mean_force
+    !> Indentation of zero force, below the solution
+    real(wp), intent(in) :: touch
+    !> The unknown
+    real(wp), intent(out) :: x
+    !> Indentation at the end of the step
+    real(wp), intent(out) :: alpha_end
+    !> Steps taken
+    integer, intent(out) :: iterations
+    real(wp) :: lower, upper, residual, next, newton, change, change_before
+
+    lower = touch
+    upper = alpha_free
+    alpha_end = upper
+    change_before = upper - lower
+    change = change_before
+    do iterations = 0, most_iterations
+      x = force_of_step(law, state, alpha_start, alpha_end, mean_force)
+      residual = alpha_end - alpha_free + compliance*x
+      if (abs(residual) <= 2*epsilon(residual)*(abs(alpha_end) + abs(alpha_free))) exit
+      if (residual > 0) upper = alpha_end
+      if (residual < 0) lower = alpha_end
+      newton = alpha_end - residual/(1 + compliance*slope_of_step(law, state, alpha_start, alpha_end, mean_force, x))
+      next = 0.5_wp*(lower + upper)
+      if (newton > lower .and. newton < upper .and. 2*abs(newton - alpha_end) <= change_before) next = newton
+      if (abs(next - alpha_end) <= epsilon(next)*abs(next)) exit
+      change_before = change
+      change = abs(next - alpha_end)
+      alpha_end = next
+    end do
+  end subroutine solve_in_contact
+
+  !> Force of a step that ends at a given indentation.
+  pure function force_of_step(law, state, alpha_start, alpha_end, mean_force) result(x)
+    !> Indentation law
+    type(indentation_law_t), intent(in) :: law
+    !> Committed state of the contact
+    type(indentation_t), intent(in) :: state
+    !> Indentation at the start of the step
+    real(wp), intent(in) :: alpha_start
+    !> Indentation at its end
+    real(wp), intent(in) :: alpha_end
+    !> Whether the mean force is meant
+    logical, intent(in) :: mean_force
+    !> Force
+    real(wp) :: x
+
+    if (mean_force) then
+      x = mean_indentation_force(law, state, alpha_start, alpha_end)
+    else
+      x = indentation_force(law, state, alpha_end)
+    end if
+  end function force_of_step
+
+  !> Derivative of `force_of_step` by the indentation at the end. That of the mean loses digits
+  !> for short ways, where half the stiffness is as good for Newton's iteration.
+  pure function slope_of_step(law, state, alpha_start, alpha_end, mean_force, x) result(slope)
+    !> Indentation law
+    type(indentation_law_t), intent(in) :: law
+    !> Committed state of the contact
+    type(indentation_t), intent(in) :: state
+    !> Indentation at the start of the step
+    real(wp), intent(in) :: alpha_start
+    !> Indentation at its end
+    real(wp), intent(in) :: alpha_end
+    !> Whether the mean force is meant
+    logical, intent(in) :: mean_force
+    !> Force of the step
+    real(wp), intent(in) :: x
+    !> Force per length
+    real(wp) :: slope
+    real(wp), parameter :: short_way = 1e-6_wp
+
+    slope = indentation_stiffness(law, state, alpha_end)
+    if (.not. mean_force) return
+    if (abs(alpha_end - alpha_start) > short_way*abs(alpha_end)) then
+      slope = (indentation_force(law, state, alpha_end) - x)/(alpha_end - alpha_start)
+    else
+      slope = 0.5_wp*slope
+    end if
+  end function slope_of_step
+end module impact_force

@@ -1,0 +1,258 @@
+!> Contact force between impactor and struck face as a function of the indentation (Eq. 3 of the
+!> paper), with the reloading branch that Eq. 3 lacks and all energies in closed form.
+!>
+!> For a given committed state the force is one continuous, non-decreasing function of the
+!> indentation: zero up to the dent, a power law from the dent to the largest indentation so far,
+!> and F = k alpha**1.5 beyond it. The power is `q` as long as the bodies have not separated, so a
+!> reversal during contact runs back up the unloading curve, and `reload` after a separation. The
+!> reloading curve is run back the way it came: a second contact that doesn't reach the largest
+!> indentation is elastic. Energy is never created if 1.5 <= reload <= q, see `check_indentation` of the deck.
+module tan_sun_indentation
+  use archives, only: archive_t
+  use hertz_contact, only: hertz_exponent, hertz_force, hertz_stiffness, mean_power
+  use impact_parameters, only: indentation_law_t, law_hertz, law_tan_sun, dent_yang_sun
+  use kinds, only: wp
+  implicit none
+  private
+  public :: indentation_t, touch_indentation, indentation_force, indentation_stiffness, mean_indentation_force, &
+            indentation_work, stiffening, commit_indentation
+
+  !> What the contact remembers; changes only when a step is accepted.
+  type :: indentation_t
+    !> Indentation of the last accepted step (impactor displacement minus patch-mean deflection;
+    !> negative: a gap)
+    real(wp) :: alpha = 0
+    !> Largest indentation so far
+    real(wp) :: alpha_max = 0
+    !> Force at the largest indentation
+    real(wp) :: force_max = 0
+    !> Permanent dent: the indentation at which the force vanishes
+    real(wp) :: dent = 0
+    !> True once the bodies have separated after the largest indentation: reloading applies
+    logical :: separated = .false.
+    !> Work the contact force has done on the indentation so far (stored and dissipated)
+    real(wp) :: work = 0
+  contains
+    !> Saves or loads the state
+    procedure :: visit => visit_indentation
+  end type indentation_t
+
+  !> The power law between dent and largest indentation: force_max * s**exponent, s from 0 to 1.
+  type :: branch_t
+    !> Indentation at which the force vanishes
+    real(wp) :: start = 0
+    !> Indentation at which loading takes over
+    real(wp) :: finish = 0
+    !> Force at `finish`
+    real(wp) :: force = 0
+    !> Exponent
+    real(wp) :: exponent = hertz_exponent
+  end type branch_t
+
+contains
+
+  !> Indentation below which the contact force is zero.
+  pure function touch_indentation(law, state) result(touch)
+    !> The law
+    type(indentation_law_t), intent(in) :: law
+    !> Committed state
+    type(indentation_t), intent(in) :: state
+    !> The dent, or 0
+    real(wp) :: touch
+    type(branch_t) :: branch
+
+    branch = current_branch(law, state)
+    touch = branch%start
+  end function touch_indentation
+
+  !> Contact force.
+  pure function indentation_force(law, state, alpha) result(force)
+    !> The law
+    type(indentation_law_t), intent(in) :: law
+    !> Committed state
+    type(indentation_t), intent(in) :: state
+    !> Indentation, reached in one direction from the committed one
+    real(wp), intent(in) :: alpha
+    !> Force, zero or positive
+    real(wp) :: force
+    type(branch_t) :: branch
+
+    branch = current_branch(law, state)
+    if (alpha <= branch%start) then
+      force = 0
+    else if (alpha <= branch%finish) then
+      force = branch%force*position(branch, alpha)**branch%exponent
+    else
+      force = hertz_force(law%k, alpha)
+    end if
+  end function indentation_force
+
+  !> Derivative of the contact force; at the largest indentation that of the branch below it.
+  pure function indentation_stiffness(law, state, alpha) result(stiffness)
+    !> The law
+    type(indentation_law_t), intent(in) :: law
+    !> Committed state
+    type(indentation_t), intent(in) :: state
+    !> Indentation
+    real(wp), intent(in) :: alpha
+    !> Force per length, zero or positive
+    real(wp) :: stiffness
+    type(branch_t) :: branch
+
+    branch = current_branch(law, state)
+    if (alpha <= branch%start) then
+      stiffness = 0
+    else if (alpha <= branch%finish) then
+      stiffness = branch%exponent*branch%force/(branch%finish - branch%start) &
+                  *position(branch, alpha)**(branch%exponent - 1)
+    else
+      stiffness = hertz_stiffness(law%k, alpha)
+    end if
+  end function indentation_stiffness
+
+  !> Mean of the contact force over the indentations from one to another, free of cancellation
+  !> however close they are; the force itself if they are equal.
+  pure function mean_indentation_force(law, state, alpha_from, alpha_to) result(mean)
+    !> The law
+    type(indentation_law_t), intent(in) :: law
+    !> Committed state
+    type(indentation_t), intent(in) :: state
+    !> Indentation at one end of the path
+    real(wp), intent(in) :: alpha_from
+    !> Indentation at the other end
+    real(wp), intent(in) :: alpha_to
+    !> Mean force
+    real(wp) :: mean
+    type(branch_t) :: branch
+    real(wp) :: least, most, lower, upper
+
+    least = min(alpha_from, alpha_to)
+    most = max(alpha_from, alpha_to)
+    mean = 0
+    if (.not. most > least) then
+      mean = indentation_force(law, state, most)
+      return
+    end if
+    branch = current_branch(law, state)
+    lower = max(least, branch%start)
+    upper = min(most, branch%finish)
+    if (upper > lower) mean = branch%force*(upper - lower)/(most - least) &
+                              *mean_power(position(branch, lower), position(branch, upper), branch%exponent)
+    lower = max(least, branch%finish)
+    if (most > lower) mean = mean + law%k*(most - lower)/(most - least)*mean_power(lower, most, hertz_exponent)
+  end function mean_indentation_force
+
+  !> Work of the contact force along a path that doesn't turn.
+  pure function indentation_work(law, state, alpha_from, alpha_to) result(work)
+    !> The law
+    type(indentation_law_t), intent(in) :: law
+    !> Committed state
+    type(indentation_t), intent(in) :: state
+    !> Indentation at the start of the path
+    real(wp), intent(in) :: alpha_from
+    !> Indentation at its end
+    real(wp), intent(in) :: alpha_to
+    !> Integral of the force over the indentation, exact
+    real(wp) :: work
+
+    work = mean_indentation_force(law, state, alpha_from, alpha_to)*(alpha_to - alpha_from)
+  end function indentation_work
+
+  !> Bound on the ratio of the present contact stiffness to that of loading at the same indentation.
+  pure function stiffening(law, state) result(ratio)
+    !> The law
+    type(indentation_law_t), intent(in) :: law
+    !> Committed state
+    type(indentation_t), intent(in) :: state
+    !> At least 1; the steepest point is the top of the unloading or reloading curve
+    real(wp) :: ratio
+    type(branch_t) :: branch
+
+    branch = current_branch(law, state)
+    ratio = 1
+    if (branch%finish > branch%start) &
+      ratio = branch%exponent/hertz_exponent*branch%finish/(branch%finish - branch%start)
+  end function stiffening
+
+  !> Accepts a new indentation, reached in one direction from the committed one.
+  pure subroutine commit_indentation(law, state, alpha)
+    !> The law
+    type(indentation_law_t), intent(in) :: law
+    !> State to be moved on
+    type(indentation_t), intent(inout) :: state
+    !> New indentation
+    real(wp), intent(in) :: alpha
+
+    state%work = state%work + indentation_work(law, state, state%alpha, alpha)
+    if (alpha > state%alpha_max) then
+      state%alpha_max = alpha
+      state%force_max = hertz_force(law%k, alpha)
+      state%dent = permanent_dent(law, alpha)
+      state%separated = .false.
+    else if (alpha <= state%dent) then
+      state%separated = .true.
+    end if
+    state%alpha = alpha
+  end subroutine commit_indentation
+
+  !> Saves or loads the state.
+  subroutine visit_indentation(self, archive)
+    !> The state
+    class(indentation_t), intent(inout) :: self
+    !> Where the state is saved to or loaded from
+    class(archive_t), intent(inout) :: archive
+
+    call archive%item('indentation/alpha', self%alpha)
+    call archive%item('indentation/alpha_max', self%alpha_max)
+    call archive%item('indentation/force_max', self%force_max)
+    call archive%item('indentation/dent', self%dent)
+    call archive%item('indentation/separated', self%separated)
+    call archive%item('indentation/work', self%work)
+  end subroutine visit_indentation
+
+  !> Unloading or reloading curve, whichever applies; empty for Hertz and before the first touch.
+  pure function current_branch(law, state) result(branch)
+    !> The law
+    type(indentation_law_t), intent(in) :: law
+    !> Committed state
+    type(indentation_t), intent(in) :: state
+    !> The curve
+    type(branch_t) :: branch
+
+    if (law%law /= law_tan_sun) return
+    branch%start = state%dent
+    branch%finish = state%alpha_max
+    branch%force = state%force_max
+    branch%exponent = merge(law%reload, law%q, state%separated)
+  end function current_branch
+
+  !> Place on a curve, 0 at its start and 1 at its end.
+  pure function position(branch, alpha) result(s)
+    !> The curve
+    type(branch_t), intent(in) :: branch
+    !> Indentation on it
+    real(wp), intent(in) :: alpha
+    !> Place
+    real(wp) :: s
+
+    s = (alpha - branch%start)/(branch%finish - branch%start)
+  end function position
+
+  !> Dent that unloading from an indentation leaves (Tan and Sun 1985; Yang and Sun 1982).
+  pure function permanent_dent(law, alpha_max) result(dent)
+    !> The law
+    type(indentation_law_t), intent(in) :: law
+    !> Largest indentation
+    real(wp), intent(in) :: alpha_max
+    !> Dent
+    real(wp) :: dent
+
+    dent = 0
+    if (law%law == law_hertz .or. alpha_max <= law%alpha_critical) return
+    if (law%dent == dent_yang_sun) then
+      dent = alpha_max*(1 - (law%alpha_critical/alpha_max)**0.4_wp)
+    else
+      dent = law%beta*(alpha_max - law%alpha_critical)
+    end if
+  end function permanent_dent
+end module tan_sun_indentation

@@ -1,0 +1,123 @@
+!> What the field file holds of the interfaces. What belongs to an interface stands in the layer below it.
+module interface_fields
+  use contact_and_ties, only: contact_and_ties_t
+  use errors, only: error_t
+  use fields_file, only: fields_file_t
+  use front_energy_release, only: front_energy_release_t, release_along_front
+  use interface_states, only: interface_state_t
+  use kinds, only: wp
+  use models, only: model_t
+  use motions, only: motion_t
+  use output_parameters, only: output_t, field_gap, field_contact_pressure, field_delamination, field_energy_release
+  use result_tables, only: result_row_length
+  implicit none
+  private
+  public :: write_interface_fields
+
+  !> The fields. A new one comes with its writing below, and touches no other folder but the choices of &output.
+  character(len=result_row_length), parameter, public :: interface_field_rows(*) = &
+    [character(len=result_row_length) :: &
+    'jump | points | length | '//field_gap//' | &delamination | Displacement below less that above the interface on &
+      &top of a layer; its z is the gap.', &
+    'contact_pressure | points | pressure | '//field_contact_pressure//' | &delamination | Contact pressure in the &
+      &interface on top of a layer.', &
+    'delaminated_above | cells | - | '//field_delamination//' | &delamination | 1 in elements whose interface on top &
+      &has come apart, else 0.', &
+    'energy_release_above | cells | - | '//field_energy_release//' | &delamination | G/G_c of the interface on top in &
+      &the intact elements next to a front, 0 elsewhere.']
+
+contains
+
+  !> Writes the fields that are wanted.
+  subroutine write_interface_fields(model, stiffness, interfaces, motion, output, fields, error)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Section stiffness left in the elements, (lanes, 21, batches)
+    real(wp), intent(in) :: stiffness(:, :, :)
+    !> The interfaces
+    type(interface_state_t), intent(in) :: interfaces
+    !> Motion with its forces
+    type(motion_t), intent(in) :: motion
+    !> Which fields
+    type(output_t), intent(in) :: output
+    !> The file
+    type(fields_file_t), intent(inout) :: fields
+    !> Set if the file cannot be written
+    type(error_t), allocatable, intent(inout) :: error
+
+    if (.not. model%map%layered) return
+    associate (faces => interfaces%faces)
+      if (output%wants(field_gap)) call fields%write_point_field('jump', jumps(model, motion%displacement), error)
+      if (output%wants(field_contact_pressure)) &
+        call fields%write_point_field('contact_pressure', reshape(faces%pressure, [1, size(faces%pressure)]), error)
+      if (output%wants(field_delamination)) &
+        call fields%write_cell_field('delaminated_above', delaminated_above(model, faces), error)
+      if (output%wants(field_energy_release)) &
+        call fields%write_cell_field('energy_release_above', release_ahead(model, stiffness, faces, motion), error)
+    end associate
+  end subroutine write_interface_fields
+
+  !> Jumps of the faces above each point's layer.
+  pure function jumps(model, displacement)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Unknowns, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> Jumps of u, v and w, zero in the first layer, (3, points)
+    real(wp), allocatable :: jumps(:, :)
+
+    jumps = merge(displacement(1:3, :), 0.0_wp, spread(model%zone > 0, 1, 3))
+  end function jumps
+
+  !> 1 in elements whose interface above has come apart.
+  pure function delaminated_above(model, faces) result(delaminated)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> What has come apart
+    type(contact_and_ties_t), intent(in) :: faces
+    !> 1 or 0, (1, elements)
+    real(wp), allocatable :: delaminated(:, :)
+    integer :: zone, i, cell
+
+    allocate (delaminated(1, model%elements%elements), source=0.0_wp)
+    do i = 1, model%elements%elements
+      associate (mesh => model%mesh, element => model%distribution%elements(i))
+        cell = mesh%element_cell(element) - 1
+        do zone = 1, size(mesh%zones)
+          if (mesh%zones(zone)%below_ply /= mesh%element_plies(1, element) - 1) cycle
+          if (faces%regions(zone)%is_delaminated(1 + modulo(cell, mesh%cells(1)), 1 + cell/mesh%cells(1))) &
+            delaminated(1, i) = 1
+        end do
+      end associate
+    end do
+  end function delaminated_above
+
+  !> Energy release rate over its critical value in the intact cells ahead of the fronts, zero elsewhere. Where a
+  !> front has reached the border of its zone there is no such cell, and the last delaminated one shows it.
+  function release_ahead(model, stiffness, faces, motion) result(ratio)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Section stiffness left in the elements, (lanes, 21, batches)
+    real(wp), intent(in) :: stiffness(:, :, :)
+    !> What has come apart
+    type(contact_and_ties_t), intent(in) :: faces
+    !> Motion with its forces
+    type(motion_t), intent(in) :: motion
+    !> G/G_c of the interface above, (1, elements)
+    real(wp), allocatable :: ratio(:, :)
+    type(front_energy_release_t) :: front
+    integer :: zone, s, element, place(2)
+
+    allocate (ratio(1, model%elements%elements), source=0.0_wp)
+    do zone = 1, size(model%mesh%zones)
+      front = release_along_front(model, stiffness, faces, motion, zone, &
+                                  model%scene%delaminations(zone)%energy_release)
+      do s = 1, size(front%segments)
+        place = merge(front%segments(s)%inside, front%segments(s)%outside, front%segments(s)%at_border)
+        element = model%distribution%local_element(model%mesh%element_at( &
+                  model%mesh%cell_at(place(1), place(2)), model%mesh%zones(zone)%below_ply + 1))
+        if (element > 0) ratio(1, element) = max(ratio(1, element), front%ratio(s))
+      end do
+    end do
+  end function release_ahead
+end module interface_fields

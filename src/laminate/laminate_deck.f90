@@ -1,0 +1,125 @@
+!> The laminate of the deck: rows of its table, filling, and the checks that decide what its plies are.
+module laminate_deck
+  use deck_choices, only: code_of
+  use deck_problems, only: problems_t
+  use deck_remarks, only: tell
+  use deck_settings, only: settings_t
+  use deck_vocabulary, only: group_row_length, key_row_length
+  use kinds, only: wp
+  use laminate_parameters, only: laminate_t, shear_five_sixths, shear_energy
+  use material_deck, only: material_group
+  use material_parameters, only: material_t
+  use text, only: line_t, append, joined, nearest_name, to_text
+  implicit none
+  private
+  public :: fill_laminate
+
+  !> Names that checks across groups use.
+  character(len=*), parameter, public :: laminate_group = 'laminate', key_thicknesses = 'thicknesses'
+  !> Row of the group.
+  character(len=group_row_length), parameter, public :: laminate_group_row = &
+    'laminate | required | The plies, from the struck face to the back.'
+  !> Rows of the keys.
+  character(len=key_row_length), parameter, public :: laminate_rows(*) = [character(len=key_row_length) :: &
+    'laminate | materials | text | 1 or plies | - | required | names of &material groups | &
+      &Material of each ply from the struck face; one value serves all.', &
+    'laminate | angles | real | plies | degree | required | >= -360, <= 360 | &
+      &Fibre angle of each ply from x; their number is the number of plies.', &
+    'laminate | thicknesses | real | 1 or plies | length | required | > 0 | &
+      &Thickness of each ply; one value serves all.', &
+    'laminate | shear_correction | choice | 1 | - | ''5/6'' | 5/6 energy | &
+      &Reduction of the transverse shear stiffness: a factor, or equal shear energy.']
+
+  !> Most plies of a laminate.
+  integer, parameter :: most_plies = 1000
+
+contains
+
+  !> The plies. Lists that aren't clear stay unallocated.
+  subroutine fill_laminate(settings, materials, laminate, problems)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+    !> The materials
+    type(material_t), intent(in) :: materials(:)
+    !> Receives them
+    type(laminate_t), intent(inout) :: laminate
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    real(wp), allocatable :: angles(:), thicknesses(:)
+    type(line_t), allocatable :: names(:)
+    integer, allocatable :: indices(:)
+    integer :: plies, i
+
+    laminate%shear_correction = code_of(settings%text_of(laminate_group, 'shear_correction'), '5/6 energy', &
+                                        [shear_five_sixths, shear_energy])
+    angles = settings%reals_of(laminate_group, 'angles')
+    thicknesses = settings%reals_of(laminate_group, key_thicknesses)
+    names = settings%texts_of(laminate_group, 'materials')
+    plies = size(angles)
+    allocate (indices(size(names)))
+    do i = 1, size(names)
+      call find_material(settings, materials, trim(names(i)%text), problems, indices(i))
+    end do
+    if (plies > most_plies) call tell(settings, problems, laminate_group, 'angles', &
+                                      'more than '//to_text(most_plies)//' plies.')
+    if (plies == 0 .or. plies > most_plies) return
+    call check_number(settings, key_thicknesses, size(thicknesses), plies, problems)
+    call check_number(settings, 'materials', size(names), plies, problems)
+    laminate%angle = angles
+    if (size(thicknesses) == plies .or. size(thicknesses) == 1) &
+      laminate%thickness = [(thicknesses(min(i, size(thicknesses))), i=1, plies)]
+    if (any(indices == 0)) return
+    if (size(indices) == plies .or. size(indices) == 1) &
+      laminate%material = [(indices(min(i, size(indices))), i=1, plies)]
+  end subroutine fill_laminate
+
+  !> A list that has one value or one a ply.
+  subroutine check_number(settings, key, number, plies, problems)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+    !> Name of the list
+    character(len=*), intent(in) :: key
+    !> Number of its values
+    integer, intent(in) :: number
+    !> Number of plies
+    integer, intent(in) :: plies
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+
+    if (number <= 1 .or. number == plies) return
+    call tell(settings, problems, laminate_group, key, to_text(number)//' values, but angles has '//to_text(plies)// &
+              '; allowed: 1 value for all plies or 1 a ply.')
+  end subroutine check_number
+
+  !> Index of a material by its name, 0 if there is none.
+  subroutine find_material(settings, materials, name, problems, index)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+    !> The materials
+    type(material_t), intent(in) :: materials(:)
+    !> Name of the material
+    character(len=*), intent(in) :: name
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    !> The index
+    integer, intent(out) :: index
+    type(line_t), allocatable :: names(:)
+
+    allocate (names(0))
+    do index = 1, size(materials)
+      if (materials(index)%name == name) return
+      call append(names, materials(index)%name)
+    end do
+    index = 0
+    ! Without sound names of materials, and once for the same list, there is nothing to say.
+    if (problems%concern(material_group, 'name') .or. problems%concern(laminate_group, 'materials')) return
+    if (problems%concern(material_group) .and. size(names) == 0) return
+    if (nearest_name(name, names) /= '') then
+      call tell(settings, problems, laminate_group, 'materials', 'no &material is named '''//name// &
+                '''; did you mean '''//nearest_name(name, names)//'''?')
+    else
+      call tell(settings, problems, laminate_group, 'materials', 'no &material is named '''//name//'''; allowed: '''// &
+                joined(names, ''', ''')//'''.')
+    end if
+  end subroutine find_material
+end module laminate_deck

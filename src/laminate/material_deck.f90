@@ -1,0 +1,272 @@
+!> Materials of the deck: rows of its table, filling, and the checks that decide what a material is.
+module material_deck
+  use deck_problems, only: problems_t
+  use deck_remarks, only: tell, are_clear
+  use deck_settings, only: settings_t
+  use deck_vocabulary, only: group_row_length, key_row_length
+  use kinds, only: wp
+  use material_parameters, only: material_t
+  use plies, only: material_objection
+  use text, only: line_t, append, joined, to_text, words_of
+  implicit none
+  private
+  public :: fill_materials, require_densities, normal_compliance
+
+  !> Name that checks across groups use.
+  character(len=*), parameter, public :: material_group = 'material'
+  !> Row of the group.
+  character(len=group_row_length), parameter, public :: material_group_row = &
+    'material | repeatable | One ply material, orthotropic or isotropic; may be given several times.'
+  !> Rows of the keys.
+  character(len=key_row_length), parameter, public :: material_rows(*) = [character(len=key_row_length) :: &
+    'material | name | text | 1 | - | required | not empty | &
+      &Name that &laminate refers to.', &
+    'material | density | real | 1 | mass/volume | none | > 0 | &
+      &Mass per volume; needed unless the analysis is static.', &
+    'material | E | real | 1 | pressure | none | > 0 | &
+      &Young''s modulus of an isotropic material, given with nu instead of E1 to nu23.', &
+    'material | nu | real | 1 | - | none | > -1, < 0.5 | &
+      &Poisson''s ratio of an isotropic material.', &
+    'material | E1 | real | 1 | pressure | none | > 0 | &
+      &Young''s modulus along the fibres.', &
+    'material | E2 | real | 1 | pressure | none | > 0 | &
+      &Young''s modulus across the fibres.', &
+    'material | G12 | real | 1 | pressure | none | > 0 | &
+      &Shear modulus in the plane of the ply.', &
+    'material | G13 | real | 1 | pressure | = G12 | > 0 | &
+      &Shear modulus between the fibres and the normal.', &
+    'material | G23 | real | 1 | pressure | none | > 0 | &
+      &Shear modulus across the fibres.', &
+    'material | nu12 | real | 1 | - | none | > -10, < 10 | &
+      &Contraction across per extension along the fibres; its size stays below sqrt(E1/E2).', &
+    'material | nu23 | real | 1 | - | 0 | > -1, < 1 | &
+      &Poisson''s ratio across the fibres; plane stress does without it.', &
+    'material | XT | real | 1 | pressure | none | > 0 | &
+      &Tensile strength along the fibres.', &
+    'material | XC | real | 1 | pressure | none | > 0 | &
+      &Compressive strength along the fibres, a positive number; left out: XT serves.', &
+    'material | YT | real | 1 | pressure | none | > 0 | &
+      &Tensile strength across the fibres.', &
+    'material | YC | real | 1 | pressure | none | > 0 | &
+      &Compressive strength across the fibres, a positive number.', &
+    'material | S12 | real | 1 | pressure | none | > 0 | &
+      &Shear strength in the plane of the ply.', &
+    'material | Sf | real | 1 | pressure | none | > 0 | &
+      &Shear strength that counts in fibre failure.', &
+    'material | Sm23 | real | 1 | pressure | none | > 0 | &
+      &Shear strength in the 2-3 plane that counts in matrix failure.']
+
+  !> Keys of an orthotropic material that have to be there, and all of them.
+  character(len=*), parameter :: needed_keys = 'E1 E2 G12 G23 nu12', orthotropic_keys = needed_keys//' G13 nu23'
+  !> Largest ratio of two moduli of a material; rounding spoils the answer beyond.
+  real(wp), parameter :: most_contrast = 1.0e6_wp
+
+contains
+
+  !> All materials.
+  subroutine fill_materials(settings, materials, problems)
+    !> Keys in effect; gets what the deck doesn't give
+    type(settings_t), intent(inout) :: settings
+    !> Receives them
+    type(material_t), allocatable, intent(out) :: materials(:)
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    integer :: i, j
+
+    allocate (materials(settings%groups_named(material_group)))
+    do i = 1, size(materials)
+      call fill_material(settings, i, materials(i), problems)
+      do j = 1, i - 1
+        if (materials(i)%name /= materials(j)%name .or. materials(i)%name == '') cycle
+        call tell(settings, problems, material_group, 'name', 'another material has this name; give each its own.', i)
+        exit
+      end do
+    end do
+  end subroutine fill_materials
+
+  !> One material; its constants stay 0 if they aren't all there and sound.
+  subroutine fill_material(settings, place, material, problems)
+    !> Keys in effect; gets what the deck doesn't give
+    type(settings_t), intent(inout) :: settings
+    !> Its index
+    integer, intent(in) :: place
+    !> Receives it
+    type(material_t), intent(inout) :: material
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    logical :: complete
+
+    material%name = trim(settings%text_of(material_group, 'name', place))
+    material%density = settings%real_of(material_group, 'density', place)
+    material%xt = settings%real_of(material_group, 'XT', place)
+    material%xc = settings%real_of(material_group, 'XC', place)
+    material%yt = settings%real_of(material_group, 'YT', place)
+    material%yc = settings%real_of(material_group, 'YC', place)
+    material%s12 = settings%real_of(material_group, 'S12', place)
+    material%sf = settings%real_of(material_group, 'Sf', place)
+    material%sm23 = settings%real_of(material_group, 'Sm23', place)
+    call judge_completeness(settings, place, problems, complete)
+    if (.not. complete) return
+    if (settings%is_given(material_group, 'E', place)) then
+      call fill_isotropic(settings, place, material)
+    else
+      call fill_orthotropic(settings, place, material)
+    end if
+    if (material_objection(material) /= '') then
+      call tell(settings, problems, material_group, '', material_objection(material)//'.', place)
+    else if (contrast(material) > most_contrast) then
+      call tell(settings, problems, material_group, '', 'its moduli differ by more than a factor of '// &
+                to_text(most_contrast)//', where rounding spoils the answer.', place)
+    end if
+  end subroutine fill_material
+
+  !> Largest over smallest modulus of a material.
+  pure real(wp) function contrast(material)
+    !> The material
+    type(material_t), intent(in) :: material
+    real(wp) :: moduli(5)
+
+    moduli = [material%e1, material%e2, material%g12, material%g13, material%g23]
+    contrast = maxval(moduli)/minval(moduli)
+  end function contrast
+
+  !> Whether the elastic constants are all there and sound; tells what is missing.
+  subroutine judge_completeness(settings, place, problems, complete)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+    !> Index of the material
+    integer, intent(in) :: place
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    !> True: they are
+    logical, intent(out) :: complete
+    type(line_t), allocatable :: given(:), missing(:)
+
+    complete = .false.
+    given = words_with(settings, place, orthotropic_keys, .true.)
+    if (settings%is_given(material_group, 'E', place) .or. settings%is_given(material_group, 'nu', place)) then
+      missing = words_with(settings, place, 'E nu', .false.)
+      if (size(given) > 0) then
+        call tell(settings, problems, material_group, given(1)%text, 'the material has E or nu too; give either E '// &
+                  'and nu (isotropic) or E1, E2, G12, G23, nu12 (orthotropic).', place)
+        return
+      end if
+    else
+      missing = words_with(settings, place, needed_keys, .false.)
+      if (size(given) == 0) then
+        deallocate (missing)
+        call append(missing, 'E and nu (isotropic) or E1, E2, G12, G23, nu12 (orthotropic)')
+      end if
+    end if
+    if (size(missing) > 0) then
+      if (.not. is_misspelt(missing, place, problems)) call tell(settings, problems, material_group, '', &
+        joined(missing, ', ')//' must be given too.', place)
+      return
+    end if
+    complete = are_clear(settings, problems, material_group, 'E nu '//orthotropic_keys, place)
+  end subroutine judge_completeness
+
+  !> Those of some keys that the deck gives, or those that it doesn't.
+  function words_with(settings, place, keys, given) result(words)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+    !> Index of the material
+    integer, intent(in) :: place
+    !> Names separated by blanks
+    character(len=*), intent(in) :: keys
+    !> True: those given
+    logical, intent(in) :: given
+    !> The names
+    type(line_t), allocatable :: words(:)
+    type(line_t), allocatable :: names(:)
+    integer :: i
+
+    names = words_of(keys, ' ')
+    allocate (words(0))
+    do i = 1, size(names)
+      if (settings%is_given(material_group, names(i)%text, place) .eqv. given) call append(words, names(i)%text)
+    end do
+  end function words_with
+
+  !> True: one of the missing keys is there under a wrong name, which was told already.
+  logical function is_misspelt(missing, place, problems)
+    !> Names of keys
+    type(line_t), intent(in) :: missing(:)
+    !> Index of the material
+    integer, intent(in) :: place
+    !> The faults so far
+    type(problems_t), intent(in) :: problems
+    integer :: i
+
+    is_misspelt = any([(problems%concern(material_group, missing(i)%text, place), i=1, size(missing))])
+  end function is_misspelt
+
+  !> Constants of an isotropic material.
+  subroutine fill_isotropic(settings, place, material)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+    !> Index of the material
+    integer, intent(in) :: place
+    !> Receives them
+    type(material_t), intent(inout) :: material
+
+    material%e1 = settings%real_of(material_group, 'E', place)
+    material%nu12 = settings%real_of(material_group, 'nu', place)
+    material%e2 = material%e1
+    material%nu23 = material%nu12
+    material%g12 = material%e1/(2*(1 + material%nu12))
+    material%g13 = material%g12
+    material%g23 = material%g12
+  end subroutine fill_isotropic
+
+  !> Constants of an orthotropic material.
+  subroutine fill_orthotropic(settings, place, material)
+    !> Keys in effect; gets what the deck doesn't give
+    type(settings_t), intent(inout) :: settings
+    !> Index of the material
+    integer, intent(in) :: place
+    !> Receives them
+    type(material_t), intent(inout) :: material
+
+    material%e1 = settings%real_of(material_group, 'E1', place)
+    material%e2 = settings%real_of(material_group, 'E2', place)
+    material%g12 = settings%real_of(material_group, 'G12', place)
+    if (.not. settings%is_given(material_group, 'G13', place)) &
+      call settings%derive(material_group, 'G13', to_text(material%g12), .false., place)
+    material%g13 = settings%real_of(material_group, 'G13', place)
+    material%g23 = settings%real_of(material_group, 'G23', place)
+    material%nu12 = settings%real_of(material_group, 'nu12', place)
+    material%nu23 = settings%real_of(material_group, 'nu23', place)
+  end subroutine fill_orthotropic
+
+  !> Every material has a density, which a run in time needs.
+  subroutine require_densities(settings, problems)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    integer :: i
+
+    do i = 1, settings%groups_named(material_group)
+      if (settings%is_given(material_group, 'density', i)) cycle
+      if (.not. are_clear(settings, problems, material_group, 'density', i)) cycle
+      call tell(settings, problems, material_group, 'density', 'is missing; a run in time needs a density > 0.', i)
+    end do
+  end subroutine require_densities
+
+  !> What a half-space of a material gives way under a sphere in Sun's formula: 1/E2; Hertz' (1 - nu**2)/E if it is
+  !> isotropic; 0 if its constants aren't known.
+  pure real(wp) function normal_compliance(settings, place, material) result(compliance)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+    !> Index of the material
+    integer, intent(in) :: place
+    !> The material
+    type(material_t), intent(in) :: material
+
+    compliance = 0
+    if (material%e2 <= 0) return
+    compliance = 1/material%e2
+    if (settings%is_given(material_group, 'E', place)) compliance = (1 - material%nu12**2)/material%e2
+  end function normal_compliance
+end module material_deck

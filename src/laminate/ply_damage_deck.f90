@@ -1,0 +1,48 @@
+!> Damage of the plies in the deck: rows of its table and their filling.
+module ply_damage_deck
+  use deck_choices, only: code_of
+  use deck_settings, only: settings_t
+  use deck_vocabulary, only: group_row_length, key_row_length
+  use ply_damage_parameters, only: ply_damage_t, criteria_hou, stress_at_middle, stress_at_faces
+  implicit none
+  private
+  public :: fill_ply_damage
+
+  !> Name that checks across groups use.
+  character(len=*), parameter, public :: ply_damage_group = 'ply_damage'
+  !> Row of the group.
+  character(len=group_row_length), parameter, public :: ply_damage_group_row = &
+    'ply_damage | optional | Failure of plies: matrix cracking, matrix crushing, fibre failure.'
+  !> Rows of the keys.
+  character(len=key_row_length), parameter, public :: ply_damage_rows(*) = [character(len=key_row_length) :: &
+    'ply_damage | d | real | 1 | - | 100 | >= 1 | &
+      &Divisor of the elastic constants that a mode of failure takes away (Table 2).', &
+    'ply_damage | e | real | 1 | - | 0.001 | > 0, <= 1 | &
+      &Least value left of an elastic constant, as a fraction of the undamaged one.', &
+    'ply_damage | fade | real | 1 | time | 0 | >= 0 | &
+      &Time over which a failure takes its stiffness away, in proportion; 0: at once.', &
+    'ply_damage | average | real | 1 | length | 0 | >= 0 | &
+      &Distance over which the strains for the criteria are averaged; 0: over each element alone.', &
+    'ply_damage | criteria | choice | 1 | - | ''hou'' | hou | &
+      &Set of failure criteria: those of Hou et al. (Table 1).', &
+    'ply_damage | stress | choice | 1 | - | ''middle'' | middle faces | &
+      &Where in a ply the stresses are taken: its mid-plane, or the worse of its faces.']
+
+contains
+
+  !> Damage of the plies.
+  subroutine fill_ply_damage(settings, damage)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+    !> Receives them
+    type(ply_damage_t), intent(inout) :: damage
+
+    damage%d = settings%real_of(ply_damage_group, 'd')
+    damage%e = settings%real_of(ply_damage_group, 'e')
+    damage%fade = settings%real_of(ply_damage_group, 'fade')
+    damage%average = settings%real_of(ply_damage_group, 'average')
+    damage%criteria = code_of(settings%text_of(ply_damage_group, 'criteria'), 'hou', [criteria_hou])
+    damage%stress = code_of(settings%text_of(ply_damage_group, 'stress'), 'middle faces', &
+                            [stress_at_middle, stress_at_faces])
+  end subroutine fill_ply_damage
+end module ply_damage_deck

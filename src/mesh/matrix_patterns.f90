@@ -1,0 +1,129 @@
+!> The pattern of the matrix: an unknown is coupled to all unknowns at the nodes that share a cell with its own.
+module matrix_patterns
+  use layered_meshes, only: layered_mesh_t
+  use nine_node_grids, only: lines_around
+  implicit none
+  private
+  public :: find_pattern
+
+contains
+
+  !> Columns of some rows.
+  pure subroutine find_pattern(mesh, equation, nodes, row_start, columns)
+    !> The mesh
+    type(layered_mesh_t), intent(in) :: mesh
+    !> Equation (from 0) of every unknown of the mesh; -1: held, (5, points)
+    integer, intent(in) :: equation(:, :)
+    !> Node of each row; rows of a node that follow each other are taken as alike
+    integer, intent(in) :: nodes(:)
+    !> Start of each row, from 1, (rows + 1)
+    integer, allocatable, intent(out) :: row_start(:)
+    !> Columns, from 0, ascending in each row
+    integer, allocatable, intent(out) :: columns(:)
+    integer :: row, node, start, width
+
+    allocate (row_start(size(nodes) + 1))
+    row_start(1) = 1
+    node = 0
+    do row = 1, size(nodes)
+      if (nodes(row) /= node) width = columns_around(mesh, equation, nodes(row))
+      node = nodes(row)
+      row_start(row + 1) = row_start(row) + width
+    end do
+    allocate (columns(row_start(size(row_start)) - 1))
+    node = 0
+    do row = 1, size(nodes)
+      start = row_start(row)
+      width = row_start(row + 1) - start
+      if (nodes(row) /= node) then
+        call list_columns(mesh, equation, nodes(row), columns(start:start + width - 1))
+      else
+        columns(start:start + width - 1) = columns(start - width:start - 1)
+      end if
+      node = nodes(row)
+    end do
+  end subroutine find_pattern
+
+  !> Number of equations of all points at the nodes that share a cell with a node.
+  pure integer function columns_around(mesh, equation, node) result(columns)
+    !> The mesh
+    type(layered_mesh_t), intent(in) :: mesh
+    !> Equations of every point
+    integer, intent(in) :: equation(:, :)
+    !> The node
+    integer, intent(in) :: node
+    integer :: lines, first(5), last(5), line
+
+    call find_points_around(mesh, node, lines, first, last)
+    columns = 0
+    do line = 1, lines
+      columns = columns + count(equation(:, first(line):last(line)) >= 0)
+    end do
+  end function columns_around
+
+  !> These equations, ascending.
+  pure subroutine list_columns(mesh, equation, node, columns)
+    !> The mesh
+    type(layered_mesh_t), intent(in) :: mesh
+    !> Equations of every point
+    integer, intent(in) :: equation(:, :)
+    !> The node
+    integer, intent(in) :: node
+    !> Equations, from 0, (`columns_around` of them)
+    integer, intent(out) :: columns(:)
+    integer :: lines, first(5), last(5), line, point, component, column
+
+    call find_points_around(mesh, node, lines, first, last)
+    column = 0
+    do line = 1, lines
+      do point = first(line), last(line)
+        do component = 1, 5
+          if (equation(component, point) < 0) cycle
+          column = column + 1
+          columns(column) = equation(component, point)
+        end do
+      end do
+    end do
+    call sort(columns)
+  end subroutine list_columns
+
+  !> First and last point on each line of nodes, of those that share a cell with a node.
+  pure subroutine find_points_around(mesh, node, lines, first, last)
+    !> The mesh
+    type(layered_mesh_t), intent(in) :: mesh
+    !> The node
+    integer, intent(in) :: node
+    !> Number of lines
+    integer, intent(out) :: lines
+    !> Points of each
+    integer, intent(out) :: first(5), last(5)
+    integer :: i(2), j(2), here(2), line
+
+    here = mesh%lines_of(node)
+    i = lines_around(here(1), mesh%cells(1))
+    j = lines_around(here(2), mesh%cells(2))
+    lines = j(2) - j(1) + 1
+    do line = 1, lines
+      first(line) = mesh%first_point(mesh%node_at(i(1), j(1) + line - 1))
+      last(line) = mesh%first_point(mesh%node_at(i(2), j(1) + line - 1) + 1) - 1
+    end do
+  end subroutine find_points_around
+
+  !> Sorts a short list that is made of few ascending runs (insertion, which is linear for such).
+  pure subroutine sort(list)
+    !> The list
+    integer, intent(inout) :: list(:)
+    integer :: i, j, value
+
+    do i = 2, size(list)
+      value = list(i)
+      j = i - 1
+      do while (j >= 1)
+        if (list(j) <= value) exit
+        list(j + 1) = list(j)
+        j = j - 1
+      end do
+      list(j + 1) = value
+    end do
+  end subroutine sort
+end module matrix_patterns

@@ -1,0 +1,71 @@
+!> The mesh of the deck: rows of its table, filling and checks. What the element brings is in `element_deck`.
+module mesh_deck
+  use deck_problems, only: problems_t
+  use deck_remarks, only: tell, are_clear
+  use deck_settings, only: settings_t
+  use deck_vocabulary, only: group_row_length, key_row_length
+  use kinds, only: wp
+  use mesh_parameters, only: mesh_t
+  use text, only: to_text
+  implicit none
+  private
+  public :: fill_mesh, check_mesh
+
+  !> Names that checks across groups use.
+  character(len=*), parameter, public :: mesh_group = 'mesh', key_elements = 'elements', key_patch = 'patch', &
+                                         key_core = 'core', key_cell = 'cell'
+  !> Most elements: more pass the range of default integers.
+  real(wp), parameter, public :: most_elements = 1.0e6_wp
+  !> Row of the group.
+  character(len=group_row_length), parameter, public :: mesh_group_row = &
+    'mesh | required | The rectangle of nine-node elements and the loaded patch.'
+  !> Rows of the keys.
+  character(len=key_row_length), parameter, public :: mesh_rows(*) = [character(len=key_row_length) :: &
+    'mesh | elements | integer | 2 | - | required | >= 2, <= 2000 | &
+      &Elements along x and y of the modelled part.', &
+    'mesh | grading | real | 1 | - | 0 | >= 0, <= 1000 | &
+      &Largest over smallest element edge outside the patch; 0: sizes change smoothly.', &
+    'mesh | patch | real | 1 | length | 0 | >= 0 | &
+      &Side of the loaded square centred on the struck point; an impactor needs one.', &
+    'mesh | core | real | 2 | length | none | > 0 | &
+      &Full extents of a rectangle of equal elements around the struck point; given with `cell`.', &
+    'mesh | cell | real | 1 | length | none | > 0 | &
+      &Side of the elements in the core; outside sizes grow smoothly or by `grading`.']
+
+contains
+
+  !> The mesh without the choices of its element.
+  subroutine fill_mesh(settings, mesh)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+    !> Receives them
+    type(mesh_t), intent(inout) :: mesh
+
+    if (settings%is_known(mesh_group, key_elements)) mesh%elements = settings%integers_of(mesh_group, key_elements)
+    mesh%grading = settings%real_of(mesh_group, 'grading')
+    mesh%patch = settings%real_of(mesh_group, key_patch)
+    if (settings%is_known(mesh_group, key_core)) mesh%core = settings%reals_of(mesh_group, key_core)
+    if (settings%is_known(mesh_group, key_cell)) mesh%cell = settings%real_of(mesh_group, key_cell)
+  end subroutine fill_mesh
+
+  !> Number of elements, grading, and keys that go together.
+  subroutine check_mesh(settings, mesh, problems)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+    !> The mesh
+    type(mesh_t), intent(in) :: mesh
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+
+    if (product(real(mesh%elements, wp)) > most_elements) call tell(settings, problems, mesh_group, key_elements, &
+      'more than '//to_text(most_elements)//' elements in all; give fewer.')
+    if (mesh%grading > 0 .and. mesh%grading < 1) call tell(settings, problems, mesh_group, 'grading', &
+      'the largest edge is not smaller than the smallest; allowed: 0 or >= 1.')
+    if (.not. are_clear(settings, problems, mesh_group, key_core//' '//key_cell)) return
+    if (settings%is_given(mesh_group, key_core) .and. .not. settings%is_given(mesh_group, key_cell)) then
+      call tell(settings, problems, mesh_group, key_cell, 'is missing; `core` and `cell` go together.')
+    else if (settings%is_given(mesh_group, key_cell) .and. .not. settings%is_given(mesh_group, key_core)) then
+      call tell(settings, problems, mesh_group, key_core, 'is missing; `core` and `cell` go together.')
+    end if
+  end subroutine check_mesh
+end module mesh_deck

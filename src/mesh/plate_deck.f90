@@ -1,0 +1,92 @@
+!> The plate of the deck: rows of its table, filling and checks.
+module plate_deck
+  use deck_choices, only: code_of
+  use deck_problems, only: problems_t
+  use deck_remarks, only: tell
+  use deck_settings, only: settings_t
+  use deck_vocabulary, only: group_row_length, key_row_length
+  use kinds, only: wp
+  use mesh_parameters, only: plate_t, edge_free, edge_simple, edge_clamped, symmetry_none, symmetry_quarter
+  use text, only: line_t, lower_case, to_text
+  implicit none
+  private
+  public :: fill_plate, check_plate, check_supports
+
+  !> Names that checks across groups use.
+  character(len=*), parameter, public :: plate_group = 'plate', key_length = 'length', key_symmetry = 'symmetry'
+  !> Row of the group.
+  character(len=group_row_length), parameter, public :: plate_group_row = &
+    'plate | required | The plate: size, supports and the part of it that is modelled.'
+  !> Rows of the keys.
+  character(len=key_row_length), parameter, public :: plate_rows(*) = [character(len=key_row_length) :: &
+    'plate | length | real | 2 | length | required | > 0 | &
+      &Lengths of the whole plate along x and y, also under symmetry.', &
+    'plate | edges | choice | 1 or 4 | - | required | clamped simple free | &
+      &Supports at x-min, x-max, y-min, y-max; one value serves all.', &
+    'plate | in_plane | choice | 1 | - | ''fixed'' | fixed free | &
+      &Whether the supported edges also hold the plate in its plane.', &
+    'plate | symmetry | choice | 1 | - | ''none'' | none quarter | &
+      &Part that is modelled: all, or the quarter x >= 0, y >= 0.']
+
+  !> Largest ratio of the plate's sides.
+  real(wp), parameter :: most_oblong = 1.0e3_wp
+
+contains
+
+  !> The plate.
+  subroutine fill_plate(settings, plate)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+    !> Receives them
+    type(plate_t), intent(inout) :: plate
+    type(line_t), allocatable :: edges(:)
+    integer :: i
+
+    if (settings%is_known(plate_group, key_length)) plate%length = settings%reals_of(plate_group, key_length)
+    edges = settings%texts_of(plate_group, 'edges')
+    do i = 1, merge(4, 0, size(edges) > 0)
+      plate%edges(i) = code_of(edges(min(i, size(edges)))%text, 'free simple clamped', &
+                               [edge_free, edge_simple, edge_clamped])
+    end do
+    plate%in_plane_fixed = lower_case(settings%text_of(plate_group, 'in_plane')) /= 'free'
+    plate%symmetry = code_of(settings%text_of(plate_group, key_symmetry), 'none quarter', &
+                             [symmetry_none, symmetry_quarter])
+  end subroutine fill_plate
+
+  !> Its sides against each other, and its supports against its symmetry.
+  subroutine check_plate(settings, plate, problems)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+    !> The plate
+    type(plate_t), intent(in) :: plate
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+
+    if (settings%is_known(plate_group, key_length) .and. maxval(plate%length) > most_oblong*minval(plate%length)) &
+      call tell(settings, problems, plate_group, key_length, 'one side is more than '//to_text(most_oblong)// &
+                ' times the other; such a strip is no plate.')
+    if (plate%symmetry /= symmetry_quarter) return
+    if (plate%edges(1) /= plate%edges(2) .or. plate%edges(3) /= plate%edges(4)) &
+      call tell(settings, problems, plate_group, 'edges', &
+                'symmetry = ''quarter'' needs the same support at opposite edges.')
+  end subroutine check_plate
+
+  !> Supports that hold the plate in equilibrium; only a static analysis needs them.
+  subroutine check_supports(settings, plate, problems)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+    !> The plate
+    type(plate_t), intent(in) :: plate
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+
+    if (.not. settings%is_known(plate_group, 'edges')) return
+    if (all(plate%edges == edge_free)) then
+      call tell(settings, problems, plate_group, 'edges', &
+                'nothing holds the plate in a static analysis; support an edge.')
+    else if (count(plate%edges /= edge_free) == 1 .and. all(plate%edges /= edge_clamped)) then
+      call tell(settings, problems, plate_group, 'edges', 'in a static analysis the plate turns about its one '// &
+                'simply supported edge; clamp it or support another one.')
+    end if
+  end subroutine check_supports
+end module plate_deck

@@ -1,0 +1,30 @@
+!> What the history tells of failed plies.
+module ply_columns
+  use kinds, only: wp
+  use models, only: model_t
+  use ply_failures, only: ply_failure_t
+  use result_tables, only: result_row_length
+  implicit none
+  private
+  public :: ply_values
+
+  !> Failures in each mode. A ply counts once in each element.
+  character(len=result_row_length), parameter, public :: ply_rows(*) = [character(len=result_row_length) :: &
+    'fibre_failures | integer | - | Plies of elements whose fibres have failed, counted over the whole plate.', &
+    'matrix_cracks | integer | - | Plies of elements whose matrix has cracked, counted over the whole plate.', &
+    'matrix_crushings | integer | - | Plies of elements whose matrix was crushed, counted over the whole plate.']
+
+contains
+
+  !> Failures in each mode. Collective.
+  function ply_values(model, plies) result(values)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Failures of the plies
+    type(ply_failure_t), intent(in) :: plies
+    !> A value a column, the same on every rank
+    real(wp) :: values(size(ply_rows))
+
+    values = real(plies%counts(model), wp)
+  end function ply_values
+end module ply_columns

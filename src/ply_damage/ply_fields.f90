@@ -1,0 +1,83 @@
+!> What the field file holds of the plies: their failures, and their stresses in their own axes.
+module ply_fields
+  use element_stresses, only: element_strains, stresses_of_ply
+  use errors, only: error_t
+  use fields_file, only: fields_file_t
+  use kinds, only: wp
+  use models, only: model_t
+  use output_parameters, only: output_t, field_ply_damage, field_stress, field_face_stress
+  use ply_failures, only: ply_failure_t
+  use result_tables, only: result_row_length
+  use text, only: to_text
+  implicit none
+  private
+  public :: write_ply_fields
+
+  !> Cells between name and meaning: of stresses in the mid-plane of a ply, and of those on its faces.
+  character(len=*), parameter :: middle = ' | cells | pressure | '//field_stress//' | - | ', &
+                                 faces = ' | cells | pressure | '//field_face_stress//' | - | '
+  !> The fields; N is the number of the ply from the struck face. Elements without ply N have 0.
+  character(len=result_row_length), parameter, public :: ply_field_rows(*) = [character(len=result_row_length) :: &
+    'ply_N_failure | cells | - | '//field_ply_damage//' | &ply_damage | Failures of ply N: 1 fibre failure, 2 matrix &
+      &cracking, 4 matrix crushing, added up.', &
+    'ply_N_sigma11'//middle//'Stress along the fibres in the mid-plane of ply N.', &
+    'ply_N_sigma22'//middle//'Stress across the fibres in the mid-plane of ply N.', &
+    'ply_N_tau12'//middle//'Shear stress in the plane, in the mid-plane of ply N.', &
+    'ply_N_tau13'//middle//'Shear stress between fibres and normal in ply N.', &
+    'ply_N_tau23'//middle//'Shear stress between the direction across the fibres and the normal in ply N.', &
+    'ply_N_sigma11_top'//faces//'Stress along the fibres on the upper face of ply N, towards the struck face.', &
+    'ply_N_sigma22_top'//faces//'Stress across the fibres on the upper face of ply N.', &
+    'ply_N_tau12_top'//faces//'Shear stress in the plane on the upper face of ply N.', &
+    'ply_N_sigma11_bottom'//faces//'Stress along the fibres on the lower face of ply N.', &
+    'ply_N_sigma22_bottom'//faces//'Stress across the fibres on the lower face of ply N.', &
+    'ply_N_tau12_bottom'//faces//'Shear stress in the plane on the lower face of ply N.']
+
+contains
+
+  !> Writes the fields that are wanted.
+  subroutine write_ply_fields(model, plies, displacement, output, fields, error)
+    !> The model
+    type(model_t), intent(in) :: model
+    !> Failures of its plies
+    type(ply_failure_t), intent(in) :: plies
+    !> Displacement, ghosts up to date, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> Which fields
+    type(output_t), intent(in) :: output
+    !> The file
+    type(fields_file_t), intent(inout) :: fields
+    !> Set if the file cannot be written
+    type(error_t), allocatable, intent(inout) :: error
+    character(len=*), parameter :: components(5) = [character(len=7) :: 'sigma11', 'sigma22', 'tau12', 'tau13', 'tau23']
+    character(len=*), parameter :: places(3) = [character(len=7) :: '', '_top', '_bottom']
+    logical :: wanted(3)
+    real(wp), allocatable :: strains(:, :), stresses(:, :, :)
+    integer :: ply, place, i
+
+    wanted = [output%wants(field_stress), output%wants(field_face_stress), output%wants(field_face_stress)]
+    if (any(wanted)) strains = element_strains(model, plies, displacement)
+    do ply = 1, size(model%plies)
+      associate (name => 'ply_'//to_text(ply)//'_')
+        if (output%wants(field_ply_damage) .and. model%scene%has_ply_damage) &
+          call fields%write_cell_field(name//'failure', failure_code(plies%onset%failed(ply)), error)
+        if (any(wanted)) stresses = stresses_of_ply(model, plies, strains, ply)
+        do place = 1, 3
+          if (.not. wanted(place)) cycle
+          do i = 1, merge(5, 3, place == 1)
+            call fields%write_cell_field(name//trim(components(i))//trim(places(place)), stresses(i:i, place, :), error)
+          end do
+        end do
+      end associate
+    end do
+  end subroutine write_ply_fields
+
+  !> 1 for fibre failure, 2 for matrix cracking, 4 for crushing, added up.
+  pure function failure_code(failed) result(code)
+    !> What failed in one ply, (3, elements)
+    logical, intent(in) :: failed(:, :)
+    !> The sum, (1, elements)
+    real(wp) :: code(1, size(failed, 2))
+
+    code(1, :) = merge(1, 0, failed(1, :)) + merge(2, 0, failed(2, :)) + merge(4, 0, failed(3, :))
+  end function failure_code
+end module ply_fields

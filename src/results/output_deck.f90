@@ -1,0 +1,119 @@
+!> What is written, how often and where in the deck: rows of its table, filling and checks.
+module output_deck
+  use deck_problems, only: problems_t
+  use deck_remarks, only: tell, remark
+  use deck_settings, only: settings_t
+  use deck_vocabulary, only: group_row_length, key_row_length
+  use output_parameters, only: output_t, field_displacement, field_rotation, field_velocity, field_gap, &
+                               field_contact_pressure, field_delamination, field_energy_release, field_ply_damage
+  use kinds, only: wp
+  use text, only: joined, lower_case, to_text, words_of
+  implicit none
+  private
+  public :: fill_output, check_intervals, remark_idle_fields
+
+  character(len=*), parameter :: group = 'output'
+  !> Row of the group.
+  character(len=group_row_length), parameter, public :: output_group_row = &
+    'output | settings | What is written, how often and where.'
+  !> Rows of the keys.
+  character(len=key_row_length), parameter, public :: output_rows(*) = [character(len=key_row_length) :: &
+    'output | directory | text | 1 | - | ''.'' | not empty | &
+      &Folder of the results, made if it isn''t there; --output overrides it.', &
+    'output | history_every | real | 1 | time | 0 | >= 0 | &
+      &Time between rows of the history; 0: every accepted step.', &
+    'output | fields_every | real | 1 | time | 0 | >= 0 | &
+      &Time between fields written; 0: only the last.', &
+    'output | checkpoint_every | real | 1 | time | 0 | >= 0 | &
+      &Time between checkpoints; 0: only when a queue stops the run.', &
+    'output | fields | choice | 1 or more | - | = all but the stresses | displacement rotation velocity gap &
+      &contact_pressure delamination energy_release ply_damage stress face_stress | Fields written, parted by commas.']
+
+  !> Fields written unless the deck chooses: all but the stresses, which are many.
+  character(len=*), parameter :: usual_fields = &
+    field_displacement//','//field_rotation//','//field_velocity//','//field_gap//','//field_contact_pressure//','// &
+    field_delamination//','//field_energy_release//','//field_ply_damage
+
+  !> Most events of a run: more pass the range of default integers.
+  real(wp), parameter :: most_events = 1.0e8_wp
+  !> Part of a step below which an interval is remarked on.
+  real(wp), parameter :: short = 0.5_wp
+
+contains
+
+  !> What is written.
+  subroutine fill_output(settings, output)
+    !> Keys in effect; gets the fields that are usual
+    type(settings_t), intent(inout) :: settings
+    !> Receives them
+    type(output_t), intent(inout) :: output
+
+    output%directory = settings%text_of(group, 'directory')
+    output%history_every = settings%real_of(group, 'history_every')
+    output%fields_every = settings%real_of(group, 'fields_every')
+    output%checkpoint_every = settings%real_of(group, 'checkpoint_every')
+    if (.not. settings%is_given(group, 'fields')) call settings%derive(group, 'fields', usual_fields, .true.)
+    output%fields = lower_case(joined(words_of(joined(settings%texts_of(group, 'fields'), ','), ','), ','))
+  end subroutine fill_output
+
+  !> Intervals far below the step, which cut every step.
+  subroutine check_intervals(settings, step, end, problems)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+    !> First step and end of the run
+    real(wp), intent(in) :: step, end
+    !> Faults and remarks are added
+    type(problems_t), intent(inout) :: problems
+    character(len=*), parameter :: keys(*) = [character(len=16) :: 'history_every', 'fields_every', 'checkpoint_every']
+    real(wp) :: every
+    integer :: i
+
+    do i = 1, size(keys)
+      every = settings%real_of(group, trim(keys(i)))
+      if (.not. every > 0) cycle
+      if (end > most_events*every) then
+        call tell(settings, problems, group, trim(keys(i)), 'makes more than '//to_text(most_events)//' steps; '// &
+                  'allowed: from '//to_text(end/most_events)//'.')
+      else if (every < short*step) then
+        call remark(settings, problems, group, trim(keys(i)), 'every step becomes that short, '// &
+                    to_text(nint(step/every))//' times as many as with steps of '//to_text(step)//'.')
+      end if
+    end do
+  end subroutine check_intervals
+
+  !> Fields that are asked for but belong to physics that isn't modelled.
+  subroutine remark_idle_fields(settings, output, has_interfaces, has_ply_damage, problems)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+    !> What is written
+    type(output_t), intent(in) :: output
+    !> True: there are interfaces that may delaminate
+    logical, intent(in) :: has_interfaces
+    !> True: plies may fail
+    logical, intent(in) :: has_ply_damage
+    !> Remarks are added
+    type(problems_t), intent(inout) :: problems
+    character(len=*), parameter :: of_interfaces(*) = [character(len=16) :: field_gap, field_contact_pressure, &
+                                                       field_delamination, field_energy_release]
+    integer :: i
+
+    if (.not. (settings%is_given(group, 'fields') .and. settings%is_known(group, 'fields'))) return
+    do i = 1, size(of_interfaces)
+      if (.not. has_interfaces) call idle(trim(of_interfaces(i)), '&delamination')
+    end do
+    if (.not. has_ply_damage) call idle(field_ply_damage, '&ply_damage')
+
+  contains
+
+    !> Remarks on one field.
+    subroutine idle(field, needed)
+      !> The field
+      character(len=*), intent(in) :: field
+      !> The group it needs
+      character(len=*), intent(in) :: needed
+
+      if (output%wants(field)) call remark(settings, problems, group, 'fields', ''''//field// &
+                                           ''' has no effect without '//needed//'.')
+    end subroutine idle
+  end subroutine remark_idle_fields
+end module output_deck

@@ -1,0 +1,128 @@
+#!/usr/bin/env python3
+"""Holds the sources against the rule that every group and key of the deck is named in the folder of its physics alone.
+
+usage: check_rows.py IMPLAM
+
+Every key that `implam explain` lists has one row, `'GROUP | KEY | ...'`, in one folder of src, and so has every group.
+A text that is the name of a key or group, or a list of such names, stands only in folders with a row of that name;
+elsewhere constants of these folders serve. Names that mean something else are listed below, each with its reason.
+"""
+import functools
+import os
+import re
+import subprocess
+import sys
+
+SRC = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "src")
+# Texts that are no names of keys: file, texts, reason. One that no longer stands there is a breach too.
+OTHERS = (
+    ("app/result_explain.f90", "history fields", "tables of results that `implam explain` is asked for"),
+    ("app/simulations.f90", "history fields", "items of a checkpoint, which must stay readable"),
+    ("app/simulations.f90", "steps", "a timer"),
+    ("base/text.f90", "e", "the exponent of a number"),
+    ("deck/deck_scanner.f90", "end", "&end, which closes a group in old decks"),
+    ("deck/deck_values.f90", "name", "a kind of value"),
+    ("dynamics/states.f90", "stress", "an item of a checkpoint"),
+    ("interfaces/interface_ties.f90", "zone", "an item of a checkpoint"),
+    ("ply_damage/ply_onsets.f90", "time", "an item of a checkpoint"),
+    ("model/motion_fields.f90", "velocity", "a field in NAME.h5, which users read"),
+    ("results/fields_file_xdmf.f90", "cell", "XDMF's word for a field on elements"),
+    ("results/output_parameters.f90", "velocity delamination energy_release ply_damage stress",
+     "fields, which users choose by these words"),
+    ("tangent/tangent_operators.f90", "factorization", "a timer"),
+)
+
+
+def explained(program):
+    """Every group, and every key with its group, that `implam explain` lists."""
+    def ask(*words):
+        return subprocess.run([program, "explain", *words], stdout=subprocess.PIPE, timeout=60, check=True,
+                              text=True).stdout
+
+    groups = re.findall(r"^  &(\w+)", ask(), re.MULTILINE)
+    keys = [(group, key) for group in groups
+            for key in re.findall(r"^  (\w+) .*\n +allowed: ", ask(group), re.MULTILINE)]
+    return groups, keys
+
+
+@functools.cache
+def texts(source):
+    """The texts in quotes of a Fortran source, with the lines they begin in; continued ones are joined."""
+    found, line, place = [], 1, 0
+    while place < len(source):
+        mark = source[place]
+        if mark == "!":
+            place = source.find("\n", place) if "\n" in source[place:] else len(source)
+        elif mark in "'\"":
+            start, text, place = line, "", place + 1
+            while place < len(source) and (source[place] != mark or source[place:place + 2] == 2*mark):
+                joint = re.compile(r"&[ ]*\n[ ]*&?").match(source, place)
+                if joint:
+                    line, place = line + 1, joint.end()
+                else:
+                    text += source[place]
+                    place += 2 if source[place] == mark else 1
+            found.append((start, text))
+            place += 1
+        else:
+            line += mark == "\n"
+            place += 1
+    return found
+
+
+def breaches(sources, groups, keys):
+    """What breaks the rule: one sentence each."""
+    quoted = [(path, line, text) for path, source in sources.items() for line, text in texts(source)]
+    rows, owners = {}, {}
+    for path, line, text in quoted:
+        cells = [cell.strip() for cell in text.split("|")]
+        named = {3: cells[:1], 8: cells[:2]}.get(len(cells))
+        # A row begins with a name; texts that begin with a bar are parts of other tables.
+        if named and named[0]:
+            rows.setdefault(tuple(named), []).append(f"{path}:{line}")
+            for name in named:
+                owners.setdefault(name.lower(), set()).add(path.split("/")[0])
+    wanted = [(group,) for group in groups] + keys
+    found = [f"&{'%'.join(name)} has {len(rows.get(name, []))} rows: {', '.join(rows.get(name, []))}"
+             for name in wanted if len(rows.get(name, [])) != 1]
+    found += [f"{places[0]}: `implam explain` doesn't know the row of &{'%'.join(name)}"
+              for name, places in rows.items() if name not in wanted]
+    others = {(path, text): reason for path, several, reason in OTHERS for text in several.split()}
+    seen = set()
+    for path, line, text in quoted:
+        names = [name.lower() for name in re.split(r"[ ,]+", text)]
+        if not all(name in owners for name in names):
+            continue
+        for name in names:
+            if (path, name) in others:
+                seen.add((path, name))
+            elif path.split("/")[0] not in owners[name]:
+                found.append(f"src/{path}:{line}: '{text}' is named here, but {name} belongs to "
+                             f"{' and '.join(sorted(owners[name]))}")
+    return found + [f"src/{path}: no '{text}' stands here any more ({reason})"
+                    for (path, text), reason in others.items() if (path, text) not in seen]
+
+
+def main():
+    sources = {}
+    for folder, _, names in os.walk(SRC):
+        for name in names:
+            if name.lower().endswith(".f90"):
+                with open(os.path.join(folder, name), encoding="utf-8") as source:
+                    sources[os.path.relpath(os.path.join(folder, name), SRC)] = source.read()
+    groups, keys = explained(os.path.abspath(sys.argv[1]))
+    if not keys:
+        sys.exit("`implam explain` lists no keys.")
+    found = breaches(sources, groups, keys)
+    # The check itself must be able to fail.
+    path = "app/deck_reader.f90"
+    for spoilt in ("x = 'density'\n", "x = \"Below_Ply\" ! 'it''s'\n", "x = 'E1, &\n  &E2'\n",
+                   "'plate | edges |a|b|c|d|e|f'"):
+        if len(breaches(dict(sources, **{path: sources[path] + spoilt}), groups, keys)) <= len(found):
+            found.append(f"the check doesn't see {spoilt!r}")
+    print("\n".join(found) or f"{len(groups)} groups and {len(keys)} keys are named in their folders alone")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,169 @@
+#!/usr/bin/env python3
+"""Adds a key to the deck by a patch and shows that this takes one folder and its tests alone.
+
+usage: check_example.py PATCH --compiler MPIFORT --modules FOLDER --tiers TIER... --objects OBJECT... [FLAG...]
+
+The patch is put on a copy of the folder and of its tests. The copy is compiled against the modules of the folders
+before it, as the build does. Then `app`'s table, as it stands, is compiled against the copy and must explain the new
+keys; and the patch's unit tests are run.
+"""
+import argparse
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+ROOT = os.path.abspath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
+FRAMEWORK = os.path.join(ROOT, "tests", "framework")
+EXPLAIN = """program explain_group
+  use deck_explain, only: explain
+  use deck_table, only: load_deck_table
+  use deck_vocabulary, only: vocabulary_t
+  use errors, only: error_t
+  use text, only: line_t
+  implicit none
+  type(vocabulary_t) :: vocabulary
+  type(line_t), allocatable :: lines(:)
+  type(error_t), allocatable :: error
+  integer :: i
+  call load_deck_table(vocabulary)
+  call explain(vocabulary, '{group}', lines, error)
+  do i = 1, size(lines)
+    print '(a)', lines(i)%text
+  end do
+end program explain_group
+"""
+
+
+def run(*words, **settings):
+    """Runs a command; ends with what it said if it fails."""
+    done = subprocess.run(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False, **settings)
+    if done.returncode:
+        sys.exit(f"{' '.join(words[:4])} ... failed:\n{done.stdout}")
+    return done.stdout
+
+
+def one_folder(patch):
+    """The folder of src that the patch changes; there must be one, and nothing else but its tests."""
+    paths = re.findall(r"^\+\+\+ b/(\S+)$", patch, re.MULTILINE)
+    folders = {path.split("/")[1] for path in paths if path.startswith("src/")}
+    if len(folders) != 1:
+        sys.exit(f"the patch changes the folders {sorted(folders)} of src, not one")
+    folder = folders.pop()
+    strangers = [path for path in paths if not path.startswith((f"src/{folder}/", f"tests/unit/{folder}/"))]
+    if strangers:
+        sys.exit(f"the patch changes {strangers} beside src/{folder} and its tests")
+    return folder, [path for path in paths if path.endswith(".pf")]
+
+
+def in_order(folder):
+    """The sources of a folder, those that others use first."""
+    uses, module_of = {}, {}
+    for name in sorted(os.listdir(folder)):
+        if name.endswith(".f90"):
+            with open(os.path.join(folder, name), encoding="utf-8") as source:
+                text = source.read()
+            path = os.path.join(folder, name)
+            module_of[re.search(r"^module (\w+)", text, re.MULTILINE)[1]] = path
+            uses[path] = re.findall(r"^ *use (?:, *intrinsic *:: *)?(\w+)", text, re.MULTILINE)
+    order = []
+
+    def visit(path):
+        for module in uses[path]:
+            if module in module_of and module_of[module] != path:
+                visit(module_of[module])
+        if path not in order:
+            order.append(path)
+
+    for path in uses:
+        visit(path)
+    return order
+
+
+class Workplace:
+    """A folder that sources are compiled in."""
+
+    def __init__(self, folder, asked):
+        self.folder, self.asked = folder, asked
+
+    def compile(self, sources, layers, flags=()):
+        """Compiles sources that see what was compiled here before and the modules of some layers."""
+        seen = [f"-I{os.path.join(self.asked.modules, layer)}" for layer in layers]
+        run(self.asked.compiler, "-c", "-O0", *flags, "-I.", *seen, *sources, cwd=self.folder)
+        return [os.path.join(self.folder, os.path.splitext(os.path.basename(source))[0] + ".o") for source in sources]
+
+    def link(self, name, objects):
+        """Links a program with whatever it needs of the build's objects, those compiled here before them."""
+        run("ar", "rcs", "lower.a", *self.asked.objects, cwd=self.folder)
+        run(self.asked.compiler, *objects, "lower.a", "-o", name, cwd=self.folder)
+        return os.path.join(self.folder, name)
+
+
+def explain_keys(work, layers, patch):
+    """Has the unchanged table of `app` explain the keys that the patch adds."""
+    added = re.findall(r"^\+ +'(\w+) \| (\w+) \|", patch, re.MULTILINE)
+    if not added:
+        sys.exit("the patch adds no key")
+    with open(os.path.join(work.folder, "explain_group.f90"), "w", encoding="utf-8") as source:
+        source.write(EXPLAIN.format(group=added[0][0]))
+    sources = [os.path.join(ROOT, "src", "app", "deck_table.f90"), "explain_group.f90"]
+    told = run(work.link("explain", work.compile(sources, layers)))
+    for _, key in added:
+        if not re.search(rf"^  {key} ", told, re.MULTILINE):
+            sys.exit(f"the table doesn't explain {key}:\n{told}")
+    return [f"{group}%{key}" for group, key in added]
+
+
+def run_tests(work, layers, tests, objects):
+    """Compiles and runs the patch's tests with the stand-in for pFUnit."""
+    run(sys.executable, os.path.join(FRAMEWORK, "generate_asserts.py"), os.path.join(work.folder, "asserts.f90"))
+    names = ["test_failures", "test_cases", "comparisons", "asserts", "test_runs", "funit", "pfunit"]
+    sources = ["asserts.f90" if name == "asserts" else os.path.join(FRAMEWORK, name + ".f90") for name in names]
+    sources.append(os.path.join(ROOT, "tests", "support", "deck_groups.f90"))
+    with open(os.path.join(FRAMEWORK, "driver.f90.in"), encoding="utf-8") as template:
+        driver = template.read()
+    modules = [os.path.splitext(os.path.basename(test))[0] for test in tests]
+    for module, test in zip(modules, tests, strict=True):
+        run(sys.executable, os.path.join(FRAMEWORK, "preprocess.py"), test, module + ".F90", cwd=work.folder)
+        sources.append(module + ".F90")
+    uses, calls = "  use {0}_run, only: run_{0} => run_tests", "  call run_{0}(run)"
+    for mark, line in (("@DRIVER_USES@", uses), ("@DRIVER_CALLS@", calls)):
+        driver = driver.replace(mark, "\n".join(line.format(name) for name in modules))
+    with open(os.path.join(work.folder, "driver.f90"), "w", encoding="utf-8") as source:
+        source.write(driver)
+    compiled = work.compile([*sources, "driver.f90"], layers, ["-ffree-line-length-none"])
+    run("ar", "rcs", "changed.a", *objects, cwd=work.folder)
+    return run(work.link("run_tests", [*compiled, "changed.a"]))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("patch")
+    for name in ("compiler", "modules"):
+        parser.add_argument("--" + name, required=True)
+    for name in ("tiers", "objects"):
+        parser.add_argument("--" + name, nargs="*", default=[])
+    asked, flags = parser.parse_known_args()
+    with open(asked.patch, encoding="utf-8") as file:
+        patch = file.read()
+    folder, tests = one_folder(patch)
+    tiers = [tier.split() for tier in " ".join(asked.tiers).split("/")]
+    lower = [layer for tier in tiers[:[folder in tier for tier in tiers].index(True)] for layer in tier]
+    every = [layer for tier in tiers for layer in tier]
+    with tempfile.TemporaryDirectory() as place:
+        for part in (f"src/{folder}", f"tests/unit/{folder}"):
+            if os.path.isdir(os.path.join(ROOT, part)):
+                shutil.copytree(os.path.join(ROOT, part), os.path.join(place, part))
+        run("patch", "-p1", "--no-backup-if-mismatch", "-i", os.path.abspath(asked.patch), cwd=place)
+        work = Workplace(place, asked)
+        objects = work.compile(in_order(os.path.join(place, "src", folder)), lower, flags)
+        keys = explain_keys(work, every, patch)
+        told = run_tests(work, every, [os.path.join(place, test) for test in tests], objects)
+    print(f"src/{folder} and its tests add {', '.join(keys)}; {told.strip().splitlines()[-1]}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,24 @@
+!> What the examples show, with a figure and a tolerance each.
+module example_checks
+  use kinds, only: wp
+  implicit none
+  private
+  public :: require
+
+contains
+
+  !> Prints a figure and ends the program with code 1 if it is off.
+  subroutine require(what, found, expected, tolerance)
+    !> What the figure is
+    character(len=*), intent(in) :: what
+    !> The figure, and what it should be
+    real(wp), intent(in) :: found, expected
+    !> Largest difference allowed
+    real(wp), intent(in) :: tolerance
+
+    print '(2a,es23.15,a,es23.15,a,es9.2)', what, ':', found, ' for', expected, ', off by', found - expected
+    if (abs(found - expected) <= tolerance) return
+    print '(a,es9.2)', 'more than', tolerance
+    stop 1
+  end subroutine require
+end module example_checks

@@ -1,0 +1,58 @@
+"""Checks that folders of the program see those of earlier tiers only. Usage:
+check_layers.py COMPILER MODULES LAYERS TIER...
+
+TIERs are names of folders with a slash before each new tier. LAYERS is a file with a line NAME=FOLDER;FOLDER for each
+folder of the program: where its compiler looks for modules. Modules of the program are in folders of MODULES. For each
+folder a module of every other is used in a probe, which must compile only if that is of an earlier tier.
+Prints one line a breach and ends with code 1 if there is any.
+"""
+
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+
+def tiers_of(words):
+    """Number of the tier of each folder."""
+    tiers, number = {}, 0
+    for word in words:
+        number += word == "/"
+        if word != "/":
+            tiers[word] = number
+    return tiers
+
+
+def compiles(compiler, module, searched):
+    """Tell whether a file that uses a module compiles with some folders to look for it."""
+    with tempfile.TemporaryDirectory() as folder:
+        probe = Path(folder, "probe.f90")
+        probe.write_text(f"module probe\n  use {module}\nend module probe\n", encoding="utf-8")
+        command = [compiler, "-fsyntax-only", f"-J{folder}", *(f"-I{path}" for path in searched if path), str(probe)]
+        return subprocess.run(command, capture_output=True, check=False).returncode == 0
+
+
+def breaches(compiler, modules, searched, tiers):
+    """Sentences on folders that see too little or too much."""
+    for name, folders in searched.items():
+        for other, tier in tiers.items():
+            module = min(path.stem for path in Path(modules, other).glob("*.mod"))
+            allowed = tier < tiers[name]
+            if other != name and compiles(compiler, module, folders) != allowed:
+                yield f"{name} {'sees none' if allowed else 'can use'} of the modules of {other}"
+
+
+def main(arguments):
+    """Check the folders; return the exit code."""
+    compiler, modules, layers, *words = arguments
+    lines = Path(layers).read_text(encoding="utf-8").split()
+    searched = {name: folders.split(";") for name, folders in (line.split("=") for line in lines)}
+    tiers = tiers_of(words)
+    found = list(breaches(compiler, modules, searched, tiers))
+    found += [f"{name} has no tier" for name in searched.keys() ^ tiers.keys()]
+    print("\n".join(found) if found else f"{len(tiers)} folders see those of earlier tiers only")
+    return 1 if found or not searched else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,300 @@
+#!/usr/bin/env python3
+"""Checks the pages for readers: README.md, CHANGELOG.md and all Markdown under doc/ and tests/. Usage:
+check_pages.py [ROOT] [--write] [--sentences]
+
+- Relative links lead to files, and to headings, that exist.
+- Files named in quotes exist: with their path from the root or from src/, or by a bare name somewhere in the project.
+- A block of code after <!-- from PATH --> stands in that file, line by line; "..." stands for lines left out.
+- doc/index.md lists every page of doc/, every key, column and field of the manual and every term of the glossary.
+- Pages say what holds now: the words of a diary ("as it was then") are refused outside CHANGELOG.md and doc/news/.
+
+--write writes the lists of doc/index.md anew. --sentences counts the sentences of more than 30 words and prints them.
+Prints one line a breach, as file:line: sentence, and ends with code 1 if there is any.
+"""
+
+import re
+import sys
+from pathlib import Path
+
+LONGEST = 30
+LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
+CODE = re.compile(r"`([^`\n]+)`")
+HEADING = re.compile(r"^(#+) +(.*?) *#*$")
+FENCE = re.compile(r"^ *```")
+ORIGIN = re.compile(r"^<!-- from (\S+) -->$")
+# A file in a folder of the project, a source by the folder of src/ that it is in, or a bare name of one.
+PATHS = re.compile(r"^(?:src|tests|input|doc|cmake|postproc|\.ci)/[\w./*-]*$")
+SOURCES = re.compile(r"^(?:[a-z_]+/)?[\w-]+\.(?:f90|pf|c|py)$")
+# Names that stand for others: <name>, GROUP_deck.f90.
+PLACEHOLDER = re.compile(r"<|[A-Z]{2}")
+# Files that a patch of an example makes.
+PATCHED = re.compile(r"^\+\+\+ \w/(\S+)", re.MULTILINE)
+DIARY = re.compile(
+    r"\b(?:as it was then|was then|as it was when|before the deck had|before (?:that|this) change|formerly|used to be|"
+    r"up to now|until now|has now been)\b",
+    re.IGNORECASE,
+)
+BEGIN, END = "<!-- lists: written by tests/lint/check_pages.py --write -->", "<!-- end of the lists -->"
+ROW = re.compile(r"^\| `(\w+)` \|", re.MULTILINE)
+TERM = re.compile(r"^\*\*(.+?)\*\*(.*?)(?=^\*\*|^#|\Z)", re.MULTILINE | re.DOTALL)
+# What ends with a full stop without ending a sentence.
+SHORT = re.compile(r"\b(?:et al|Eqs?|Sec|Fig|No|e\.g|i\.e|vs|cf|J|Proc|Comput|Mech|Appl|Int|Numer|Meth|Eng)\.")
+
+
+def pages(root):
+    """The pages of the project, news apart."""
+    found = [root / "README.md", root / "CHANGELOG.md"]
+    for folder in ("doc", "tests"):
+        found += sorted((root / folder).rglob("*.md"))
+    return [page for page in found if page.exists()]
+
+
+def slug(heading):
+    """The anchor of a heading."""
+    text = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", heading.lower())
+    return re.sub(r"[^\w\- ]", "", text).replace(" ", "-")
+
+
+def anchors(page):
+    """The anchors of a page."""
+    return {slug(match.group(2)) for line, _ in prose(page) if (match := HEADING.match(line))}
+
+
+def prose(page):
+    """The lines of a page outside blocks of code, with their numbers."""
+    lines, inside = [], False
+    for number, line in enumerate(page.read_text(encoding="utf-8").splitlines(), 1):
+        if FENCE.match(line):
+            inside = not inside
+        elif not inside:
+            lines.append((line, number))
+    return lines
+
+
+def check_links(page):
+    """Breaches of links."""
+    for line, number in prose(page):
+        for target in LINK.findall(CODE.sub("", line)):
+            if re.match(r"[a-z]+:", target):
+                continue
+            name, _, anchor = target.partition("#")
+            path = page.parent / name if name else page
+            if not path.exists():
+                yield f"{page}:{number}: the link to {target} leads nowhere"
+            elif anchor and anchor not in anchors(path):
+                yield f"{page}:{number}: {name or page.name} has no heading #{anchor}"
+
+
+class Names:
+    """The files of the project."""
+
+    def __init__(self, root):
+        """List them."""
+        self.root = root
+        self.bare = set()
+        for folder in ("src", "tests", "postproc", "cmake"):
+            self.bare |= {path.name for path in (root / folder).rglob("*") if ".venv" not in path.parts}
+        patches = (root / "tests" / "examples").glob("*.patch")
+        self.patched = {name for path in patches for name in PATCHED.findall(path.read_text(encoding="utf-8"))}
+
+    def missing(self, word):
+        """Does a quoted word name a file that is not there?"""
+        if PLACEHOLDER.search(word) or word in self.patched:
+            return False
+        if PATHS.match(word):
+            return not (any(self.root.glob(word)) if "*" in word else (self.root / word).exists())
+        if not SOURCES.match(word):
+            return False
+        if "/" in word:
+            return not ((self.root / "src" / word).exists() or (self.root / word).exists())
+        return "*" not in word and word not in self.bare
+
+
+def check_names(page, names):
+    """Breaches of quoted names of files."""
+    for line, number in prose(page):
+        for quoted in CODE.findall(line):
+            for word in quoted.split():
+                if names.missing(word.rstrip(",;:")):
+                    yield f"{page}:{number}: there is no file {word}"
+
+
+def check_quotes(page, root):
+    """Breaches of code quoted from files."""
+    lines = page.read_text(encoding="utf-8").splitlines()
+    for number, line in enumerate(lines):
+        origin = ORIGIN.match(line)
+        if not origin:
+            continue
+        path = root / origin.group(1)
+        if not path.exists():
+            yield f"{page}:{number + 1}: there is no file {origin.group(1)} to quote"
+            continue
+        if number + 1 == len(lines) or not FENCE.match(lines[number + 1]):
+            yield f"{page}:{number + 1}: no block of code follows"
+            continue
+        end = next((n for n in range(number + 2, len(lines)) if FENCE.match(lines[n])), len(lines))
+        wrong = first_missing(lines[number + 2 : end], path.read_text(encoding="utf-8").splitlines())
+        if wrong is not None:
+            yield f"{page}:{number + 3 + wrong}: {origin.group(1)} has no such line here"
+
+
+def first_missing(quote, lines):
+    """The first line of a quote that the lines of a file lack, or None. Indentation does not count."""
+    lines = [line.strip() for line in lines]
+    best = 0
+    for start in range(len(lines)):
+        place, gap = start, False
+        for count, wanted in enumerate(line.strip() for line in quote):
+            if wanted == "...":
+                gap = True
+                continue
+            if gap and wanted in lines[place:]:
+                place = lines.index(wanted, place)
+            if place >= len(lines) or lines[place] != wanted:
+                best = max(best, count)
+                break
+            place, gap = place + 1, False
+        else:
+            return None
+    return best
+
+
+def check_diary(page, root):
+    """Breaches of pages that tell what was."""
+    if page == root / "CHANGELOG.md" or page.parent == root / "doc" / "news":
+        return
+    for line, number in prose(page):
+        found = DIARY.search(line)
+        if found:
+            yield f'{page}:{number}: "{found.group()}" tells what was; say what holds'
+
+
+def title(page):
+    """The first heading of a page."""
+    return next((match.group(2) for line, _ in prose(page) if (match := HEADING.match(line))), page.stem)
+
+
+def linked(items):
+    """Links in one paragraph."""
+    return wrapped(", ".join(f"[{text}]({target})" for text, target in items) + ".")
+
+
+def wrapped(text, width=118):
+    """A paragraph, or the item of a list, in lines; links stay whole."""
+    margin = "  " if text.startswith("- ") else ""
+    lines = [""]
+    for word in re.split(r" (?![^\[]*\]\()", text):
+        if lines[-1].strip() and len(lines[-1]) + 1 + len(word) > width:
+            lines.append(margin)
+        lines[-1] += (" " if lines[-1].strip() else "") + word
+    return "\n".join(lines)
+
+
+def listed_rows(page, heading, label):
+    """The rows of a page's table as one item of a list, if it has a table with this first heading."""
+    table = re.search(rf"^\| {heading} \|.*?(?=\n\n|\Z)", page.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
+    rows = ROW.findall(table.group()) if table else []
+    target = f"{page.parent.name}/{page.name}"
+    return [wrapped(f"- [{label}]({target}): " + ", ".join(f"`{row}`" for row in rows) + ".")] if rows else []
+
+
+def index_lists(doc):
+    """The lists of the index: pages, groups with their keys, columns and fields, terms."""
+    listed = [page for page in sorted(doc.rglob("*.md")) if "news" not in page.parts and page.name != "index.md"]
+    parts = ["## Pages", ""]
+    for page in sorted(listed, key=lambda page: (page.parent, page.name)):
+        parts.append(f"- [{title(page)}]({page.relative_to(doc).as_posix()})")
+    parts += ["", "## Groups and keys of the deck", ""]
+    for page in sorted((doc / "manual").glob("*.md")):
+        parts += listed_rows(page, "key", f"&{page.stem}")
+    parts += ["", "## Columns and fields of the results", ""]
+    for page in sorted((doc / "manual").glob("*.md")):
+        parts += listed_rows(page, "name", page.stem)
+    parts += ["", "## Terms", ""]
+    glossary = doc / "glossary.md"
+    if glossary.exists():
+        terms = []
+        for term, text in TERM.findall(glossary.read_text(encoding="utf-8")):
+            target = next((link for link in LINK.findall(text) if not re.match(r"[a-z]+:", link)), "glossary.md")
+            terms.append((term.rstrip(".,:"), target))
+        parts.append(linked(sorted(terms, key=lambda item: item[0].lower())))
+    return "\n".join(parts) + "\n"
+
+
+def check_index(root, write):
+    """Breaches of the index, whose lists are written anew if asked for."""
+    index = root / "doc" / "index.md"
+    if not index.exists():
+        yield f"{index}:1: there is no index"
+        return
+    text = index.read_text(encoding="utf-8")
+    if text.count(BEGIN) != 1 or text.count(END) != 1:
+        yield f"{index}:1: the lists have lost the comments around them"
+        return
+    before, rest = text.split(BEGIN)
+    whole = f"{before}{BEGIN}\n\n{index_lists(root / 'doc')}\n{END}{rest.split(END)[1]}"
+    if write:
+        index.write_text(whole, encoding="utf-8")
+    elif whole != text:
+        yield f"{index}:1: the lists are not up to date; run tests/lint/check_pages.py --write"
+
+
+def sentences(page):
+    """The sentences of a page, with the numbers of the lines on which their paragraphs begin."""
+    for text, number in paragraphs(page):
+        text = LINK.sub("Link", CODE.sub("Code", text))
+        for sentence in re.split(r"(?<=[.!?])[\")*]* +(?=[\"(*`A-Z0-9&])", SHORT.sub("short", text)):
+            yield sentence, number
+
+
+def paragraphs(page):
+    """Paragraphs, items of lists and cells of tables, with the numbers of their first lines."""
+    text, first, listed = "", 0, False
+    for line, number in [*prose(page), ("", 0)]:
+        listed = line == BEGIN or (listed and line != END)
+        if listed:
+            continue
+        stripped = line.strip()
+        # Equations and commands stand indented, apart from the text around them.
+        starts = re.match(r"(?:[-*] |\d+\. |>|\||#|$|<!--)", stripped) or (line.startswith("    ") and not text)
+        if starts and text:
+            yield text, first
+            text = ""
+        if stripped.startswith("|"):
+            for cell in stripped.strip("|").split("|"):
+                yield cell.strip(), number
+        elif stripped and not stripped.startswith(("#", "<!--")) and (text or not line.startswith("    ")):
+            first = first if text else number
+            text += " " + re.sub(r"^(?:[-*>]+|\d+\.) +", "", stripped)
+
+
+def long_sentences(page):
+    """The sentences of a page that are too long."""
+    for sentence, number in sentences(page):
+        words = [word for word in sentence.split() if re.search(r"\w", word)]
+        if len(words) > LONGEST:
+            yield number, len(words), sentence.strip()
+
+
+def main(arguments):
+    """Check the pages; return the exit code."""
+    folders = [argument for argument in arguments if not argument.startswith("--")]
+    root = Path(folders[0] if folders else Path(__file__).resolve().parents[2])
+    if "--sentences" in arguments:
+        found = [(page, *sentence) for page in pages(root) for sentence in long_sentences(page)]
+        for page, number, words, text in found:
+            print(f"{page.relative_to(root)}:{number}: {words} words: {text}")
+        total = sum(1 for page in pages(root) for _ in sentences(page))
+        print(f"{len(found)} of {total} sentences have more than {LONGEST} words")
+        return 0
+    breaches = list(check_index(root, "--write" in arguments))
+    names = Names(root)
+    for page in pages(root):
+        breaches += [*check_links(page), *check_names(page, names), *check_quotes(page, root), *check_diary(page, root)]
+    print("\n".join(breaches) if breaches else f"{len(pages(root))} pages keep the rules")
+    return 1 if breaches else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
