@@ -14,7 +14,7 @@ module command_lines
   type :: command_t
     !> One of the verbs
     integer :: verb = verb_run
-    !> Deck, checkpoint or topic
+    !> Deck, checkpoint or its folder, topic; empty: none
     character(len=:), allocatable :: target
     !> Folder that overrides the deck's; unallocated: the deck's
     character(len=:), allocatable :: output
@@ -121,8 +121,6 @@ contains
     select case (command%verb)
     case (verb_run, verb_check)
       call fail(error, exit_usage, 'No deck given; see implam --help.')
-    case (verb_restart)
-      call fail(error, exit_usage, 'No checkpoint given: implam restart NAME_restart.h5')
     end select
   end subroutine require_target
 
@@ -176,26 +174,28 @@ contains
   !> What the program tells of its use.
   pure function usage() result(text)
     !> Lines of the text
-    character(len=96) :: text(18)
+    character(len=96) :: text(20)
 
     text = [character(len=96) :: &
             'Usage: implam [run] DECK.nml       run a deck', &
             '       implam check DECK.nml       read and check a deck, list every fault, run nothing', &
             '       implam explain [GROUP[%KEY]] what a deck can say: keys, units, defaults, meaning', &
             '       implam explain history|fields  what results hold: names, units, meaning', &
-            '       implam restart FILE         go on from a checkpoint (NAME_restart.h5)', &
+            '       implam restart [FILE]       go on from a checkpoint (NAME_restart.h5), or from the newest', &
+            '                                   of a folder: the one named, that of --output, or this one', &
             '       implam --version | --help', &
             'Options:', &
             '  --output DIR   folder of the results, instead of the deck''s', &
             '  --wall-limit SECONDS  end with a checkpoint before so many seconds have passed on the wall', &
             '  --markdown     explain as a table for the manual', &
             '  -mat_..., -ksp_..., -log_view and other words with one dash go to PETSc', &
-            'Under mpirun the same. Exit codes:', &
+            'Under mpirun the same but for signals. Exit codes:', &
             '  0 done  1 usage  2 deck  3 no convergence at the smallest step  4 files  5 internal', &
             '  75 stopped by a signal of the queue or the time on the wall, with a checkpoint written:', &
             '     go on with restart', &
             'Signals: TERM, INT, USR1, USR2 and XCPU end the run after the step at hand, with a', &
-            '  checkpoint.', &
+            '  checkpoint. Under mpirun send USR1 to mpirun, or any of them to every rank: mpirun itself', &
+            '  takes TERM and INT, kills the ranks a second later and ends with code 1.', &
             '']
   end function usage
 end module command_lines

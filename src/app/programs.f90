@@ -16,7 +16,8 @@ module programs
   use deck_vocabulary, only: vocabulary_t
   use deck_explain, only: explain, explain_table
   use hdf5_file, only: files_left_open
-  use checkpoints, only: checkpoint_archive_t
+  use checkpoints, only: checkpoint_archive_t, newest_checkpoint
+  use files, only: is_directory
   use build_information, only: version, commit, compiler, petsc_version
   use command_lines, only: command_t, read_command_line, usage, verb_run, verb_check, verb_explain, verb_restart, &
                            verb_version, verb_help
@@ -168,13 +169,16 @@ contains
     type(deck_t) :: deck
     type(problems_t) :: problems
     type(simulation_t), allocatable :: simulation
+    character(len=:), allocatable :: checkpoint
     real(wp) :: begun
 
     begun = wall_time()
     ! A checkpoint is read through MPI.
     if (command%verb == verb_restart) then
       call start_mpi(communicator)
-      call read_checkpoint_deck(command%target, communicator, deck, problems, error)
+      call find_checkpoint(command, communicator, checkpoint, error)
+      if (allocated(error)) return
+      call read_checkpoint_deck(checkpoint, communicator, deck, problems, error)
       if (allocated(error)) return
     else
       call read_deck_everywhere(command%target, communicator, deck, problems)
@@ -191,7 +195,7 @@ contains
     call catch_stop_signals()
     allocate (simulation)
     if (command%verb == verb_restart) then
-      call simulation%resume(deck, communicator, begun, command%target, error)
+      call simulation%resume(deck, communicator, begun, checkpoint, error)
     else
       call simulation%initialize(deck, communicator, begun, error)
     end if
@@ -201,6 +205,31 @@ contains
     call simulation%log%close()
     call finish_petsc()
   end subroutine compute
+
+  !> The checkpoint to go on from: the file named, or else the newest whole one of a folder.
+  subroutine find_checkpoint(command, communicator, path, error)
+    !> What is asked
+    type(command_t), intent(in) :: command
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> Path of the checkpoint
+    character(len=:), allocatable, intent(out) :: path
+    !> Set if there is none in the folder
+    type(error_t), allocatable, intent(inout) :: error
+    character(len=:), allocatable :: folder
+    logical :: is_file
+
+    path = command%target
+    is_file = path /= ''
+    if (is_file .and. communicator%is_root()) is_file = .not. is_directory(path)
+    call communicator%broadcast(is_file)
+    if (is_file) return
+    folder = '.'
+    if (allocated(command%output)) folder = command%output
+    if (path /= '') folder = path
+    call newest_checkpoint(communicator, folder, path, error)
+    if (.not. allocated(error)) call print_lines(communicator, [line_t('Going on from '//path//'.')])
+  end subroutine find_checkpoint
 
   !> Reads the deck that a checkpoint holds. Results go on in the folder of the checkpoint.
   subroutine read_checkpoint_deck(path, communicator, deck, problems, error)
@@ -215,12 +244,17 @@ contains
     !> Set if the file is no checkpoint or damaged
     type(error_t), allocatable, intent(out) :: error
     type(checkpoint_archive_t) :: archive
+    integer :: slash
 
     call archive%open_for_loading(communicator, path, error)
     if (allocated(error)) return
     call read_deck_text(archive%provenance%deck, path, deck, problems)
+    ! A deck without a name has that of its file, which isn't the checkpoint's.
+    deck%name = archive%provenance%case_name
+    call deck%settings%derive('case', 'name', deck%name, .true.)
     call archive%close(error)
     deck%output%directory = '.'
-    if (index(path, '/', back=.true.) > 0) deck%output%directory = path(:index(path, '/', back=.true.))
+    slash = index(path, '/', back=.true.)
+    if (slash > 0) deck%output%directory = path(:max(slash - 1, 1))
   end subroutine read_checkpoint_deck
 end module programs

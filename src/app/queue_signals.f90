@@ -6,7 +6,8 @@ module queue_signals
   public :: catch_stop_signals, stop_signal
 
   interface
-    !> From now on TERM, INT, USR1, USR2 and XCPU are remembered instead of ending the program.
+    !> From now on TERM, INT, USR1, USR2 and XCPU are remembered instead of ending the program, whatever libraries
+    !> have made of them.
     subroutine catch_stop_signals() bind(c, name='implam_catch_stop_signals')
     end subroutine catch_stop_signals
 

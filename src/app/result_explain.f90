@@ -41,8 +41,8 @@ contains
     else if (markdown) then
       call markdown_table(field_heading, field_rows, lines)
     else
-      call append(lines, 'NAME.h5 holds fields over the plate, which NAME.xdmf shows to ParaView. N is a number, '// &
-                         'choice what `fields` in &output says:')
+      call append(lines, 'NAME.h5 holds fields over the plate, which NAME.xdmf shows to ParaView. N is the number '// &
+                         'of a ply, choice what `fields` in &output says:')
       call plain_table(field_heading, field_rows, lines)
     end if
   end subroutine explain_results

@@ -17,9 +17,9 @@ module simulations
   use run_reports, only: log_echo, log_costs, summary
   use history_file, only: history_file_t
   use fields_file, only: fields_file_t
-  use checkpoints, only: checkpoint_archive_t
+  use checkpoints, only: checkpoint_archive_t, checkpoint_ending, retire_checkpoint
   use wall_limits, only: wall_limit_t
-  use queue_signals, only: stop_signal
+  use queue_signals, only: catch_stop_signals, stop_signal
   use output_clocks, only: clock_t, next_event
   use energy_watches, only: energy_watch_t
   use result_rows, only: row_of, column_names, column_whole
@@ -85,9 +85,13 @@ contains
     real(wp), intent(in) :: begun
     !> Set if files cannot be written or the model cannot be set up
     type(error_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: retired
 
     call prepare(self, deck, communicator, begun, append=.false., error=error)
     if (allocated(error)) return
+    call retire_checkpoint(communicator, self%base//checkpoint_ending, retired, error)
+    if (allocated(error)) return
+    if (retired /= '') call self%log%note('The checkpoint of an earlier run is now '//retired//'.')
     call self%history%create(communicator, self%base//'_history.csv', column_names(), column_whole(), error)
     if (allocated(error)) return
     call self%fields%create(communicator, self%base, self%provenance, part_of(self), error)
@@ -124,6 +128,7 @@ contains
     call communicator%agree(error)
     if (allocated(error)) return
     self%provenance = this_run(this_build(), deck%text, communicator%size)
+    self%provenance%case_name = deck%name
     call self%provenance%report(self%log)
     call log_echo(deck, self%log)
     call create_model(deck%scene_t, communicator, self%model, error)
@@ -162,6 +167,7 @@ contains
     !> Set if the checkpoint cannot be used
     type(error_t), allocatable, intent(out) :: error
     type(checkpoint_archive_t) :: archive
+    real(wp), allocatable :: last_row(:)
     integer :: rows
 
     call prepare(self, deck, communicator, begun, append=.true., error=error)
@@ -173,7 +179,11 @@ contains
     call archive%close(error)
     if (allocated(error)) return
     self%warned_of_border = self%stepper%now%interfaces%border_reached
-    call self%history%resume(communicator, self%base//'_history.csv', column_names(), column_whole(), rows, error)
+    call self%fields%check_deck(communicator, self%base, deck%text, error)
+    if (allocated(error)) return
+    last_row = self%history%last_row
+    call self%history%resume(communicator, self%base//'_history.csv', column_names(), column_whole(), rows, last_row, &
+                             error)
     if (allocated(error)) return
     if (self%history%rows /= rows) &
       call self%log%warning('The history before the checkpoint is not there; it goes on from here.')
@@ -199,6 +209,7 @@ contains
     call self%fields_clock%visit(archive, 'fields')
     call self%checkpoint_clock%visit(archive, 'checkpoint')
     call archive%item('history/rows', rows)
+    call archive%item('history/last_row', self%history%last_row)
   end subroutine visit
 
   !> Time, or load factor, at which the run ends.
@@ -219,6 +230,7 @@ contains
     real(wp) :: event, closest, step_begun
 
     call self%timers%stop('set-up')
+    call catch_stop_signals()
     closest = self%stepper%smallest_step(self%model)
     do while (self%stepper%now%time < end_of(self))
       event = next_event([self%history_clock, self%fields_clock, self%checkpoint_clock], end_of(self), closest)
@@ -248,6 +260,8 @@ contains
     character(len=:), allocatable :: cause
     logical :: signalled, late
 
+    ! METIS, at work for the partition and within the solver, takes a signal and may give it back for one time only.
+    call catch_stop_signals()
     signalled = self%communicator%any(stop_signal() /= 0)
     late = self%communicator%any(self%wall_limit%is_up(wall_time())) .and. self%stepper%now%time < end_of(self)
     if (.not. (signalled .or. late)) return
@@ -255,7 +269,7 @@ contains
     if (signalled) cause = 'by a signal'
     call save_checkpoint(self, error)
     call fail(error, exit_stopped, 'Stopped '//cause//' at time '//to_text(self%stepper%now%time)// &
-              '; go on with: implam restart '//self%base//'_restart.h5')
+              '; go on with: implam restart '//self%base//checkpoint_ending)
   end subroutine stop_if_due
 
   !> Writes what is due after an accepted step. The clocks move before the checkpoint is saved, so that
@@ -320,7 +334,7 @@ contains
     call self%history%flush(error)
     if (allocated(error)) return
     rows = self%history%rows
-    call archive%open_for_saving(self%communicator, self%base//'_restart.h5', self%provenance, error)
+    call archive%open_for_saving(self%communicator, self%base//checkpoint_ending, self%provenance, error)
     if (allocated(error)) return
     call visit(self, archive, rows, error)
     if (allocated(error)) return

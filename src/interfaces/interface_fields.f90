@@ -8,7 +8,7 @@ module interface_fields
   use kinds, only: wp
   use models, only: model_t
   use motions, only: motion_t
-  use output_parameters, only: output_t
+  use output_parameters, only: output_t, field_gap, field_contact_pressure, field_delamination, field_energy_release
   use result_tables, only: result_row_length
   implicit none
   private
@@ -17,14 +17,14 @@ module interface_fields
   !> The fields. A new one comes with its writing below, and touches no other folder but the choices of &output.
   character(len=result_row_length), parameter, public :: interface_field_rows(*) = &
     [character(len=result_row_length) :: &
-    'jump | points | length | gap | &delamination | Displacement below less that above the interface on top of a &
-      &layer; its z is the gap.', &
-    'contact_pressure | points | pressure | contact_pressure | &delamination | Contact pressure in the interface on &
-      &top of a layer.', &
-    'delaminated_above | cells | - | delamination | &delamination | 1 in elements whose interface on top has come &
-      &apart, else 0.', &
-    'energy_release_above | cells | - | energy_release | &delamination | G/G_c of the interface on top in the &
-      &intact elements next to a front, 0 elsewhere.']
+    'jump | points | length | '//field_gap//' | &delamination | Displacement below less that above the interface on &
+      &top of a layer; its z is the gap.', &
+    'contact_pressure | points | pressure | '//field_contact_pressure//' | &delamination | Contact pressure in the &
+      &interface on top of a layer.', &
+    'delaminated_above | cells | - | '//field_delamination//' | &delamination | 1 in elements whose interface on top &
+      &has come apart, else 0.', &
+    'energy_release_above | cells | - | '//field_energy_release//' | &delamination | G/G_c of the interface on top in &
+      &the intact elements next to a front, 0 elsewhere.']
 
 contains
 
@@ -47,12 +47,12 @@ contains
 
     if (.not. model%map%layered) return
     associate (faces => interfaces%faces)
-      if (output%wants('gap')) call fields%write_point_field('jump', jumps(model, motion%displacement), error)
-      if (output%wants('contact_pressure')) &
+      if (output%wants(field_gap)) call fields%write_point_field('jump', jumps(model, motion%displacement), error)
+      if (output%wants(field_contact_pressure)) &
         call fields%write_point_field('contact_pressure', reshape(faces%pressure, [1, size(faces%pressure)]), error)
-      if (output%wants('delamination')) &
+      if (output%wants(field_delamination)) &
         call fields%write_cell_field('delaminated_above', delaminated_above(model, faces), error)
-      if (output%wants('energy_release')) &
+      if (output%wants(field_energy_release)) &
         call fields%write_cell_field('energy_release_above', release_ahead(model, stiffness, faces, motion), error)
     end associate
   end subroutine write_interface_fields

@@ -5,7 +5,7 @@ module motion_fields
   use kinds, only: wp
   use models, only: model_t
   use motions, only: motion_t
-  use output_parameters, only: output_t
+  use output_parameters, only: output_t, field_displacement, field_rotation, field_velocity
   use result_tables, only: result_row_length
   implicit none
   private
@@ -13,11 +13,13 @@ module motion_fields
 
   !> The fields. All layers measure z from the mid-plane of the laminate.
   character(len=result_row_length), parameter, public :: motion_field_rows(*) = [character(len=result_row_length) :: &
-    'displacement | points | length | displacement | - | Displacement u, v, w of each layer where its z is 0, the &
-      &mid-plane of the laminate; w is positive along the impact.', &
-    'rotation_1 | points | radian | rotation | - | Rotation of the layer''s normal towards x: u grows by it per z.', &
-    'rotation_2 | points | radian | rotation | - | Rotation of the layer''s normal towards y: v grows by it per z.', &
-    'velocity | points | length/time | velocity | - | Velocity, the rate of the displacement.']
+    'displacement | points | length | '//field_displacement//' | - | Displacement u, v, w of each layer where z is 0, &
+      &the mid-plane of the laminate; w is positive along the impact.', &
+    'rotation_1 | points | radian | '//field_rotation//' | - | Rotation of the layer''s normal towards x: u grows by &
+      &it per z.', &
+    'rotation_2 | points | radian | '//field_rotation//' | - | Rotation of the layer''s normal towards y: v grows by &
+      &it per z.', &
+    'velocity | points | length/time | '//field_velocity//' | - | Velocity, the rate of the displacement.']
 
 contains
 
@@ -36,9 +38,9 @@ contains
     real(wp), allocatable :: layers(:, :)
 
     layers = model%motion_of(motion%displacement)
-    if (output%wants('displacement')) call fields%write_point_field('displacement', layers(1:3, :), error)
-    if (output%wants('rotation')) call fields%write_point_field('rotation', layers(4:5, :), error)
+    if (output%wants(field_displacement)) call fields%write_point_field('displacement', layers(1:3, :), error)
+    if (output%wants(field_rotation)) call fields%write_point_field('rotation', layers(4:5, :), error)
     layers = model%motion_of(motion%velocity)
-    if (output%wants('velocity')) call fields%write_point_field('velocity', layers(1:3, :), error)
+    if (output%wants(field_velocity)) call fields%write_point_field('velocity', layers(1:3, :), error)
   end subroutine write_motion_fields
 end module motion_fields

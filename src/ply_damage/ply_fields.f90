@@ -5,7 +5,7 @@ module ply_fields
   use fields_file, only: fields_file_t
   use kinds, only: wp
   use models, only: model_t
-  use output_parameters, only: output_t
+  use output_parameters, only: output_t, field_ply_damage, field_stress, field_face_stress
   use ply_failures, only: ply_failure_t
   use result_tables, only: result_row_length
   use text, only: to_text
@@ -13,24 +13,24 @@ module ply_fields
   private
   public :: write_ply_fields
 
+  !> Cells between name and meaning: of stresses in the mid-plane of a ply, and of those on its faces.
+  character(len=*), parameter :: middle = ' | cells | pressure | '//field_stress//' | - | ', &
+                                 faces = ' | cells | pressure | '//field_face_stress//' | - | '
   !> The fields; N is the number of the ply from the struck face. Elements without ply N have 0.
   character(len=result_row_length), parameter, public :: ply_field_rows(*) = [character(len=result_row_length) :: &
-    'ply_N_failure | cells | - | ply_damage | &ply_damage | Failures of ply N: 1 fibre failure, 2 matrix cracking, &
-      &4 matrix crushing, added up.', &
-    'ply_N_sigma11 | cells | pressure | stress | - | Stress along the fibres in the mid-plane of ply N.', &
-    'ply_N_sigma22 | cells | pressure | stress | - | Stress across the fibres in the mid-plane of ply N.', &
-    'ply_N_tau12 | cells | pressure | stress | - | Shear stress in the plane, in the mid-plane of ply N.', &
-    'ply_N_tau13 | cells | pressure | stress | - | Shear stress between fibres and normal in ply N.', &
-    'ply_N_tau23 | cells | pressure | stress | - | Shear stress between the direction across the fibres and the &
-      &normal in ply N.', &
-    'ply_N_sigma11_top | cells | pressure | face_stress | - | Stress along the fibres on the upper face of ply N, &
-      &the one towards the struck face.', &
-    'ply_N_sigma22_top | cells | pressure | face_stress | - | Stress across the fibres on the upper face of ply N.', &
-    'ply_N_tau12_top | cells | pressure | face_stress | - | Shear stress in the plane on the upper face of ply N.', &
-    'ply_N_sigma11_bottom | cells | pressure | face_stress | - | Stress along the fibres on the lower face of ply N.', &
-    'ply_N_sigma22_bottom | cells | pressure | face_stress | - | Stress across the fibres on the lower face of ply &
-      &N.', &
-    'ply_N_tau12_bottom | cells | pressure | face_stress | - | Shear stress in the plane on the lower face of ply N.']
+    'ply_N_failure | cells | - | '//field_ply_damage//' | &ply_damage | Failures of ply N: 1 fibre failure, 2 matrix &
+      &cracking, 4 matrix crushing, added up.', &
+    'ply_N_sigma11'//middle//'Stress along the fibres in the mid-plane of ply N.', &
+    'ply_N_sigma22'//middle//'Stress across the fibres in the mid-plane of ply N.', &
+    'ply_N_tau12'//middle//'Shear stress in the plane, in the mid-plane of ply N.', &
+    'ply_N_tau13'//middle//'Shear stress between fibres and normal in ply N.', &
+    'ply_N_tau23'//middle//'Shear stress between the direction across the fibres and the normal in ply N.', &
+    'ply_N_sigma11_top'//faces//'Stress along the fibres on the upper face of ply N, towards the struck face.', &
+    'ply_N_sigma22_top'//faces//'Stress across the fibres on the upper face of ply N.', &
+    'ply_N_tau12_top'//faces//'Shear stress in the plane on the upper face of ply N.', &
+    'ply_N_sigma11_bottom'//faces//'Stress along the fibres on the lower face of ply N.', &
+    'ply_N_sigma22_bottom'//faces//'Stress across the fibres on the lower face of ply N.', &
+    'ply_N_tau12_bottom'//faces//'Shear stress in the plane on the lower face of ply N.']
 
 contains
 
@@ -54,11 +54,11 @@ contains
     real(wp), allocatable :: strains(:, :), stresses(:, :, :)
     integer :: ply, place, i
 
-    wanted = [output%wants('stress'), output%wants('face_stress'), output%wants('face_stress')]
+    wanted = [output%wants(field_stress), output%wants(field_face_stress), output%wants(field_face_stress)]
     if (any(wanted)) strains = element_strains(model, plies, displacement)
     do ply = 1, size(model%plies)
       associate (name => 'ply_'//to_text(ply)//'_')
-        if (output%wants('ply_damage') .and. model%scene%has_ply_damage) &
+        if (output%wants(field_ply_damage) .and. model%scene%has_ply_damage) &
           call fields%write_cell_field(name//'failure', failure_code(plies%onset%failed(ply)), error)
         if (any(wanted)) stresses = stresses_of_ply(model, plies, strains, ply)
         do place = 1, 3

@@ -5,7 +5,8 @@ module checkpoints
   use checkpoint_seal, only: head_length, seal, synchronise_folder, verify_seal
   use communicators, only: communicator_t
   use errors, only: error_t, exit_files, fail
-  use files, only: rename_file
+  use files, only: file_exists, rename_file
+  use folder_listings, only: file_by_age
   use hdf5_data, only: read_integers, read_real_columns, read_reals, write_integers, write_real_columns, write_reals
   use hdf5_file, only: hdf5_file_t
   use hdf5_transfers, only: stored_shape
@@ -14,8 +15,10 @@ module checkpoints
   use stored_provenance, only: read_provenance, write_provenance
   implicit none
   private
-  public :: checkpoint_archive_t
+  public :: checkpoint_archive_t, newest_checkpoint, retire_checkpoint
 
+  !> What the names of checkpoints end with.
+  character(len=*), parameter, public :: checkpoint_ending = '_restart.h5'
   !> Group of the items in the file.
   character(len=*), parameter :: items = 'state/'
 
@@ -102,6 +105,59 @@ contains
       call self%file%communicator%agree(error)
     end if
   end subroutine close
+
+  !> Finds the newest checkpoint of a folder that is whole.
+  subroutine newest_checkpoint(communicator, folder, path, error)
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> Path of the folder
+    character(len=*), intent(in) :: folder
+    !> Path of the checkpoint
+    character(len=:), allocatable, intent(out) :: path
+    !> Raised if there is none
+    type(error_t), allocatable, intent(inout) :: error
+    type(error_t), allocatable :: fault
+    character(len=:), allocatable :: name
+    integer :: newer
+
+    path = ''
+    if (communicator%is_root()) then
+      do newer = 0, huge(newer) - 1
+        name = file_by_age(folder, checkpoint_ending, newer)
+        if (name == '') exit
+        path = folder//'/'//name
+        if (allocated(fault)) deallocate (fault)
+        call verify_seal(path, fault)
+        if (.not. allocated(fault)) exit
+        path = ''
+      end do
+      if (path == '') call fail(error, exit_files, 'There is no whole checkpoint (NAME'//checkpoint_ending// &
+                                ') in the folder '//folder//'.')
+    end if
+    call communicator%agree(error)
+    call communicator%broadcast_text(path)
+  end subroutine newest_checkpoint
+
+  !> Gives the checkpoint of an earlier run another name: what a new run leaves must not be taken for its end.
+  subroutine retire_checkpoint(communicator, path, retired, error)
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> Path of the checkpoint
+    character(len=*), intent(in) :: path
+    !> Its new path, whose file is replaced; empty: there was no checkpoint
+    character(len=:), allocatable, intent(out) :: retired
+    !> Raised if it can't be renamed
+    type(error_t), allocatable, intent(inout) :: error
+
+    retired = ''
+    if (communicator%is_root()) then
+      if (file_exists(path)) then
+        retired = path//'.old'
+        call rename_file(path, retired, error)
+      end if
+    end if
+    call communicator%agree(error)
+  end subroutine retire_checkpoint
 
   !> Seals the new file and gives it its name.
   subroutine put_in_place(path, error)

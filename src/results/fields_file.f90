@@ -11,7 +11,8 @@ module fields_file
   use field_datasets, only: explain_dataset, write_field
   use fields_file_xdmf, only: grid_of_time, numbered, write_xdmf
   use files, only: file_exists
-  use hdf5_data, only: read_reals, write_integer_columns, write_integers, write_real_columns, write_reals, write_text
+  use hdf5_data, only: read_reals, read_text, write_integer_columns, write_integers, write_real_columns, write_reals, &
+                       write_text
   use hdf5_file, only: hdf5_file_t
   use kinds, only: wp
   use result_tables, only: result_row_length
@@ -55,6 +56,7 @@ module fields_file
   contains
     procedure :: describe
     procedure :: create
+    procedure, nopass :: check_deck
     procedure :: resume
     procedure :: write_mesh
     procedure :: begin
@@ -104,6 +106,32 @@ contains
     call self%file%make_group('restarts')
     call self%close_file(error)
   end subroutine create
+
+  !> Makes sure, before anything is changed, that the file that is there, if any, is that of a deck.
+  subroutine check_deck(communicator, base, deck, error)
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> Folder and name of the files, without suffix
+    character(len=*), intent(in) :: base
+    !> Text of the deck
+    character(len=*), intent(in) :: deck
+    !> Raised if it is that of another deck
+    type(error_t), allocatable, intent(inout) :: error
+    type(hdf5_file_t) :: file
+    character(len=:), allocatable :: found
+    logical :: present
+
+    present = .false.
+    if (communicator%is_root()) present = file_exists(base//'.h5')
+    call communicator%broadcast(present)
+    if (.not. present) return
+    call file%open(communicator, base//'.h5', writable=.false.)
+    call read_text(file, 'provenance/deck', found)
+    if (file%well() .and. found /= deck) &
+      call fail(error, exit_files, 'The fields '//base//'.h5 are those of another deck than the checkpoint''s; '// &
+                'move them away, or take the checkpoint of that run.')
+    call file%close()
+  end subroutine check_deck
 
   !> Goes on with the file that is there: times after the checkpoint are dropped. Without a file a new one is started.
   subroutine resume(self, communicator, base, provenance, part, last_time, error)

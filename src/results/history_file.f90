@@ -6,6 +6,7 @@ module history_file
   use files, only: file_exists, rename_file
   use kinds, only: long, wp
   use output_streams, only: output_stream_t
+  use text, only: to_text
   implicit none
   private
   public :: history_file_t
@@ -19,6 +20,8 @@ module history_file
   type :: history_file_t
     !> Rows in the file
     integer :: rows = 0
+    !> Values of the last of them; not allocated before the first
+    real(wp), allocatable :: last_row(:)
     !> The ranks that agree on errors
     type(communicator_t), private :: communicator
     !> Path of the file
@@ -59,6 +62,7 @@ contains
     self%path = path
     self%whole = whole
     self%rows = 0
+    if (allocated(self%last_row)) deallocate (self%last_row)
     if (communicator%is_root()) then
       call self%file%open(path, 'w')
       call self%file%put_line(header(columns))
@@ -67,8 +71,9 @@ contains
   end subroutine create
 
   !> Goes on with a history: its first rows are kept, those after the checkpoint dropped. If there are fewer rows, or no
-  !> file, it goes on with what there is: `rows` then tells.
-  subroutine resume(self, communicator, path, columns, whole, rows_to_keep, error)
+  !> file, it goes on with what there is: `rows` then tells. If its row at the checkpoint is another one than it was,
+  !> the history is left as it is.
+  subroutine resume(self, communicator, path, columns, whole, rows_to_keep, last_row, error)
     !> The history
     class(history_file_t), intent(inout) :: self
     !> The ranks
@@ -81,7 +86,9 @@ contains
     logical, intent(in) :: whole(:)
     !> Rows written when the checkpoint was
     integer, intent(in) :: rows_to_keep
-    !> Raised if the file can't be written or is the history of another kind of run
+    !> Values of the last of them, those of the first rank count; none if there were no rows
+    real(wp), intent(in) :: last_row(:)
+    !> Raised if the file can't be written or is the history of another run
     type(error_t), allocatable, intent(inout) :: error
     logical :: present
 
@@ -98,11 +105,13 @@ contains
     self%rows = 0
     ! The kept rows are written aside: a kill meanwhile leaves the old history whole.
     if (communicator%is_root()) then
-      call keep_rows(path, path//'.tmp', header(columns), rows_to_keep, self%rows, error)
+      call keep_rows(path, path//'.tmp', header(columns), rows_to_keep, row(last_row, whole), self%rows, error)
       if (.not. allocated(error)) call rename_file(path//'.tmp', path, error)
       if (.not. allocated(error)) call self%file%open(path, 'a')
     end if
     call communicator%broadcast(self%rows)
+    if (allocated(self%last_row)) deallocate (self%last_row)
+    if (self%rows == rows_to_keep) self%last_row = last_row
     call self%flush(error)
   end subroutine resume
 
@@ -121,6 +130,7 @@ contains
       return
     end if
     self%rows = self%rows + 1
+    self%last_row = values
     if (self%file%is_open()) then
       call self%file%put_line(row(values, self%whole))
       call system_clock(now, rate)
@@ -168,7 +178,7 @@ contains
   end subroutine check
 
   !> Copies the header and the first rows of a history.
-  subroutine keep_rows(from, to, expected, wanted, kept, error)
+  subroutine keep_rows(from, to, expected, wanted, last, kept, error)
     !> Path of the history
     character(len=*), intent(in) :: from
     !> Path of the copy
@@ -177,6 +187,8 @@ contains
     character(len=*), intent(in) :: expected
     !> Rows to keep
     integer, intent(in) :: wanted
+    !> The last of them; empty: none
+    character(len=*), intent(in) :: last
     !> Rows kept: fewer if there are not that many
     integer, intent(out) :: kept
     !> Raised on a failure
@@ -185,6 +197,7 @@ contains
     type(output_stream_t) :: copy
     integer(long) :: bytes
     integer :: unit, status
+    logical :: same
 
     kept = 0
     open (newunit=unit, file=from, access='stream', form='unformatted', action='read', status='old', iostat=status)
@@ -197,13 +210,37 @@ contains
       call fail(error, exit_files, 'The history '//from//' has other columns than this run writes; move it away.')
     else
       call measure_rows(unit, len(found, long), wanted, bytes, kept)
-      call copy%open(to, 'w')
-      call copy_bytes(unit, bytes, copy)
-      call copy%close()
-      if (copy%failed) call fail(error, exit_files, "Can't write "//to//'.')
+      same = kept < wanted
+      if (.not. same) same = ends_with(unit, bytes, last)
+      if (.not. same) then
+        call fail(error, exit_files, 'The history '//from//' is that of another run than the checkpoint: row '// &
+                  to_text(wanted)//' differs; move it away, or take the checkpoint of that run.')
+      else
+        call copy%open(to, 'w')
+        call copy_bytes(unit, bytes, copy)
+        call copy%close()
+        if (copy%failed) call fail(error, exit_files, "Can't write "//to//'.')
+      end if
     end if
     close (unit, iostat=status)
   end subroutine keep_rows
+
+  !> Whether the beginning of a file ends with a certain line.
+  logical function ends_with(unit, bytes, line)
+    !> Unit of the file
+    integer, intent(in) :: unit
+    !> Length of the beginning
+    integer(long), intent(in) :: bytes
+    !> The line, without its end; empty: any
+    character(len=*), intent(in) :: line
+    character(len=len(line) + 2) :: found
+    integer :: status
+
+    ends_with = len(line) == 0
+    if (ends_with .or. bytes < len(found)) return
+    read (unit, pos=bytes - len(found) + 1, iostat=status) found
+    ends_with = status == 0 .and. found == new_line('a')//line//new_line('a')
+  end function ends_with
 
   !> Finds where the last row to keep ends. A row without its line end was cut by a kill and does not count.
   subroutine measure_rows(unit, header_bytes, wanted, bytes, kept)

@@ -19,6 +19,7 @@ contains
     type(provenance_t), intent(in) :: run
 
     call write_text(file, group//'/deck', run%deck)
+    call write_text(file, group//'/case_name', run%case_name)
     call write_text(file, group//'/version', run%version)
     call write_text(file, group//'/commit', run%commit)
     call write_text(file, group//'/compiler', run%compiler)
@@ -38,6 +39,7 @@ contains
     integer, allocatable :: ranks(:)
 
     call read_text(file, group//'/deck', run%deck)
+    call read_text(file, group//'/case_name', run%case_name)
     call read_text(file, group//'/version', run%version)
     call read_text(file, group//'/commit', run%commit)
     call read_text(file, group//'/compiler', run%compiler)

@@ -13,9 +13,10 @@ import tempfile
 HERE = os.path.dirname(os.path.abspath(__file__))
 GOOD = os.path.join(HERE, "good", "impact.nml")
 # The public interface: these columns come first, in this order.
-FIRST = """time step force indentation impactor_displacement impactor_velocity deflection delaminated_area energy_impactor
-    energy_kinetic energy_strain energy_indentation energy_delamination energy_ply_damage energy_contact
-    energy_algorithmic energy_error""".split()
+FIRST = [
+    "time", "step", "force", "indentation", "impactor_displacement", "impactor_velocity", "deflection",
+    "delaminated_area", "energy_impactor", "energy_kinetic", "energy_strain", "energy_indentation",
+    "energy_delamination", "energy_ply_damage", "energy_contact", "energy_algorithmic", "energy_error"]
 # Words for dimensions that the deck's units are made of, and those that only results have.
 UNIT_WORDS = {"time", "length", "area", "force", "pressure", "energy", "mass", "volume", "degree"}
 ONLY_IN_RESULTS = {"radian"}
@@ -31,7 +32,7 @@ def table(program, topic):
     """Rows of a table, each a dictionary by the heading."""
     lines = [[cell.strip() for cell in line.strip("| \n").split(" | ")]
              for line in ask(program, "explain", topic, "--markdown")[1].splitlines()]
-    return [dict(zip(lines[0], cells)) for cells in lines[2:]]
+    return [dict(zip(lines[0], cells, strict=False)) for cells in lines[2:]]
 
 
 def words_of(unit):
@@ -46,7 +47,7 @@ def faults_of_rows(program, topic):
     if len(rows) < 20 or len(set(names)) < len(names):
         yield f"{topic}: {len(rows)} rows, {len(set(names))} names"
     deck_units = set().union(*(words_of(row["unit"]) for group in groups(program) for row in table(program, group)))
-    if not UNIT_WORDS <= deck_units:
+    if not UNIT_WORDS.issubset(deck_units):
         yield f"the deck has no unit with {sorted(UNIT_WORDS - deck_units)}"
     for row in rows:
         unknown = words_of(row["unit"]) - UNIT_WORDS - ONLY_IN_RESULTS

@@ -16,7 +16,7 @@ import sys
 SRC = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "src")
 # Texts that are no names of keys: file, texts, reason. One that no longer stands there is a breach too.
 OTHERS = (
-    ("app/result_rows.f90", "time step indentation stress iterations", "columns of the history, which users read"),
+    ("app/result_explain.f90", "history fields", "tables of results that `implam explain` is asked for"),
     ("app/simulations.f90", "history fields", "items of a checkpoint, which must stay readable"),
     ("app/simulations.f90", "steps", "a timer"),
     ("base/text.f90", "e", "the exponent of a number"),
@@ -25,6 +25,7 @@ OTHERS = (
     ("dynamics/states.f90", "stress", "an item of a checkpoint"),
     ("interfaces/interface_ties.f90", "zone", "an item of a checkpoint"),
     ("ply_damage/ply_onsets.f90", "time", "an item of a checkpoint"),
+    ("model/motion_fields.f90", "velocity", "a field in NAME.h5, which users read"),
     ("results/fields_file_xdmf.f90", "cell", "XDMF's word for a field on elements"),
     ("results/output_parameters.f90", "velocity delamination energy_release ply_damage stress",
      "fields, which users choose by these words"),
@@ -76,7 +77,8 @@ def breaches(sources, groups, keys):
     for path, line, text in quoted:
         cells = [cell.strip() for cell in text.split("|")]
         named = {3: cells[:1], 8: cells[:2]}.get(len(cells))
-        if named:
+        # A row begins with a name; texts that begin with a bar are parts of other tables.
+        if named and named[0]:
             rows.setdefault(tuple(named), []).append(f"{path}:{line}")
             for name in named:
                 owners.setdefault(name.lower(), set()).add(path.split("/")[0])

@@ -177,12 +177,13 @@ def check_energy_release(implam, folder):
 
 def table_of(implam, topic):
     """Return the rows of a table of results, each a list of cells, without the heading."""
-    text = subprocess.run([implam, "explain", topic, "--markdown"], stdout=subprocess.PIPE, text=True, check=True).stdout
-    return [[cell.strip(" `") for cell in line.strip("| ").split(" | ")] for line in text.splitlines()[2:]]
+    command = [implam, "explain", topic, "--markdown"]
+    lines = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=True).stdout.splitlines()
+    return [[cell.strip(" `") for cell in line.strip("| ").split(" | ")] for line in lines[2:]]
 
 
 def fields_of(history_path):
-    """Return what a field file says of its fields: place, unit and meaning by their names, N for the number of a ply."""
+    """Return place, unit and meaning of the fields in a file by their names, N for the number of a ply."""
     found = {}
     with h5py.File(str(history_path).removesuffix("_history.csv") + ".h5") as file:
         last = file["times"][max(file["times"])]
@@ -209,9 +210,41 @@ def check_table(implam, folder):
     print(f"{len(rows)} fields and {len(columns)} columns are those of the tables")
 
 
+def check_columns(implam, folder):
+    """The columns of every part of the history hold what they are called."""
+    deck_path = write_deck(folder / "columns", "../small/damage.nml", ["output%fields='ply_damage'"])
+    history_path = run_deck(implam, deck_path)
+    history = {name: np.array(values) for name, values in read_history(history_path).items()}
+    deck = read_deck(deck_path)
+    energies = sum(history[f"energy_{name}"] for name in (
+        "impactor", "kinetic", "strain", "indentation", "delamination", "ply_damage", "contact", "algorithmic"))
+    mass, velocity = deck.number("impactor", "mass"), deck.number("impactor", "velocity")
+    error = energies - history["work_external"] - mass * velocity**2 / 2
+    require(np.max(np.abs(error - history["energy_error"])) < 1e-15, "The energies don't add up to their error.")
+    indentation = history["impactor_displacement"] - history["patch_deflection"]
+    require(np.allclose(history["indentation"], indentation, rtol=0, atol=1e-12), "The indentation is another one.")
+    steps = np.diff(history["time"])
+    require(np.allclose(steps, history["step_length"][1:], rtol=1e-9), "The step has another length.")
+    for name in ("iterations", "force_iterations", "contact_iterations"):
+        require(np.all(np.cumsum(history[name]) == history[f"total_{name}"]), f"total_{name} isn't the sum.")
+    grown = history["delaminated_area"] - history["delaminated_area"][0]
+    fracture = deck.number("delamination", "G_c") * grown
+    require(np.allclose(history["energy_delamination"], fracture, rtol=1e-12) and grown[-1] > 0, "G_c A isn't booked.")
+    released = history["energy_released"][-1] / fracture[-1]
+    require(0.5 < released < 1.5, f"{released} of G_c A is set free.")
+    require(np.all(history["solves"] >= history["total_iterations"]), "There are fewer solves than iterations.")
+    require(np.all(history["refactorisations"] <= history["solves"]), "There are more factorizations than solves.")
+    results = Results(history_path)
+    failures = [results.cells[name].astype(int) for name in results.cells if name.endswith("_failure")]
+    for bit, name in ((1, "fibre_failures"), (2, "matrix_cracks"), (4, "matrix_crushings")):
+        counted = 4 * sum(np.count_nonzero(failure & bit) for failure in failures)
+        require(history[name][-1] == counted, f"{name}: {history[name][-1]}, but {counted} in the fields.")
+    print(f"columns: {released:.2f} of G_c A set free, {history['matrix_cracks'][-1]:.0f} cracks as in the fields")
+
+
 def main(implam, folder):
     """Run the trials; the exit code is 1 if one fails."""
-    trials = check_navier, check_damaged_layers, check_energy_release, check_table
+    trials = check_navier, check_damaged_layers, check_energy_release, check_table, check_columns
     return max(exit_code_of(trial, implam, Path(folder)) for trial in trials)
 
 

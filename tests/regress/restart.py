@@ -6,8 +6,11 @@ contact      delaminated faces in contact by both laws: bitwise
 ranks        on 2 ranks, and from 1 rank to 2 and back: to 1e-9
 rejected     from checkpoints on either side of rejected steps: bitwise
 signal       SIGTERM ends a run with a checkpoint and its own exit code: bitwise
+ranks_signal two ranks that get TERM twice, as from a queue, and mpirun that gets USR1, end the same way: to 1e-9
 limit        the time on the wall ends runs in time with a checkpoint and that exit code: bitwise
 kill         SIGKILL at any moment leaves a checkpoint that can be used: bitwise
+found        without a file the newest whole checkpoint of a folder is taken, and results keep the name of the case
+mixed        results of another run are neither gone on with nor left with a checkpoint that isn't theirs
 damaged      a checkpoint that isn't one, or not whole, ends with the exit code for files and a sentence"""
 
 import filecmp
@@ -38,6 +41,7 @@ from solver_runs import (
 
 TOLERANCE = 1e-9
 IMPACT = "sun_chen_tan_sun.nml"
+DAMAGE = "../small/damage.nml"
 # Seconds that a run may take on a busy machine, within the time limit of the test.
 PATIENCE = 240
 # A strong blow on a coarse mesh: von Karman strains of several thicknesses where asked for.
@@ -239,6 +243,51 @@ def check_signal(implam, folder, _):
 SINGLE_STEP = ["--wall-limit", "1e-3"]
 
 
+def ranks_of(process, implam):
+    """Return the processes of the program that a launcher has started."""
+    found = []
+    for status in Path("/proc").glob("[0-9]*/stat"):
+        try:
+            # The name of a process is in brackets and may hold anything.
+            name, rest = status.read_text(encoding="utf-8").split("(", 1)[1].rsplit(")", 1)
+        except (OSError, IndexError):
+            continue
+        if int(rest.split()[1]) == process.pid and Path(implam).name.startswith(name):
+            found.append(int(status.parent.name))
+    return found
+
+
+def signal_twice(process, implam):
+    """Send TERM to every rank, and once more."""
+    ranks = ranks_of(process, implam)
+    require(len(ranks) == 2, f"mpirun has started {len(ranks)} ranks.")
+    for _ in range(2):
+        for rank in ranks:
+            os.kill(rank, signal.SIGTERM)
+        time.sleep(0.001)
+
+
+def check_ranks_signal(implam, folder, launcher):
+    """Signals to two ranks and to their launcher."""
+    reference = run_deck(implam, write_deck(folder / "uninterrupted", IMPACT, LONG))
+    deck = write_deck(folder / "stopped", IMPACT, LONG)
+    words = [deck, "--output", deck.parent]
+    stops = {"TERM twice": lambda process: signal_twice(process, implam),
+             "USR1 to mpirun": lambda process: process.send_signal(signal.SIGUSR1)}
+    for runs, (name, stop) in enumerate(stops.items(), start=1):
+        process = start(*launcher, "2", implam, *words)
+        # Rows are written at intervals, but the first one comes after METIS has been at work.
+        wait_until(lambda runs=runs: model_lines(deck.parent) >= runs, process)
+        time.sleep(0.5)
+        stop(process)
+        code = exit_code(process)
+        require(code == EXIT_STOPPED, f"After {name} the exit code is {code}, not {EXIT_STOPPED}.")
+        print(f"{name} after {len(read_history(history_of(deck.parent))['time'])} rows", flush=True)
+        words = ["restart", checkpoint_of(deck.parent)]
+    run([implam, *words])
+    require_close(history_of(deck.parent), reference, "signals")
+
+
 def stop_by_limit(implam, folder, command, seconds):
     """Run a command that the time on the wall must end; return the rows written."""
     begun = time.monotonic()
@@ -323,8 +372,79 @@ def check_damaged(implam, folder, _):
     print(f"absent: {said.strip()}")
 
 
+def one_sentence_of(said, what):
+    """Return what was said, which must be one sentence."""
+    lines = [line for line in said.splitlines() if line.startswith("implam: ")]
+    require(len(lines) == 1 and lines[0].endswith("."), f"{what}: not one sentence is said but\n{said}")
+    return lines[0]
+
+
+def refuse(implam, checkpoint, what):
+    """Restart where it must be refused; no result may change."""
+    def results():
+        return {path.name: path.read_bytes() for path in checkpoint.parent.iterdir() if path.suffix != ".log"}
+
+    before = results()
+    print(f"{what}: {one_sentence_of(run([implam, 'restart', checkpoint], EXIT_FILES), what)}")
+    require(results() == before, f"{what}: results were changed.")
+
+
+def check_found(implam, folder, _):
+    """A case named by its deck's file, and another one beside it that is older, newer or damaged."""
+    deck = write_deck(folder / "whole", DAMAGE, ["time%end=60e-6"])
+    text = deck.read_text(encoding="utf-8")
+    unnamed = text.replace("name='damage'", "")
+    require(unnamed != text, "The deck has a name still.")
+    references = {}
+    for name, content in (("rs", unnamed), ("damage", text)):
+        deck = deck.with_name(f"{name}.nml")
+        deck.write_text(content, encoding="utf-8")
+        run([implam, deck, "--output", folder / "whole"])
+        references[name] = (folder / "whole" / f"{name}_history.csv").read_bytes()
+        run([implam, deck, "--output", folder / "stopped", *SINGLE_STEP], EXIT_STOPPED)
+    os.utime(folder / "stopped" / "rs_restart.h5", (0, 0))
+    content = (folder / "stopped" / "damage_restart.h5").read_bytes()
+    for name, way in (("damage", ["restart"]), ("rs", ["restart"]), ("rs", ["restart", "."]),
+                      ("rs", ["restart", "--output", folder.resolve() / "here"])):
+        here = copy_run(folder / "stopped", folder / "here")
+        if name == "rs":
+            (here / "damage_restart.h5").write_bytes(content[:-1])
+        said = run([implam, *way], folder=here)
+        require(f"{name}_restart.h5" in said, f"Nobody says what it goes on from:\n{said}")
+        require((here / f"{name}_history.csv").read_bytes() == references[name], f"{name} did not go on as it was.")
+        histories = sorted(path.name for path in here.glob("*_history.csv"))
+        require(histories == ["damage_history.csv", "rs_history.csv"], f"There are {histories}.")
+        print(f"{name} by {way}: the same to the last bit")
+    for path in here.glob("*_restart.h5"):
+        path.write_bytes(content[:-1])
+    print(one_sentence_of(run([implam, "restart"], EXIT_FILES, here), "no checkpoint"))
+
+
+def check_mixed(implam, folder, _):
+    """A run with checkpoints, another one in its folder without, then a restart."""
+    deck = write_deck(folder / "both", DAMAGE, ["output%checkpoint_every=50e-6", "output%fields_every=50e-6"])
+    run_deck(implam, deck)
+    alone = copy_run(deck.parent, folder / "alone")
+    checkpoint = checkpoint_of(deck.parent)
+    content = checkpoint.read_bytes()
+    other = write_deck(folder / "other", DAMAGE, ["impactor%velocity=4"])
+    said = run([implam, other, "--output", deck.parent])
+    old = checkpoint.with_name(checkpoint.name + ".old")
+    require(not checkpoint.exists() and old.read_bytes() == content and old.name in said,
+            f"The older checkpoint is still there, or nobody says where it is:\n{said}")
+    refuse(implam, old, "history")
+    history_of(deck.parent).rename(folder / "history.csv")
+    refuse(implam, old, "fields")
+    (deck.parent / "damage.h5").unlink()
+    (folder / "history.csv").rename(deck.parent / "damage_history.csv")
+    refuse(implam, old, "history alone")
+    reference = history_of(alone).read_bytes()
+    require(go_on(implam, alone).read_bytes() == reference, "Alone it does not go on as it was.")
+
+
 TRIALS = {"integrators": check_integrators, "contact": check_contact, "ranks": check_ranks, "rejected": check_rejected,
-          "signal": check_signal, "limit": check_limit, "kill": check_kill, "damaged": check_damaged}
+          "signal": check_signal, "ranks_signal": check_ranks_signal, "limit": check_limit, "kill": check_kill,
+          "found": check_found, "mixed": check_mixed, "damaged": check_damaged}
 
 
 def main(trials, trial, implam, folder, *launcher):

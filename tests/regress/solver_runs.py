@@ -61,10 +61,10 @@ def write_deck(folder, deck, settings=()):
     return path
 
 
-def run(command, expected=EXIT_DONE):
-    """Run a command to its end and return what it printed; any other exit code than the one expected fails."""
+def run(command, expected=EXIT_DONE, folder=None):
+    """Run a command, in a folder if told, and return what it printed; any other exit code than expected fails."""
     ended = subprocess.run([str(word) for word in command], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                           stderr=subprocess.STDOUT, text=True, timeout=LONGEST_RUN, check=False)
+                           stderr=subprocess.STDOUT, text=True, timeout=LONGEST_RUN, check=False, cwd=folder)
     require(ended.returncode == expected,
             f"{' '.join(map(str, command))} ended with {ended.returncode}, not {expected}:\n{ended.stdout}")
     return ended.stdout

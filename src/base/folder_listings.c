@@ -1,0 +1,56 @@
+/* Finds files by their age, which Fortran has no means for. */
+#define _POSIX_C_SOURCE 200809L
+#include <dirent.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+
+struct entry {
+  struct timespec time;
+  char name[256];
+};
+
+static int is_newer(const struct entry *a, const struct entry *b)
+{
+  if (a->time.tv_sec != b->time.tv_sec) return a->time.tv_sec > b->time.tv_sec;
+  if (a->time.tv_nsec != b->time.tv_nsec) return a->time.tv_nsec > b->time.tv_nsec;
+  return strcmp(a->name, b->name) > 0;
+}
+
+/* The newest regular file whose name ends as told, or the newest of those older than the one found before, which
+   `found` says and is not empty then. Returns 1, or 0 if there is none; names too long for a path are passed over. */
+static int next_older(const char *folder, const char *ending, struct entry *found)
+{
+  const struct entry bound = *found;
+  const size_t length = strlen(ending);
+  DIR *listing = opendir(folder);
+  struct dirent *item;
+  found->name[0] = 0;
+  if (!listing) return 0;
+  while ((item = readdir(listing))) {
+    struct entry candidate;
+    struct stat status;
+    char path[4096];
+    const size_t n = strlen(item->d_name);
+    if (n <= length || n >= sizeof candidate.name || strcmp(item->d_name + n - length, ending) != 0) continue;
+    if (snprintf(path, sizeof path, "%s/%s", folder, item->d_name) >= (int)sizeof path) continue;
+    if (stat(path, &status) != 0 || !S_ISREG(status.st_mode)) continue;
+    candidate.time = status.st_mtim;
+    memcpy(candidate.name, item->d_name, n + 1);
+    if (bound.name[0] && !is_newer(&bound, &candidate)) continue;
+    if (!found->name[0] || is_newer(&candidate, found)) *found = candidate;
+  }
+  closedir(listing);
+  return found->name[0] != 0;
+}
+
+/* Name of the file with this ending than which `newer` others are newer; its length, or 0 if there is none. */
+int implam_file_by_age(const char *folder, const char *ending, int newer, char name[256])
+{
+  struct entry found;
+  found.name[0] = 0;
+  for (int i = 0; i <= newer; ++i)
+    if (!next_older(folder, ending, &found)) return 0;
+  memcpy(name, found.name, strlen(found.name));
+  return (int)strlen(found.name);
+}
