@@ -17,7 +17,7 @@ module deck_cross_checks
   use material_parameters, only: material_t
   use mesh_deck, only: mesh_group, key_patch
   use mesh_parameters, only: symmetry_quarter
-  use output_deck, only: remark_idle_fields
+  use output_deck, only: check_intervals, remark_idle_fields
   use plate_deck, only: plate_group, key_symmetry, check_supports
   use plies, only: ply_t, material_objection
   use ply_damage_parameters, only: ply_damage_t, criteria_hou
@@ -83,6 +83,8 @@ contains
     call check_supports(deck%settings, deck%plate, problems)
     if (deck%has_time) call remark(deck%settings, problems, time_group, '', 'has no effect on a static analysis.')
     call remark_idle(deck%settings, problems, pressure_group, key_history, 'has no effect on a static analysis.')
+    if (.not. problems%concern(static_group)) &
+      call check_intervals(deck%settings, 1.0_wp/deck%stepping%static_steps, 1.0_wp, problems)
     if (size(deck%delaminations) > 0) call remark(deck%settings, problems, delamination_group, '', &
                                                   'in a static analysis the starter does not grow.')
   end subroutine check_static
@@ -99,6 +101,8 @@ contains
       '&time is missing; give end and step, or &static for load steps in equilibrium.')
     call require_densities(deck%settings, problems)
     if (.not. deck%has_time) return
+    if (.not. problems%concern(time_group)) &
+      call check_intervals(deck%settings, deck%stepping%time%step, deck%stepping%time%end, problems)
     if (size(deck%delaminations) > 0 .and. all(deck%delaminations%growth == growth_one_per_step)) return
     call remark_idle(deck%settings, problems, adapt_group, key_growth_step, &
                      'has no effect without growth = ''one_per_step''.')

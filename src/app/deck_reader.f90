@@ -20,7 +20,7 @@ module deck_reader
   use indentation_deck, only: fill_indentation, check_indentation, indentation_group
   use kinds, only: wp
   use laminate_deck, only: fill_laminate
-  use linear_solver_deck, only: fill_linear_solver
+  use linear_solver_deck, only: check_petsc_options, fill_linear_solver
   use material_deck, only: fill_materials, normal_compliance
   use mesh_deck, only: fill_mesh, check_mesh
   use output_deck, only: fill_output
@@ -177,5 +177,6 @@ contains
     if (deck%has_impactor .and. deck%has_indentation) call check_indentation(deck%settings, deck%indentation, problems)
     if (deck%has_pressure) call check_pressure(deck%settings, deck%pressure, problems)
     if (deck%has_time) call check_time(deck%settings, deck%stepping%time, problems)
+    call check_petsc_options(deck%settings, deck%linear_solver, problems)
   end subroutine check_groups
 end module deck_reader

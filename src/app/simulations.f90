@@ -7,11 +7,13 @@ module simulations
   use logger, only: log_t
   use timers, only: timer_set_t, wall_time
   use communicators, only: communicator_t
+  use launchers, only: launched
   use models, only: model_t
   use model_building, only: create_model
   use time_stepping, only: time_stepper_t
   use deck_contents, only: deck_t
   use build_information, only: this_build
+  use result_paths, only: refuse_pipes
   use run_provenance, only: provenance_t, this_run
   use run_progress, only: progress_t
   use run_reports, only: log_echo, log_costs, summary
@@ -124,9 +126,12 @@ contains
     self%checkpoint_clock%interval = deck%output%checkpoint_every
     call self%fields%describe(field_rows)
     if (communicator%is_root()) call make_directory(deck%output%directory, error)
+    if (communicator%is_root()) call refuse_pipes(self%base, error)
     if (.not. allocated(error)) call self%log%open(self%base//'.log', communicator%is_root(), append, error)
     call communicator%agree(error)
     if (allocated(error)) return
+    ! A launcher hands its ranks a terminal of its own, whose output may go to a file.
+    if (launched()) self%log%interactive = .false.
     self%provenance = this_run(this_build(), deck%text, communicator%size)
     self%provenance%case_name = deck%name
     call self%provenance%report(self%log)

@@ -5,7 +5,7 @@ module files
   use text, only: to_text
   implicit none
   private
-  public :: file_exists, is_directory, is_readable, rename_file, make_directory, read_whole_file
+  public :: file_exists, is_directory, is_pipe, is_readable, rename_file, make_directory, read_whole_file
 
   !> Permissions of new folders before the user's mask: rwx for all (octal 777).
   integer(c_int), parameter :: all_permissions = 511_c_int
@@ -37,6 +37,13 @@ module files
       !> The way
       integer(c_int), value :: mode
     end function c_access
+
+    !> 1: the path is a pipe.
+    integer(c_int) function implam_is_pipe(path) bind(c)
+      import :: c_char, c_int
+      !> Zero-terminated path
+      character(kind=c_char), intent(in) :: path(*)
+    end function implam_is_pipe
 
     !> C library: opens a file.
     type(c_ptr) function c_fopen(path, mode) bind(c, name='fopen')
@@ -81,6 +88,14 @@ contains
 
     is_directory = c_access(path//'/.'//c_null_char, 0_c_int) == 0
   end function is_directory
+
+  !> True: the path is a pipe, which to open means to wait for another program.
+  logical function is_pipe(path)
+    !> Its path
+    character(len=*), intent(in) :: path
+
+    is_pipe = implam_is_pipe(path//c_null_char) == 1
+  end function is_pipe
 
   !> True: the path is a file, not a folder, that this process may read.
   logical function is_readable(path)

@@ -7,9 +7,10 @@ module linear_solver_deck
   use deck_settings, only: settings_t
   use deck_vocabulary, only: key_row_length
   use linear_solver_parameters, only: linear_solver_parameters_t, factorization_mumps, factorization_cholmod
+  use text, only: line_t, words_of
   implicit none
   private
-  public :: fill_linear_solver, check_ranks
+  public :: fill_linear_solver, check_petsc_options, check_ranks
 
   character(len=*), parameter :: group = 'solver'
   !> Rows of the keys.
@@ -18,6 +19,9 @@ module linear_solver_deck
       &Direct solver; cholmod on one rank only.', &
     'solver | petsc_options | text | 1 | - | '''' | any text | &
       &Options handed to PETSc as they are.']
+
+  !> What options for PETSc begin with in a deck.
+  character(len=*), parameter :: beginnings(*) = [character(len=5) :: '-ksp_', '-pc_', '-mat_']
 
 contains
 
@@ -32,6 +36,42 @@ contains
                                    [factorization_mumps, factorization_cholmod])
     solver%petsc_options = settings%text_of(group, 'petsc_options')
   end subroutine fill_linear_solver
+
+  !> Options for PETSc: those of the solver, none that could write files. A deck may come from anywhere.
+  subroutine check_petsc_options(settings, solver, problems)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+    !> The linear solver
+    type(linear_solver_parameters_t), intent(in) :: solver
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    type(line_t), allocatable :: words(:)
+    integer :: i
+
+    words = words_of(solver%petsc_options, ' ')
+    do i = 1, size(words)
+      if (is_allowed(words(i)%text)) cycle
+      call tell(settings, problems, group, 'petsc_options', words(i)%text//' might write files or more; allowed: '// &
+                '-log_view and options that begin with -ksp_, -pc_ or -mat_, and words without : and /; give '// &
+                'others on the command line.')
+      return
+    end do
+  end subroutine check_petsc_options
+
+  !> Whether a word is one of the options for a deck, or a value that names no file.
+  pure logical function is_allowed(word)
+    !> The word
+    character(len=*), intent(in) :: word
+    integer :: i
+
+    ! A tab would part what is one word here into two for PETSc.
+    is_allowed = scan(word, ':/'//achar(9)) == 0
+    if (.not. is_allowed .or. word == '-log_view' .or. index(word, '-') /= 1) return
+    if (len(word) > 1) is_allowed = scan(word(2:2), '0123456789.') == 1
+    do i = 1, size(beginnings)
+      if (index(word, trim(beginnings(i))) == 1) is_allowed = .true.
+    end do
+  end function is_allowed
 
   !> Whether the factorization runs on so many ranks.
   subroutine check_ranks(settings, solver, ranks, problems)

@@ -38,15 +38,17 @@ contains
     logical :: running
 
     call MPI_Initialized(running)
-    if (.not. running) call avoid_named_semaphores()
+    if (.not. running) call avoid_shared_pointers()
     if (.not. running) call MPI_Init()
     communicator = communicator_from_handle(MPI_COMM_WORLD%mpi_val)
   end subroutine start_mpi
 
-  !> Keeps Open MPI's parallel files off named semaphores, which outlive a killed run and make every later run that
-  !> opens a file of the same name wait for ever. Nothing here uses what they are for (shared file pointers), and a
-  !> choice of the user's own is left alone. Other MPI libraries ignore the variable.
-  subroutine avoid_named_semaphores()
+  !> Keeps Open MPI's parallel files off what shared file pointers take, which nothing here uses: named semaphores (sm),
+  !> which outlive a killed run and make every later run that opens a file of the same name wait for ever, and files
+  !> of locks, which outlive it too and whose names have no more room than 256 letters (lockedfile). What is left needs
+  !> two files, gone when the file is closed. A choice of the user's own is left alone. Other MPI libraries ignore the
+  !> variable.
+  subroutine avoid_shared_pointers()
     use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char
     interface
       !> C library: sets a variable of the environment.
@@ -60,8 +62,8 @@ contains
     end interface
     integer(c_int) :: status
 
-    status = setenv('OMPI_MCA_sharedfp'//c_null_char, '^sm'//c_null_char, 0_c_int)
-  end subroutine avoid_named_semaphores
+    status = setenv('OMPI_MCA_sharedfp'//c_null_char, '^sm,lockedfile'//c_null_char, 0_c_int)
+  end subroutine avoid_shared_pointers
 
   !> Ends MPI if it was started; nothing may be said between ranks afterwards.
   subroutine finish_mpi()

@@ -3,6 +3,7 @@
 module checkpoint_seal
   use, intrinsic :: iso_fortran_env, only: int32, int8
   use errors, only: error_t, exit_files, fail
+  use files, only: is_pipe
   use kinds, only: long
   use output_streams, only: output_stream_t
   implicit none
@@ -56,7 +57,9 @@ contains
     integer(int32) :: crc
     integer :: status
 
-    call read_head(path, found, status)
+    found = ''
+    status = merge(1, 0, is_pipe(path))
+    if (status == 0) call read_head(path, found, status)
     if (status == 0) call read_body(path, bytes, crc, status)
     if (status /= 0) then
       call fail(error, exit_files, "Can't read the checkpoint "//path//'.')

@@ -1,15 +1,16 @@
 !> What is written, how often and where in the deck: rows of its table, filling and checks.
 module output_deck
   use deck_problems, only: problems_t
-  use deck_remarks, only: remark
+  use deck_remarks, only: tell, remark
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
   use output_parameters, only: output_t, field_displacement, field_rotation, field_velocity, field_gap, &
                                field_contact_pressure, field_delamination, field_energy_release, field_ply_damage
-  use text, only: joined, lower_case, words_of
+  use kinds, only: wp
+  use text, only: joined, lower_case, to_text, words_of
   implicit none
   private
-  public :: fill_output, remark_idle_fields
+  public :: fill_output, check_intervals, remark_idle_fields
 
   character(len=*), parameter :: group = 'output'
   !> Row of the group.
@@ -33,6 +34,11 @@ module output_deck
     field_displacement//','//field_rotation//','//field_velocity//','//field_gap//','//field_contact_pressure//','// &
     field_delamination//','//field_energy_release//','//field_ply_damage
 
+  !> Most events of a run: more pass the range of default integers.
+  real(wp), parameter :: most_events = 1.0e8_wp
+  !> Part of a step below which an interval is remarked on.
+  real(wp), parameter :: short = 0.5_wp
+
 contains
 
   !> What is written.
@@ -49,6 +55,31 @@ contains
     if (.not. settings%is_given(group, 'fields')) call settings%derive(group, 'fields', usual_fields, .true.)
     output%fields = lower_case(joined(words_of(joined(settings%texts_of(group, 'fields'), ','), ','), ','))
   end subroutine fill_output
+
+  !> Intervals far below the step, which cut every step.
+  subroutine check_intervals(settings, step, end, problems)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+    !> First step and end of the run
+    real(wp), intent(in) :: step, end
+    !> Faults and remarks are added
+    type(problems_t), intent(inout) :: problems
+    character(len=*), parameter :: keys(*) = [character(len=16) :: 'history_every', 'fields_every', 'checkpoint_every']
+    real(wp) :: every
+    integer :: i
+
+    do i = 1, size(keys)
+      every = settings%real_of(group, trim(keys(i)))
+      if (.not. every > 0) cycle
+      if (end > most_events*every) then
+        call tell(settings, problems, group, trim(keys(i)), 'makes more than '//to_text(most_events)//' steps; '// &
+                  'allowed: from '//to_text(end/most_events)//'.')
+      else if (every < short*step) then
+        call remark(settings, problems, group, trim(keys(i)), 'every step becomes that short, '// &
+                    to_text(nint(step/every))//' times as many as with steps of '//to_text(step)//'.')
+      end if
+    end do
+  end subroutine check_intervals
 
   !> Fields that are asked for but belong to physics that isn't modelled.
   subroutine remark_idle_fields(settings, output, has_interfaces, has_ply_damage, problems)

@@ -1,4 +1,5 @@
-/* Finds files by their age, which Fortran has no means for. */
+/* Age and kind of files. They are told by structures that each system lays out in its own way, so this is written in
+   its language. */
 #define _POSIX_C_SOURCE 200809L
 #include <dirent.h>
 #include <stdio.h>
@@ -53,4 +54,11 @@ int implam_file_by_age(const char *folder, const char *ending, int newer, char n
     if (!next_older(folder, ending, &found)) return 0;
   memcpy(name, found.name, strlen(found.name));
   return (int)strlen(found.name);
+}
+
+/* 1: the path is a pipe; opening it would wait until another program opens its other end. */
+int implam_is_pipe(const char *path)
+{
+  struct stat status;
+  return stat(path, &status) == 0 && S_ISFIFO(status.st_mode);
 }
