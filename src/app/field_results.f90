@@ -27,7 +27,6 @@ contains
 
   !> Writes points at the heights of their layers, and elements.
   subroutine write_mesh(model, fields, error)
-    !> The model
     type(model_t), intent(in) :: model
     !> The file
     type(fields_file_t), intent(inout) :: fields
@@ -49,7 +48,6 @@ contains
   !> Heights at which the owned points are drawn: the middle of their layer, or of the laminate where
   !> there is one layer.
   pure function heights(model) result(z)
-    !> The model
     type(model_t), intent(in) :: model
     !> Height of each owned point
     real(wp) :: z(model%distribution%owned)
@@ -75,7 +73,6 @@ contains
 
   !> Writes the fields of the state reached that are wanted and whose physics is modelled.
   subroutine write_fields(model, stepper, output, fields, error)
-    !> The model
     type(model_t), intent(in) :: model
     !> The time stepper
     type(time_stepper_t), intent(in) :: stepper

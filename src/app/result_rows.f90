@@ -43,7 +43,6 @@ contains
 
   !> Row of the state reached. Collective.
   function row_of(model, stepper) result(row)
-    !> The model
     type(model_t), intent(in) :: model
     !> The time stepper
     type(time_stepper_t), intent(in) :: stepper

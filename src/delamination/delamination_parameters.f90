@@ -24,7 +24,8 @@ module delamination_parameters
   !> What a front's account of energy counts: debts only, or what was set free in excess too.
   integer, parameter, public :: account_debts = 1, account_balance = 2
 
-  !> One interface that may delaminate.
+  !> One interface that may delaminate. It has many components because two laws share
+  !> one group of the deck.
   type :: delamination_t
     !> The interface lies below this ply
     integer :: below_ply = 0

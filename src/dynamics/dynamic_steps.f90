@@ -69,7 +69,6 @@ contains
   subroutine begin(self, model, operator, old, new)
     !> The problem
     class(dynamic_step_t), intent(inout) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> The factored operator, with its memory of iterations
     type(tangent_operator_t), intent(inout) :: operator
@@ -101,7 +100,6 @@ contains
   subroutine find_residual(self, model, old, new, residual, energy)
     !> The problem
     class(dynamic_step_t), intent(in) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> State at the start
     type(state_t), intent(in) :: old
@@ -129,7 +127,6 @@ contains
   real(wp) function residual_norm(self, model, equilibrium, operator, residual, new)
     !> The problem
     class(dynamic_step_t), intent(in) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> Convergence asked for
     type(equilibrium_t), intent(in) :: equilibrium
@@ -152,7 +149,6 @@ contains
   pure logical function may_stop(self, model, new, pressures_new)
     !> The problem
     class(dynamic_step_t), intent(in) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> State at the end
     type(state_t), intent(in) :: new
@@ -166,7 +162,6 @@ contains
   subroutine prepare_operator(self, model, operator, new, error)
     !> The problem
     class(dynamic_step_t), intent(in) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> The factored operator
     type(tangent_operator_t), intent(inout) :: operator
@@ -188,7 +183,6 @@ contains
   subroutine improve(self, model, operator, old, new, correction, error)
     !> The problem
     class(dynamic_step_t), intent(inout) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> The factored operator, with its memory of iterations
     type(tangent_operator_t), intent(inout) :: operator
@@ -232,7 +226,6 @@ contains
   subroutine finish(self, model, old, energy, new)
     !> The problem
     class(dynamic_step_t), intent(in) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> State at the start
     type(state_t), intent(in) :: old

@@ -28,7 +28,6 @@ contains
 
   !> Books a step.
   subroutine book_step(model, integrator, old, step, force, energy, new)
-    !> The model
     type(model_t), intent(in) :: model
     !> Integrator of the plate
     type(plate_integrator_t), intent(in) :: integrator
@@ -93,7 +92,6 @@ contains
 
   !> Products of the step's fields, of the whole plate.
   function step_products(model, old, energy, new) result(products)
-    !> The model
     type(model_t), intent(in) :: model
     !> State at the start
     type(state_t), intent(in) :: old

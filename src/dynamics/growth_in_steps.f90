@@ -22,7 +22,6 @@ contains
   subroutine grow_in_step(problem, model, equilibrium, operator, now, trial, converged, error)
     !> The step
     type(dynamic_step_t), intent(inout) :: problem
-    !> The model
     type(model_t), intent(in) :: model
     !> Convergence asked for
     type(equilibrium_t), intent(in) :: equilibrium
@@ -71,7 +70,6 @@ contains
 
   !> True if delaminations grow with the steps, none of them at a frozen time.
   pure logical function grows_by_steps(model)
-    !> The model
     type(model_t), intent(in) :: model
 
     grows_by_steps = model%map%layered

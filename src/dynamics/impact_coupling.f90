@@ -33,7 +33,6 @@ contains
 
   !> The impactor's part in a step.
   pure function begin_coupling(model, integrator, old, step) result(coupling)
-    !> The model
     type(model_t), intent(in) :: model
     !> Integrator of the plate
     type(plate_integrator_t), intent(in) :: integrator
@@ -67,7 +66,6 @@ contains
   subroutine solve(self, model, integrator, operator, old, new, correction, error)
     !> The impactor's side of the step
     class(impact_coupling_t), intent(inout) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> Integrator of the plate
     type(plate_integrator_t), intent(in) :: integrator

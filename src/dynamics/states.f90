@@ -58,7 +58,6 @@ contains
 
   !> The plate at rest, the impactor at first touch.
   pure function new_state(model) result(self)
-    !> The model
     type(model_t), intent(in) :: model
     !> The state
     type(state_t) :: self
@@ -80,7 +79,6 @@ contains
   subroutine find_internal(self, model, old, energy)
     !> The state, whose displacement is known; receives the forces
     class(state_t), intent(inout) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> The last accepted state
     type(state_t), intent(in) :: old
@@ -111,7 +109,6 @@ contains
     class(state_t), intent(inout) :: self
     !> Where to or where from
     class(archive_t), intent(inout) :: archive
-    !> The model
     type(model_t), intent(in) :: model
 
     call archive%item('time', self%time)
@@ -143,7 +140,6 @@ contains
     type(motion_t), intent(inout) :: motion
     !> Where to or where from
     class(archive_t), intent(inout) :: archive
-    !> The model
     type(model_t), intent(in) :: model
     integer :: points
 

@@ -37,7 +37,6 @@ contains
 
   !> The step to a load.
   pure function new_static_step(model, load_factor) result(self)
-    !> The model
     type(model_t), intent(in) :: model
     !> Load over the full load
     real(wp), intent(in) :: load_factor
@@ -53,7 +52,6 @@ contains
   subroutine begin(self, model, operator, old, new)
     !> The problem
     class(static_step_t), intent(inout) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> The factored operator
     type(tangent_operator_t), intent(inout) :: operator
@@ -71,7 +69,6 @@ contains
   subroutine find_residual(self, model, old, new, residual, energy)
     !> The problem
     class(static_step_t), intent(in) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> State at the load before
     type(state_t), intent(in) :: old
@@ -90,7 +87,6 @@ contains
   real(wp) function residual_norm(self, model, equilibrium, operator, residual, new)
     !> The problem
     class(static_step_t), intent(in) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> Convergence asked for
     type(equilibrium_t), intent(in) :: equilibrium
@@ -111,7 +107,6 @@ contains
   pure logical function may_stop(self, model, new, pressures_new)
     !> The problem
     class(static_step_t), intent(in) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> State at this load
     type(state_t), intent(in) :: new
@@ -125,7 +120,6 @@ contains
   subroutine prepare_operator(self, model, operator, new, error)
     !> The problem
     class(static_step_t), intent(in) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> The factored operator
     type(tangent_operator_t), intent(inout) :: operator
@@ -141,7 +135,6 @@ contains
 
   !> True if the tangent may not be what it was at the iteration before.
   pure logical function changes(model, iterations)
-    !> The model
     type(model_t), intent(in) :: model
     !> Iterations of this step so far
     integer, intent(in) :: iterations
@@ -157,7 +150,6 @@ contains
   subroutine improve(self, model, operator, old, new, correction, error)
     !> The problem
     class(static_step_t), intent(inout) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> The factored operator
     type(tangent_operator_t), intent(inout) :: operator
@@ -187,7 +179,6 @@ contains
   subroutine finish(self, model, old, energy, new)
     !> The problem
     class(static_step_t), intent(in) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> State at the load before
     type(state_t), intent(in) :: old

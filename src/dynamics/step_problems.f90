@@ -45,7 +45,6 @@ module step_problems
       import :: step_problem_t, model_t, tangent_operator_t, state_t
       !> The problem
       class(step_problem_t), intent(inout) :: self
-      !> The model
       type(model_t), intent(in) :: model
       !> The factored operator, with its memory of iterations
       type(tangent_operator_t), intent(inout) :: operator
@@ -60,7 +59,6 @@ module step_problems
       import :: step_problem_t, model_t, state_t, wp
       !> The problem
       class(step_problem_t), intent(in) :: self
-      !> The model
       type(model_t), intent(in) :: model
       !> State at the start
       type(state_t), intent(in) :: old
@@ -77,7 +75,6 @@ module step_problems
       import :: step_problem_t, model_t, equilibrium_t, tangent_operator_t, state_t, wp
       !> The problem
       class(step_problem_t), intent(in) :: self
-      !> The model
       type(model_t), intent(in) :: model
       !> Convergence asked for
       type(equilibrium_t), intent(in) :: equilibrium
@@ -94,7 +91,6 @@ module step_problems
       import :: step_problem_t, model_t, state_t
       !> The problem
       class(step_problem_t), intent(in) :: self
-      !> The model
       type(model_t), intent(in) :: model
       !> State at the end
       type(state_t), intent(in) :: new
@@ -107,7 +103,6 @@ module step_problems
       import :: step_problem_t, model_t, tangent_operator_t, state_t, error_t
       !> The problem
       class(step_problem_t), intent(in) :: self
-      !> The model
       type(model_t), intent(in) :: model
       !> The factored operator
       type(tangent_operator_t), intent(inout) :: operator
@@ -122,7 +117,6 @@ module step_problems
       import :: step_problem_t, model_t, tangent_operator_t, state_t, error_t, wp
       !> The problem
       class(step_problem_t), intent(inout) :: self
-      !> The model
       type(model_t), intent(in) :: model
       !> The factored operator, with its memory of iterations
       type(tangent_operator_t), intent(inout) :: operator
@@ -152,7 +146,6 @@ module step_problems
       import :: step_problem_t, model_t, state_t, wp
       !> The problem
       class(step_problem_t), intent(in) :: self
-      !> The model
       type(model_t), intent(in) :: model
       !> State at the start
       type(state_t), intent(in) :: old
@@ -169,7 +162,6 @@ contains
   subroutine solve_step(problem, model, equilibrium, operator, old, new, converged, error)
     !> The kind of step
     class(step_problem_t), intent(inout) :: problem
-    !> The model
     type(model_t), intent(in) :: model
     !> Convergence asked for
     type(equilibrium_t), intent(in) :: equilibrium

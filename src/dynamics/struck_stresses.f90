@@ -12,7 +12,6 @@ contains
 
   !> Size of the surface stress 6 M / h**2 around the struck point, the same on every rank.
   real(wp) function struck_stress(model, displacement) result(stress)
-    !> The model
     type(model_t), intent(in) :: model
     !> Displacement, ghosts up to date, (5, points)
     real(wp), intent(in) :: displacement(:, :)

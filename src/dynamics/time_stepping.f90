@@ -57,7 +57,6 @@ contains
   subroutine start(self, model, stepping, linear_solver, error)
     !> The time stepper
     class(time_stepper_t), intent(out) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> How steps are taken
     type(stepping_t), intent(in) :: stepping
@@ -81,7 +80,6 @@ contains
   subroutine start_acceleration(self, model, error)
     !> The time stepper
     class(time_stepper_t), intent(inout) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> Set if the mass matrix is singular
     type(error_t), allocatable, intent(out) :: error
@@ -102,7 +100,6 @@ contains
   subroutine advance(self, model, event, error)
     !> The time stepper
     class(time_stepper_t), intent(inout) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> Time, or load factor, not to be passed
     real(wp), intent(in) :: event
@@ -137,7 +134,6 @@ contains
   subroutine settle(self, model, error)
     !> The time stepper
     class(time_stepper_t), intent(inout) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> Set if what is left of the plate does not bear the load
     type(error_t), allocatable, intent(out) :: error
@@ -160,7 +156,6 @@ contains
   pure real(wp) function smallest_step(self, model) result(step)
     !> The stepper
     class(time_stepper_t), intent(in) :: self
-    !> The model
     type(model_t), intent(in) :: model
 
     step = self%stepping%time%step_min
@@ -171,7 +166,6 @@ contains
   subroutine try_step(self, model, event, step, converged, error)
     !> The time stepper
     class(time_stepper_t), intent(inout) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> Time not to be passed
     real(wp), intent(in) :: event
@@ -210,7 +204,6 @@ contains
   pure real(wp) function impactor_limit(self, model) result(limit)
     !> The time stepper
     type(time_stepper_t), intent(in) :: self
-    !> The model
     type(model_t), intent(in) :: model
 
     limit = huge(limit)
@@ -225,7 +218,6 @@ contains
   subroutine try_load(self, model, event, step, converged, error)
     !> The time stepper
     class(time_stepper_t), intent(inout) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> Load factor not to be passed
     real(wp), intent(in) :: event
@@ -246,7 +238,6 @@ contains
   subroutine accept(self, model, step)
     !> The time stepper
     class(time_stepper_t), intent(inout) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> Step taken
     real(wp), intent(in) :: step
@@ -282,7 +273,6 @@ contains
 
   !> Books the strain energy that failed plies have lost, and finds the forces that are left.
   subroutine book_failures(model, now, trial)
-    !> The model
     type(model_t), intent(in) :: model
     !> The state before the step
     type(state_t), intent(in) :: now
@@ -303,7 +293,6 @@ contains
     class(time_stepper_t), intent(inout) :: self
     !> Where to or where from
     class(archive_t), intent(inout) :: archive
-    !> The model
     type(model_t), intent(in) :: model
     !> Set if the operator cannot be made again
     type(error_t), allocatable, intent(out) :: error

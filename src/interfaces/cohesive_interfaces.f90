@@ -52,7 +52,6 @@ contains
 
   !> All cohesive interfaces, failed within their starters.
   pure function new_cohesive_interfaces(model, free) result(self)
-    !> The model
     type(model_t), intent(in) :: model
     !> True where starters leave jumps free, (local points)
     logical, intent(in) :: free(:)
@@ -79,7 +78,6 @@ contains
   pure subroutine add_forces(self, model, old, displacement, force, energy)
     !> The interfaces
     class(cohesive_interfaces_t), intent(inout) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> The interfaces in the last accepted state
     type(cohesive_interfaces_t), intent(in) :: old
@@ -114,7 +112,6 @@ contains
   real(wp) function dissipation(self, model, old) result(energy)
     !> The interfaces
     class(cohesive_interfaces_t), intent(in) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> The interfaces in the earlier state
     type(cohesive_interfaces_t), intent(in) :: old
@@ -133,7 +130,6 @@ contains
   function area(self, model)
     !> The interfaces
     class(cohesive_interfaces_t), intent(in) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> The area, (zones); zero for zones without a cohesive law
     real(wp) :: area(size(model%mesh%zones))
@@ -156,7 +152,6 @@ contains
   pure function damage(self, model)
     !> The interfaces
     class(cohesive_interfaces_t), intent(in) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> 0 to 1; 0 where there is no cohesive law, (local points)
     real(wp) :: damage(size(model%zone))
@@ -169,7 +164,6 @@ contains
   pure function shares(self, model)
     !> The interfaces
     class(cohesive_interfaces_t), intent(in) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> 0 to 1; 0 where there is no cohesive law, (local points)
     real(wp) :: shares(size(model%zone))
@@ -186,7 +180,6 @@ contains
   pure function shear_share(self, model, displacement)
     !> The interfaces
     class(cohesive_interfaces_t), intent(in) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
@@ -205,7 +198,6 @@ contains
   pure function pressure(self, model, displacement)
     !> The interfaces
     class(cohesive_interfaces_t), intent(in) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
@@ -223,7 +215,6 @@ contains
 
   !> True if the faces of a zone don't pass through each other.
   pure logical function holds_closed(model, zone)
-    !> The model
     type(model_t), intent(in) :: model
     !> Index of the zone
     integer, intent(in) :: zone
@@ -235,7 +226,6 @@ contains
   logical function border_reached(self, model)
     !> The interfaces
     class(cohesive_interfaces_t), intent(in) :: self
-    !> The model
     type(model_t), intent(in) :: model
     integer :: i
 
@@ -253,7 +243,6 @@ contains
   pure subroutine keep_nearly(self, model, diagonal, present, wanted)
     !> The interfaces
     class(cohesive_interfaces_t), intent(in) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> Diagonal of the operator without interfaces, (5, points)
     real(wp), intent(in) :: diagonal(:, :)
@@ -277,7 +266,6 @@ contains
     class(cohesive_interfaces_t), intent(inout) :: self
     !> Where to or where from
     class(archive_t), intent(inout) :: archive
-    !> The model
     type(model_t), intent(in) :: model
     real(wp), allocatable :: fields(:, :)
 

@@ -50,7 +50,6 @@ contains
 
   !> All interfaces with their starters.
   pure function new_contact_and_ties(model) result(self)
-    !> The model
     type(model_t), intent(in) :: model
     !> The state
     type(contact_and_ties_t) :: self
@@ -67,7 +66,6 @@ contains
   subroutine act(self, model, displacement, residual)
     !> The state; receives pressures and slopes
     class(contact_and_ties_t), intent(inout) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
@@ -97,7 +95,6 @@ contains
   pure function force(self, model, i, jumps)
     !> The state
     type(contact_and_ties_t), intent(in) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> Point of this rank
     integer, intent(in) :: i
@@ -119,7 +116,6 @@ contains
   subroutine settle(self, model, displacement, tolerance, rounds, settled)
     !> The state
     class(contact_and_ties_t), intent(inout) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
@@ -142,7 +138,6 @@ contains
   subroutine update_multipliers(self, model, displacement, settled)
     !> The state
     type(contact_and_ties_t), intent(inout) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
@@ -174,7 +169,6 @@ contains
   real(wp) function complementarity(self, model, displacement)
     !> The state
     class(contact_and_ties_t), intent(in) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
@@ -196,7 +190,6 @@ contains
   pure real(wp) function work(self, model, displacement, change)
     !> The state
     class(contact_and_ties_t), intent(in) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> Unknowns at the end of the step and their change, (5, points)
     real(wp), intent(in) :: displacement(:, :), change(:, :)
@@ -213,7 +206,6 @@ contains
   subroutine keep_touching(self, model, guess)
     !> The state
     class(contact_and_ties_t), intent(in) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> Guess of the unknowns at its end, (5, points)
     real(wp), intent(inout) :: guess(:, :)
@@ -230,7 +222,6 @@ contains
   pure subroutine added_stiffness(self, model, diagonal, added)
     !> The state
     class(contact_and_ties_t), intent(in) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> Diagonal of the operator without it, (5, points)
     real(wp), intent(in) :: diagonal(:, :)
@@ -274,7 +265,6 @@ contains
     class(contact_and_ties_t), intent(inout) :: self
     !> Where to or where from
     class(archive_t), intent(inout) :: archive
-    !> The model
     type(model_t), intent(in) :: model
     real(wp), allocatable :: fields(:, :)
 

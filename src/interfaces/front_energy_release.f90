@@ -29,7 +29,6 @@ contains
 
   !> Energy release rates along the front of a zone.
   function release_along_front(model, stiffness, faces, motion, zone, method) result(front)
-    !> The model
     type(model_t), intent(in) :: model
     !> Section stiffness left in the elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
@@ -56,7 +55,6 @@ contains
 
   !> Rates by virtual crack closure, smoothed along the front, those of the edges into the same cell put together.
   function vcct_rates(model, motion, zone, segments) result(modes)
-    !> The model
     type(model_t), intent(in) :: model
     !> Motion with its forces
     type(motion_t), intent(in) :: motion
@@ -93,7 +91,6 @@ contains
 
   !> Force that holds the jump at a node, on the rank that owns it: external less internal and inertia forces.
   pure function tie_force(model, motion, zone, node) result(force)
-    !> The model
     type(model_t), intent(in) :: model
     !> Motion with its forces
     type(motion_t), intent(in) :: motion
@@ -112,7 +109,6 @@ contains
 
   !> Jump at a node, on the rank that owns it.
   pure function jump(model, motion, zone, node)
-    !> The model
     type(model_t), intent(in) :: model
     !> Motion
     type(motion_t), intent(in) :: motion
@@ -131,7 +127,6 @@ contains
 
   !> Position of a node's point below an interface on the rank that owns it; 0: elsewhere or none.
   pure integer function owned_lower_point(model, zone, node) result(i)
-    !> The model
     type(model_t), intent(in) :: model
     !> Index of the zone
     integer, intent(in) :: zone

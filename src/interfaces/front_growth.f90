@@ -18,7 +18,6 @@ contains
 
   !> Takes cells apart where the energy release rate of a state is above its critical value.
   subroutine grow_fronts(model, stiffness, motion, state, fracture, grown)
-    !> The model
     type(model_t), intent(in) :: model
     !> Section stiffness left in the elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
@@ -49,7 +48,6 @@ contains
 
   !> Takes the cells ahead of the most loaded segments of one front apart.
   subroutine release_cells(model, state, zone, front, fracture, grown)
-    !> The model
     type(model_t), intent(in) :: model
     !> The interfaces
     type(interface_state_t), intent(inout) :: state
@@ -103,7 +101,6 @@ contains
 
   !> Frees the jumps of the new delamination; faces that were pressed together start in contact.
   subroutine open_faces(model, motion, state)
-    !> The model
     type(model_t), intent(in) :: model
     !> Motion with its forces
     type(motion_t), intent(in) :: motion

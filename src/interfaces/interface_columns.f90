@@ -35,7 +35,6 @@ contains
 
   !> How much has come apart. Collective.
   function area_values(model, interfaces) result(values)
-    !> The model
     type(model_t), intent(in) :: model
     !> The interfaces
     type(interface_state_t), intent(in) :: interfaces
@@ -47,7 +46,6 @@ contains
 
   !> How near the fronts are to growth, what growth has set free, and how well faces meet. Collective.
   function release_values(model, interfaces, displacement) result(values)
-    !> The model
     type(model_t), intent(in) :: model
     !> The interfaces
     type(interface_state_t), intent(in) :: interfaces
@@ -63,7 +61,6 @@ contains
 
   !> Fronts at the border of their zone, and the area projected. Collective.
   function border_values(model, interfaces) result(values)
-    !> The model
     type(model_t), intent(in) :: model
     !> The interfaces
     type(interface_state_t), intent(in) :: interfaces
@@ -76,7 +73,6 @@ contains
   !> Area in which at least one interface has come apart, of the whole plate: nodal areas times the largest part come
   !> apart above each other. Collective.
   function projected_area(model, interfaces) result(area)
-    !> The model
     type(model_t), intent(in) :: model
     !> The interfaces
     type(interface_state_t), intent(in) :: interfaces

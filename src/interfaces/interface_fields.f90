@@ -35,7 +35,6 @@ contains
 
   !> Writes the fields that are wanted.
   subroutine write_interface_fields(model, stiffness, interfaces, motion, output, fields, error)
-    !> The model
     type(model_t), intent(in) :: model
     !> Section stiffness left in the elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
@@ -69,7 +68,6 @@ contains
 
   !> Jumps of the faces above each point's layer.
   pure function jumps(model, displacement)
-    !> The model
     type(model_t), intent(in) :: model
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
@@ -81,7 +79,6 @@ contains
 
   !> 1 in elements whose interface above has come apart.
   function delaminated_above(model, interfaces) result(delaminated)
-    !> The model
     type(model_t), intent(in) :: model
     !> The interfaces
     type(interface_state_t), intent(in) :: interfaces
@@ -113,7 +110,6 @@ contains
 
   !> Pressure on the faces above each point's layer.
   pure function pressures(model, interfaces, displacement)
-    !> The model
     type(model_t), intent(in) :: model
     !> The interfaces
     type(interface_state_t), intent(in) :: interfaces
@@ -129,7 +125,6 @@ contains
   !> Energy release rate over its critical value in the intact cells ahead of the fronts, zero elsewhere. Where a
   !> front has reached the border of its zone there is no such cell, and the last delaminated one shows it.
   function release_ahead(model, stiffness, faces, motion) result(ratio)
-    !> The model
     type(model_t), intent(in) :: model
     !> Section stiffness left in the elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)

@@ -40,7 +40,6 @@ contains
 
   !> All interfaces with their starters.
   pure function new_interface_state(model) result(self)
-    !> The model
     type(model_t), intent(in) :: model
     !> The state
     type(interface_state_t) :: self
@@ -54,7 +53,6 @@ contains
   subroutine act(self, model, displacement, residual)
     !> The state
     class(interface_state_t), intent(inout) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
@@ -70,7 +68,6 @@ contains
   pure function area_at_nodes(self, model) result(area)
     !> The state
     class(interface_state_t), intent(in) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> Area, zone after zone, (nodes*zones)
     real(wp) :: area(model%mesh%nodes()*size(model%mesh%zones))
@@ -94,7 +91,6 @@ contains
   pure subroutine added_stiffness(self, model, diagonal, stiffness_factor, added)
     !> The state
     class(interface_state_t), intent(in) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> Diagonal of the operator without it, (5, points)
     real(wp), intent(in) :: diagonal(:, :)
@@ -117,7 +113,6 @@ contains
     class(interface_state_t), intent(inout) :: self
     !> Where to or where from
     class(archive_t), intent(inout) :: archive
-    !> The model
     type(model_t), intent(in) :: model
 
     call archive%item('release_ratio', self%release_ratio)

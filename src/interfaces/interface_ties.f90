@@ -41,7 +41,6 @@ contains
 
   !> Bonds of all interfaces with their starters.
   pure subroutine create_interface_ties(model, self)
-    !> The model
     type(model_t), intent(in) :: model
     !> The bonds
     class(interface_ties_t), intent(inout) :: self
@@ -60,7 +59,6 @@ contains
   pure subroutine free_jumps(self, model)
     !> The bonds
     class(interface_ties_t), intent(inout) :: self
-    !> The model
     type(model_t), intent(in) :: model
     integer :: i, line(2)
 
@@ -75,7 +73,6 @@ contains
   pure integer function bond(self, model, i)
     !> The bonds
     class(interface_ties_t), intent(in) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> Point of this rank
     integer, intent(in) :: i
@@ -97,7 +94,6 @@ contains
 
   !> Stiffness of a penalty tie at a point.
   pure real(wp) function tie_stiffness(model, i) result(stiffness)
-    !> The model
     type(model_t), intent(in) :: model
     !> Point of this rank
     integer, intent(in) :: i
@@ -111,7 +107,6 @@ contains
   pure function in_contact(self, model) result(points)
     !> The bonds
     class(interface_ties_t), intent(in) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> Points of this rank, ascending
     integer, allocatable :: points(:)
@@ -126,7 +121,6 @@ contains
   pure subroutine hold(self, model, correction)
     !> The bonds
     class(interface_ties_t), intent(in) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> Correction of the unknowns, (5, points)
     real(wp), intent(inout) :: correction(:, :)
@@ -142,7 +136,6 @@ contains
   real(wp) function penetration(self, model, displacement)
     !> The bonds
     class(interface_ties_t), intent(in) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
@@ -159,7 +152,6 @@ contains
   pure real(wp) function area(self, model)
     !> The bonds
     class(interface_ties_t), intent(in) :: self
-    !> The model
     type(model_t), intent(in) :: model
     integer :: zone, i, j
 
@@ -181,7 +173,6 @@ contains
     class(interface_ties_t), intent(inout) :: self
     !> Where to or where from
     class(archive_t), intent(inout) :: archive
-    !> The model
     type(model_t), intent(in) :: model
     integer :: zone
 

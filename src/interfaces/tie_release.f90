@@ -60,7 +60,6 @@ contains
 
   !> No tie has been let go.
   pure function new_tie_release(model) result(self)
-    !> The model
     type(model_t), intent(in) :: model
     !> The ties
     type(tie_release_t) :: self
@@ -102,7 +101,6 @@ contains
   pure subroutine let_go(self, model, free_before, free, forces)
     !> The ties
     class(tie_release_t), intent(inout) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> True where jumps were free and where they are now, (local points)
     logical, intent(in) :: free_before(:), free(:)
@@ -124,7 +122,6 @@ contains
   function first_opening(self, model, free_before, free, opening) result(energy)
     !> The ties at the end of the step
     class(tie_release_t), intent(in) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> True where jumps were free and where they are now, (local points)
     logical, intent(in) :: free_before(:), free(:)
@@ -149,7 +146,6 @@ contains
   pure subroutine fade(self, model, step)
     !> The ties
     class(tie_release_t), intent(inout) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> Time step
     real(wp), intent(in) :: step
@@ -170,7 +166,6 @@ contains
   pure subroutine act(self, model, residual)
     !> The ties
     class(tie_release_t), intent(in) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> Residual at the owned points, (5, points)
     real(wp), intent(inout) :: residual(:, :)
@@ -188,7 +183,6 @@ contains
   subroutine book(self, model, old, change, taken)
     !> The ties at the end of the step
     class(tie_release_t), intent(inout) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> The ties at its start
     type(tie_release_t), intent(in) :: old
@@ -251,7 +245,6 @@ contains
     class(tie_release_t), intent(inout) :: self
     !> Where to or where from
     class(archive_t), intent(inout) :: archive
-    !> The model
     type(model_t), intent(in) :: model
     real(wp), allocatable :: fields(:, :)
 

@@ -27,7 +27,6 @@ contains
 
   !> Rates of the segments of a front.
   function two_state_rates(model, section_stiffness, motion, zone, segments) result(modes)
-    !> The model
     type(model_t), intent(in) :: model
     !> Section stiffness left in the elements, (lanes, 21, batches)
     real(wp), intent(in) :: section_stiffness(:, :, :)
@@ -54,7 +53,6 @@ contains
 
   !> Rates of the segments from the states at their nodes.
   function rates_of_states(model, segments, found, stiffness) result(rates)
-    !> The model
     type(model_t), intent(in) :: model
     !> The front
     type(front_segment_t), intent(in) :: segments(:)
@@ -110,7 +108,6 @@ contains
   !> Strains without those that vanish on a line of symmetry. Along the front of the whole plate their mean from both
   !> sides of the line does that.
   pure function symmetric(model, node, strains)
-    !> The model
     type(model_t), intent(in) :: model
     !> Node
     integer, intent(in) :: node
@@ -158,7 +155,6 @@ contains
   !> Elements above and below the interface on the delaminated and the intact side of every segment, as this rank
   !> numbers them; 0: another rank has it.
   pure function front_elements(model, zone, segments) result(elements)
-    !> The model
     type(model_t), intent(in) :: model
     !> Index of the zone
     integer, intent(in) :: zone
@@ -183,7 +179,6 @@ contains
   !> Strains of the elements along a front at the three nodes of their segments, and their stiffness; zero where another
   !> rank has the element. Every batch is computed once.
   subroutine front_states(model, section_stiffness, field, segments, elements, strains, stiffness)
-    !> The model
     type(model_t), intent(in) :: model
     !> Section stiffness left in the elements, (lanes, 21, batches)
     real(wp), intent(in) :: section_stiffness(:, :, :)

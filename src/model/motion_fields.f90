@@ -25,7 +25,6 @@ contains
 
   !> Writes the fields that are wanted.
   subroutine write_motion_fields(model, motion, output, fields, error)
-    !> The model
     type(model_t), intent(in) :: model
     !> The motion
     type(motion_t), intent(in) :: motion

@@ -16,7 +16,6 @@ contains
     class(archive_t), intent(inout) :: archive
     !> Name of the item
     character(len=*), intent(in) :: name
-    !> The model
     type(model_t), intent(in) :: model
     !> Section stiffness of this rank's elements, (lanes, 21, batches)
     real(wp), intent(inout) :: stiffness(:, :, :)

@@ -14,7 +14,6 @@ contains
 
   !> Mean strains of this rank's elements, averaged over their surroundings. All ranks must call together.
   function mean_strains_of_elements(model, displacement) result(strains)
-    !> The model
     type(model_t), intent(in) :: model
     !> Displacement, ghosts up to date, (5, points)
     real(wp), intent(in) :: displacement(:, :)
@@ -41,7 +40,6 @@ contains
 
   !> Strains of this rank's elements in a list for the whole mesh.
   pure function spread_out(model, strains) result(everywhere)
-    !> The model
     type(model_t), intent(in) :: model
     !> Strains, (8, elements)
     real(wp), intent(in) :: strains(:, :)

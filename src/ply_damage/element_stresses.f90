@@ -15,7 +15,6 @@ contains
 
   !> Mean strains of every element, in the form that the stresses of its plies follow from.
   function element_strains(model, failures, displacement) result(strains)
-    !> The model
     type(model_t), intent(in) :: model
     !> Failures of its plies
     type(ply_failure_t), intent(in) :: failures
@@ -34,7 +33,6 @@ contains
 
   !> Stresses of one ply in its own axes, with the stiffness that failures have left.
   pure function stresses_of_ply(model, failures, strains, ply) result(stresses)
-    !> The model
     type(model_t), intent(in) :: model
     !> Failures of its plies
     type(ply_failure_t), intent(in) :: failures

@@ -18,7 +18,6 @@ contains
 
   !> Failures in each mode. Collective.
   function ply_values(model, plies) result(values)
-    !> The model
     type(model_t), intent(in) :: model
     !> Failures of the plies
     type(ply_failure_t), intent(in) :: plies

@@ -16,7 +16,6 @@ contains
   !> How near the plies of an element are to each mode of failure, whether or not they failed so before: 1 where the
   !> criterion is met. Roots of the criteria's values, so that they grow with the load.
   function failure_measures(model, stiffness, element, elasticity, strains) result(measures)
-    !> The model
     type(model_t), intent(in) :: model
     !> Section stiffness left in the elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
@@ -55,7 +54,6 @@ contains
   !> Strains of an element that the stresses of its plies follow from: its own, but for one transverse shear strain
   !> whose stresses add up to the shear force.
   pure function strains_of_plies(model, stiffness, element, elasticity, strains) result(local)
-    !> The model
     type(model_t), intent(in) :: model
     !> Section stiffness left in the elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)

@@ -33,7 +33,6 @@ contains
 
   !> No failure.
   pure function new_ply_failure(model) result(self)
-    !> The model
     type(model_t), intent(in) :: model
     !> The failures
     type(ply_failure_t) :: self
@@ -46,7 +45,6 @@ contains
   subroutine grow(self, model, times, before, after)
     !> The failures
     class(ply_failure_t), intent(inout) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> Times before and after the step
     real(wp), intent(in) :: times(2)
@@ -70,7 +68,6 @@ contains
   subroutine soften(self, model, element)
     !> The failures
     type(ply_failure_t), intent(inout) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> Element of this rank
     integer, intent(in) :: element
@@ -86,7 +83,6 @@ contains
   function counts(self, model)
     !> The failures
     class(ply_failure_t), intent(in) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> Fibre failure, matrix cracking, matrix crushing
     integer :: counts(failure_modes)
@@ -108,7 +104,6 @@ contains
     class(ply_failure_t), intent(inout) :: self
     !> Where to or where from
     class(archive_t), intent(inout) :: archive
-    !> The model
     type(model_t), intent(in) :: model
 
     call self%onset%visit(archive, model, 'ply_failure/onset/')

@@ -36,7 +36,6 @@ contains
 
   !> Writes the fields that are wanted.
   subroutine write_ply_fields(model, plies, displacement, output, fields, error)
-    !> The model
     type(model_t), intent(in) :: model
     !> Failures of its plies
     type(ply_failure_t), intent(in) :: plies

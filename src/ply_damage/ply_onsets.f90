@@ -44,7 +44,6 @@ contains
 
   !> No failure.
   pure function new_ply_onset(model) result(self)
-    !> The model
     type(model_t), intent(in) :: model
     !> The onsets
     type(ply_onset_t) :: self
@@ -59,7 +58,6 @@ contains
   subroutine find(self, model, stiffness, times, before, after, found)
     !> The onsets
     class(ply_onset_t), intent(inout) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> Section stiffness left in the elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
@@ -88,7 +86,6 @@ contains
   function failing_anew(self, model, stiffness, element, strains) result(failing)
     !> The onsets
     type(ply_onset_t), intent(in) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> Section stiffness left in the elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
@@ -110,7 +107,6 @@ contains
   subroutine note_start(self, model, stiffness, element, before, after, times)
     !> The onsets
     type(ply_onset_t), intent(inout) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> Section stiffness left in the elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
@@ -175,7 +171,6 @@ contains
   pure function elasticity(self, model, ply, element)
     !> The onsets
     class(ply_onset_t), intent(in) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> Ply of the laminate
     integer, intent(in) :: ply
@@ -193,7 +188,6 @@ contains
   pure function elasticities(self, model, element) result(elasticity)
     !> The onsets
     class(ply_onset_t), intent(in) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> Element of this rank
     integer, intent(in) :: element
@@ -227,7 +221,6 @@ contains
     class(ply_onset_t), intent(inout) :: self
     !> Where to or where from
     class(archive_t), intent(inout) :: archive
-    !> The model
     type(model_t), intent(in) :: model
     !> First part of the items' names
     character(len=*), intent(in) :: path

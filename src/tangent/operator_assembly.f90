@@ -17,7 +17,6 @@ contains
   !> Adds the elements' matrices and a lumped mass to a cleared solver; ghosts' diagonals go to their owners.
   subroutine assemble_elements(model, stiffness, numbering, displacement, stiffness_factor, mass_factor, solver, &
                                diagonal)
-    !> The model
     type(model_t), intent(in) :: model
     !> Section stiffness left in the elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
@@ -61,7 +60,6 @@ contains
 
   !> Adds a matrix on the motion of some points, turned into one on their unknowns.
   subroutine add_block(model, numbering, points, matrix, solver, diagonal)
-    !> The model
     type(model_t), intent(in) :: model
     !> Equations
     type(numbering_t), intent(in) :: numbering
@@ -111,7 +109,6 @@ contains
 
   !> Adds stiffness to the diagonals of the jumps.
   subroutine assemble_diagonal(model, numbering, added, solver)
-    !> The model
     type(model_t), intent(in) :: model
     !> Equations
     type(numbering_t), intent(in) :: numbering

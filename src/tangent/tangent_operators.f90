@@ -86,7 +86,6 @@ contains
   subroutine create(self, model, factorization, error)
     !> The operator
     class(tangent_operator_t), intent(out) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> factorization_mumps or factorization_cholmod
     integer, intent(in) :: factorization
@@ -114,7 +113,6 @@ contains
   subroutine renew(self, model, stiffness, interfaces, displacement, stiffness_factor, mass_factor, error)
     !> The operator
     class(tangent_operator_t), intent(inout) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> Section stiffness left in the elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
@@ -147,7 +145,6 @@ contains
   subroutine factorize(self, model, error)
     !> The operator
     type(tangent_operator_t), intent(inout) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> Set if the operator is singular
     type(error_t), allocatable, intent(inout) :: error
@@ -172,7 +169,6 @@ contains
   subroutine find_response(self, model, error)
     !> The operator
     type(tangent_operator_t), intent(inout) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> Set if the solve fails
     type(error_t), allocatable, intent(inout) :: error
@@ -189,7 +185,6 @@ contains
   subroutine follow(self, model, interfaces, possible, error)
     !> The operator
     class(tangent_operator_t), intent(inout) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> Ties, contacts and cohesive laws now
     type(interface_state_t), intent(in) :: interfaces
@@ -222,7 +217,6 @@ contains
   subroutine put_in_force(self, model, equations, stiffness, error)
     !> The operator
     type(tangent_operator_t), intent(inout) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> Equations changed, the same on every rank, ascending
     integer, intent(in) :: equations(:)
@@ -250,7 +244,6 @@ contains
   subroutine find_columns(self, model, equations, error)
     !> The operator
     type(tangent_operator_t), intent(inout) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> Equations wanted, none of which has its column yet, the same on every rank
     integer, intent(in) :: equations(:)
@@ -280,7 +273,6 @@ contains
   subroutine correct(self, model, residual, correction, error)
     !> The operator
     class(tangent_operator_t), intent(inout) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> Residual at the owned points, (5, points)
     real(wp), intent(in) :: residual(:, :)
@@ -298,7 +290,6 @@ contains
   subroutine follow_changes(self, model, solution)
     !> The operator
     type(tangent_operator_t), intent(in) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> Solution, ghosts included, (5, points)
     real(wp), intent(inout) :: solution(:, :)
@@ -312,7 +303,6 @@ contains
   subroutine solve_factor(self, model, force, solution, error)
     !> The operator
     type(tangent_operator_t), intent(inout) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> Force at the owned points, (5, points)
     real(wp), intent(in) :: force(:, :)
@@ -339,7 +329,6 @@ contains
     class(tangent_operator_t), intent(inout) :: self
     !> Where to or where from
     class(archive_t), intent(inout) :: archive
-    !> The model
     type(model_t), intent(in) :: model
     !> Set if the factor cannot be made again
     type(error_t), allocatable, intent(out) :: error
@@ -376,7 +365,6 @@ contains
   subroutine remake(self, model, columns, changed, error)
     !> The operator
     type(tangent_operator_t), intent(inout) :: self
-    !> The model
     type(model_t), intent(in) :: model
     !> Equation and company of each column found since, (2 columns)
     integer, intent(in) :: columns(:)

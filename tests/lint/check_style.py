@@ -290,7 +290,8 @@ class Checker:
             for name, entity in zip(names, entities, strict=True):
                 if initialised(entity):
                     self.report(statement.line, f"{name} is initialised where it is declared, so it is saved")
-        if scope.kind == "procedure" and scope.arguments.intersection(names):
+        explained = re.fullmatch(r"type\(model_t\),\s*intent\(in\)\s*::\s*model", statement.text)
+        if scope.kind == "procedure" and scope.arguments.intersection(names) and not explained:
             self.require_doc(statement, f"argument {', '.join(names)}")
 
 
