@@ -26,20 +26,20 @@ contains
 
   !> True, once, if more than 1 % of the energy has been created. What an integrator creates in the first step of a
   !> load that is there at once it takes out in the next: two steps in a row must say so.
-  logical function alarms(self, ledger, debt, amplitude)
+  logical function alarms(self, ledger, deficit, amplitude)
     !> The watch
     class(energy_watch_t), intent(inout) :: self
     !> The ledger after an accepted step
     type(ledger_t), intent(in) :: ledger
     !> Energy booked as fracture that the fronts have not set free yet: no integrator made it
-    real(wp), intent(in) :: debt
+    real(wp), intent(in) :: deficit
     !> Load over its full value: the energies to come are larger by its square, which small ones are judged by
     real(wp), intent(in) :: amplitude
     logical :: before
 
     before = self%doubtful
     self%largest = max(self%largest, ledger%initial, ledger%kinetic + ledger%strain)
-    self%doubtful = (-ledger%algorithmic - debt)*amplitude**2 > much*self%largest
+    self%doubtful = (-ledger%algorithmic - deficit)*amplitude**2 > much*self%largest
     alarms = self%doubtful .and. before .and. .not. self%told
     self%told = self%told .or. alarms
   end function alarms

@@ -321,7 +321,7 @@ contains
       if (self%deck%has_static) return
       amplitude = 1
       if (.not. self%deck%has_impactor) amplitude = self%deck%pressure%amplitude(now%time)
-      if (self%energy_watch%alarms(now%ledger, sum(now%interfaces%ties%debt()), amplitude)) &
+      if (self%energy_watch%alarms(now%ledger, sum(now%interfaces%ties%deficit()), amplitude)) &
         call self%log%warning('The time integrators have created more than 1 % of the energy by time '// &
                               to_text(now%time)//': take smaller steps, or more damping (rho_inf) with delamination.')
     end associate

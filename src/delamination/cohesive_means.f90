@@ -113,7 +113,7 @@ contains
     way%missing = reach%toughness*(share_growth(law, old%damage, new%damage)/way%size) &
                   - (new%damage - old%damage)*(undamaged_energy(law, old_jumps)/way%size)
     carried = (1 - new%damage)*stiffness*(way%seen*way%size/2)*way%seen
-    ! Faces that come apart from contact do the law's work on the whole way, not on its open part alone.
+    ! Faces that delaminate from contact do the law's work on the whole way, not on its open part alone.
     carried(3) = carried(3) + (1 - new%damage)*stiffness(3)*max(jumps(3), 0.0_wp)*(way%change(3) - way%seen(3))
     way%missing = way%missing - sum(carried)
   end function way_between

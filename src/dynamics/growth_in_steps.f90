@@ -50,9 +50,9 @@ contains
       ! The integrators cannot tell the energy that fracture takes from their own losses.
       trial%ledger%algorithmic = trial%ledger%algorithmic - (trial%ledger%delamination - fracture)
       if (.not. grown .or. grows_by_steps(model)) return
-      call ties%let_go(model, free, trial%interfaces%faces%free, &
+      call ties%release(model, free, trial%interfaces%faces%free, &
                        trial%motion%internal(1:3, :) + trial%motion%inertia(1:3, :))
-      ties%asked = trial%interfaces%ties%asked
+      ties%required = trial%interfaces%ties%required
       problem%guess = trial%motion%displacement
       start = now
       start%interfaces%faces = trial%interfaces%faces

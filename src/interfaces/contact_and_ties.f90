@@ -244,7 +244,7 @@ contains
 
   contains
 
-    !> Stiffness of a held opening: that of contact where this is as hard, so that letting go of faces that press on
+    !> Stiffness of a held opening: that of contact where this is as hard, so that the release of faces that press on
     !> each other leaves the operator as it is.
     pure real(wp) function tie_like_contact(i) result(stiffness)
       !> Point of this rank

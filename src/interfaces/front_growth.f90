@@ -1,4 +1,4 @@
-!> Growth of delaminations: which cells come apart in a state, and what that costs.
+!> Growth of delaminations: which cells delaminate in a state, and what that costs.
 module front_growth
   use kinds, only: wp
   use delamination_parameters, only: growth_one_per_step, law_cohesive, unloading_glued
@@ -11,7 +11,7 @@ module front_growth
   private
   public :: grow_fronts
 
-  !> Segments within this part of the largest ratio come apart together, so that a symmetric front stays so.
+  !> Segments within this part of the largest ratio delaminate together, so that a symmetric front stays so.
   real(wp), parameter :: together = 0.95_wp
 
 contains
@@ -27,7 +27,7 @@ contains
     type(interface_state_t), intent(inout) :: state
     !> Energy that fracture has taken from the whole plate; what the new faces take is added
     real(wp), intent(inout) :: fracture
-    !> True if cells came apart
+    !> True if cells delaminated
     logical, intent(out) :: grown
     type(front_energy_release_t) :: front
     integer :: zone
@@ -57,22 +57,22 @@ contains
     type(front_energy_release_t), intent(in) :: front
     !> Energy that fracture has taken from the whole plate; what the new faces take is added
     real(wp), intent(inout) :: fracture
-    !> Set true if cells came apart
+    !> Set true if cells delaminated
     logical, intent(inout) :: grown
-    real(wp) :: largest, enough, energy, demand
+    real(wp) :: largest, enough, energy, required
     integer :: s, foremost
 
     ! Where the layers end, virtual crack closure finds no force to close: a rate cannot tell that growth is barred.
     state%border_reached = state%border_reached .or. any(front%segments%at_border)
     foremost = maxloc(front%ratio, mask=.not. front%segments%at_border, dim=1)
-    ! A delamination that fills its zone has no front but the border; faces that are glued cannot come apart.
+    ! A delamination that fills its zone has no front but the border; faces that are glued cannot delaminate.
     if (foremost == 0) return
     if (state%faces%glued .and. model%scene%delaminations(zone)%unloading == unloading_glued) return
     largest = front%ratio(foremost)
     state%growth_ratio = max(state%growth_ratio, largest)
-    demand = state%ties%demand(zone, cell_energy(foremost))
-    if (.not. largest > demand) return
-    enough = max(demand, together*largest)
+    required = state%ties%required_ratio(zone, cell_energy(foremost))
+    if (.not. largest > required) return
+    enough = max(required, together*largest)
     if (model%scene%delaminations(zone)%growth == growth_one_per_step) enough = largest
     do s = 1, size(front%segments)
       associate (segment => front%segments(s), region => state%faces%regions(zone))
@@ -83,13 +83,13 @@ contains
         fracture = fracture + energy
         grown = .true.
         if (model%scene%delaminations(zone)%growth == growth_one_per_step) return
-        state%ties%asked(zone) = state%ties%asked(zone) + energy
+        state%ties%required(zone) = state%ties%required(zone) + energy
       end associate
     end do
 
   contains
 
-    !> Energy that the toughness of the cell ahead of a segment asks for.
+    !> Energy that the toughness of the cell ahead of a segment requires.
     pure real(wp) function cell_energy(s)
       !> Segment
       integer, intent(in) :: s

@@ -9,7 +9,7 @@ module interface_columns
   private
   public :: area_values, release_values, border_values
 
-  !> How much has come apart: a column of the public interface.
+  !> How much has delaminated: a column of the public interface.
   character(len=result_row_length), parameter, public :: area_rows(*) = [character(len=result_row_length) :: &
     'delaminated_area | real | area | Delaminated area of all interfaces together, their starters included; &
       &with a cohesive law the area dissipated.']
@@ -28,12 +28,12 @@ module interface_columns
   character(len=result_row_length), parameter, public :: border_rows(*) = [character(len=result_row_length) :: &
     'border_reached | logical | - | 1 once a front or damage has reached the border of its zone, where it cannot grow &
       &on; before that 0.', &
-    'projected_area | real | area | Area that a C-scan sees: where several interfaces have come apart above each &
+    'projected_area | real | area | Area that a C-scan sees: where several interfaces have delaminated above each &
       &other, the largest of them counts once.']
 
 contains
 
-  !> How much has come apart. Collective.
+  !> How much has delaminated. Collective.
   function area_values(model, interfaces) result(values)
     type(model_t), intent(in) :: model
     !> The interfaces
@@ -70,8 +70,8 @@ contains
     values = [merge(1.0_wp, 0.0_wp, interfaces%border_reached), projected_area(model, interfaces)]
   end function border_values
 
-  !> Area in which at least one interface has come apart, of the whole plate: nodal areas times the largest part come
-  !> apart above each other. Collective.
+  !> Area in which at least one interface has delaminated, of the whole plate: nodal areas times the largest part
+  !> delaminated above each other. Collective.
   function projected_area(model, interfaces) result(area)
     type(model_t), intent(in) :: model
     !> The interfaces

@@ -23,7 +23,7 @@ module interface_fields
     'contact_pressure | points | pressure | '//field_contact_pressure//' | &delamination | Contact pressure in the &
       &interface on top of a layer.', &
     'delaminated_above | cells | - | '//field_delamination//' | &delamination | 1 in elements whose interface on top &
-      &has come apart, else 0; with a cohesive law the part of its toughness that is gone.', &
+      &has delaminated, else 0; with a cohesive law the part of its toughness that is gone.', &
     'damage_above | points | - | '//field_delamination//' | &delamination | Damage of the cohesive interface on top of &
       &a layer: part of its stiffness that is lost, 0 to 1; 0 where fronts release ties.', &
     'shear_share_above | points | - | '//field_delamination//' | &delamination | Share of shear in the energy of the &
@@ -77,7 +77,7 @@ contains
     jumps = merge(displacement(1:3, :), 0.0_wp, spread(model%zone > 0, 1, 3))
   end function jumps
 
-  !> 1 in elements whose interface above has come apart.
+  !> 1 in elements whose interface above has delaminated.
   function delaminated_above(model, interfaces) result(delaminated)
     type(model_t), intent(in) :: model
     !> The interfaces
@@ -128,7 +128,7 @@ contains
     type(model_t), intent(in) :: model
     !> Section stiffness left in the elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
-    !> What has come apart
+    !> What has delaminated
     type(contact_and_ties_t), intent(in) :: faces
     !> Motion with its forces
     type(motion_t), intent(in) :: motion

@@ -28,7 +28,7 @@ module interface_states
   contains
     !> Adds the forces of ties and contact to a residual.
     procedure :: act
-    !> Area come apart at every node of the mesh.
+    !> Area delaminated at every node of the mesh.
     procedure :: area_at_nodes
     !> Stiffness that ties, contact and cohesive laws add to the diagonal.
     procedure :: added_stiffness
@@ -63,7 +63,7 @@ contains
     call self%faces%act(model, displacement, residual)
   end subroutine act
 
-  !> Area that has come apart at the nodes of the mesh, of this rank's points: a node where ties are released has its
+  !> Area that has delaminated at the nodes of the mesh, of this rank's points: a node where ties are released has its
   !> whole area, a cohesive one the part dissipated.
   pure function area_at_nodes(self, model) result(area)
     !> The state

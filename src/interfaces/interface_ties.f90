@@ -1,4 +1,4 @@
-!> What holds the faces of all interfaces together: which cells have come apart, and which jumps are free by that.
+!> What holds the faces of all interfaces together: which cells have delaminated, and which jumps are free by that.
 module interface_ties
   use kinds, only: wp
   use archives, only: archive_t
@@ -55,7 +55,7 @@ contains
     call self%free_jumps(model)
   end subroutine create_interface_ties
 
-  !> Finds which jumps are free: those at nodes around which all cells have come apart.
+  !> Finds which jumps are free: those at nodes around which all cells have delaminated.
   pure subroutine free_jumps(self, model)
     !> The bonds
     class(interface_ties_t), intent(inout) :: self

@@ -1,5 +1,5 @@
-!> Ties that have been let go: their forces fade, and what the faces set free meanwhile is held against what their
-!> toughness asks for.
+!> Ties that have been released: their forces fade, and what the faces set free meanwhile is held against what their
+!> toughness requires.
 !>
 !> A tie that vanished at once would be a blow: the energy that it set free would stay in the motion and, the shorter
 !> the steps, the less of it would show as work against the tie. Its force therefore fades, in proportion to time,
@@ -7,12 +7,12 @@
 !> work against the fading force is the energy that is really released.
 !>
 !> That account also corrects the growth of stepped fronts. The rates of single cells scatter around the mean of the
-!> front, and those that are let go first are the overestimated ones: on a circle that grows cell by cell their cells
-!> set free some 0.84 of G_c times their area. A front that owes energy therefore has to offer more than G_c for the
-!> next cell, in proportion to its debt.
+!> front, and those that are released first are the overestimated ones: on a circle that grows cell by cell their cells
+!> set free some 0.84 of G_c times their area. A front with a deficit of energy therefore has to
+!> offer more than G_c for the next cell, in proportion to its deficit.
 !>
-!> The other way round, a row of cells that comes apart one after the other at the kinks of its ends sets free more than
-!> its toughness asks for, and how much is a matter of the mesh: a front that moved on as a whole would have used it
+!> The other way round, a row of cells that delaminates one after the other at the kinks of its ends sets free more than
+!> its toughness requires, and how much is a matter of the mesh: a front that moved on as a whole would have used it
 !> up. If the deck says so, energy in excess is therefore credited, and the next cell may offer less.
 module tie_release
   use kinds, only: wp
@@ -23,24 +23,24 @@ module tie_release
   private
   public :: tie_release_t, new_tie_release
 
-  !> Forces of ties let go, and the energy accounts of all interfaces.
+  !> Forces of released ties, and the energy accounts of all interfaces.
   type :: tie_release_t
-    !> Forces on the jumps when the ties were let go, (3, local points)
+    !> Forces on the jumps when the ties were released, (3, local points)
     real(wp), allocatable :: force(:, :)
     !> Part of them that is still there, (local points)
     real(wp), allocatable :: share(:)
     !> Time in which they fade, (zones)
     real(wp), allocatable :: duration(:)
-    !> Energy that the toughness of cells let go asks for, and what their faces set free, whole plate, (zones)
-    real(wp), allocatable :: asked(:), set_free(:)
+    !> Energy that the toughness of released cells requires, and what their faces set free, whole plate, (zones)
+    real(wp), allocatable :: required(:), set_free(:)
     !> True: energy in excess is credited, (zones)
     logical, allocatable :: credited(:)
     !> Time until the last of them is gone, the same on every rank
     real(wp) :: left = 0
   contains
-    !> Lets ties go.
-    procedure :: let_go
-    !> Energy that ties just let go set free as they first open.
+    !> Releases ties.
+    procedure :: release
+    !> Energy that ties just released set free as they first open.
     procedure :: first_opening
     !> Fades the forces over a step.
     procedure :: fade
@@ -48,17 +48,17 @@ module tie_release
     procedure :: act
     !> Books the work against the forces in a step.
     procedure :: book
-    !> Energy that each interface owes.
-    procedure :: debt
+    !> Energy that each interface still has to release.
+    procedure :: deficit
     !> Times its toughness that a front must offer for the next cell.
-    procedure :: demand
+    procedure :: required_ratio
     !> Saves or loads.
     procedure :: visit
   end type tie_release_t
 
 contains
 
-  !> No tie has been let go.
+  !> No tie has been released.
   pure function new_tie_release(model) result(self)
     type(model_t), intent(in) :: model
     !> The ties
@@ -70,7 +70,7 @@ contains
     integer :: points, zones, zone
 
     zones = size(model%mesh%zones)
-    allocate (self%asked(zones), self%set_free(zones), self%duration(zones), source=0.0_wp)
+    allocate (self%required(zones), self%set_free(zones), self%duration(zones), source=0.0_wp)
     allocate (self%credited(zones), source=.false.)
     if (zones > 0) self%credited = model%scene%delaminations%account == account_balance
     if (.not. model%map%layered) return
@@ -96,9 +96,9 @@ contains
     end function mean_length
   end function new_tie_release
 
-  !> Lets the ties go whose jumps have become free; where the faces press on each other contact takes over at once, if
+  !> Releases the ties whose jumps have become free; where the faces press on each other contact takes over at once, if
   !> there is any.
-  pure subroutine let_go(self, model, free_before, free, forces)
+  pure subroutine release(self, model, free_before, free, forces)
     !> The ties
     class(tie_release_t), intent(inout) :: self
     type(model_t), intent(in) :: model
@@ -115,10 +115,10 @@ contains
       self%share(i) = 1
     end do
     self%left = maxval(self%duration)
-  end subroutine let_go
+  end subroutine release
 
-  !> Energy that ties just let go set free as they first open, once the step has been computed again without them. What
-  !> cells let go later in the same step make of the opening is theirs.
+  !> Energy that ties just released set free as they first open, once the step has been computed again without them.
+  !> What cells released later in the same step make of the opening is theirs.
   function first_opening(self, model, free_before, free, opening) result(energy)
     !> The ties at the end of the step
     class(tie_release_t), intent(in) :: self
@@ -128,7 +128,7 @@ contains
     !> Jumps, (5, points)
     real(wp), intent(in) :: opening(:, :)
     !> The energy, of the whole plate, (zones)
-    real(wp) :: energy(size(self%asked))
+    real(wp) :: energy(size(self%required))
     integer :: i
 
     energy = 0
@@ -178,7 +178,7 @@ contains
   end subroutine act
 
   !> Books the work against the forces in a step: as the step had it, the force at its end acting throughout, and as
-  !> the account has it, with the mean of the forces at its start and end. Of ties let go in this step the difference
+  !> the account has it, with the mean of the forces at its start and end. Of ties released in this step the difference
   !> is that of `first_opening`.
   subroutine book(self, model, old, change, taken)
     !> The ties at the end of the step
@@ -190,7 +190,7 @@ contains
     real(wp), intent(in) :: change(:, :)
     !> Energy that the forces took from the whole plate
     real(wp), intent(out) :: taken
-    real(wp) :: sums(size(self%asked) + 1), work, mean
+    real(wp) :: sums(size(self%required) + 1), work, mean
     integer :: i
 
     taken = 0
@@ -210,34 +210,34 @@ contains
     self%set_free = self%set_free + sums(2:)
   end subroutine book
 
-  !> Energy that each interface owes: what the toughness of its cells asks for beyond what they set free.
-  pure function debt(self)
+  !> Energy that each interface still has to release: what its cells' toughness requires beyond what they set free.
+  pure function deficit(self)
     !> The ties
     class(tie_release_t), intent(in) :: self
-    !> Energy, none negative: what is set free beyond what is asked for went into the motion, (zones)
-    real(wp) :: debt(size(self%asked))
+    !> Energy, none negative: what is set free beyond what is required for went into the motion, (zones)
+    real(wp) :: deficit(size(self%required))
 
-    debt = max(0.0_wp, self%asked - self%set_free)
-  end function debt
+    deficit = max(0.0_wp, self%required - self%set_free)
+  end function deficit
 
   !> Times its toughness that a front must offer for the next cell.
-  pure real(wp) function demand(self, zone, energy)
+  pure real(wp) function required_ratio(self, zone, energy)
     !> The ties
     class(tie_release_t), intent(in) :: self
     !> Index of the zone
     integer, intent(in) :: zone
-    !> Energy that the toughness of the cell asks for, of this one cell also under symmetry
+    !> Energy that the toughness of the cell requires, of this one cell also under symmetry
     real(wp), intent(in) :: energy
-    !> Cells all around whose debt doubles what is asked, and whose credit halves it: ten in each quarter
-    real(wp), parameter :: patience = 40
-    real(wp) :: owed
+    !> Cells all around whose deficit doubles what is required, and whose credit halves it: ten in each quarter
+    real(wp), parameter :: doubling_cells = 40
+    real(wp) :: deficit_share
 
-    owed = (self%asked(zone) - self%set_free(zone))/(patience*energy)
-    if (.not. self%credited(zone)) owed = max(0.0_wp, owed)
-    demand = 1 + owed
+    deficit_share = (self%required(zone) - self%set_free(zone))/(doubling_cells*energy)
+    if (.not. self%credited(zone)) deficit_share = max(0.0_wp, deficit_share)
+    required_ratio = 1 + deficit_share
     ! However much is credited, something must be offered.
-    if (owed < 0) demand = 1/(1 - owed)
-  end function demand
+    if (deficit_share < 0) required_ratio = 1/(1 - deficit_share)
+  end function required_ratio
 
   !> Saves or loads.
   subroutine visit(self, archive, model)
@@ -249,7 +249,7 @@ contains
     real(wp), allocatable :: fields(:, :)
 
     if (.not. model%map%layered) return
-    call archive%item('ties/asked', self%asked)
+    call archive%item('ties/required', self%required)
     call archive%item('ties/set_free', self%set_free)
     call archive%item('ties/left', self%left)
     allocate (fields(4, size(self%share)))

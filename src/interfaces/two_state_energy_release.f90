@@ -8,7 +8,7 @@
 !>
 !> Where plies have cracked on one side only, the strains across the front jump there without any delamination. The
 !> states are then compared in the stiffness of the stiffer side, to which they are carried by the forces across the
-!> front. In the softer one a force that the crack has not yet let go would count as the energy of a long soft layer,
+!> front. In the softer one a force that the crack has not yet released would count as the energy of a long soft layer,
 !> though the cell ahead is short: up to 18 times G_c for a step or two after each crack.
 module two_state_energy_release
   use kinds, only: wp
