@@ -131,8 +131,8 @@ contains
         if (.not. allocated(fault)) exit
         path = ''
       end do
-      if (path == '') call fail(error, exit_files, 'There is no whole checkpoint (NAME'//checkpoint_ending// &
-                                ') in the folder '//folder//'.')
+      if (path == '') call fail(error, exit_files, 'The folder '//folder//' holds no whole checkpoint (NAME'// &
+                                checkpoint_ending//').')
     end if
     call communicator%agree(error)
     call communicator%broadcast_text(path)
