@@ -24,8 +24,9 @@ module energy_watches
 
 contains
 
-  !> True, once, if more than 1 % of the energy has been created. What an integrator creates in the first step of a
-  !> load that is there at once it takes out in the next: two steps in a row must say so.
+  !> True, once, if more than 1 % of the energy has been created, by the integrators or by the indentation, whose work
+  !> can't be negative. What an integrator creates in the first step of a load that is there at once it takes out in the
+  !> next: two steps in a row must say so.
   logical function alarms(self, ledger, deficit, amplitude)
     !> The watch
     class(energy_watch_t), intent(inout) :: self
@@ -39,7 +40,8 @@ contains
 
     before = self%doubtful
     self%largest = max(self%largest, ledger%initial, ledger%kinetic + ledger%strain)
-    self%doubtful = (-ledger%algorithmic - deficit)*amplitude**2 > much*self%largest
+    self%doubtful = (-ledger%algorithmic - deficit)*amplitude**2 > much*self%largest .or. &
+                    -ledger%indentation > much*self%largest
     alarms = self%doubtful .and. before .and. .not. self%told
     self%told = self%told .or. alarms
   end function alarms
