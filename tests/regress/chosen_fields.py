@@ -159,8 +159,9 @@ def check_energy_release(implam, folder):
     history_path = run_deck(implam, write_deck(folder / "release", "../small/delamination.nml",
                                                ["output%fields='delamination,energy_release'"]))
     results = Results(history_path)
-    require(not results.points and set(results.cells) == {"delaminated_above", "energy_release_above"},
-            f"There are {sorted(results.cells)}.")
+    require(set(results.points) == {"damage_above", "shear_share_above"}
+            and set(results.cells) == {"delaminated_above", "energy_release_above"},
+            f"There are {sorted(results.points)} and {sorted(results.cells)}.")
     ratio, apart = results.cells["energy_release_above"], results.cells["delaminated_above"] > 0
     below = results.first_ply == 3
     expected = read_history(history_path)["release_ratio"][-1]
