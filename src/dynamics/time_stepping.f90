@@ -12,7 +12,7 @@ module time_stepping
   use states, only: state_t, new_state
   use tangent_operators, only: tangent_operator_t
   use step_controllers, only: step_controller_t
-  use step_problems, only: step_problem_t, solve_step
+  use step_problems, only: solve_step
   use dynamic_steps, only: dynamic_step_t, new_dynamic_step
   use static_steps, only: static_step_t, new_static_step
   use struck_stresses, only: struck_stress

@@ -1,9 +1,8 @@
 !> Cohesive interfaces: tractions that hold the faces of layers together, and what they dissipate as they fail.
 !>
 !> Tractions act at nodal points as internal forces on the jumps. Faces that close are held apart by the stiffness of
-!> the undamaged interface, whatever the damage: with five times the stiffness of the layer beside it they pass
-!> through each other by less than a micrometre, nothing is lost where they meet, and the factored operator stays
-!> what it is where intact faces change between pressure and tension.
+!> the undamaged interface, whatever the damage: nothing is lost where they meet, and the factored operator stays what
+!> it is where intact faces change between pressure and tension.
 module cohesive_interfaces
   use kinds, only: wp
   use archives, only: archive_t
@@ -133,16 +132,14 @@ contains
     type(model_t), intent(in) :: model
     !> The area, (zones); zero for zones without a cohesive law
     real(wp) :: area(size(model%mesh%zones))
+    real(wp) :: shares(size(model%zone))
     integer :: i
 
     area = 0
     if (.not. allocated(self%cohesive)) return
+    shares = self%shares(model)
     do i = 1, model%distribution%owned
-      if (.not. self%cohesive(i)) cycle
-      associate (zone => model%zone(i))
-        area(zone) = area(zone) + model%contact_area(i)*dissipated_share(model%cohesive_laws(zone), &
-                                                                         self%points(i)%damage)
-      end associate
+      if (self%cohesive(i)) area(model%zone(i)) = area(model%zone(i)) + model%contact_area(i)*shares(i)
     end do
     call model%communicator%sum(area)
     area = area*model%mesh%multiplicity

@@ -2,7 +2,6 @@
 module interface_states
   use kinds, only: wp
   use archives, only: archive_t
-  use cohesive_points, only: dissipated_share
   use models, only: model_t
   use contact_and_ties, only: contact_and_ties_t, new_contact_and_ties
   use cohesive_interfaces, only: cohesive_interfaces_t, new_cohesive_interfaces
@@ -71,19 +70,17 @@ contains
     type(model_t), intent(in) :: model
     !> Area, zone after zone, (nodes*zones)
     real(wp) :: area(model%mesh%nodes()*size(model%mesh%zones))
-    real(wp) :: share
+    real(wp) :: shares(size(model%zone))
     integer :: i, place
 
     area = 0
+    shares = self%cohesive%shares(model)
+    ! Starters of cohesive interfaces are free too, and dissipated as a whole.
+    where (self%faces%free) shares = 1
     do i = 1, model%distribution%owned
       if (model%zone(i) == 0) cycle
-      share = merge(1.0_wp, 0.0_wp, self%faces%free(i))
-      if (allocated(self%cohesive%cohesive)) then
-        if (self%cohesive%cohesive(i)) &
-          share = dissipated_share(model%cohesive_laws(model%zone(i)), self%cohesive%points(i)%damage)
-      end if
       place = model%mesh%point_node(model%distribution%points(i)) + (model%zone(i) - 1)*model%mesh%nodes()
-      area(place) = share*model%contact_area(i)
+      area(place) = shares(i)*model%contact_area(i)
     end do
   end function area_at_nodes
 
