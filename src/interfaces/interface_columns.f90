@@ -20,7 +20,7 @@ module interface_columns
       &analysis.', &
     'energy_released | real | energy | Work done against the fading forces of released ties so far; 0 if all &
       &interfaces have growth = ''one_per_step''.', &
-    'penetration | real | length | Largest penetration of separated faces.', &
+    'penetration | real | length | Largest penetration of separated faces, with a cohesive law of all.', &
     'complementarity | real | - | Largest contact pressure that does not go with its gap, over the largest pressure &
       &so far.']
 

@@ -140,11 +140,13 @@ contains
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
 
+    integer :: i
+
     penetration = 0
     if (.not. model%map%layered) return
-    associate (owned => model%distribution%owned)
-      penetration = max(0.0_wp, -minval(displacement(3, :owned), mask=self%free(:owned)))
-    end associate
+    do i = 1, model%distribution%owned
+      if (self%free(i) .or. self%bond(model, i) == bond_cohesive) penetration = max(penetration, -displacement(3, i))
+    end do
     call model%communicator%maximum(penetration)
   end function penetration
 
