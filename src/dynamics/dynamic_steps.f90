@@ -13,6 +13,7 @@ module dynamic_steps
   use impact_coupling, only: impact_coupling_t, begin_coupling
   use tangent_operators, only: tangent_operator_t
   use residual_norms, only: relative_residual
+  use condensed_steps, only: condense
   use energy_balance, only: book_step
   implicit none
   private
@@ -195,8 +196,11 @@ contains
     !> Set if numbers are not finite
     type(error_t), allocatable, intent(inout) :: error
 
-    if (model%scene%has_impactor) &
+    if (operator%condenses) then
+      call condense(self%coupling, self%integrator, model, operator, old, new, correction, error)
+    else if (model%scene%has_impactor) then
       call self%coupling%solve(model, self%integrator, operator, old, new, correction, error)
+    end if
     call new%interfaces%faces%hold(model, correction)
     if (allocated(error)) return
     call operator%anderson%accelerate(model%communicator, operator%diagonal(:, :model%distribution%owned), &

@@ -25,8 +25,10 @@ module impact_coupling
   contains
     !> Force on the plate in its equation of motion.
     procedure :: load
-    !> Solves for the force.
+    !> Solves for the force, and lets the plate respond.
     procedure :: solve
+    !> Finds the force.
+    procedure :: find_force
   end type impact_coupling_t
 
 contains
@@ -79,19 +81,41 @@ contains
     real(wp), intent(inout) :: correction(:, :)
     !> Set if numbers are not finite
     type(error_t), allocatable, intent(inout) :: error
-    real(wp) :: alpha_free, alpha_end, compliance, before
-    integer :: iterations
+    real(wp) :: before
 
     before = self%unknown
-    compliance = self%share*operator%compliance
-    new%patch_mean = model%patch_mean(new%motion%displacement) + model%patch_mean(correction)
-    alpha_free = self%free_displacement - new%patch_mean + before*compliance
+    call self%find_force(model, integrator, old, new, model%patch_mean(correction), operator%compliance, error)
+    correction = correction + (self%share*(self%unknown - before))*operator%response
+  end subroutine solve
+
+  !> Finds the impact force for a change of the patch's mean deflection, given what a force adds to it.
+  subroutine find_force(self, model, integrator, old, new, patch_change, patch_compliance, error)
+    !> The impactor's side of the step
+    class(impact_coupling_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> Integrator of the plate
+    type(plate_integrator_t), intent(in) :: integrator
+    !> State at the start
+    type(state_t), intent(in) :: old
+    !> State at the end, before the correction
+    type(state_t), intent(inout) :: new
+    !> Change of the patch's mean deflection with the force assumed
+    real(wp), intent(in) :: patch_change
+    !> Mean deflection of the patch per force on the plate
+    real(wp), intent(in) :: patch_compliance
+    !> Set if numbers are not finite
+    type(error_t), allocatable, intent(inout) :: error
+    real(wp) :: alpha_free, alpha_end, compliance
+    integer :: iterations
+
+    compliance = self%share*patch_compliance
+    new%patch_mean = model%patch_mean(new%motion%displacement) + patch_change
+    alpha_free = self%free_displacement - new%patch_mean + self%unknown*compliance
     call solve_impact_force(model%scene%indentation, old%indentation, old%indentation%alpha, alpha_free, &
                              self%compliance + compliance, self%mean, self%unknown, alpha_end, &
                              self%force_end, iterations, error)
-    correction = correction + (self%share*(self%unknown - before))*operator%response
     new%force_iterations = new%force_iterations + iterations
     ! The plate wants the force at 1 - alpha_f of the step, which is the mean force for alpha_f = 1/2 only.
     if (self%mean) self%inherited = (0.5_wp - integrator%alpha_f)*(self%force_end - old%force)
-  end subroutine solve
+  end subroutine find_force
 end module impact_coupling

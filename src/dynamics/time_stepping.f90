@@ -72,6 +72,7 @@ contains
     call self%operator%create(model, linear_solver%factorization, error)
     if (allocated(error) .or. model%scene%has_static) return
     self%integrator = plate_integrator(self%stepping%time)
+    self%operator%condenses = allocated(self%now%interfaces%cohesive%cohesive)
     self%controller%wanted = self%stepping%time%step
     if (allocated(model%pressure)) call start_acceleration(self, model, error)
   end subroutine start

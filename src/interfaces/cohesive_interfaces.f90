@@ -8,16 +8,12 @@ module cohesive_interfaces
   use archives, only: archive_t
   use delamination_parameters, only: law_cohesive, contact_none
   use cohesive_laws, only: stiffness_of
-  use cohesive_points, only: cohesive_point_t, cohesive_traction, stored_energy, dissipated_share, mode_mixity
-  use cohesive_tangents, only: operator_stiffness
+  use cohesive_faces, only: cohesive_faces_t
+  use cohesive_points, only: cohesive_point_t, dissipated_share, mode_mixity
   use models, only: model_t
   implicit none
   private
   public :: cohesive_interfaces_t, new_cohesive_interfaces
-
-  !> Part of a point's stiffness, or of that of the layers there, by which the operator may be wrong before it follows.
-  !> Between 0.25 and 0.5 the number of iterations hardly changes.
-  real(wp), parameter :: noticed = 0.5_wp
 
   !> Points of all cohesive interfaces.
   type :: cohesive_interfaces_t
@@ -41,8 +37,10 @@ module cohesive_interfaces
     procedure :: pressure
     !> True once damage has reached the border of a zone.
     procedure :: border_reached
-    !> Keeps the operator's stiffness of points where it is nearly right.
-    procedure :: keep_nearly
+    !> Faces of an interface.
+    procedure :: faces_of
+    !> How wrong the operator is about the forces of points.
+    procedure :: mismatch
     !> Saves or loads.
     procedure :: visit
   end type cohesive_interfaces_t
@@ -86,22 +84,18 @@ contains
     real(wp), intent(inout) :: force(:, :)
     !> Energy of this rank; what the points store is added
     real(wp), intent(inout) :: energy
+    type(cohesive_faces_t) :: faces
     real(wp) :: traction(3)
     integer :: i
 
     if (.not. allocated(self%cohesive)) return
     do i = 1, model%distribution%owned
       if (.not. self%cohesive(i)) cycle
-      associate (law => model%cohesive_laws(model%zone(i)), jumps => displacement(1:3, i), &
-                 area => model%contact_area(i))
-        call cohesive_traction(law, jumps, 0.0_wp, old%points(i), traction, self%points(i))
-        self%stiffness(:, i) = area*operator_stiffness(law, jumps, 0.0_wp, old%points(i))
-        energy = energy + area*stored_energy(law, jumps, self%points(i))
-        if (jumps(3) < 0 .and. holds_closed(model, model%zone(i))) then
-          traction(3) = law%stiffness_opening*jumps(3)
-          self%stiffness(3, i) = area*law%stiffness_opening
-          energy = energy + area*law%stiffness_opening*jumps(3)**2/2
-        end if
+      faces = self%faces_of(model, model%zone(i))
+      associate (jumps => displacement(1:3, i), area => model%contact_area(i))
+        call faces%traction(jumps, old%points(i), traction, self%points(i))
+        self%stiffness(:, i) = area*faces%diagonal(jumps, old%points(i))
+        energy = energy + area*faces%stored(jumps, self%points(i))
         force(1:3, i) = force(1:3, i) + area*traction
       end associate
     end do
@@ -235,27 +229,49 @@ contains
     border_reached = model%communicator%any(border_reached)
   end function border_reached
 
-  !> Leaves the operator's stiffness of points as it is where it is nearly right: a change there costs a solve, and
-  !> little errors are mended by the iterations.
-  pure subroutine keep_nearly(self, model, diagonal, present, wanted)
+  !> Faces of an interface.
+  pure type(cohesive_faces_t) function faces_of(self, model, zone) result(faces)
     !> The interfaces
     class(cohesive_interfaces_t), intent(in) :: self
     type(model_t), intent(in) :: model
-    !> Diagonal of the operator without interfaces, (5, points)
-    real(wp), intent(in) :: diagonal(:, :)
+    !> Index of the zone
+    integer, intent(in) :: zone
+
+    faces%law = model%cohesive_laws(zone)
+    faces%closing = holds_closed(model, zone)
+  end function faces_of
+
+  !> How wrong the operator is about the change of the forces with a correction of the displacement: the error of each
+  !> jump's force over the force at the point's strength.
+  pure subroutine mismatch(self, model, stiffness_factor, present, displacement, correction, error)
+    !> The interfaces in the last accepted state
+    class(cohesive_interfaces_t), intent(in) :: self
+    type(model_t), intent(in) :: model
+    !> Factor of internal forces in the operator
+    real(wp), intent(in) :: stiffness_factor
     !> Stiffness of the jumps in the operator, (3, points)
     real(wp), intent(in) :: present(:, :)
-    !> Stiffness wanted, (3, points)
-    real(wp), intent(inout) :: wanted(:, :)
+    !> Displacement before the correction, and the correction, (5, points)
+    real(wp), intent(in) :: displacement(:, :), correction(:, :)
+    !> The error, (3, owned points); zero where there is no cohesive law
+    real(wp), intent(out) :: error(:, :)
+    type(cohesive_faces_t) :: faces
+    type(cohesive_point_t) :: new
+    real(wp) :: before(3), after(3)
     integer :: i
 
-    if (.not. allocated(self%cohesive)) return
+    error = 0
     do i = 1, model%distribution%owned
       if (.not. self%cohesive(i)) cycle
-      where (abs(wanted(:, i) - present(:, i)) <= noticed*max(wanted(:, i), present(:, i), diagonal(1:3, i))) &
-        wanted(:, i) = present(:, i)
+      faces = self%faces_of(model, model%zone(i))
+      call faces%traction(displacement(1:3, i), self%points(i), before, new)
+      call faces%traction(displacement(1:3, i) + correction(1:3, i), self%points(i), after, new)
+      associate (area => stiffness_factor*model%contact_area(i))
+        error(:, i) = abs(area*(after - before) - present(:, i)*correction(1:3, i)) &
+                      /(area*min(faces%law%strength_opening, faces%law%strength_shear))
+      end associate
     end do
-  end subroutine keep_nearly
+  end subroutine mismatch
 
   !> Saves or loads.
   subroutine visit(self, archive, model)

@@ -3,7 +3,7 @@ module dense_systems
   use kinds, only: wp
   implicit none
   private
-  public :: dense_factor_t, solve_dense
+  public :: dense_factor_t, positive_factor_t, solve_dense
 
   !> A small matrix, factored.
   type :: dense_factor_t
@@ -19,6 +19,21 @@ module dense_systems
     !> Solves with the factors.
     procedure :: solve
   end type dense_factor_t
+
+  !> A small symmetric matrix, factored if it is positive definite.
+  type :: positive_factor_t
+    !> True: it is, and there are factors
+    logical :: positive = .false.
+    !> Its lower factor, (n, n)
+    real(wp), allocatable, private :: factors(:, :)
+  contains
+    !> Factors a matrix.
+    procedure :: factorize => factorize_positive
+    !> Solves with the factors.
+    procedure :: solve => solve_positive
+    !> The inverse of the matrix.
+    procedure :: inverse
+  end type positive_factor_t
 
   interface
     !> LAPACK: factors a general matrix by elimination with pivoting.
@@ -50,6 +65,47 @@ module dense_systems
       !> Not 0: an argument is wrong
       integer, intent(out) :: info
     end subroutine dgetrs
+
+    !> LAPACK: factors a symmetric matrix that is positive definite.
+    subroutine dpotrf(uplo, n, a, lda, info)
+      import :: wp
+      !> 'L': its lower triangle is given
+      character, intent(in) :: uplo
+      !> Order, leading dimension
+      integer, intent(in) :: n, lda
+      !> Matrix, overwritten by its factor
+      real(wp), intent(inout) :: a(lda, *)
+      !> Greater than 0: not positive definite
+      integer, intent(out) :: info
+    end subroutine dpotrf
+
+    !> LAPACK: solves with the factor of dpotrf.
+    subroutine dpotrs(uplo, n, columns, a, lda, b, ldb, info)
+      import :: wp
+      !> 'L': the lower factor
+      character, intent(in) :: uplo
+      !> Order, right-hand sides, leading dimensions
+      integer, intent(in) :: n, columns, lda, ldb
+      !> Factor
+      real(wp), intent(in) :: a(lda, *)
+      !> Right-hand sides, overwritten by the solution
+      real(wp), intent(inout) :: b(ldb, *)
+      !> Not 0: an argument is wrong
+      integer, intent(out) :: info
+    end subroutine dpotrs
+
+    !> LAPACK: the inverse from the factor of dpotrf.
+    subroutine dpotri(uplo, n, a, lda, info)
+      import :: wp
+      !> 'L': the lower factor
+      character, intent(in) :: uplo
+      !> Order, leading dimension
+      integer, intent(in) :: n, lda
+      !> Factor, its triangle overwritten by that of the inverse
+      real(wp), intent(inout) :: a(lda, *)
+      !> Not 0: there is none
+      integer, intent(out) :: info
+    end subroutine dpotri
   end interface
 
 contains
@@ -80,6 +136,48 @@ contains
 
     if (size(x) > 0) call dgetrs('N', size(x), 1, self%factors, size(x), self%pivots, x, size(x), info)
   end subroutine solve
+
+  !> Factors a symmetric matrix, or finds that it is not positive definite.
+  subroutine factorize_positive(self, matrix)
+    !> Receives the factor
+    class(positive_factor_t), intent(inout) :: self
+    !> Matrix, its lower triangle is read, (n, n)
+    real(wp), intent(in) :: matrix(:, :)
+    integer :: info
+
+    self%factors = matrix
+    self%positive = .true.
+    if (size(matrix) == 0) return
+    call dpotrf('L', size(matrix, 1), self%factors, size(matrix, 1), info)
+    self%positive = info == 0
+  end subroutine factorize_positive
+
+  !> Solves with the factor of a positive definite matrix.
+  subroutine solve_positive(self, x)
+    !> The factor
+    class(positive_factor_t), intent(in) :: self
+    !> Right-hand side on entry, solution on return, (n)
+    real(wp), intent(inout) :: x(:)
+    integer :: info
+
+    if (size(x) > 0) call dpotrs('L', size(x), 1, self%factors, size(x), x, size(x), info)
+  end subroutine solve_positive
+
+  !> The inverse of a positive definite matrix.
+  function inverse(self)
+    !> Its factor
+    class(positive_factor_t), intent(in) :: self
+    !> The inverse, (n, n)
+    real(wp), allocatable :: inverse(:, :)
+    integer :: info, k
+
+    inverse = self%factors
+    if (size(inverse) == 0) return
+    call dpotri('L', size(inverse, 1), inverse, size(inverse, 1), info)
+    do k = 2, size(inverse, 1)
+      inverse(:k - 1, k) = inverse(k, :k - 1)
+    end do
+  end function inverse
 
   !> Solves a small dense system.
   subroutine solve_dense(matrix, x, singular)

@@ -59,8 +59,10 @@ module tangent_operators
     type(anderson_t) :: anderson
     !> Deflection of the struck point at which the tangent was taken
     real(wp) :: deflection = 0
-    !> Mean deflection of the patch under that force
-    real(wp) :: compliance = 0
+    !> Mean deflection of the patch under that force, with and without the changes
+    real(wp) :: compliance = 0, fresh_compliance = 0
+    !> True: cohesive points are met by condensed corrections, which take the place of Woodbury's
+    logical :: condenses = .false.
     !> Iterations of the present step before which ties or contacts had changed
     integer :: switches = 0
     !> Factorizations, and corrections solved for, so far
@@ -76,6 +78,8 @@ module tangent_operators
     procedure :: follow
     !> Correction of the displacement for a residual.
     procedure :: correct
+    !> Answers to unit forces.
+    procedure :: find_columns
     !> Saves what is needed to make the same factor again, or loads it and makes it.
     procedure :: visit
   end type tangent_operator_t
@@ -163,6 +167,7 @@ contains
     self%compliance = 0
     if (model%scene%has_impactor) call find_response(self, model, error)
     self%fresh_response = self%response
+    self%fresh_compliance = self%compliance
   end subroutine factorize
 
   !> Finds the response to a unit force of the impactor.
@@ -201,7 +206,7 @@ contains
     if (.not. model%map%layered) return
     allocate (wanted, mold=self%added)
     call interfaces%added_stiffness(model, self%diagonal, self%stiffness_factor, wanted)
-    call interfaces%cohesive%keep_nearly(model, self%diagonal, self%present, wanted)
+    if (self%condenses) where (spread(interfaces%cohesive%cohesive, 1, 3)) wanted = self%present
     call list_changes(model%communicator, self%numbering, self%diagonal, self%added, wanted, equations, stiffness)
     possible = size(equations) <= most_changes .and. &
                self%changes%kept + count([(self%changes%column_of(equations(k)) == 0, k=1, size(equations))]) &
@@ -243,7 +248,7 @@ contains
   !> Finds columns together.
   subroutine find_columns(self, model, equations, error)
     !> The operator
-    type(tangent_operator_t), intent(inout) :: self
+    class(tangent_operator_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Equations wanted, none of which has its column yet, the same on every rank
     integer, intent(in) :: equations(:)
@@ -255,6 +260,7 @@ contains
     allocate (forces(self%numbering%rows, size(equations)), source=0.0_wp)
     allocate (values, mold=forces)
     allocate (fields(5, size(self%response, 2), size(equations)), source=0.0_wp)
+    if (size(equations) == 0) return
     do k = 1, size(equations)
       if (self%numbering%owns(equations(k))) forces(equations(k) - self%numbering%first_row + 1, k) = 1
     end do
@@ -294,7 +300,7 @@ contains
     !> Solution, ghosts included, (5, points)
     real(wp), intent(inout) :: solution(:, :)
 
-    if (size(self%changes%equations) == 0) return
+    if (size(self%changes%equations) == 0 .or. self%condenses) return
     call self%changes%correct(model%communicator, self%numbering, solution)
     call model%halo%update(solution)
   end subroutine follow_changes

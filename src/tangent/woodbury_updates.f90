@@ -3,7 +3,7 @@
 module woodbury_updates
   use kinds, only: wp
   use communicators, only: communicator_t
-  use dense_systems, only: dense_factor_t
+  use dense_systems, only: dense_factor_t, positive_factor_t
   use numberings, only: numbering_t
   implicit none
   private
@@ -36,6 +36,8 @@ module woodbury_updates
     integer :: kept = 0
     !> Value of each of them at the equations of all, (kept, kept)
     real(wp), allocatable, private :: compliance(:, :)
+    !> Inverse of that, (kept, kept); unallocated: not asked for since the last column
+    real(wp), allocatable, private :: inverse(:, :)
     !> Column of each change
     integer, allocatable :: column(:)
     !> System of the changes
@@ -57,6 +59,12 @@ module woodbury_updates
     procedure :: set
     !> Turns a solution of the factored operator into one of the changed operator.
     procedure :: correct
+    !> Adds a combination of columns to a solution.
+    procedure :: combine
+    !> Values of a field at the equations of the columns.
+    procedure :: values => values_at_columns
+    !> Inverse of the values of the columns at each other's equations.
+    procedure :: stiffness_of_columns
   end type woodbury_updates_t
 
 contains
@@ -181,6 +189,7 @@ contains
     compliance(:, before + 1:) = reshape(values, [self%kept, size(equations)])
     compliance(before + 1:, :before) = transpose(compliance(:before, before + 1:))
     call move_alloc(compliance, self%compliance)
+    if (allocated(self%inverse)) deallocate (self%inverse)
   end subroutine keep
 
   !> Equation and company of each column kept.
@@ -251,16 +260,7 @@ contains
     forces = values_at(numbering, self%equations, solution)
     call communicator%sum(forces)
     call self%system%solve(forces)
-    ! Four at a time: memory is read faster in several places at once.
-    do k = 4, size(forces), 4
-      associate (c => self%column(k - 3:k), f => forces(k - 3:k))
-        solution = solution - f(1)*self%columns(c(1))%field - f(2)*self%columns(c(2))%field &
-                   - f(3)*self%columns(c(3))%field - f(4)*self%columns(c(4))%field
-      end associate
-    end do
-    do k = size(forces) - modulo(size(forces), 4) + 1, size(forces)
-      solution = solution - forces(k)*self%columns(self%column(k))%field
-    end do
+    call self%combine(self%column, forces, solution)
     ! What the changes leave of the unknowns themselves is a small difference; it is known better from their forces.
     do k = 1, size(forces)
       if (.not. numbering%owns(self%equations(k))) cycle
@@ -268,6 +268,65 @@ contains
       solution(component, point) = forces(k)/self%stiffness(k)
     end do
   end subroutine correct
+
+  !> Takes a combination of columns out of a solution.
+  pure subroutine combine(self, columns, forces, solution)
+    !> The changes
+    class(woodbury_updates_t), intent(in) :: self
+    !> Positions of the columns
+    integer, intent(in) :: columns(:)
+    !> Force of each
+    real(wp), intent(in) :: forces(:)
+    !> Solution, (5, points)
+    real(wp), intent(inout) :: solution(:, :)
+    integer :: k
+
+    ! Four at a time: memory is read faster in several places at once.
+    do k = 4, size(forces), 4
+      associate (c => columns(k - 3:k), f => forces(k - 3:k))
+        solution = solution - f(1)*self%columns(c(1))%field - f(2)*self%columns(c(2))%field &
+                   - f(3)*self%columns(c(3))%field - f(4)*self%columns(c(4))%field
+      end associate
+    end do
+    do k = size(forces) - modulo(size(forces), 4) + 1, size(forces)
+      solution = solution - forces(k)*self%columns(columns(k))%field
+    end do
+  end subroutine combine
+
+  !> Values of a field at the equations of all columns kept, the same on every rank.
+  function values_at_columns(self, communicator, numbering, field) result(values)
+    !> The changes
+    class(woodbury_updates_t), intent(in) :: self
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> Equations of this rank's points
+    type(numbering_t), intent(in) :: numbering
+    !> The field, (5, points)
+    real(wp), intent(in) :: field(:, :)
+    !> Values, (kept)
+    real(wp), allocatable :: values(:)
+
+    allocate (values(self%kept))
+    if (self%kept == 0) return
+    values = values_at(numbering, self%columns(:self%kept)%equation, field)
+    call communicator%sum(values)
+  end function values_at_columns
+
+  !> Inverse of the values of the columns at each other's equations: the stiffness of the factored operator against
+  !> motions of these unknowns alone.
+  subroutine stiffness_of_columns(self, stiffness)
+    !> The changes
+    class(woodbury_updates_t), intent(inout) :: self
+    !> The inverse, (kept, kept)
+    real(wp), allocatable, intent(out) :: stiffness(:, :)
+    type(positive_factor_t) :: factor
+
+    if (.not. allocated(self%inverse)) then
+      call factor%factorize(self%compliance)
+      self%inverse = factor%inverse()
+    end if
+    stiffness = self%inverse
+  end subroutine stiffness_of_columns
 
   !> Values of a field at those of some equations that this rank owns, zero at the others.
   pure function values_at(numbering, equations, field) result(values)

@@ -1,0 +1,238 @@
+!> Corrections of an iteration with cohesive points in equilibrium: the factored operator's answer, mended at the points
+!> whose tractions it does not know, on its answers to unit forces there.
+module condensed_corrections
+  use cohesive_interfaces, only: cohesive_interfaces_t
+  use cohesive_points, only: cohesive_point_t
+  use condensed_points, only: condensed_point_t, condensed_points_t
+  use kinds, only: wp
+  use models, only: model_t
+  use tangent_operators, only: tangent_operator_t
+  implicit none
+  private
+  public :: condensed_correction_t, new_condensed_correction
+
+  !> Force left at a point over that at its strength from which it becomes an unknown.
+  real(wp), parameter :: noticed = 1.0e-3_wp
+  !> Unknowns at most.
+  integer, parameter :: most_unknowns = 500
+  !> Numbers that tell of an unknown.
+  integer, parameter :: told = 14
+
+  !> A correction in the making.
+  type :: condensed_correction_t
+    !> The small system; its unknowns are the operator's columns
+    type(condensed_points_t) :: system
+    !> Change of the unknowns by the operator alone, and by its response to a unit force of the impactor
+    real(wp), allocatable :: free(:), response(:)
+    !> Change of the unknowns, and the forces that mend the operator's answer
+    real(wp), allocatable :: change(:), mending(:)
+    !> Change of the patch's mean deflection by these forces, and per unit force of the impactor
+    real(wp) :: patch_change = 0, compliance = 0
+  contains
+    !> Finds the equilibrium under a change of the impact force.
+    procedure :: solve
+    !> The field of the correction.
+    procedure :: field
+    !> The plate's response to a unit force, interfaces softening as they do now.
+    procedure :: respond
+    !> Equations of points that should be unknowns and are none.
+    procedure :: wanting
+  end type condensed_correction_t
+
+contains
+
+  !> A correction with the columns that the operator has.
+  subroutine new_condensed_correction(operator, model, old, displacement, correction, self)
+    !> The factored operator
+    type(tangent_operator_t), intent(inout) :: operator
+    type(model_t), intent(in) :: model
+    !> Cohesive interfaces in the last accepted state
+    type(cohesive_interfaces_t), intent(in) :: old
+    !> Displacement before the correction, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> The operator's answer, (5, points)
+    real(wp), intent(in) :: correction(:, :)
+    !> The correction
+    type(condensed_correction_t), intent(out) :: self
+
+    self%free = operator%changes%values(model%communicator, operator%numbering, correction)
+    self%response = operator%changes%values(model%communicator, operator%numbering, operator%fresh_response)
+    self%change = 0*self%free
+    self%mending = self%change
+    self%compliance = operator%fresh_compliance
+    if (size(self%free) == 0) return
+    call operator%changes%stiffness_of_columns(self%system%stiffness)
+    call gather_points(operator, model, old, displacement, correction, self%system)
+  end subroutine new_condensed_correction
+
+  !> Gathers the points of all unknowns on every rank.
+  subroutine gather_points(operator, model, old, displacement, correction, system)
+    !> The factored operator
+    type(tangent_operator_t), intent(in) :: operator
+    type(model_t), intent(in) :: model
+    !> Cohesive interfaces in the last accepted state
+    type(cohesive_interfaces_t), intent(in) :: old
+    !> Displacement before the correction, and the operator's answer, (5, points)
+    real(wp), intent(in) :: displacement(:, :), correction(:, :)
+    !> The system
+    type(condensed_points_t), intent(inout) :: system
+    real(wp) :: tale(told, operator%changes%kept), changed(3, size(model%zone)), all(size(tale))
+    integer :: k, i, component
+
+    call operator%changes%spread_out(operator%numbering, changed)
+    tale = 0
+    do k = 1, operator%changes%kept
+      if (.not. operator%numbering%owns(operator%changes%columns(k)%equation)) cycle
+      call operator%numbering%place_of(operator%changes%columns(k)%equation, i, component)
+      tale(1:3, k) = real([model%distribution%points(i), model%zone(i), component], wp)
+      tale(4, k) = -changed(component, i)
+      if (.not. old%cohesive(i)) cycle
+      tale(4, k) = operator%present(component, i)
+      tale(5:7, k) = displacement(1:3, i)
+      tale(8:10, k) = correction(1:3, i)
+      tale(11, k) = model%contact_area(i)*operator%stiffness_factor
+      tale(12:13, k) = [old%points(i)%damage, old%points(i)%dissipated]
+      tale(14, k) = 1
+    end do
+    all = reshape(tale, [size(tale)])
+    call model%communicator%sum(all)
+    tale = reshape(all, shape(tale))
+    system%held = tale(4, :)
+    call group_points(model, old, tale, system)
+  end subroutine gather_points
+
+  !> Puts the unknowns of each point together.
+  subroutine group_points(model, old, tale, system)
+    type(model_t), intent(in) :: model
+    !> Cohesive interfaces in the last accepted state
+    type(cohesive_interfaces_t), intent(in) :: old
+    !> What is told of each unknown, (told, unknowns)
+    real(wp), intent(in) :: tale(:, :)
+    !> The system
+    type(condensed_points_t), intent(inout) :: system
+    integer :: point_of(size(tale, 2)), k, first, points
+
+    points = 0
+    do k = 1, size(tale, 2)
+      point_of(k) = 0
+      if (.not. tale(14, k) > 0) cycle
+      do first = 1, k - 1
+        if (nint(tale(1, first)) == nint(tale(1, k)) .and. tale(14, first) > 0) exit
+      end do
+      if (first == k) points = points + 1
+      point_of(k) = merge(points, point_of(min(first, k)), first == k)
+    end do
+    allocate (system%points(points))
+    do k = 1, size(tale, 2)
+      if (point_of(k) == 0) cycle
+      associate (point => system%points(point_of(k)))
+        point%faces = old%faces_of(model, nint(tale(2, k)))
+        point%area = tale(11, k)
+        point%old = cohesive_point_t(damage=tale(12, k), dissipated=tale(13, k))
+        point%jumps = tale(5:7, k)
+        point%drift = tale(8:10, k)
+        point%place(nint(tale(3, k))) = k
+      end associate
+    end do
+  end subroutine group_points
+
+  !> Finds the equilibrium under a change of the impact force.
+  subroutine solve(self, operator, model, force)
+    !> The correction
+    class(condensed_correction_t), intent(inout) :: self
+    !> The factored operator
+    type(tangent_operator_t), intent(in) :: operator
+    type(model_t), intent(in) :: model
+    !> Change of the impact force
+    real(wp), intent(in) :: force
+    real(wp) :: slopes(size(self%free))
+
+    self%patch_change = force*operator%fresh_compliance
+    self%compliance = operator%fresh_compliance
+    if (size(self%free) == 0) return
+    call self%system%solve(self%free + force*self%response, self%change)
+    self%mending = self%system%mending_forces(self%change)
+    call self%system%mending_slopes(self%response, slopes)
+    ! The columns' mean over the patch is the response at their unknowns, since the operator is symmetric.
+    self%patch_change = self%patch_change + model%mesh%multiplicity*dot_product(self%response, self%mending)
+    self%compliance = self%compliance + model%mesh%multiplicity*dot_product(self%response, slopes)
+  end subroutine solve
+
+  !> Completes a correction: the operator's answer, that to the force and that to the mending forces.
+  subroutine field(self, operator, force, correction)
+    !> The correction, solved
+    class(condensed_correction_t), intent(in) :: self
+    !> The factored operator
+    type(tangent_operator_t), intent(in) :: operator
+    !> Change of the impact force
+    real(wp), intent(in) :: force
+    !> The operator's answer on entry, the correction on return, (5, points)
+    real(wp), intent(inout) :: correction(:, :)
+    integer :: k
+
+    correction = correction + force*operator%fresh_response
+    call operator%changes%combine([(k, k=1, size(self%free))], -self%mending, correction)
+  end subroutine field
+
+  !> The plate's response to a unit force, interfaces softening as they do now.
+  subroutine respond(self, operator)
+    !> The correction, solved
+    class(condensed_correction_t), intent(in) :: self
+    !> The factored operator; receives the response
+    type(tangent_operator_t), intent(inout) :: operator
+    real(wp) :: slopes(size(self%free))
+    integer :: k
+
+    operator%response = operator%fresh_response
+    operator%compliance = self%compliance
+    if (size(self%free) == 0) return
+    call self%system%mending_slopes(self%response, slopes)
+    call operator%changes%combine([(k, k=1, size(slopes))], -slopes, operator%response)
+  end subroutine respond
+
+  !> Equations of points that should be unknowns and are none: the operator's answer is wrong there. Those most in want
+  !> come first if there is not room for all.
+  subroutine wanting(self, operator, model, old, displacement, correction, equations)
+    !> The correction
+    class(condensed_correction_t), intent(in) :: self
+    !> The factored operator
+    type(tangent_operator_t), intent(in) :: operator
+    type(model_t), intent(in) :: model
+    !> Cohesive interfaces in the last accepted state
+    type(cohesive_interfaces_t), intent(in) :: old
+    !> Displacement before the correction, and the correction, (5, points)
+    real(wp), intent(in) :: displacement(:, :), correction(:, :)
+    !> The equations, the same on every rank
+    integer, allocatable, intent(out) :: equations(:)
+    real(wp) :: error(3, model%distribution%owned), threshold
+    integer :: room, found
+
+    call old%mismatch(model, operator%stiffness_factor, operator%present, displacement, correction, error)
+    call strike_columns(operator, error)
+    where (operator%numbering%equation(1:3, :size(error, 2)) < 0) error = 0
+    room = most_unknowns - size(self%free)
+    threshold = noticed
+    do
+      call model%communicator%allgather(pack(operator%numbering%equation(1:3, :size(error, 2)), error > threshold), &
+                                        equations)
+      found = size(equations)
+      if (found <= room .or. found == 0) exit
+      threshold = 1.5_wp*threshold
+    end do
+  end subroutine wanting
+
+  !> Leaves out what is an unknown already.
+  pure subroutine strike_columns(operator, error)
+    !> The factored operator
+    type(tangent_operator_t), intent(in) :: operator
+    !> Force left over that at the strength, (3, owned points)
+    real(wp), intent(inout) :: error(:, :)
+    integer :: k, i, component
+
+    do k = 1, operator%changes%kept
+      if (.not. operator%numbering%owns(operator%changes%columns(k)%equation)) cycle
+      call operator%numbering%place_of(operator%changes%columns(k)%equation, i, component)
+      error(component, i) = 0
+    end do
+  end subroutine strike_columns
+end module condensed_corrections
