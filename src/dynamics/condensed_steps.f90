@@ -1,11 +1,13 @@
 !> Corrections within a step in time where cohesive laws hold faces: impact force and softening points together.
 module condensed_steps
   use condensed_corrections, only: condensed_correction_t, new_condensed_correction
+  use condensed_points, only: outside_force_t
   use errors, only: error_t
   use impact_coupling, only: impact_coupling_t
+  use impact_parameters, only: indentation_law_t
+  use tan_sun_indentation, only: indentation_t
   use kinds, only: wp
   use models, only: model_t
-  use newmark_integrators, only: plate_integrator_t
   use states, only: state_t
   use tangent_operators, only: tangent_operator_t
   implicit none
@@ -14,18 +16,58 @@ module condensed_steps
 
   !> Times that points join the unknowns of one correction: fronts pass over a few rings of points in a step.
   integer, parameter :: most_rounds = 10
-  !> Times that force and points are found after each other, and the change of the force at which they agree.
-  integer, parameter :: most_exchanges = 10
-  real(wp), parameter :: agreed = 1.0e-6_wp
+  !> Change of a motion over itself at which the slope of a force is taken.
+  real(wp), parameter :: nudge = 1.0e-6_wp
+
+  !> The impactor's force as the plate's motion sees it.
+  type, extends(outside_force_t) :: impactor_force_t
+    !> The impactor's side of the step
+    type(impact_coupling_t) :: coupling
+    !> Indentation law
+    type(indentation_law_t) :: law
+    !> Memory of the indentation at the start of the step
+    type(indentation_t) :: indentation
+    !> Mean deflection of the patch before the correction, and per motion
+    real(wp) :: patch_mean = 0, parts = 1
+    !> Force on the plate that the residual holds
+    real(wp) :: before = 0
+    !> Iterations taken
+    integer :: iterations = 0
+    !> Set if numbers are not finite
+    type(error_t), allocatable :: error
+  contains
+    procedure :: at
+  end type impactor_force_t
 
 contains
 
+  !> The force at a motion of the plate.
+  subroutine at(self, motion, force, slope)
+    !> The force
+    class(impactor_force_t), intent(inout) :: self
+    !> Change of the patch's mean deflection over the parts of the plate
+    real(wp), intent(in) :: motion
+    !> Change of the force, and its slope
+    real(wp), intent(out) :: force, slope
+    type(impact_coupling_t) :: aside
+    real(wp) :: mean, step
+    integer :: iterations
+
+    mean = self%patch_mean + self%parts*motion
+    call self%coupling%find_force(self%law, self%indentation, mean, 0.0_wp, iterations, self%error)
+    self%iterations = self%iterations + iterations
+    force = self%coupling%load() - self%before
+    aside = self%coupling
+    step = nudge*max(abs(self%coupling%free_displacement - mean), abs(self%parts*motion))
+    call aside%find_force(self%law, self%indentation, mean + step, 0.0_wp, iterations, self%error)
+    slope = 0
+    if (step > 0) slope = min(0.0_wp, self%parts*(aside%load() - self%coupling%load())/step)
+  end subroutine at
+
   !> Betters the operator's answer to a residual: the impact force that goes with it, and cohesive points in equilibrium.
-  subroutine condense(coupling, integrator, model, operator, old, new, correction, error)
+  subroutine condense(coupling, model, operator, old, new, correction, error)
     !> The impactor's side of the step
     type(impact_coupling_t), intent(inout) :: coupling
-    !> Integrator of the plate
-    type(plate_integrator_t), intent(in) :: integrator
     type(model_t), intent(in) :: model
     !> The factored operator; receives answers to unit forces that it lacks
     type(tangent_operator_t), intent(inout) :: operator
@@ -38,39 +80,33 @@ contains
     !> Set if a solve fails or numbers are not finite
     type(error_t), allocatable, intent(inout) :: error
     type(condensed_correction_t) :: condensed
+    type(impact_coupling_t) :: before
     real(wp), allocatable :: answer(:, :)
     integer, allocatable :: equations(:)
-    real(wp) :: before, patch_change
     integer :: round
 
     answer = correction
-    patch_change = model%patch_mean(answer)
-    before = coupling%unknown
+    before = coupling
     do round = 1, most_rounds
       call operator%timers%start('condensation')
-      call new_condensed_correction(operator, model, old%interfaces%cohesive, new%motion%displacement, answer, condensed)
-      call exchange(condensed, before, patch_change, coupling, integrator, model, operator, old, new, error)
+      coupling = before
       correction = answer
-      call condensed%field(operator, coupling%share*(coupling%unknown - before), correction)
+      call new_condensed_correction(operator, model, old%interfaces%cohesive, new%motion%displacement, answer, condensed)
+      call solve_together(condensed, coupling, model, operator, old, new, correction, error)
       call condensed%wanting(operator, model, old%interfaces%cohesive, new%motion%displacement, correction, equations)
       call operator%timers%stop('condensation')
       if (size(equations) == 0 .or. allocated(error)) exit
       call operator%find_columns(model, equations, error)
       if (allocated(error)) return
     end do
-    call condensed%respond(operator)
   end subroutine condense
 
-  !> Finds force and points after each other until they agree.
-  subroutine exchange(condensed, before, patch_change, coupling, integrator, model, operator, old, new, error)
+  !> Finds force and points together.
+  subroutine solve_together(condensed, coupling, model, operator, old, new, correction, error)
     !> The points
     type(condensed_correction_t), intent(inout) :: condensed
-    !> Force that the residual holds, and change of the patch's mean deflection by the operator's answer
-    real(wp), intent(in) :: before, patch_change
     !> The impactor's side of the step
     type(impact_coupling_t), intent(inout) :: coupling
-    !> Integrator of the plate
-    type(plate_integrator_t), intent(in) :: integrator
     type(model_t), intent(in) :: model
     !> The factored operator
     type(tangent_operator_t), intent(in) :: operator
@@ -78,18 +114,30 @@ contains
     type(state_t), intent(in) :: old
     !> State at the end, before the correction
     type(state_t), intent(inout) :: new
+    !> The operator's answer on entry, the correction on return, (5, points)
+    real(wp), intent(inout) :: correction(:, :)
     !> Set if numbers are not finite
     type(error_t), allocatable, intent(inout) :: error
-    real(wp) :: force
-    integer :: i
+    class(outside_force_t), allocatable :: outside
 
-    do i = 1, most_exchanges
-      force = coupling%unknown
-      call condensed%solve(operator, model, coupling%share*(force - before))
-      if (.not. model%scene%has_impactor) return
-      call coupling%find_force(model, integrator, old, new, patch_change + condensed%patch_change, &
-                               condensed%compliance, error)
-      if (allocated(error) .or. abs(coupling%unknown - force) <= agreed*abs(force)) exit
-    end do
-  end subroutine exchange
+    if (condensed%columns == 0) then
+      if (model%scene%has_impactor) call coupling%solve(model, operator, old, new, correction, error)
+      return
+    end if
+    if (model%scene%has_impactor) then
+      allocate (outside, source=impactor_force_t(coupling=coupling, law=model%scene%indentation, &
+                                                 indentation=old%indentation, before=coupling%load(), &
+                                                 patch_mean=model%patch_mean(new%motion%displacement), &
+                                                 parts=real(model%mesh%multiplicity, wp)))
+    end if
+    call condensed%solve(outside)
+    call condensed%field(operator, correction)
+    if (.not. allocated(outside)) return
+    select type (outside)
+    type is (impactor_force_t)
+      coupling = outside%coupling
+      new%force_iterations = new%force_iterations + outside%iterations
+      if (allocated(outside%error)) call move_alloc(outside%error, error)
+    end select
+  end subroutine solve_together
 end module condensed_steps

@@ -197,9 +197,9 @@ contains
     type(error_t), allocatable, intent(inout) :: error
 
     if (operator%condenses) then
-      call condense(self%coupling, self%integrator, model, operator, old, new, correction, error)
+      call condense(self%coupling, model, operator, old, new, correction, error)
     else if (model%scene%has_impactor) then
-      call self%coupling%solve(model, self%integrator, operator, old, new, correction, error)
+      call self%coupling%solve(model, operator, old, new, correction, error)
     end if
     call new%interfaces%faces%hold(model, correction)
     if (allocated(error)) return
@@ -207,7 +207,7 @@ contains
                                       correction, self%coupling%unknown)
     ! The law of the force is not linear: the force must be found for the displacement that it has become.
     if (model%scene%has_impactor .and. operator%anderson%kept > 0) then
-      call self%coupling%solve(model, self%integrator, operator, old, new, correction, error)
+      call self%coupling%solve(model, operator, old, new, correction, error)
       call new%interfaces%faces%hold(model, correction)
     end if
     call operator%anderson%note(correction)

@@ -3,6 +3,8 @@ module impact_coupling
   use kinds, only: wp
   use errors, only: error_t
   use impact_force, only: solve_impact_force
+  use impact_parameters, only: indentation_law_t
+  use tan_sun_indentation, only: indentation_t
   use impactor_integrators, only: predict, takes_mean_force
   use newmark_integrators, only: plate_integrator_t
   use models, only: model_t
@@ -22,6 +24,8 @@ module impact_coupling
     real(wp) :: unknown = 0, force_end = 0
     !> Share of the unknown in the plate's load, and the rest of the load
     real(wp) :: share = 0, inherited = 0
+    !> Force at the start of the step, and where between end and start the plate wants it
+    real(wp) :: start_force = 0, alpha_f = 0
   contains
     !> Force on the plate in its equation of motion.
     procedure :: load
@@ -49,6 +53,8 @@ contains
     coupling%mean = takes_mean_force(model%scene%impactor)
     coupling%unknown = old%force
     coupling%force_end = old%force
+    coupling%start_force = old%force
+    coupling%alpha_f = integrator%alpha_f
     coupling%share = 1
     if (coupling%mean) return
     coupling%share = 1 - integrator%alpha_f
@@ -65,12 +71,10 @@ contains
 
   !> Solves for the impact force, given the correction of the plate for the force assumed, and adds the
   !> plate's response to the change of the force.
-  subroutine solve(self, model, integrator, operator, old, new, correction, error)
+  subroutine solve(self, model, operator, old, new, correction, error)
     !> The impactor's side of the step
     class(impact_coupling_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> Integrator of the plate
-    type(plate_integrator_t), intent(in) :: integrator
     !> Holds the response to a unit force
     type(tangent_operator_t), intent(in) :: operator
     !> State at the start
@@ -82,40 +86,38 @@ contains
     !> Set if numbers are not finite
     type(error_t), allocatable, intent(inout) :: error
     real(wp) :: before
+    integer :: iterations
 
     before = self%unknown
-    call self%find_force(model, integrator, old, new, model%patch_mean(correction), operator%compliance, error)
+    new%patch_mean = model%patch_mean(new%motion%displacement) + model%patch_mean(correction)
+    call self%find_force(model%scene%indentation, old%indentation, new%patch_mean, operator%compliance, iterations, error)
     correction = correction + (self%share*(self%unknown - before))*operator%response
+    new%force_iterations = new%force_iterations + iterations
   end subroutine solve
 
-  !> Finds the impact force for a change of the patch's mean deflection, given what a force adds to it.
-  subroutine find_force(self, model, integrator, old, new, patch_change, patch_compliance, error)
+  !> Finds the impact force for a mean deflection of the patch, given what a force adds to it.
+  subroutine find_force(self, law, indentation, patch_mean, patch_compliance, iterations, error)
     !> The impactor's side of the step
     class(impact_coupling_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
-    !> Integrator of the plate
-    type(plate_integrator_t), intent(in) :: integrator
-    !> State at the start
-    type(state_t), intent(in) :: old
-    !> State at the end, before the correction
-    type(state_t), intent(inout) :: new
-    !> Change of the patch's mean deflection with the force assumed
-    real(wp), intent(in) :: patch_change
+    !> Indentation law
+    type(indentation_law_t), intent(in) :: law
+    !> Memory of the indentation at the start of the step
+    type(indentation_t), intent(in) :: indentation
+    !> Mean deflection of the patch with the force assumed
+    real(wp), intent(in) :: patch_mean
     !> Mean deflection of the patch per force on the plate
     real(wp), intent(in) :: patch_compliance
+    !> Iterations taken
+    integer, intent(out) :: iterations
     !> Set if numbers are not finite
     type(error_t), allocatable, intent(inout) :: error
     real(wp) :: alpha_free, alpha_end, compliance
-    integer :: iterations
 
     compliance = self%share*patch_compliance
-    new%patch_mean = model%patch_mean(new%motion%displacement) + patch_change
-    alpha_free = self%free_displacement - new%patch_mean + self%unknown*compliance
-    call solve_impact_force(model%scene%indentation, old%indentation, old%indentation%alpha, alpha_free, &
-                             self%compliance + compliance, self%mean, self%unknown, alpha_end, &
-                             self%force_end, iterations, error)
-    new%force_iterations = new%force_iterations + iterations
+    alpha_free = self%free_displacement - patch_mean + self%unknown*compliance
+    call solve_impact_force(law, indentation, indentation%alpha, alpha_free, self%compliance + compliance, self%mean, &
+                            self%unknown, alpha_end, self%force_end, iterations, error)
     ! The plate wants the force at 1 - alpha_f of the step, which is the mean force for alpha_f = 1/2 only.
-    if (self%mean) self%inherited = (0.5_wp - integrator%alpha_f)*(self%force_end - old%force)
+    if (self%mean) self%inherited = (0.5_wp - self%alpha_f)*(self%force_end - self%start_force)
   end subroutine find_force
 end module impact_coupling

@@ -3,7 +3,7 @@
 module condensed_corrections
   use cohesive_interfaces, only: cohesive_interfaces_t
   use cohesive_points, only: cohesive_point_t
-  use condensed_points, only: condensed_point_t, condensed_points_t
+  use condensed_points, only: condensed_points_t, outside_force_t
   use kinds, only: wp
   use models, only: model_t
   use tangent_operators, only: tangent_operator_t
@@ -20,21 +20,17 @@ module condensed_corrections
 
   !> A correction in the making.
   type :: condensed_correction_t
-    !> The small system; its unknowns are the operator's columns
+    !> The small system; its unknowns are the operator's columns, and the patch's mean deflection if there is an impactor
     type(condensed_points_t) :: system
-    !> Change of the unknowns by the operator alone, and by its response to a unit force of the impactor
-    real(wp), allocatable :: free(:), response(:)
-    !> Change of the unknowns, and the forces that mend the operator's answer
-    real(wp), allocatable :: change(:), mending(:)
-    !> Change of the patch's mean deflection by these forces, and per unit force of the impactor
-    real(wp) :: patch_change = 0, compliance = 0
+    !> Change of the unknowns by the operator alone, and at equilibrium
+    real(wp), allocatable :: free(:), change(:)
+    !> Columns among them
+    integer :: columns = 0
   contains
-    !> Finds the equilibrium under a change of the impact force.
+    !> Finds the equilibrium.
     procedure :: solve
     !> The field of the correction.
     procedure :: field
-    !> The plate's response to a unit force, interfaces softening as they do now.
-    procedure :: respond
     !> Equations of points that should be unknowns and are none.
     procedure :: wanting
   end type condensed_correction_t
@@ -55,14 +51,23 @@ contains
     !> The correction
     type(condensed_correction_t), intent(out) :: self
 
+    real(wp), allocatable :: response(:)
+    real(wp) :: compliance
+
+    self%columns = operator%changes%kept
+    if (self%columns == 0) return
     self%free = operator%changes%values(model%communicator, operator%numbering, correction)
-    self%response = operator%changes%values(model%communicator, operator%numbering, operator%fresh_response)
-    self%change = 0*self%free
-    self%mending = self%change
-    self%compliance = operator%fresh_compliance
-    if (size(self%free) == 0) return
-    call operator%changes%stiffness_of_columns(self%system%stiffness)
+    response = operator%changes%values(model%communicator, operator%numbering, operator%response)
+    ! Mean deflections over the number of parts of the plate are what the force on the modelled part does work on.
+    compliance = operator%compliance/model%mesh%multiplicity
+    call operator%changes%stiffness_of_columns(response, compliance, self%system%stiffness)
     call gather_points(operator, model, old, displacement, correction, self%system)
+    if (model%scene%has_impactor) then
+      self%free = [self%free, model%patch_mean(correction)/model%mesh%multiplicity]
+      self%system%held = [self%system%held, 0.0_wp]
+    end if
+    self%change = 0*self%free
+    self%system%forces = self%change
   end subroutine new_condensed_correction
 
   !> Gathers the points of all unknowns on every rank.
@@ -136,59 +141,31 @@ contains
     end do
   end subroutine group_points
 
-  !> Finds the equilibrium under a change of the impact force.
-  subroutine solve(self, operator, model, force)
+  !> Finds the equilibrium.
+  subroutine solve(self, outside)
     !> The correction
     class(condensed_correction_t), intent(inout) :: self
-    !> The factored operator
-    type(tangent_operator_t), intent(in) :: operator
-    type(model_t), intent(in) :: model
-    !> Change of the impact force
-    real(wp), intent(in) :: force
-    real(wp) :: slopes(size(self%free))
+    !> Force of the impactor; unallocated: there is none
+    class(outside_force_t), allocatable, intent(inout) :: outside
 
-    self%patch_change = force*operator%fresh_compliance
-    self%compliance = operator%fresh_compliance
-    if (size(self%free) == 0) return
-    call self%system%solve(self%free + force*self%response, self%change)
-    self%mending = self%system%mending_forces(self%change)
-    call self%system%mending_slopes(self%response, slopes)
-    ! The columns' mean over the patch is the response at their unknowns, since the operator is symmetric.
-    self%patch_change = self%patch_change + model%mesh%multiplicity*dot_product(self%response, self%mending)
-    self%compliance = self%compliance + model%mesh%multiplicity*dot_product(self%response, slopes)
+    call self%system%solve(self%free, outside, self%change)
   end subroutine solve
 
-  !> Completes a correction: the operator's answer, that to the force and that to the mending forces.
-  subroutine field(self, operator, force, correction)
+  !> Completes a correction: the operator's answer, mended by the forces of the unknowns.
+  subroutine field(self, operator, correction)
     !> The correction, solved
     class(condensed_correction_t), intent(in) :: self
     !> The factored operator
     type(tangent_operator_t), intent(in) :: operator
-    !> Change of the impact force
-    real(wp), intent(in) :: force
     !> The operator's answer on entry, the correction on return, (5, points)
     real(wp), intent(inout) :: correction(:, :)
     integer :: k
 
-    correction = correction + force*operator%fresh_response
-    call operator%changes%combine([(k, k=1, size(self%free))], -self%mending, correction)
+    associate (forces => self%system%forces)
+      call operator%changes%combine([(k, k=1, self%columns)], forces(:self%columns), correction)
+      if (size(forces) > self%columns) correction = correction - forces(size(forces))*operator%response
+    end associate
   end subroutine field
-
-  !> The plate's response to a unit force, interfaces softening as they do now.
-  subroutine respond(self, operator)
-    !> The correction, solved
-    class(condensed_correction_t), intent(in) :: self
-    !> The factored operator; receives the response
-    type(tangent_operator_t), intent(inout) :: operator
-    real(wp) :: slopes(size(self%free))
-    integer :: k
-
-    operator%response = operator%fresh_response
-    operator%compliance = self%compliance
-    if (size(self%free) == 0) return
-    call self%system%mending_slopes(self%response, slopes)
-    call operator%changes%combine([(k, k=1, size(slopes))], -slopes, operator%response)
-  end subroutine respond
 
   !> Equations of points that should be unknowns and are none: the operator's answer is wrong there. Those most in want
   !> come first if there is not room for all.
@@ -210,7 +187,7 @@ contains
     call old%mismatch(model, operator%stiffness_factor, operator%present, displacement, correction, error)
     call strike_columns(operator, error)
     where (operator%numbering%equation(1:3, :size(error, 2)) < 0) error = 0
-    room = most_unknowns - size(self%free)
+    room = most_unknowns - self%columns
     threshold = noticed
     do
       call model%communicator%allgather(pack(operator%numbering%equation(1:3, :size(error, 2)), error > threshold), &

@@ -11,7 +11,7 @@ module condensed_points
   use kinds, only: wp
   implicit none
   private
-  public :: condensed_point_t, condensed_points_t
+  public :: condensed_point_t, condensed_points_t, outside_force_t
 
   !> Newton iterations at most; those that soften far take some twenty.
   integer, parameter :: most_iterations = 60
@@ -35,7 +35,27 @@ module condensed_points
     integer :: place(3) = 0
   end type condensed_point_t
 
-  !> The system.
+  !> A force from outside that depends on the plate's motion, such as that of an impactor.
+  type, abstract :: outside_force_t
+  contains
+    !> The force at a motion.
+    procedure(force_at), deferred :: at
+  end type outside_force_t
+
+  abstract interface
+    !> The force at a motion.
+    subroutine force_at(self, motion, force, slope)
+      import :: outside_force_t, wp
+      !> The force, which remembers the latest motion
+      class(outside_force_t), intent(inout) :: self
+      !> Change of the motion on which the force does work
+      real(wp), intent(in) :: motion
+      !> Change of the force, and its slope, not positive
+      real(wp), intent(out) :: force, slope
+    end subroutine force_at
+  end interface
+
+  !> The system. Its last unknown is the motion under a force from outside, if there is one.
   type :: condensed_points_t
     !> The points
     type(condensed_point_t), allocatable :: points(:)
@@ -43,79 +63,90 @@ module condensed_points
     real(wp), allocatable :: held(:)
     !> Inverse of the operator's answers to unit forces, (unknowns, unknowns)
     real(wp), allocatable :: stiffness(:, :)
+    !> What the points hold beyond what the operator takes for it, less the force from outside, (unknowns)
+    real(wp), allocatable :: forces(:)
     !> Tangent of the latest iteration, factored
     type(positive_factor_t), private :: factor
   contains
     !> Change of the jumps at equilibrium.
     procedure :: solve
-    !> Forces that mend the operator's answer.
-    procedure :: mending_forces
-    !> The same for a small change of the free jumps.
-    procedure :: mending_slopes
   end type condensed_points_t
 
 contains
 
   !> Change of the jumps at equilibrium, found by Newton's method along directions that descend.
-  subroutine solve(self, free, change)
+  subroutine solve(self, free, outside, change)
     !> The system
     class(condensed_points_t), intent(inout) :: self
     !> Change of the jumps by the operator alone, (unknowns)
     real(wp), intent(in) :: free(:)
+    !> Force from outside; unallocated: none
+    class(outside_force_t), allocatable, intent(inout) :: outside
     !> First guess on entry, solution on return, (unknowns)
     real(wp), intent(inout) :: change(:)
     real(wp) :: force(size(free)), direction(size(free)), along(size(free)), elastic(size(free))
-    real(wp) :: scale(size(free)), share
+    real(wp) :: scale(size(free)), share, load, slope
     integer :: i
 
     scale = force_scale(self)
     do i = 1, most_iterations
       elastic = matmul(self%stiffness, change - free)
-      force = elastic + cohesive_forces(self, change)
-      call factorize(self, change)
-      if (all(abs(force) <= settled*scale)) exit
+      call find_forces(self, change, outside, self%forces, load, slope)
+      force = elastic + self%forces
+      call factorize(self, change, slope)
+      if (all(abs(force) <= settled*max(scale, abs(load)))) exit
       direction = -force
       call self%factor%solve(direction)
       along = matmul(self%stiffness, direction)
-      share = descent(self, change, direction, elastic, along, dot_product(force, direction))
+      call descend(self, change, direction, elastic, along, dot_product(force, direction), outside, share)
       change = change + share*direction
     end do
   end subroutine solve
 
   !> Share of a direction to go: all of it unless the force along it turns round too far on the way.
-  pure real(wp) function descent(self, change, direction, elastic, along, slope) result(share)
+  subroutine descend(self, change, direction, elastic, along, slope, outside, share)
     !> The system
     type(condensed_points_t), intent(in) :: self
     !> Change so far, direction, and the elastic forces of both, (unknowns)
     real(wp), intent(in) :: change(:), direction(:), elastic(:), along(:)
     !> Force along the direction at its start, negative
     real(wp), intent(in) :: slope
-    real(wp) :: left, right, left_slope, right_slope, here
+    !> Force from outside; unallocated: none
+    class(outside_force_t), allocatable, intent(inout) :: outside
+    !> The share
+    real(wp), intent(out) :: share
+    real(wp) :: left, right, left_slope, right_slope, forces(size(change)), load, load_slope
     integer :: i
 
     share = 1
     left = 0
     left_slope = slope
     do i = 1, most_trials
-      here = dot_product(direction, elastic + share*along + cohesive_forces(self, change + share*direction))
-      if (here <= slope_left*abs(slope)) return
+      call find_forces(self, change + share*direction, outside, forces, load, load_slope)
+      right_slope = dot_product(direction, elastic + share*along + forces)
+      if (right_slope <= slope_left*abs(slope)) return
       right = share
-      right_slope = here
       share = left + (right - left)*min(0.9_wp, max(0.1_wp, -left_slope/(right_slope - left_slope)))
     end do
-  end function descent
+  end subroutine descend
 
   !> Factors the tangent at a change of the jumps: the true one if it is positive, else one without its falling part,
   !> else the secant, which always is.
-  subroutine factorize(self, change)
+  subroutine factorize(self, change, slope)
     !> The system
     type(condensed_points_t), intent(inout) :: self
     !> Change of the jumps, (unknowns)
     real(wp), intent(in) :: change(:)
-    integer :: kind
+    !> Slope of the force from outside
+    real(wp), intent(in) :: slope
+    real(wp), allocatable :: matrix(:, :)
+    integer :: kind, last
 
     do kind = 1, 3
-      call self%factor%factorize(tangent(self, change, kind))
+      matrix = tangent(self, change, kind)
+      last = size(matrix, 1)
+      matrix(last, last) = matrix(last, last) - slope
+      call self%factor%factorize(matrix)
       if (self%factor%positive) return
     end do
   end subroutine factorize
@@ -159,14 +190,19 @@ contains
     end do
   end function tangent
 
-  !> Change of the forces of the points less what the operator takes for it, t(j + x) - t(j) - D x.
-  pure function cohesive_forces(self, change) result(force)
+  !> Change of the forces that hold the points less what the operator takes for it, t(j + x) - t(j) - D x, less the
+  !> change of the force from outside.
+  subroutine find_forces(self, change, outside, force, load, slope)
     !> The system
     type(condensed_points_t), intent(in) :: self
     !> Change of the jumps, (unknowns)
     real(wp), intent(in) :: change(:)
+    !> Force from outside; unallocated: none
+    class(outside_force_t), allocatable, intent(inout) :: outside
     !> Force, (unknowns)
-    real(wp) :: force(size(change))
+    real(wp), intent(out) :: force(:)
+    !> Change of the force from outside, and its slope
+    real(wp), intent(out) :: load, slope
     type(cohesive_point_t) :: new
     real(wp) :: before(3), after(3)
     integer :: i, k
@@ -181,7 +217,12 @@ contains
         end do
       end associate
     end do
-  end function cohesive_forces
+    load = 0
+    slope = 0
+    if (.not. allocated(outside)) return
+    call outside%at(change(size(change)), load, slope)
+    force(size(force)) = force(size(force)) - load
+  end subroutine find_forces
 
   !> Jumps of a point after a change of the unknowns.
   pure function jumps_of(point, change) result(jumps)
@@ -199,7 +240,8 @@ contains
     end do
   end function jumps_of
 
-  !> Force of each unknown at the strength of its point; nothing for ties and contacts, which are linear.
+  !> Force of each unknown at the strength of its point, that of all of them for ties, contacts and the force from
+  !> outside.
   pure function force_scale(self) result(scale)
     !> The system
     type(condensed_points_t), intent(in) :: self
@@ -207,7 +249,7 @@ contains
     real(wp) :: scale(size(self%held))
     integer :: i, k
 
-    scale = huge(scale)
+    scale = 0
     do i = 1, size(self%points)
       associate (point => self%points(i))
         do k = 1, 3
@@ -216,32 +258,6 @@ contains
         end do
       end associate
     end do
+    where (.not. scale > 0) scale = sum(scale)
   end function force_scale
-
-  !> Forces q that mend the operator's answer: what the operator takes for the points less what they have.
-  pure function mending_forces(self, change) result(force)
-    !> The system
-    class(condensed_points_t), intent(in) :: self
-    !> Change of the jumps at equilibrium, (unknowns)
-    real(wp), intent(in) :: change(:)
-    !> Force on each unknown
-    real(wp) :: force(size(change))
-
-    force = -cohesive_forces(self, change)
-  end function mending_forces
-
-  !> Mending forces per change of the free jumps, with the tangent of the latest iteration.
-  subroutine mending_slopes(self, free, force)
-    !> The system, solved
-    class(condensed_points_t), intent(in) :: self
-    !> Change of the free jumps, (unknowns)
-    real(wp), intent(in) :: free(:)
-    !> Force on each unknown
-    real(wp), intent(out) :: force(:)
-    real(wp) :: change(size(free))
-
-    change = matmul(self%stiffness, free)
-    call self%factor%solve(change)
-    force = matmul(self%stiffness, change - free)
-  end subroutine mending_slopes
 end module condensed_points

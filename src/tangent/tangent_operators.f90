@@ -59,8 +59,8 @@ module tangent_operators
     type(anderson_t) :: anderson
     !> Deflection of the struck point at which the tangent was taken
     real(wp) :: deflection = 0
-    !> Mean deflection of the patch under that force, with and without the changes
-    real(wp) :: compliance = 0, fresh_compliance = 0
+    !> Mean deflection of the patch under that force
+    real(wp) :: compliance = 0
     !> True: cohesive points are met by condensed corrections, which take the place of Woodbury's
     logical :: condenses = .false.
     !> Iterations of the present step before which ties or contacts had changed
@@ -167,7 +167,6 @@ contains
     self%compliance = 0
     if (model%scene%has_impactor) call find_response(self, model, error)
     self%fresh_response = self%response
-    self%fresh_compliance = self%compliance
   end subroutine factorize
 
   !> Finds the response to a unit force of the impactor.
@@ -240,6 +239,7 @@ contains
     call self%changes%set(equations, stiffness)
     call self%changes%spread_out(self%numbering, self%present)
     self%present = self%added + self%present
+    if (self%condenses) return
     self%response = self%fresh_response
     call follow_changes(self, model, self%response)
     self%compliance = model%patch_mean(self%response)

@@ -36,7 +36,7 @@ module woodbury_updates
     integer :: kept = 0
     !> Value of each of them at the equations of all, (kept, kept)
     real(wp), allocatable, private :: compliance(:, :)
-    !> Inverse of that, (kept, kept); unallocated: not asked for since the last column
+    !> Stiffness of the columns; unallocated: not asked for since the last column
     real(wp), allocatable, private :: inverse(:, :)
     !> Column of each change
     integer, allocatable :: column(:)
@@ -63,7 +63,7 @@ module woodbury_updates
     procedure :: combine
     !> Values of a field at the equations of the columns.
     procedure :: values => values_at_columns
-    !> Inverse of the values of the columns at each other's equations.
+    !> Stiffness of the factored operator against motions of the columns' unknowns.
     procedure :: stiffness_of_columns
   end type woodbury_updates_t
 
@@ -81,6 +81,7 @@ contains
     if (allocated(self%columns)) deallocate (self%columns)
     allocate (self%columns(0))
     self%kept = 0
+    if (allocated(self%inverse)) deallocate (self%inverse)
   end subroutine clear
 
   !> True if changes are those already in force, or nearly so.
@@ -312,17 +313,29 @@ contains
     call communicator%sum(values)
   end function values_at_columns
 
-  !> Inverse of the values of the columns at each other's equations: the stiffness of the factored operator against
-  !> motions of these unknowns alone.
-  subroutine stiffness_of_columns(self, stiffness)
+  !> Stiffness of the factored operator against motions of the columns' unknowns and one more.
+  subroutine stiffness_of_columns(self, answer, compliance, stiffness)
     !> The changes
     class(woodbury_updates_t), intent(inout) :: self
-    !> The inverse, (kept, kept)
+    !> What a unit force on the one more does to the others, (kept), and to itself; 0: there is none
+    real(wp), intent(in) :: answer(:), compliance
+    !> Inverse of the answers to unit forces, (unknowns, unknowns)
     real(wp), allocatable, intent(out) :: stiffness(:, :)
     type(positive_factor_t) :: factor
+    real(wp), allocatable :: matrix(:, :)
+    integer :: unknowns
 
     if (.not. allocated(self%inverse)) then
-      call factor%factorize(self%compliance)
+      unknowns = self%kept
+      if (compliance > 0) unknowns = unknowns + 1
+      allocate (matrix(unknowns, unknowns))
+      matrix(:self%kept, :self%kept) = self%compliance
+      if (compliance > 0) then
+        matrix(unknowns, :self%kept) = answer
+        matrix(:self%kept, unknowns) = answer
+        matrix(unknowns, unknowns) = compliance
+      end if
+      call factor%factorize(matrix)
       self%inverse = factor%inverse()
     end if
     stiffness = self%inverse
