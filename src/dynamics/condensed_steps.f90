@@ -64,7 +64,8 @@ contains
     if (step > 0) slope = min(0.0_wp, self%parts*(aside%load() - self%coupling%load())/step)
   end subroutine at
 
-  !> Betters the operator's answer to a residual: the impact force that goes with it, and cohesive points in equilibrium.
+  !> Betters the operator's answer to a residual: the impact force that goes with it, and cohesive points in
+  !> equilibrium.
   subroutine condense(coupling, model, operator, old, new, correction, error)
     !> The impactor's side of the step
     type(impact_coupling_t), intent(inout) :: coupling
@@ -81,21 +82,25 @@ contains
     type(error_t), allocatable, intent(inout) :: error
     type(condensed_correction_t) :: condensed
     type(impact_coupling_t) :: before
+    real(wp), allocatable :: guess(:)
     real(wp), allocatable :: answer(:, :)
     integer, allocatable :: equations(:)
     integer :: round
 
     answer = correction
     before = coupling
+    allocate (guess(0))
     do round = 1, most_rounds
       call operator%timers%start('condensation')
       coupling = before
       correction = answer
-      call new_condensed_correction(operator, model, old%interfaces%cohesive, new%motion%displacement, answer, condensed)
+      call new_condensed_correction(operator, model, old%interfaces%cohesive, new%motion%displacement, answer, guess, &
+                                    condensed)
       call solve_together(condensed, coupling, model, operator, old, new, correction, error)
       call condensed%wanting(operator, model, old%interfaces%cohesive, new%motion%displacement, correction, equations)
       call operator%timers%stop('condensation')
       if (size(equations) == 0 .or. allocated(error)) exit
+      if (condensed%columns > 0) guess = condensed%change(:condensed%columns)
       call operator%find_columns(model, equations, error)
       if (allocated(error)) return
     end do

@@ -90,7 +90,8 @@ contains
 
     before = self%unknown
     new%patch_mean = model%patch_mean(new%motion%displacement) + model%patch_mean(correction)
-    call self%find_force(model%scene%indentation, old%indentation, new%patch_mean, operator%compliance, iterations, error)
+    call self%find_force(model%scene%indentation, old%indentation, new%patch_mean, operator%compliance, iterations, &
+                         error)
     correction = correction + (self%share*(self%unknown - before))*operator%response
     new%force_iterations = new%force_iterations + iterations
   end subroutine solve

@@ -12,7 +12,7 @@ module condensed_corrections
   public :: condensed_correction_t, new_condensed_correction
 
   !> Force left at a point over that at its strength from which it becomes an unknown.
-  real(wp), parameter :: noticed = 1.0e-3_wp
+  real(wp), parameter :: noticed = 1.0e-4_wp
   !> Unknowns at most.
   integer, parameter :: most_unknowns = 500
   !> Numbers that tell of an unknown.
@@ -20,9 +20,9 @@ module condensed_corrections
 
   !> A correction in the making.
   type :: condensed_correction_t
-    !> The small system; its unknowns are the operator's columns, and the patch's mean deflection if there is an impactor
+    !> The small system; its unknowns are the operator's columns, and the patch's mean deflection with an impactor
     type(condensed_points_t) :: system
-    !> Change of the unknowns by the operator alone, and at equilibrium
+    !> Change of the unknowns by the operator alone, and at equilibrium; that of the columns first
     real(wp), allocatable :: free(:), change(:)
     !> Columns among them
     integer :: columns = 0
@@ -38,7 +38,7 @@ module condensed_corrections
 contains
 
   !> A correction with the columns that the operator has.
-  subroutine new_condensed_correction(operator, model, old, displacement, correction, self)
+  subroutine new_condensed_correction(operator, model, old, displacement, correction, guess, self)
     !> The factored operator
     type(tangent_operator_t), intent(inout) :: operator
     type(model_t), intent(in) :: model
@@ -48,9 +48,10 @@ contains
     real(wp), intent(in) :: displacement(:, :)
     !> The operator's answer, (5, points)
     real(wp), intent(in) :: correction(:, :)
+    !> What is known of the change of the first unknowns, (at most the columns)
+    real(wp), intent(in) :: guess(:)
     !> The correction
     type(condensed_correction_t), intent(out) :: self
-
     real(wp), allocatable :: response(:)
     real(wp) :: compliance
 
@@ -67,6 +68,7 @@ contains
       self%system%held = [self%system%held, 0.0_wp]
     end if
     self%change = 0*self%free
+    self%change(:size(guess)) = guess
     self%system%forces = self%change
   end subroutine new_condensed_correction
 

@@ -61,7 +61,7 @@ module tangent_operators
     real(wp) :: deflection = 0
     !> Mean deflection of the patch under that force
     real(wp) :: compliance = 0
-    !> True: cohesive points are met by condensed corrections, which take the place of Woodbury's
+    !> True: condensed corrections take the place of Woodbury's
     logical :: condenses = .false.
     !> Iterations of the present step before which ties or contacts had changed
     integer :: switches = 0
@@ -328,8 +328,7 @@ contains
     call model%halo%update(solution)
   end subroutine solve_factor
 
-  !> Saves what is needed to make the same factor again, or loads it and makes it: a lagged factor
-  !> shapes the iterations, so a restart must go on with the very same one.
+  !> Saves what is needed to make the very same factor again, as it shapes the iterations, or loads it and makes it.
   subroutine visit(self, archive, model, error)
     !> The operator
     class(tangent_operator_t), intent(inout) :: self
@@ -362,7 +361,6 @@ contains
     ! On another number of ranks the equations have other numbers: only the columns in use are found again.
     if (ranks /= model%communicator%size) columns = [integer ::]
     if (archive%loading .and. self%ready) call remake(self, model, columns, changed, error)
-    ! Last, so that the factor made again is not counted.
     call archive%item('operator/factorizations', self%factorizations)
     call archive%item('operator/solves', self%solves)
   end subroutine visit

@@ -21,9 +21,6 @@ EXCEPTIONS = {
     "result_tables: is_number_type": CLOSED_LIST,
     "cohesive_means: mean_tangent": LAST_RESORT,
     "cohesive_means: mean_traction": LAST_RESORT,
-    "cohesive_tangents: cohesive_tangent": DERIVATIVE,
-    "cohesive_tangents: toughness_slopes": DERIVATIVE,
-    "cohesive_tangents: traction_slopes": DERIVATIVE,
     "result_tables: is_place": CLOSED_LIST,
     "result_tables: is_unit_kind": CLOSED_LIST,
 }
