@@ -87,6 +87,7 @@ contains
     call check_across_groups(deck, problems)
     call check_extents(deck, problems)
     call check_process_zones(deck, problems)
+    deck%remarks = problems%remarks()
   end subroutine read_deck_text
 
   !> Which groups the deck has, of those that bring physics or a kind of analysis.

@@ -16,6 +16,7 @@ module time_stepping
   use dynamic_steps, only: dynamic_step_t, new_dynamic_step
   use static_steps, only: static_step_t, new_static_step
   use struck_stresses, only: struck_stress
+  use front_growth, only: find_release_ratio
   use growth_in_steps, only: grow_in_step, grows_by_steps
   use plate_options, only: kinematics_von_karman
   implicit none
@@ -242,6 +243,7 @@ contains
     !> Step taken
     real(wp), intent(in) :: step
     type(state_t), allocatable :: before
+    logical :: damaged(size(model%mesh%zones))
     real(wp) :: change
     logical :: extended
 
@@ -252,7 +254,10 @@ contains
     call self%trial%plies%grow(model, [self%now%time, self%trial%time], self%now%motion%displacement, &
                                self%trial%motion%displacement)
     if (self%trial%plies%softened) call book_failures(model, self%now, self%trial)
-    if (self%trial%interfaces%cohesive%border_reached(model)) self%trial%interfaces%border_reached = .true.
+    if (model%scene%has_static) call find_release_ratio(model, self%trial%plies%stiffness, self%trial%motion, &
+                                                        self%trial%interfaces)
+    damaged = self%trial%interfaces%cohesive%border_reached(model)
+    self%trial%interfaces%border_reached = self%trial%interfaces%border_reached .or. damaged
     self%trial%interfaces%faces%glued = self%trial%interfaces%faces%glued .or. model%scene%has_impactor .and. &
                                   self%trial%impactor%velocity <= 0 .and. self%trial%force < self%now%force
     extended = self%trial%ledger%delamination > self%now%ledger%delamination
