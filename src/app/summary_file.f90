@@ -59,7 +59,8 @@ contains
     call json%put('largest_deflection_at', record%deflection_time)
     call put_energies(json, stepper%now%ledger, deck%has_impactor)
     if (size(figures%interfaces) > 0) call put_interfaces(json, deck, stepper%now, record, figures)
-    if (deck%has_ply_damage) call put_plies(json, deck, figures)
+    if (deck%has_ply_damage) call put_failures(json, figures)
+    call put_plies(json, deck, figures)
     call put_warnings(json, deck, record)
     call put_costs(json, stepper, seconds)
     call put_provenance(json, provenance)
@@ -175,6 +176,18 @@ contains
   end subroutine put_event
 
   !> What has failed in the plies.
+  subroutine put_failures(json, figures)
+    !> The summary
+    type(json_t), intent(inout) :: json
+    !> Figures of the state reached
+    type(run_figures_t), intent(in) :: figures
+
+    call json%put('fibre_failures', figures%failures(1))
+    call json%put('matrix_cracks', figures%failures(2))
+    call json%put('matrix_crushings', figures%failures(3))
+  end subroutine put_failures
+
+  !> The plate and its plies.
   subroutine put_plies(json, deck, figures)
     !> The summary
     type(json_t), intent(inout) :: json
@@ -184,17 +197,19 @@ contains
     type(run_figures_t), intent(in) :: figures
     integer :: ply
 
-    call json%put('fibre_failures', figures%failures(1))
-    call json%put('matrix_cracks', figures%failures(2))
-    call json%put('matrix_crushings', figures%failures(3))
+    call json%put('plate_size', deck%plate%length)
     call json%open_list('plies')
-    do ply = 1, size(figures%failed_area, 2)
+    do ply = 1, size(deck%laminate%angle)
       call json%open_object('')
       call json%put('ply', ply)
+      call json%put('made_of', deck%materials(deck%laminate%material(ply))%name)
       call json%put('angle', deck%laminate%angle(ply))
-      call json%put('fibre_failure_area', figures%failed_area(1, ply))
-      call json%put('matrix_crack_area', figures%failed_area(2, ply))
-      call json%put('matrix_crushing_area', figures%failed_area(3, ply))
+      call json%put('thickness', deck%laminate%thickness(ply))
+      if (deck%has_ply_damage) then
+        call json%put('fibre_failure_area', figures%failed_area(1, ply))
+        call json%put('matrix_crack_area', figures%failed_area(2, ply))
+        call json%put('matrix_crushing_area', figures%failed_area(3, ply))
+      end if
       call json%close()
     end do
     call json%close()
