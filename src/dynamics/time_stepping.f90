@@ -3,7 +3,7 @@ module time_stepping
   use kinds, only: wp
   use errors, only: error_t, fail, exit_convergence
   use archives, only: archive_t
-  use text, only: to_text
+  use text, only: rounded_text
   use impactor_integrators, only: largest_safe_step
   use stepping_parameters, only: stepping_t
   use linear_solver_parameters, only: linear_solver_parameters_t
@@ -121,8 +121,8 @@ contains
       call self%controller%reject(step)
       self%operator%ready = .false.
       if (step <= self%smallest_step(model)*(1 + 1.0e-9_wp)) then
-        call fail(error, exit_convergence, 'No equilibrium from time '//to_text(self%now%time)// &
-                  ' on with the smallest step, '//to_text(step)//'.')
+        call fail(error, exit_convergence, 'No equilibrium from time '//rounded_text(self%now%time)// &
+                  ' on with the smallest step, '//rounded_text(step)//'.')
         return
       end if
     end do
@@ -145,7 +145,7 @@ contains
       problem = new_static_step(model, self%now%time)
       call solve_step(problem, model, self%stepping%equilibrium, self%operator, self%now, self%trial, converged, error)
       if (.not. (allocated(error) .or. converged)) &
-        call fail(error, exit_convergence, 'No equilibrium at '//to_text(self%now%time)// &
+        call fail(error, exit_convergence, 'No equilibrium at '//rounded_text(self%now%time)// &
                   ' of the load: what is left of the plate after failures of plies does not bear it.')
       if (allocated(error)) return
       self%trial%step = self%now%step
