@@ -5,6 +5,7 @@ module deck_contents
   use linear_solver_parameters, only: linear_solver_parameters_t
   use output_parameters, only: output_t
   use scenes, only: scene_t
+  use text, only: line_t
   implicit none
   private
   public :: deck_t
@@ -27,6 +28,8 @@ module deck_contents
     type(linear_solver_parameters_t) :: linear_solver
     !> What is written
     type(output_t) :: output
+    !> Warnings on the deck, which its run ends with once more
+    type(line_t), allocatable :: remarks(:)
     !> Every key in effect, for the echo
     type(settings_t) :: settings
   end type deck_t

@@ -4,6 +4,7 @@ module deck_reader
   use case_deck, only: fill_case
   use deck_contents, only: deck_t
   use deck_cross_checks, only: check_across_groups
+  use deck_interface_remarks, only: check_interfaces
   use deck_process_zones, only: check_process_zones
   use deck_extents, only: check_sizes, check_extents
   use deck_problems, only: problems_t
@@ -86,7 +87,9 @@ contains
     call check_sizes(deck, problems)
     call check_across_groups(deck, problems)
     call check_extents(deck, problems)
+    call check_interfaces(deck, problems)
     call check_process_zones(deck, problems)
+    deck%remarks = problems%remarks()
   end subroutine read_deck_text
 
   !> Which groups the deck has, of those that bring physics or a kind of analysis.

@@ -1,6 +1,7 @@
 !> Watches over a run whether its time integrators create energy.
 module energy_watches
   use kinds, only: wp
+  use archives, only: archive_t
   use energy_ledgers, only: ledger_t
   implicit none
   private
@@ -20,6 +21,8 @@ module energy_watches
     logical :: told = .false.
   contains
     procedure :: alarms
+    !> Saves or loads what was seen.
+    procedure :: visit
   end type energy_watch_t
 
 contains
@@ -45,4 +48,16 @@ contains
     alarms = self%doubtful .and. before .and. .not. self%told
     self%told = self%told .or. alarms
   end function alarms
+
+  !> Saves or loads what was seen.
+  subroutine visit(self, archive)
+    !> The watch
+    class(energy_watch_t), intent(inout) :: self
+    !> Where to or where from
+    class(archive_t), intent(inout) :: archive
+
+    call archive%item('energy_watch/largest', self%largest)
+    call archive%item('energy_watch/doubtful', self%doubtful)
+    call archive%item('energy_watch/told', self%told)
+  end subroutine visit
 end module energy_watches

@@ -6,6 +6,7 @@ module field_results
   use kinds, only: wp
   use models, only: model_t
   use motion_fields, only: motion_field_rows, write_motion_fields
+  use output_clocks, only: shown_time
   use output_parameters, only: output_t
   use ply_fields, only: ply_field_rows, write_ply_fields
   use result_tables, only: result_row_length
@@ -84,7 +85,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     associate (now => stepper%now)
-      call fields%begin(now%time, now%step, error)
+      call fields%begin(shown_time(now%time), now%step, error)
       call write_motion_fields(model, now%motion, output, fields, error)
       call write_interface_fields(model, now%plies%stiffness, now%interfaces, now%motion, output, fields, error)
       call write_ply_fields(model, now%plies, now%motion%displacement, output, fields, error)

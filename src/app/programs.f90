@@ -201,6 +201,7 @@ contains
     end if
     if (.not. allocated(error)) call simulation%run(error)
     if (.not. allocated(error)) call simulation%finalize(error)
+    call simulation%conclude(error)
     if (allocated(error)) call simulation%log%error(error%message)
     call simulation%log%close()
     call finish_petsc()

@@ -2,8 +2,8 @@
 module simulations
   use kinds, only: wp
   use errors, only: error_t, fail, exit_stopped
-  use text, only: to_text
-  use files, only: make_directory
+  use text, only: line_t, rounded_text, to_text
+  use files, only: make_directory, remove_file
   use logger, only: log_t
   use timers, only: timer_set_t, wall_time
   use communicators, only: communicator_t
@@ -16,13 +16,18 @@ module simulations
   use result_paths, only: refuse_pipes
   use run_provenance, only: provenance_t, this_run
   use run_progress, only: progress_t
+  use run_records, only: run_record_t, new_run_record
+  use run_figures, only: run_figures_t, ending_of, find_figures
   use run_reports, only: log_echo, log_costs, summary
+  use run_warnings, only: give_warnings
+  use summary_file, only: summary_ending, summary_text, write_summary
+  use summary_lines, only: lines_of_summary
   use history_file, only: history_file_t
   use fields_file, only: fields_file_t
   use checkpoints, only: checkpoint_archive_t, checkpoint_ending, retire_checkpoint
   use wall_limits, only: wall_limit_t
   use queue_signals, only: catch_stop_signals, stop_signal
-  use output_clocks, only: clock_t, next_event
+  use output_clocks, only: clock_t, next_event, shown_time
   use energy_watches, only: energy_watch_t
   use result_rows, only: row_of, column_names, column_whole
   use field_results, only: write_mesh, write_fields, field_rows
@@ -56,8 +61,12 @@ module simulations
     type(clock_t) :: history_clock, fields_clock, checkpoint_clock
     !> Time granted on the wall
     type(wall_limit_t), private :: wall_limit
-    !> The warning of a border reached was given
-    logical, private :: warned_of_border = .false.
+    !> What the summary needs of the run's course
+    type(run_record_t), private :: record
+    !> Clock at the program's start
+    real(wp), private :: begun = 0
+    !> The run has been set up: it can tell what it has reached
+    logical, private :: is_ready = .false.
     !> Looks after the energy that integrators create
     type(energy_watch_t), private :: energy_watch
     !> Folder and name that all results share
@@ -71,6 +80,8 @@ module simulations
     procedure :: run
     !> Writes what is left and closes the files.
     procedure :: finalize
+    !> Says what the run has come to.
+    procedure :: conclude
   end type simulation_t
 
 contains
@@ -94,11 +105,13 @@ contains
     call retire_checkpoint(communicator, self%base//checkpoint_ending, retired, error)
     if (allocated(error)) return
     if (retired /= '') call self%log%note('The checkpoint of an earlier run is now '//retired//'.')
-    call self%history%create(communicator, self%base//'_history.csv', column_names(), column_whole(), error)
+    call self%history%create(communicator, self%base//'_history.csv', column_names(deck%delaminations), &
+                             column_whole(size(deck%delaminations)), error)
     if (allocated(error)) return
     call self%fields%create(communicator, self%base, self%provenance, part_of(self), error)
     if (allocated(error)) return
     call write_mesh(self%model, self%fields, error)
+    self%is_ready = .not. allocated(error)
   end subroutine initialize
 
   !> What initialise and resume have in common: log, model, state at rest.
@@ -120,6 +133,7 @@ contains
     self%deck = deck
     self%communicator = communicator
     self%base = deck%output%directory//'/'//deck%name
+    self%begun = begun
     self%wall_limit = wall_limit_t(deck%stepping%time%wall_limit, begun)
     self%history_clock%interval = deck%output%history_every
     self%fields_clock%interval = deck%output%fields_every
@@ -132,6 +146,8 @@ contains
     if (allocated(error)) return
     ! A launcher hands its ranks a terminal of its own, whose output may go to a file.
     if (launched()) self%log%interactive = .false.
+    ! What an earlier run has come to is not what this one will say.
+    if (communicator%is_root()) call remove_file(self%base//summary_ending)
     self%provenance = this_run(this_build(), deck%text, communicator%size)
     self%provenance%case_name = deck%name
     call self%provenance%report(self%log)
@@ -140,6 +156,7 @@ contains
     if (allocated(error)) return
     call self%stepper%start(self%model, deck%stepping, deck%linear_solver, error)
     if (allocated(error)) return
+    self%record = new_run_record(self%model)
     call self%log%note('Model: '//to_text(self%model%mesh%elements())//' elements, '// &
                        to_text(self%stepper%operator%numbering%total)//' unknowns, '// &
                        to_text(communicator%size)//' rank(s).')
@@ -183,19 +200,20 @@ contains
     if (allocated(error)) return
     call archive%close(error)
     if (allocated(error)) return
-    self%warned_of_border = self%stepper%now%interfaces%border_reached
     call self%fields%check_deck(communicator, self%base, deck%text, error)
     if (allocated(error)) return
     last_row = self%history%last_row
-    call self%history%resume(communicator, self%base//'_history.csv', column_names(), column_whole(), rows, last_row, &
-                             error)
+    call self%history%resume(communicator, self%base//'_history.csv', column_names(deck%delaminations), &
+                             column_whole(size(deck%delaminations)), rows, last_row, error)
     if (allocated(error)) return
     if (self%history%rows /= rows) &
       call self%log%warning('The history before the checkpoint is not there; it goes on from here.')
-    call self%fields%resume(communicator, self%base, self%provenance, part_of(self), self%stepper%now%time, error)
+    call self%fields%resume(communicator, self%base, self%provenance, part_of(self), &
+                            shown_time(self%stepper%now%time), error)
     if (allocated(error)) return
     call write_mesh(self%model, self%fields, error)
     call self%progress%start(self%stepper%now%time/end_of(self))
+    self%is_ready = .not. allocated(error)
   end subroutine resume
 
   !> Saves or loads all that evolves.
@@ -213,6 +231,8 @@ contains
     call self%history_clock%visit(archive, 'history')
     call self%fields_clock%visit(archive, 'fields')
     call self%checkpoint_clock%visit(archive, 'checkpoint')
+    call self%record%visit(archive)
+    call self%energy_watch%visit(archive)
     call archive%item('history/rows', rows)
     call archive%item('history/last_row', self%history%last_row)
   end subroutine visit
@@ -249,7 +269,7 @@ contains
       call self%timers%stop('results')
       if (allocated(error)) return
       call self%progress%update(self%log, self%stepper%now%time/end_of(self), 'step '// &
-                                to_text(self%stepper%now%step)//', time '//to_text(self%stepper%now%time))
+                                to_text(self%stepper%now%step)//', time '//rounded_text(self%stepper%now%time))
       call self%wall_limit%learn(wall_time() - step_begun)
       call stop_if_due(self, error)
       if (allocated(error)) return
@@ -273,7 +293,7 @@ contains
     cause = 'as the time on the wall is up'
     if (signalled) cause = 'by a signal'
     call save_checkpoint(self, error)
-    call fail(error, exit_stopped, 'Stopped '//cause//' at time '//to_text(self%stepper%now%time)// &
+    call fail(error, exit_stopped, 'Stopped '//cause//' at time '//rounded_text(self%stepper%now%time)// &
               '; go on with: implam restart '//self%base//checkpoint_ending)
   end subroutine stop_if_due
 
@@ -289,7 +309,8 @@ contains
     real(wp) :: closest
     logical :: row_due, fields_due, checkpoint_due
 
-    call warn(self)
+    call self%record%observe(self%model, self%stepper%now)
+    call give_warnings(self%deck, self%stepper%now, self%record, self%energy_watch, self%log)
     row_due = self%history_clock%interval <= 0 .or. self%stepper%now%time >= end_of(self)
     fields_due = .false.
     checkpoint_due = .false.
@@ -305,27 +326,6 @@ contains
     if (allocated(error)) return
     if (checkpoint_due) call save_checkpoint(self, error)
   end subroutine write_results
-
-  !> Warns, once each, of what a user must not overlook.
-  subroutine warn(self)
-    !> The run
-    class(simulation_t), intent(inout) :: self
-    real(wp) :: amplitude
-
-    associate (now => self%stepper%now)
-      if (now%interfaces%border_reached .and. .not. self%warned_of_border) then
-        call self%log%warning('A delamination has reached the border of its zone at time '//to_text(now%time)// &
-                              ' and cannot grow on there: if it would, make the zone larger.')
-        self%warned_of_border = .true.
-      end if
-      if (self%deck%has_static) return
-      amplitude = 1
-      if (.not. self%deck%has_impactor) amplitude = self%deck%pressure%amplitude(now%time)
-      if (self%energy_watch%alarms(now%ledger, sum(now%interfaces%ties%deficit()), amplitude)) &
-        call self%log%warning('The time integrators have created more than 1 % of the energy by time '// &
-                              to_text(now%time)//': take smaller steps, or more damping (rho_inf) with delamination.')
-    end associate
-  end subroutine warn
 
   !> Saves a checkpoint.
   subroutine save_checkpoint(self, error)
@@ -359,8 +359,35 @@ contains
     call self%history%close(error)
     call self%progress%finish(self%log, summary(self%stepper))
     call log_costs(self%timers, self%stepper%operator, self%log)
-    call self%log%note('Results: '//self%base//'_history.csv, '//self%base//'.xdmf, '//self%base//'.log')
+    call self%log%note('Results: '//self%base//'_history.csv, '//self%base//'.xdmf, '//self%base//summary_ending// &
+                       ', '//self%base//'.log')
     call self%stepper%operator%solver%release()
   end subroutine finalize
+
+  !> Says what the run has come to, also one that has been stopped or has failed: in NAME_summary.json, and rounded for
+  !> reading in the log. Collective.
+  subroutine conclude(self, error)
+    !> The run
+    class(simulation_t), intent(inout) :: self
+    !> What ended the run before its time; set, if nothing did, if the summary cannot be written
+    type(error_t), allocatable, intent(inout) :: error
+    type(run_figures_t) :: figures
+    type(error_t), allocatable :: fault
+    type(line_t), allocatable :: lines(:)
+    integer :: i
+
+    if (.not. self%is_ready) return
+    call find_figures(self%model, self%stepper%now, figures)
+    lines = lines_of_summary(self%deck, self%stepper%now, self%record, figures)
+    do i = 1, size(lines)
+      call self%log%note(lines(i)%text)
+    end do
+    if (self%communicator%is_root()) &
+      call write_summary(self%base//summary_ending, &
+                         summary_text(self%deck, self%stepper, self%record, figures, ending_of(error), &
+                                      self%provenance, wall_time() - self%begun), fault)
+    call self%communicator%agree(fault)
+    if (allocated(fault) .and. .not. allocated(error)) error = fault
+  end subroutine conclude
 
 end module simulations

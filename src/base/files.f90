@@ -5,7 +5,7 @@ module files
   use text, only: to_text
   implicit none
   private
-  public :: file_exists, is_directory, is_pipe, is_readable, rename_file, make_directory, read_whole_file
+  public :: file_exists, is_directory, is_pipe, is_readable, rename_file, remove_file, make_directory, read_whole_file
 
   !> Permissions of new folders before the user's mask: rwx for all (octal 777).
   integer(c_int), parameter :: all_permissions = 511_c_int
@@ -19,6 +19,13 @@ module files
       !> Zero-terminated paths
       character(kind=c_char), intent(in) :: from(*), to(*)
     end function c_rename
+
+    !> C library: removes a file.
+    integer(c_int) function c_unlink(path) bind(c, name='unlink')
+      import :: c_char, c_int
+      !> Zero-terminated path
+      character(kind=c_char), intent(in) :: path(*)
+    end function c_unlink
 
     !> C library: makes a folder.
     integer(c_int) function c_mkdir(path, mode) bind(c, name='mkdir')
@@ -116,6 +123,15 @@ contains
     if (c_rename(from//c_null_char, to//c_null_char) == 0) return
     call fail(error, exit_files, "Can't rename "//from//' to '//to//'.')
   end subroutine rename_file
+
+  !> Removes a file if it is there. One that can't be removed stays: whoever writes it anew will tell.
+  subroutine remove_file(path)
+    !> Its path
+    character(len=*), intent(in) :: path
+    integer(c_int) :: ignored
+
+    ignored = c_unlink(path//c_null_char)
+  end subroutine remove_file
 
   !> Makes a folder and the folders above it, as far as they are not there yet.
   subroutine make_directory(path, error)

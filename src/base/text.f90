@@ -3,7 +3,7 @@ module text
   use kinds, only: wp
   implicit none
   private
-  public :: line_t, lower_case, to_text, joined, words_of, append, edit_distance, nearest_name
+  public :: line_t, lower_case, to_text, rounded_text, joined, words_of, append, edit_distance, nearest_name
 
   !> One line of a list of lines.
   type :: line_t
@@ -57,13 +57,33 @@ contains
 
     ! What fewer digits give ends in zeros here, so that only these have to be tried.
     do places = 14, 16
-      write (form, '(a,i0,a)') '(es40.', places, ')'
+      ! Without a width of its own an exponent of three digits would lose its letter.
+      write (form, '(a,i0,a)') '(es40.', places, 'e3)'
       write (buffer, form) value
       read (buffer, *, iostat=status) again
       if (status /= 0 .or. again == value) exit
     end do
     digits = plain_decimal(trim(adjustl(buffer)))
   end function real_to_text
+
+  !> A number rounded for reading.
+  pure function rounded_text(value, significant) result(digits)
+    !> The number
+    real(wp), intent(in) :: value
+    !> Significant digits, 1 to 17; four if not given
+    integer, intent(in), optional :: significant
+    !> Such as 0.0004123
+    character(len=:), allocatable :: digits
+    character(len=40) :: buffer
+    character(len=12) :: form
+    integer :: places
+
+    places = 3
+    if (present(significant)) places = significant - 1
+    write (form, '(a,i0,a)') '(es40.', places, 'e3)'
+    write (buffer, form) value
+    digits = plain_decimal(trim(adjustl(buffer)))
+  end function rounded_text
 
   !> A number in scientific form without trailing zeros, and without its exponent where that is easier to read.
   pure function plain_decimal(scientific) result(plain)

@@ -47,6 +47,7 @@ module deck_problems
     procedure :: is_full
     procedure :: exit_code
     procedure :: lines
+    procedure :: remarks
     procedure, private :: add
     procedure, private :: line_of
   end type problems_t
@@ -193,6 +194,26 @@ contains
       end do
     end do
   end function lines
+
+  !> The warnings without the deck's name, which a restart does not know, in the order they were found.
+  function remarks(self) result(list)
+    class(problems_t), intent(in) :: self
+    !> Lines such as `line 7: &time step = 1e-6: ...`
+    type(line_t), allocatable :: list(:)
+    integer :: i
+
+    allocate (list(0))
+    do i = 1, size(self%list)
+      associate (problem => self%list(i))
+        if (.not. problem%is_warning) cycle
+        if (problem%line > 0) then
+          call append(list, 'line '//to_text(problem%line)//': '//problem%message)
+        else
+          call append(list, problem%message)
+        end if
+      end associate
+    end do
+  end function remarks
 
   !> One fault as the user reads it.
   function line_of(self, problem) result(line)

@@ -3,7 +3,7 @@ module time_stepping
   use kinds, only: wp
   use errors, only: error_t, fail, exit_convergence
   use archives, only: archive_t
-  use text, only: to_text
+  use text, only: rounded_text
   use impactor_integrators, only: largest_safe_step
   use stepping_parameters, only: stepping_t
   use linear_solver_parameters, only: linear_solver_parameters_t
@@ -16,6 +16,7 @@ module time_stepping
   use dynamic_steps, only: dynamic_step_t, new_dynamic_step
   use static_steps, only: static_step_t, new_static_step
   use struck_stresses, only: struck_stress
+  use front_growth, only: find_release_ratio
   use growth_in_steps, only: grow_in_step, grows_by_steps
   use plate_options, only: kinematics_von_karman
   implicit none
@@ -121,8 +122,8 @@ contains
       call self%controller%reject(step)
       self%operator%ready = .false.
       if (step <= self%smallest_step(model)*(1 + 1.0e-9_wp)) then
-        call fail(error, exit_convergence, 'No equilibrium from time '//to_text(self%now%time)// &
-                  ' on with the smallest step, '//to_text(step)//'.')
+        call fail(error, exit_convergence, 'No equilibrium from time '//rounded_text(self%now%time)// &
+                  ' on with the smallest step, '//rounded_text(step)//'.')
         return
       end if
     end do
@@ -145,7 +146,7 @@ contains
       problem = new_static_step(model, self%now%time)
       call solve_step(problem, model, self%stepping%equilibrium, self%operator, self%now, self%trial, converged, error)
       if (.not. (allocated(error) .or. converged)) &
-        call fail(error, exit_convergence, 'No equilibrium at '//to_text(self%now%time)// &
+        call fail(error, exit_convergence, 'No equilibrium at '//rounded_text(self%now%time)// &
                   ' of the load: what is left of the plate after failures of plies does not bear it.')
       if (allocated(error)) return
       self%trial%step = self%now%step
@@ -243,6 +244,7 @@ contains
     !> Step taken
     real(wp), intent(in) :: step
     type(state_t), allocatable :: before
+    logical :: damaged(size(model%mesh%zones))
     real(wp) :: change
     logical :: extended
 
@@ -253,7 +255,10 @@ contains
     call self%trial%plies%grow(model, [self%now%time, self%trial%time], self%now%motion%displacement, &
                                self%trial%motion%displacement)
     if (self%trial%plies%softened) call book_failures(model, self%now, self%trial)
-    if (self%trial%interfaces%cohesive%border_reached(model)) self%trial%interfaces%border_reached = .true.
+    if (model%scene%has_static) call find_release_ratio(model, self%trial%plies%stiffness, self%trial%motion, &
+                                                        self%trial%interfaces)
+    damaged = self%trial%interfaces%cohesive%border_reached(model)
+    self%trial%interfaces%border_reached = self%trial%interfaces%border_reached .or. damaged
     self%trial%interfaces%faces%glued = self%trial%interfaces%faces%glued .or. model%scene%has_impactor .and. &
                                   self%trial%impactor%velocity <= 0 .and. self%trial%force < self%now%force
     extended = self%trial%ledger%delamination > self%now%ledger%delamination

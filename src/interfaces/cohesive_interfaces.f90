@@ -28,14 +28,15 @@ module cohesive_interfaces
     procedure :: add_forces
     !> Energy dissipated since an earlier state.
     procedure :: dissipation
-    !> Area dissipated.
+    !> Area and energy dissipated.
     procedure :: area
+    procedure :: energy => dissipated_energy
     !> Damage, dissipated part of the toughness, share of shear and pressure at the points.
     procedure :: damage
     procedure :: shares
     procedure :: shear_share
     procedure :: pressure
-    !> True once damage has reached the border of a zone.
+    !> True for zones whose border damage has reached.
     procedure :: border_reached
     !> Faces of an interface.
     procedure :: faces_of
@@ -139,6 +140,25 @@ contains
     area = area*model%mesh%multiplicity
   end function area
 
+  !> Energy dissipated in each zone of the whole plate, the same on every rank.
+  function dissipated_energy(self, model) result(energy)
+    !> The interfaces
+    class(cohesive_interfaces_t), intent(in) :: self
+    type(model_t), intent(in) :: model
+    !> The energy, (zones); zero for zones without a cohesive law
+    real(wp) :: energy(size(model%mesh%zones))
+    integer :: i
+
+    energy = 0
+    if (.not. allocated(self%cohesive)) return
+    do i = 1, model%distribution%owned
+      if (self%cohesive(i)) energy(model%zone(i)) = energy(model%zone(i)) &
+                                                    + model%contact_area(i)*self%points(i)%dissipated
+    end do
+    call model%communicator%sum(energy)
+    energy = energy*model%mesh%multiplicity
+  end function dissipated_energy
+
   !> Damage of this rank's points.
   pure function damage(self, model)
     !> The interfaces
@@ -213,20 +233,25 @@ contains
     holds_closed = model%scene%delaminations(zone)%contact /= contact_none
   end function holds_closed
 
-  !> True once a point beside the border of a zone has been damaged: growth ends there. The same on every rank.
-  logical function border_reached(self, model)
+  !> True for zones where a point beside the border has been damaged: growth ends there. The same on every rank.
+  function border_reached(self, model)
     !> The interfaces
     class(cohesive_interfaces_t), intent(in) :: self
     type(model_t), intent(in) :: model
+    !> (zones)
+    logical :: border_reached(size(model%mesh%zones))
+    real(wp) :: reached(size(model%mesh%zones))
     integer :: i
 
     border_reached = .false.
     if (.not. allocated(self%cohesive)) return
+    reached = 0
     do i = 1, model%distribution%owned
       if (.not. self%cohesive(i)) cycle
-      if (self%points(i)%damage > 0) border_reached = border_reached .or. model%beside_border(i)
+      if (self%points(i)%damage > 0 .and. model%beside_border(i)) reached(model%zone(i)) = 1
     end do
-    border_reached = model%communicator%any(border_reached)
+    call model%communicator%maximum(reached)
+    border_reached = reached > 0
   end function border_reached
 
   !> Faces of an interface.

@@ -9,7 +9,7 @@ module front_growth
   use models, only: model_t
   implicit none
   private
-  public :: grow_fronts
+  public :: grow_fronts, find_release_ratio
 
   !> Segments within this part of the largest ratio delaminate together, so that a symmetric front stays so.
   real(wp), parameter :: together = 0.95_wp
@@ -46,6 +46,27 @@ contains
     if (grown) call open_faces(model, motion, state)
   end subroutine grow_fronts
 
+  !> Finds how near the fronts of a state are to growth, where they cannot grow: under the loads of a static analysis.
+  subroutine find_release_ratio(model, stiffness, motion, state)
+    type(model_t), intent(in) :: model
+    !> Section stiffness left in the elements, (lanes, 21, batches)
+    real(wp), intent(in) :: stiffness(:, :, :)
+    !> Motion with its forces
+    type(motion_t), intent(in) :: motion
+    !> The interfaces; receive the largest ratio
+    type(interface_state_t), intent(inout) :: state
+    type(front_energy_release_t) :: front
+    integer :: zone
+
+    state%release_ratio = 0
+    do zone = 1, size(model%mesh%zones)
+      if (model%scene%delaminations(zone)%law == law_cohesive) cycle
+      front = release_along_front(model, stiffness, state%faces, motion, zone, &
+                                  model%scene%delaminations(zone)%energy_release)
+      if (size(front%segments) > 0) state%release_ratio = max(state%release_ratio, maxval(front%ratio))
+    end do
+  end subroutine find_release_ratio
+
   !> Takes the cells ahead of the most loaded segments of one front apart.
   subroutine release_cells(model, state, zone, front, fracture, grown)
     type(model_t), intent(in) :: model
@@ -63,7 +84,7 @@ contains
     integer :: s, foremost
 
     ! Where the layers end, virtual crack closure finds no force to close: a rate cannot tell that growth is barred.
-    state%border_reached = state%border_reached .or. any(front%segments%at_border)
+    state%border_reached(zone) = state%border_reached(zone) .or. any(front%segments%at_border)
     foremost = maxloc(front%ratio, mask=.not. front%segments%at_border, dim=1)
     ! A delamination that fills its zone has no front but the border; faces that are glued cannot delaminate.
     if (foremost == 0) return
@@ -81,6 +102,7 @@ contains
         call region%release(segment%outside)
         energy = cell_energy(s)*model%mesh%multiplicity
         fracture = fracture + energy
+        state%faces%fracture(zone) = state%faces%fracture(zone) + energy
         grown = .true.
         if (model%scene%delaminations(zone)%growth == growth_one_per_step) return
         state%ties%required(zone) = state%ties%required(zone) + energy

@@ -1,13 +1,14 @@
 !> What the history tells of the interfaces. A new column goes to the end of the border's rows, with its value in the
-!> function beside them: all columns before it stay where they are.
+!> function beside them: all columns before it stay where they are. One that each interface has goes to the last rows.
 module interface_columns
   use kinds, only: wp
+  use interface_figures, only: figures_of, interface_figures_t
   use interface_states, only: interface_state_t
   use models, only: model_t
   use result_tables, only: result_row_length
   implicit none
   private
-  public :: area_values, release_values, border_values
+  public :: area_values, release_values, border_values, interface_values
 
   !> How much has delaminated: a column of the public interface.
   character(len=result_row_length), parameter, public :: area_rows(*) = [character(len=result_row_length) :: &
@@ -16,8 +17,8 @@ module interface_columns
 
   !> How near the fronts are to growth, what growth has set free, and how well faces meet.
   character(len=result_row_length), parameter, public :: release_rows(*) = [character(len=result_row_length) :: &
-    'release_ratio | real | - | Largest energy release rate on all fronts over its critical value; 0 in a static &
-      &analysis.', &
+    'release_ratio | real | - | Largest energy release rate on all fronts over its critical value; in a static &
+      &analysis they do not grow whatever it is.', &
     'energy_released | real | energy | Work done against the fading forces of released ties so far; 0 if all &
       &interfaces have growth = ''one_per_step''.', &
     'penetration | real | length | Largest penetration of separated faces, with a cohesive law of all.', &
@@ -31,6 +32,17 @@ module interface_columns
     'projected_area | real | area | Area that a C-scan sees: where several interfaces have delaminated above each &
       &other, the largest of them counts once.']
 
+  !> One interface. These rows come again for each, N its ply.
+  character(len=result_row_length), parameter, public :: interface_rows(*) = [character(len=result_row_length) :: &
+    'stage_below_N | integer | - | The interface below ply N, starter left out: 0 intact, 1 a cohesive law has begun &
+      &to soften, 2 grown. These columns come for each interface.', &
+    'area_below_N | real | area | Delaminated area of the interface below ply N, its starter included; with a cohesive &
+      &law the area dissipated.', &
+    'energy_below_N | real | energy | Fracture energy taken by the interface below ply N.', &
+    'extent_x_below_N | real | length | Length along x of what has come apart below ply N, starter included: cells, or &
+      &nodes where a cohesive law has failed.', &
+    'extent_y_below_N | real | length | The same along y.']
+
 contains
 
   !> How much has delaminated. Collective.
@@ -41,7 +53,7 @@ contains
     !> A value a column, of the whole plate
     real(wp) :: values(size(area_rows))
 
-    values = [interfaces%faces%area(model) + sum(interfaces%cohesive%area(model))]
+    values = [sum(interfaces%faces%area(model)) + sum(interfaces%cohesive%area(model))]
   end function area_values
 
   !> How near the fronts are to growth, what growth has set free, and how well faces meet. Collective.
@@ -67,27 +79,25 @@ contains
     !> A value a column
     real(wp) :: values(size(border_rows))
 
-    values = [merge(1.0_wp, 0.0_wp, interfaces%border_reached), projected_area(model, interfaces)]
+    values = [merge(1.0_wp, 0.0_wp, any(interfaces%border_reached)), interfaces%projected_area(model)]
   end function border_values
 
-  !> Area in which at least one interface has delaminated, of the whole plate: nodal areas times the largest part
-  !> delaminated above each other. Collective.
-  function projected_area(model, interfaces) result(area)
+  !> Figures of each interface, one interface after the other. Collective.
+  function interface_values(model, interfaces) result(values)
     type(model_t), intent(in) :: model
     !> The interfaces
     type(interface_state_t), intent(in) :: interfaces
-    real(wp) :: area
-    real(wp), allocatable :: shares(:)
-    integer :: nodes, zone
+    !> A value a column and interface
+    real(wp) :: values(size(interface_rows)*size(model%mesh%zones))
+    type(interface_figures_t) :: figures(size(model%mesh%zones))
+    integer :: zone
 
-    area = 0
-    if (.not. model%map%layered) return
-    nodes = model%mesh%nodes()
-    shares = interfaces%area_at_nodes(model)
-    call model%communicator%sum(shares)
-    do zone = 2, size(model%mesh%zones)
-      shares(:nodes) = max(shares(:nodes), shares((zone - 1)*nodes + 1:zone*nodes))
+    figures = figures_of(model, interfaces)
+    do zone = 1, size(figures)
+      associate (of => figures(zone), first => (zone - 1)*size(interface_rows))
+        values(first + 1:first + size(interface_rows)) = &
+          [real(of%stage, wp), of%area, of%energy, of%bounds(2, :) - of%bounds(1, :)]
+      end associate
     end do
-    area = sum(shares(:nodes))*model%mesh%multiplicity
-  end function projected_area
+  end function interface_values
 end module interface_columns

@@ -22,13 +22,13 @@ module interface_states
     real(wp) :: release_ratio = 0
     !> The same of those fronts that can grow, not at the border of their zone
     real(wp) :: growth_ratio = 0
-    !> True once a front has reached the border of its zone, where it cannot grow on
-    logical :: border_reached = .false.
+    !> True once a front or damage has reached the border of its zone, where it cannot grow on, (zones)
+    logical, allocatable :: border_reached(:)
   contains
     !> Adds the forces of ties and contact to a residual.
     procedure :: act
-    !> Area delaminated at every node of the mesh.
-    procedure :: area_at_nodes
+    !> Area that a C-scan sees.
+    procedure :: projected_area
     !> Stiffness that ties, contact and cohesive laws add to the diagonal.
     procedure :: added_stiffness
     !> Saves or loads the state.
@@ -43,6 +43,7 @@ contains
     !> The state
     type(interface_state_t) :: self
 
+    allocate (self%border_reached(size(model%mesh%zones)), source=.false.)
     self%faces = new_contact_and_ties(model)
     self%ties = new_tie_release(model)
     if (model%map%layered) self%cohesive = new_cohesive_interfaces(model, self%faces%free)
@@ -62,27 +63,46 @@ contains
     call self%faces%act(model, displacement, residual)
   end subroutine act
 
-  !> Area that has delaminated at the nodes of the mesh, of this rank's points: a node where ties are released has its
-  !> whole area, a cohesive one the part dissipated.
-  pure function area_at_nodes(self, model) result(area)
+  !> Area in which at least one interface has delaminated, of the whole plate: nodal areas times the largest part
+  !> delaminated above each other. A node where ties are released has delaminated as a whole, a cohesive one by the part
+  !> dissipated. All points of a node belong to one rank, so that only the sum is collective.
+  function projected_area(self, model) result(area)
     !> The state
     class(interface_state_t), intent(in) :: self
     type(model_t), intent(in) :: model
-    !> Area, zone after zone, (nodes*zones)
-    real(wp) :: area(model%mesh%nodes()*size(model%mesh%zones))
-    real(wp) :: shares(size(model%zone))
-    integer :: i, place
+    real(wp) :: area
+    real(wp), allocatable :: shares(:)
+    real(wp) :: largest
+    integer :: i
 
     area = 0
+    if (.not. model%map%layered) return
     shares = self%cohesive%shares(model)
     ! Starters of cohesive interfaces are free too, and dissipated as a whole.
     where (self%faces%free) shares = 1
+    largest = 0
     do i = 1, model%distribution%owned
       if (model%zone(i) == 0) cycle
-      place = model%mesh%point_node(model%distribution%points(i)) + (model%zone(i) - 1)*model%mesh%nodes()
-      area(place) = shares(i)*model%contact_area(i)
+      largest = max(largest, shares(i)*model%contact_area(i))
+      if (i < model%distribution%owned) then
+        if (node_of(i + 1) == node_of(i)) cycle
+      end if
+      area = area + largest
+      largest = 0
     end do
-  end function area_at_nodes
+    call model%communicator%sum(area)
+    area = area*model%mesh%multiplicity
+
+  contains
+
+    !> Node of a point of this rank.
+    pure integer function node_of(i)
+      !> The point
+      integer, intent(in) :: i
+
+      node_of = model%mesh%point_node(model%distribution%points(i))
+    end function node_of
+  end function projected_area
 
   !> Stiffness that ties, contact and cohesive laws add to the diagonal of the operator.
   pure subroutine added_stiffness(self, model, diagonal, stiffness_factor, added)
@@ -111,10 +131,13 @@ contains
     !> Where to or where from
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
+    integer, allocatable :: reached(:)
 
     call archive%item('release_ratio', self%release_ratio)
     call archive%item('growth_ratio', self%growth_ratio)
-    call archive%item('border_reached', self%border_reached)
+    reached = merge(1, 0, self%border_reached)
+    call archive%item('border_reached', reached)
+    self%border_reached = reached == 1
     call self%faces%visit(archive, model)
     call self%ties%visit(archive, model)
     call self%cohesive%visit(archive, model)

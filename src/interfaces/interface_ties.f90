@@ -20,6 +20,8 @@ module interface_ties
     logical, allocatable :: free(:)
     !> True: separated faces move together (the paper's shortcut for unloading)
     logical :: glued = .false.
+    !> Fracture energy of the cells that fronts have released, of the whole plate, (zones), the same on every rank
+    real(wp), allocatable :: fracture(:)
   contains
     !> Finds which jumps are free, after a growth.
     procedure :: free_jumps
@@ -31,7 +33,7 @@ module interface_ties
     procedure :: hold
     !> Largest penetration.
     procedure :: penetration
-    !> Delaminated area of the whole plate.
+    !> Delaminated area of each zone of the whole plate.
     procedure :: area
     !> Saves or loads.
     procedure :: visit
@@ -47,6 +49,7 @@ contains
     integer :: zone
 
     allocate (self%regions(size(model%mesh%zones)))
+    allocate (self%fracture(size(model%mesh%zones)), source=0.0_wp)
     do zone = 1, size(self%regions)
       self%regions(zone) = create_region(model%mesh, zone, model%scene%delaminations(zone)%starter)
     end do
@@ -150,11 +153,13 @@ contains
     call model%communicator%maximum(penetration)
   end function penetration
 
-  !> Delaminated area of all interfaces of the whole plate.
-  pure real(wp) function area(self, model)
+  !> Delaminated area of each zone of the whole plate where fronts release ties.
+  pure function area(self, model)
     !> The bonds
     class(interface_ties_t), intent(in) :: self
     type(model_t), intent(in) :: model
+    !> The area, (zones); zero for zones with a cohesive law
+    real(wp) :: area(size(self%regions))
     integer :: zone, i, j
 
     area = 0
@@ -162,7 +167,7 @@ contains
       if (model%scene%delaminations(zone)%law == law_cohesive) cycle
       do j = self%regions(zone)%rows(1), self%regions(zone)%rows(2)
         do i = self%regions(zone)%columns(1), self%regions(zone)%columns(2)
-          if (self%regions(zone)%is_delaminated(i, j)) area = area + model%mesh%cell_area([i, j])
+          if (self%regions(zone)%is_delaminated(i, j)) area(zone) = area(zone) + model%mesh%cell_area([i, j])
         end do
       end do
     end do
@@ -182,6 +187,7 @@ contains
       call self%regions(zone)%visit(archive, 'zone'//achar(iachar('0') + zone))
     end do
     if (.not. model%map%layered) return
+    call archive%item('faces/fracture', self%fracture)
     call archive%item('faces/glued', self%glued)
     if (archive%loading) call self%free_jumps(model)
   end subroutine visit

@@ -24,7 +24,7 @@ module rank_groups
     !> Replaces a value by its sum over the ranks, the same on every rank.
     generic :: sum => sum_real, sum_reals, sum_integer, sum_long
     !> Replaces a value by its greatest over the ranks.
-    generic :: maximum => maximum_real, maximum_integer
+    generic :: maximum => maximum_real, maximum_reals, maximum_integer
     !> Replaces a value by its least over the ranks.
     generic :: minimum => minimum_real, minimum_integer
     !> Whether a flag is raised on at least one rank.
@@ -36,7 +36,7 @@ module rank_groups
     !> Waits for all ranks.
     procedure :: barrier
     procedure, private :: sum_real, sum_reals, sum_integer, sum_long
-    procedure, private :: maximum_real, maximum_integer, minimum_real, minimum_integer
+    procedure, private :: maximum_real, maximum_reals, maximum_integer, minimum_real, minimum_integer
   end type rank_group_t
 
 contains
@@ -104,6 +104,16 @@ contains
     if (self%size == 1) return
     call MPI_Allreduce(MPI_IN_PLACE, value, 1, MPI_DOUBLE_PRECISION, MPI_MAX, self%group)
   end subroutine maximum_real
+
+  !> Greatest reals of the ranks, item by item.
+  subroutine maximum_reals(self, values)
+    class(rank_group_t), intent(in) :: self
+    !> This rank's values; the greatest on return
+    real(wp), contiguous, intent(inout) :: values(:)
+
+    if (self%size == 1) return
+    call MPI_Allreduce(MPI_IN_PLACE, values, size(values), MPI_DOUBLE_PRECISION, MPI_MAX, self%group)
+  end subroutine maximum_reals
 
   !> Greatest integer of the ranks.
   subroutine maximum_integer(self, value)

@@ -23,8 +23,9 @@ module ply_failures
   contains
     !> Finds new failures in an accepted state and takes stiffness away.
     procedure :: grow
-    !> Number of ply elements failed in each mode, of the whole plate.
+    !> Number of ply elements failed in each mode, and area failed in each ply, of the whole plate.
     procedure :: counts
+    procedure :: areas
     !> Saves or loads.
     procedure :: visit
   end type ply_failure_t
@@ -97,6 +98,29 @@ contains
       call model%communicator%sum(counts(mode))
     end do
   end function counts
+
+  !> Area in which each ply has failed in each mode, of the whole plate. Collective.
+  function areas(self, model)
+    !> The failures
+    class(ply_failure_t), intent(in) :: self
+    type(model_t), intent(in) :: model
+    !> (modes, plies)
+    real(wp) :: areas(failure_modes, size(model%plies))
+    real(wp) :: cells(model%elements%elements)
+    integer :: ply, mode, i
+
+    areas = 0
+    if (.not. model%scene%has_ply_damage) return
+    do i = 1, size(cells)
+      cells(i) = model%mesh%cell_area(model%mesh%place_of(model%mesh%element_cell(model%distribution%elements(i))))
+    end do
+    do ply = 1, size(model%plies)
+      associate (failed => self%onset%failed(ply))
+        areas(:, ply) = [(sum(cells, mask=failed(mode, :)), mode=1, failure_modes)]*model%mesh%multiplicity
+      end associate
+      call model%communicator%sum(areas(:, ply))
+    end do
+  end function areas
 
   !> Saves or loads the failures.
   subroutine visit(self, archive, model)

@@ -1,9 +1,10 @@
-!> NAME_history.csv: a row an accepted step, numbers exact to the last bit. Only the first rank writes,
-!> yet every routine is collective, so that all ranks agree on errors.
+!> NAME_history.csv: a row an accepted step, in columns of fixed width, numbers exact to the last bit. Only the first
+!> rank writes, yet every routine is collective, so that all ranks agree on errors.
 module history_file
   use communicators, only: communicator_t
   use errors, only: error_t, exit_files, exit_internal, fail
   use files, only: file_exists, rename_file
+  use history_rows, only: header, row, widths_of
   use kinds, only: long, wp
   use output_streams, only: output_stream_t
   use text, only: to_text
@@ -28,6 +29,8 @@ module history_file
     character(len=:), allocatable, private :: path
     !> Columns that hold integers
     logical, allocatable, private :: whole(:)
+    !> Characters of each column
+    integer, allocatable, private :: widths(:)
     !> The file, open on the first rank
     type(output_stream_t), private :: file
     !> Clock at the last flush
@@ -61,6 +64,7 @@ contains
     self%communicator = communicator
     self%path = path
     self%whole = whole
+    self%widths = widths_of(columns, whole)
     self%rows = 0
     if (allocated(self%last_row)) deallocate (self%last_row)
     if (communicator%is_root()) then
@@ -102,10 +106,12 @@ contains
     self%communicator = communicator
     self%path = path
     self%whole = whole
+    self%widths = widths_of(columns, whole)
     self%rows = 0
     ! The kept rows are written aside: a kill meanwhile leaves the old history whole.
     if (communicator%is_root()) then
-      call keep_rows(path, path//'.tmp', header(columns), rows_to_keep, row(last_row, whole), self%rows, error)
+      call keep_rows(path, path//'.tmp', header(columns), rows_to_keep, &
+                     row(last_row, whole, self%widths), self%rows, error)
       if (.not. allocated(error)) call rename_file(path//'.tmp', path, error)
       if (.not. allocated(error)) call self%file%open(path, 'a')
     end if
@@ -132,7 +138,7 @@ contains
     self%rows = self%rows + 1
     self%last_row = values
     if (self%file%is_open()) then
-      call self%file%put_line(row(values, self%whole))
+      call self%file%put_line(row(values, self%whole, self%widths))
       call system_clock(now, rate)
       if (now - self%flushed > longest_wait*rate) then
         call self%file%flush()
@@ -295,43 +301,4 @@ contains
       place = place + length
     end do
   end subroutine copy_bytes
-
-  !> First line of the file.
-  pure function header(columns) result(line)
-    !> Names of the columns
-    character(len=*), intent(in) :: columns(:)
-    !> The line
-    character(len=:), allocatable :: line
-    integer :: i
-
-    line = ''
-    do i = 1, size(columns)
-      if (i > 1) line = line//','
-      line = line//trim(columns(i))
-    end do
-  end function header
-
-  !> One row as text.
-  pure function row(values, whole) result(line)
-    !> The numbers
-    real(wp), intent(in) :: values(:)
-    !> Columns that hold integers
-    logical, intent(in) :: whole(:)
-    !> The line
-    character(len=:), allocatable :: line
-    ! 17 significant digits give every double back exactly.
-    character(len=25) :: number
-    integer :: i
-
-    line = ''
-    do i = 1, size(values)
-      if (whole(i)) then
-        write (number, '(i0)') nint(values(i), long)
-      else
-        write (number, '(es25.16e3)') values(i)
-      end if
-      if (i > 1) line = line//','
-      line = line//trim(adjustl(number))
-    end do
-  end function row
 end module history_file

@@ -5,7 +5,7 @@ module output_clocks
   use archives, only: archive_t
   implicit none
   private
-  public :: clock_t, next_event
+  public :: clock_t, next_event, shown_time
 
   !> Distance of two events, relative to their time, that rounding may bring about.
   real(wp), parameter :: rounding = 1.0e-12_wp
@@ -43,6 +43,17 @@ contains
       if (clocks(i)%next() < end - clocks(i)%margin(closest)) event = min(event, clocks(i)%next())
     end do
   end function next_event
+
+  !> A time as results show it: what the sums of steps and the products of intervals leave behind twelve digits is
+  !> rounding, and makes 0.00042500000000000003 of 0.000425.
+  pure real(wp) function shown_time(time)
+    !> The time, or load factor
+    real(wp), intent(in) :: time
+    character(len=20) :: digits
+
+    write (digits, '(es20.11e3)') time
+    read (digits, *) shown_time
+  end function shown_time
 
   !> Time of the next strike; huge if there is none.
   pure real(wp) function next(self)

@@ -8,7 +8,8 @@ module result_paths
 
   !> Endings of all files that a run opens, those written aside included.
   character(len=*), parameter :: endings(*) = [character(len=24) :: '.log', '_history.csv', '_history.csv.tmp', '.h5', &
-    '.h5.reserve', '.xdmf', '.xdmf.tmp', '_restart.h5', '_restart.h5.tmp', '_restart.h5.tmp.reserve']
+    '.h5.reserve', '.xdmf', '.xdmf.tmp', '_summary.json', '_summary.json.tmp', '_restart.h5', '_restart.h5.tmp', &
+    '_restart.h5.tmp.reserve']
 
 contains
 

@@ -2,10 +2,10 @@
 !> are parted by bars. Each folder brings the rows of what it knows; the header of the history, `implam explain`, the
 !> manual and the attributes in the field file are all made from them.
 module result_tables
-  use text, only: append, line_t
+  use text, only: append, line_t, to_text
   implicit none
   private
-  public :: cell, field_row, is_number_type, is_place, is_unit_kind, markdown_table, plain_table
+  public :: cell, field_row, is_number_type, is_place, is_unit_kind, markdown_table, name_with_number, plain_table
 
   !> Characters of a row, enough for the longest.
   integer, parameter, public :: result_row_length = 220
@@ -103,6 +103,21 @@ contains
     end do
     pattern = pattern(:len(pattern) - 1)
   end function with_n_for_numbers
+
+  !> A name with a number for its N.
+  pure function name_with_number(pattern, number) result(name)
+    !> Such as area_below_N
+    character(len=*), intent(in) :: pattern
+    !> The number
+    integer, intent(in) :: number
+    !> Such as area_below_3; the pattern itself if it has no N between underscores
+    character(len=:), allocatable :: name
+    integer :: place
+
+    name = pattern
+    place = index(pattern//'_', '_N_')
+    if (place > 0) name = pattern(:place)//to_text(number)//pattern(place + 2:)
+  end function name_with_number
 
   !> True for a physical dimension that results may have.
   pure logical function is_unit_kind(word)

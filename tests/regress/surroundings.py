@@ -12,7 +12,8 @@ from restart import exit_code, ranks_of, start, wait_until
 from solver_runs import EXIT_DONE, EXIT_FILES, read_history, require, run, run_deck, write_deck
 
 DECK = "../small/ply_damage.nml"
-RESULTS = {f"ply_damage{ending}" for ending in (".log", "_history.csv", ".h5", ".xdmf", "_restart.h5")} | {"deck.nml"}
+ENDINGS = (".log", "_history.csv", ".h5", ".xdmf", "_summary.json", "_restart.h5")
+RESULTS = {f"ply_damage{ending}" for ending in ENDINGS} | {"deck.nml"}
 OFTEN = ["output%fields_every=10e-6", "output%checkpoint_every=10e-6"]
 
 

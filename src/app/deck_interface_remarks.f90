@@ -1,0 +1,101 @@
+!> Remarks on interfaces that a deck may mean otherwise: plies of one angle on both sides, and a zone that reaches
+!> beyond the fine core of the mesh.
+module deck_interface_remarks
+  use cell_grids, only: cell_edges
+  use deck_contents, only: deck_t
+  use deck_problems, only: problems_t
+  use deck_remarks, only: remark
+  use delaminated_regions, only: cells_within
+  use delamination_deck, only: delamination_group, key_below_ply, key_zone
+  use kinds, only: wp
+  use material_parameters, only: material_t
+  use short_numbers, only: short_text
+  implicit none
+  private
+  public :: check_interfaces
+
+  !> Angles nearer than this, in degrees, are one.
+  real(wp), parameter :: same = 1.0e-6_wp
+
+contains
+
+  !> Adds the remarks.
+  subroutine check_interfaces(deck, problems)
+    !> The deck, filled and checked
+    type(deck_t), intent(in) :: deck
+    !> Receives the warnings
+    type(problems_t), intent(inout) :: problems
+    integer :: place
+
+    if (problems%errors() > 0) return
+    do place = 1, size(deck%delaminations)
+      if (lies_within_a_block(deck, deck%delaminations(place)%below_ply)) &
+        call remark(deck%settings, problems, delamination_group, key_below_ply, 'the plies above and below are of '// &
+                    'one material and angle, and act as one thick ply; impacts part plies of different angles.', place)
+      if (any(beyond_core(deck, deck%delaminations(place)%zone))) &
+        call remark(deck%settings, problems, delamination_group, key_zone, 'reaches beyond the core of the mesh, '// &
+                    'where its cells grow to '//short_text(longest_cell(deck, deck%delaminations(place)%zone))// &
+                    '; make the core as large as the zone.', place)
+    end do
+  end subroutine check_interfaces
+
+  !> True if an interface lies between plies of one orthotropic material and angle, in a laminate that has others too.
+  pure logical function lies_within_a_block(deck, ply) result(within)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Ply above the interface
+    integer, intent(in) :: ply
+
+    associate (laminate => deck%laminate)
+      within = laminate%material(ply) == laminate%material(ply + 1)
+      if (within) within = is_parallel(laminate%angle(ply) - laminate%angle(ply + 1)) .and. &
+                           .not. is_isotropic(deck%materials(laminate%material(ply))) .and. &
+                           .not. all(is_parallel(laminate%angle - laminate%angle(ply)))
+    end associate
+  end function lies_within_a_block
+
+  !> True for a material whose angle means nothing.
+  pure logical function is_isotropic(material)
+    !> The material
+    type(material_t), intent(in) :: material
+
+    is_isotropic = .not. (material%e1 < material%e2 .or. material%e1 > material%e2)
+  end function is_isotropic
+
+  !> True for a difference of two angles whose fibres are parallel.
+  elemental logical function is_parallel(difference)
+    !> The difference in degrees
+    real(wp), intent(in) :: difference
+
+    is_parallel = abs(difference - 180*anint(difference/180)) < same
+  end function is_parallel
+
+  !> True for directions in which a zone reaches a whole cell or more beyond the core; false without a core.
+  pure function beyond_core(deck, zone) result(beyond)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Full extents of the zone
+    real(wp), intent(in) :: zone(2)
+    !> Along x and y
+    logical :: beyond(2)
+
+    beyond = deck%mesh%cell > 0 .and. zone/2 >= deck%mesh%core/2 + deck%mesh%cell
+  end function beyond_core
+
+  !> Longest side of the cells of a zone.
+  pure real(wp) function longest_cell(deck, zone) result(longest)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Full extents of the zone
+    real(wp), intent(in) :: zone(2)
+    real(wp), allocatable :: edges(:)
+    integer :: direction, range(2)
+
+    longest = 0
+    do direction = 1, 2
+      edges = cell_edges(deck%plate, deck%mesh, direction)
+      range = cells_within(edges, zone(direction))
+      longest = max(longest, maxval(edges(range(1) + 1:range(2) + 1) - edges(range(1):range(2))))
+    end do
+  end function longest_cell
+end module deck_interface_remarks

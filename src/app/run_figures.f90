@@ -1,0 +1,84 @@
+!> What is found out at the end of a run for its summary, beside what the run has recorded on its way.
+module run_figures
+  use delamination_parameters, only: toughnesses
+  use errors, only: error_t, exit_done, exit_stopped
+  use interface_figures, only: figures_of, interface_figures_t
+  use kinds, only: wp
+  use models, only: model_t
+  use ply_damage_parameters, only: failure_modes
+  use states, only: state_t
+  use threshold_forces, only: effective_bending_stiffness, patch_factor, threshold_force
+  implicit none
+  private
+  public :: run_figures_t, ending_t, find_figures, ending_of
+
+  !> How a run ended.
+  type :: ending_t
+    !> Exit code of the program
+    integer :: code = exit_done
+    !> done, stopped or failed
+    character(len=7) :: kind = 'done'
+    !> What ended it before its time; empty if nothing did
+    character(len=:), allocatable :: message
+  end type ending_t
+
+  !> Figures of the state that a run has reached, of the whole plate.
+  type :: run_figures_t
+    !> Each interface
+    type(interface_figures_t), allocatable :: interfaces(:)
+    !> Area that a C-scan sees
+    real(wp) :: projected_area = 0
+    !> Plies of elements failed in each mode
+    integer :: failures(failure_modes) = 0
+    !> Area in which each ply has failed in each mode, (modes, plies)
+    real(wp), allocatable :: failed_area(:, :)
+    !> Closed form of the force at which each interface grows, as many equal ones above each other as there are, (zones)
+    real(wp), allocatable :: threshold(:)
+    !> The same of a single interface with a starter under the loaded patch; 0: there are none, or several
+    real(wp) :: starter_threshold = 0
+  end type run_figures_t
+
+contains
+
+  !> Figures of the state reached. Collective.
+  subroutine find_figures(model, now, figures)
+    type(model_t), intent(in) :: model
+    !> The state
+    type(state_t), intent(in) :: now
+    !> Its figures
+    type(run_figures_t), intent(out) :: figures
+    real(wp) :: bending, toughness(2)
+    integer :: zone, zones
+
+    figures%interfaces = figures_of(model, now%interfaces)
+    figures%projected_area = now%interfaces%projected_area(model)
+    figures%failures = now%plies%counts(model)
+    figures%failed_area = now%plies%areas(model)
+    zones = size(figures%interfaces)
+    bending = effective_bending_stiffness(model%section%stiffness)
+    allocate (figures%threshold(zones))
+    do zone = 1, zones
+      toughness = toughnesses(model%scene%delaminations(zone))
+      figures%threshold(zone) = threshold_force(bending, toughness(2), zones)
+    end do
+    if (zones /= 1) return
+    associate (starter => model%scene%delaminations(1)%starter, patch => model%scene%mesh%patch)
+      if (starter > 0) figures%starter_threshold = figures%threshold(1)*patch_factor(patch, starter**2)
+    end associate
+  end subroutine find_figures
+
+  !> How a run ended.
+  pure function ending_of(error) result(ending)
+    !> What ended it; not allocated: it was done
+    type(error_t), allocatable, intent(in) :: error
+    !> The ending
+    type(ending_t) :: ending
+
+    ending%message = ''
+    if (.not. allocated(error)) return
+    ending%code = error%code
+    ending%kind = 'failed'
+    if (error%code == exit_stopped) ending%kind = 'stopped'
+    ending%message = error%message
+  end function ending_of
+end module run_figures

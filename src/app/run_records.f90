@@ -1,0 +1,176 @@
+!> What a run remembers of its course for the summary at its end: extremes, contacts, onsets and warnings.
+module run_records
+  use archives, only: archive_t
+  use interface_figures, only: stage_damaged, stage_grown, stage_intact, stages_of
+  use kinds, only: wp
+  use models, only: model_t
+  use output_clocks, only: shown_time
+  use states, only: state_t
+  implicit none
+  private
+  public :: run_record_t, new_run_record
+
+  !> Kinds of warnings that a run gives: a delamination has reached the border of its zone; integrators have created
+  !> energy.
+  integer, parameter, public :: warning_border = 1, warning_energy = 2
+
+  !> Record of a run. It has many components because it is nothing but what the summary asks for.
+  type :: run_record_t
+    !> Largest contact force and its time
+    real(wp) :: peak_force = 0, peak_time = 0
+    !> Largest deflection of the struck point, either way, with its sign, and its time
+    real(wp) :: deflection = 0, deflection_time = 0
+    !> How often impactor and plate came into contact
+    integer :: contacts = 0
+    !> How long in all they were, and when that last ended or was seen
+    real(wp) :: contact_duration = 0, contact_end = 0
+    !> Time and force of the last step seen
+    real(wp) :: time = 0, force = 0
+    !> Stage that each interface has reached, (zones)
+    integer, allocatable :: stage(:)
+    !> Time, contact force and deflection when each was first seen damaged and grown, (3, zones)
+    real(wp), allocatable :: onset(:, :), growth(:, :)
+    !> Warnings given: their kinds, and the zones that they concern or 0
+    integer, allocatable :: warning_kinds(:), warning_zones(:)
+    !> Their times
+    real(wp), allocatable :: warning_times(:)
+  contains
+    !> Looks at an accepted step.
+    procedure :: observe
+    !> Notes a warning.
+    procedure :: note_warning
+    !> True if a warning was given before.
+    procedure :: has_warned
+    !> Saves or loads.
+    procedure :: visit
+  end type run_record_t
+
+contains
+
+  !> The record of a run that has not begun.
+  pure function new_run_record(model) result(self)
+    type(model_t), intent(in) :: model
+    !> The record
+    type(run_record_t) :: self
+    integer :: zones
+
+    zones = size(model%mesh%zones)
+    allocate (self%stage(zones), source=stage_intact)
+    allocate (self%onset(3, zones), self%growth(3, zones), source=0.0_wp)
+    allocate (self%warning_kinds(0), self%warning_zones(0), self%warning_times(0))
+  end function new_run_record
+
+  !> Looks at an accepted step. Collective.
+  subroutine observe(self, model, now)
+    !> The record
+    class(run_record_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> The state reached
+    type(state_t), intent(in) :: now
+    integer :: stages(size(self%stage)), zone
+    real(wp) :: time
+
+    time = shown_time(now%time)
+    if (now%force > self%peak_force) then
+      self%peak_force = now%force
+      self%peak_time = time
+    end if
+    if (abs(now%deflection) > abs(self%deflection)) then
+      self%deflection = now%deflection
+      self%deflection_time = time
+    end if
+    call follow_contact(self, time, now%force)
+    self%time = time
+    self%force = now%force
+    if (all(self%stage == stage_grown)) return
+    stages = stages_of(model, now%interfaces)
+    do zone = 1, size(stages)
+      if (self%stage(zone) < stage_damaged .and. stages(zone) >= stage_damaged) self%onset(:, zone) = seen(now)
+      if (self%stage(zone) < stage_grown .and. stages(zone) >= stage_grown) self%growth(:, zone) = seen(now)
+    end do
+    self%stage = max(self%stage, stages)
+  end subroutine observe
+
+  !> Time, contact force and deflection of a state.
+  pure function seen(now)
+    !> The state
+    type(state_t), intent(in) :: now
+    !> Its three figures
+    real(wp) :: seen(3)
+
+    seen = [shown_time(now%time), now%force, now%deflection]
+  end function seen
+
+  !> Counts contacts and their time. A contact that begins or ends within a step is taken to do so in its middle; that
+  !> of the start begins with the run.
+  pure subroutine follow_contact(self, time, force)
+    !> The record, of the step before
+    type(run_record_t), intent(inout) :: self
+    !> Time and contact force at the end of the step
+    real(wp), intent(in) :: time, force
+    real(wp) :: from, to
+
+    if (.not. (self%force > 0 .or. force > 0)) return
+    from = self%time
+    to = time
+    if (.not. self%force > 0) then
+      self%contacts = self%contacts + 1
+      if (self%time > 0) from = (self%time + time)/2
+    end if
+    if (.not. force > 0) to = (self%time + time)/2
+    self%contact_duration = shown_time(self%contact_duration + (to - from))
+    self%contact_end = shown_time(to)
+  end subroutine follow_contact
+
+  !> Notes a warning.
+  pure subroutine note_warning(self, kind, zone, time)
+    !> The record
+    class(run_record_t), intent(inout) :: self
+    !> One of the kinds above
+    integer, intent(in) :: kind
+    !> Zone that it concerns; 0: none
+    integer, intent(in) :: zone
+    !> When it is given
+    real(wp), intent(in) :: time
+
+    self%warning_kinds = [self%warning_kinds, kind]
+    self%warning_zones = [self%warning_zones, zone]
+    self%warning_times = [self%warning_times, shown_time(time)]
+  end subroutine note_warning
+
+  !> True if a warning was given before.
+  pure logical function has_warned(self, kind, zone)
+    !> The record
+    class(run_record_t), intent(in) :: self
+    !> One of the kinds above
+    integer, intent(in) :: kind
+    !> Zone that it concerns; 0: none
+    integer, intent(in) :: zone
+
+    has_warned = any(self%warning_kinds == kind .and. self%warning_zones == zone)
+  end function has_warned
+
+  !> Saves or loads the record.
+  subroutine visit(self, archive)
+    !> The record
+    class(run_record_t), intent(inout) :: self
+    !> Where to or where from
+    class(archive_t), intent(inout) :: archive
+
+    call archive%item('record/peak_force', self%peak_force)
+    call archive%item('record/peak_time', self%peak_time)
+    call archive%item('record/deflection', self%deflection)
+    call archive%item('record/deflection_time', self%deflection_time)
+    call archive%item('record/contacts', self%contacts)
+    call archive%item('record/contact_duration', self%contact_duration)
+    call archive%item('record/contact_end', self%contact_end)
+    call archive%item('record/time', self%time)
+    call archive%item('record/force', self%force)
+    call archive%item('record/stage', self%stage)
+    call archive%item('record/onset', self%onset)
+    call archive%item('record/growth', self%growth)
+    call archive%item('record/warning_kinds', self%warning_kinds)
+    call archive%item('record/warning_zones', self%warning_zones)
+    call archive%item('record/warning_times', self%warning_times)
+  end subroutine visit
+end module run_records

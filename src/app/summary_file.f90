@@ -1,0 +1,305 @@
+!> NAME_summary.json: what a run says at its end, in full precision. doc/manual/summary.md describes it.
+module summary_file
+  use deck_contents, only: deck_t
+  use delamination_parameters, only: law_cohesive
+  use energy_ledgers, only: ledger_t
+  use errors, only: error_t, exit_files, fail
+  use files, only: rename_file
+  use json_text, only: json_t
+  use kinds, only: wp
+  use output_streams, only: output_stream_t
+  use run_figures, only: ending_t, run_figures_t
+  use run_provenance, only: provenance_t
+  use run_records, only: run_record_t
+  use run_warnings, only: warnings_given
+  use states, only: state_t
+  use text, only: line_t
+  use time_stepping, only: time_stepper_t
+  implicit none
+  private
+  public :: summary_text, write_summary
+
+  !> Ending of its name.
+  character(len=*), parameter, public :: summary_ending = '_summary.json'
+
+contains
+
+  !> The summary as JSON.
+  function summary_text(deck, stepper, record, figures, ending, provenance, seconds) result(content)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> What the run has stepped with
+    type(time_stepper_t), intent(in) :: stepper
+    !> What it remembers
+    type(run_record_t), intent(in) :: record
+    !> Figures of the state reached
+    type(run_figures_t), intent(in) :: figures
+    !> How it ended
+    type(ending_t), intent(in) :: ending
+    !> Version, deck and machine
+    type(provenance_t), intent(in) :: provenance
+    !> Time on the wall since this process began
+    real(wp), intent(in) :: seconds
+    !> The text
+    character(len=:), allocatable :: content
+    type(json_t) :: json
+
+    call json%begin()
+    call json%put('case', deck%name)
+    call json%put('title', deck%title)
+    call json%open_object('exit')
+    call json%put('kind', trim(ending%kind))
+    call json%put('code', ending%code)
+    call json%put('message', ending%message)
+    call json%close()
+    call json%put(trim(merge('load_factor_reached', 'time_reached       ', deck%has_static)), record%time)
+    call json%put('accepted_steps', stepper%now%step)
+    if (deck%has_impactor) call put_impact(json, stepper%now, record)
+    call json%put('largest_deflection', record%deflection)
+    call json%put('largest_deflection_at', record%deflection_time)
+    call put_energies(json, stepper%now%ledger, deck%has_impactor)
+    if (size(figures%interfaces) > 0) call put_interfaces(json, deck, stepper%now, record, figures)
+    if (deck%has_ply_damage) call put_failures(json, figures)
+    call put_plies(json, deck, figures)
+    call put_warnings(json, deck, record)
+    call put_costs(json, stepper, seconds)
+    call put_provenance(json, provenance)
+    call json%finished(content)
+  end function summary_text
+
+  !> Force, contact and impactor.
+  subroutine put_impact(json, now, record)
+    !> The summary
+    type(json_t), intent(inout) :: json
+    !> The state reached
+    type(state_t), intent(in) :: now
+    !> What the run remembers
+    type(run_record_t), intent(in) :: record
+
+    call json%put('peak_force', record%peak_force)
+    call json%put('peak_force_at', record%peak_time)
+    call json%put('contacts', record%contacts)
+    call json%put('contact_duration', record%contact_duration)
+    call json%put('contact_until', record%contact_end)
+    call json%put('in_contact', now%force > 0)
+    call json%put('impactor_displacement', now%impactor%displacement)
+    call json%put('impactor_velocity', now%impactor%velocity)
+    if (now%force > 0 .or. now%impactor%velocity >= 0) then
+      call json%put_null('rebound_velocity')
+    else
+      call json%put('rebound_velocity', -now%impactor%velocity)
+    end if
+  end subroutine put_impact
+
+  !> The ledger at the end.
+  subroutine put_energies(json, ledger, impact)
+    !> The summary
+    type(json_t), intent(inout) :: json
+    !> The ledger
+    type(ledger_t), intent(in) :: ledger
+    !> True: an impactor brought it
+    logical, intent(in) :: impact
+
+    if (impact) then
+      call json%put('energy_impact', ledger%initial)
+      call json%put('energy_absorbed', ledger%initial - ledger%impactor)
+      call json%put('energy_impactor', ledger%impactor)
+    end if
+    call json%put('work_external', ledger%external_work)
+    call json%put('energy_kinetic', ledger%kinetic)
+    call json%put('energy_strain', ledger%strain)
+    call json%put('energy_indentation', ledger%indentation)
+    call json%put('energy_delamination', ledger%delamination)
+    call json%put('energy_ply_damage', ledger%ply_damage)
+    call json%put('energy_contact', ledger%contact)
+    call json%put('energy_algorithmic', ledger%algorithmic)
+    call json%put('energy_error', ledger%error())
+  end subroutine put_energies
+
+  !> What has delaminated.
+  subroutine put_interfaces(json, deck, now, record, figures)
+    !> The summary
+    type(json_t), intent(inout) :: json
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> The state reached
+    type(state_t), intent(in) :: now
+    !> What the run remembers
+    type(run_record_t), intent(in) :: record
+    !> Figures of the state
+    type(run_figures_t), intent(in) :: figures
+    integer :: zone
+
+    call json%put('delaminated_area', sum(figures%interfaces%area))
+    call json%put('projected_area', figures%projected_area)
+    if (figures%starter_threshold > 0) call json%put('threshold_force_at_starter', figures%starter_threshold)
+    call json%open_list('interfaces')
+    do zone = 1, size(figures%interfaces)
+      associate (figure => figures%interfaces(zone), interface => deck%delaminations(zone))
+        call json%open_object('')
+        call json%put('ply_above', interface%below_ply)
+        call json%put('is_cohesive', interface%law == law_cohesive)
+        call json%put('area', figure%area)
+        call json%put('energy', figure%energy)
+        call json%put('x', figure%bounds(:, 1))
+        call json%put('y', figure%bounds(:, 2))
+        call put_event(json, 'onset', record%onset(:, zone), deck)
+        call put_event(json, 'first_growth', record%growth(:, zone), deck)
+        call json%put('threshold_force', figures%threshold(zone))
+        call json%put('border_reached', now%interfaces%border_reached(zone))
+        call json%close()
+      end associate
+    end do
+    call json%close()
+  end subroutine put_interfaces
+
+  !> When something was first seen, and under what force.
+  subroutine put_event(json, name, event, deck)
+    !> The summary
+    type(json_t), intent(inout) :: json
+    !> What
+    character(len=*), intent(in) :: name
+    !> Time, contact force, deflection; time 0: never
+    real(wp), intent(in) :: event(3)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+
+    if (.not. event(1) > 0) then
+      call json%put_null(name)
+      return
+    end if
+    call json%open_object(name)
+    call json%put('at', event(1))
+    if (deck%has_impactor) call json%put('force', event(2))
+    call json%put('deflection', event(3))
+    call json%close()
+  end subroutine put_event
+
+  !> What has failed in the plies.
+  subroutine put_failures(json, figures)
+    !> The summary
+    type(json_t), intent(inout) :: json
+    !> Figures of the state reached
+    type(run_figures_t), intent(in) :: figures
+
+    call json%put('fibre_failures', figures%failures(1))
+    call json%put('matrix_cracks', figures%failures(2))
+    call json%put('matrix_crushings', figures%failures(3))
+  end subroutine put_failures
+
+  !> The plate and its plies.
+  subroutine put_plies(json, deck, figures)
+    !> The summary
+    type(json_t), intent(inout) :: json
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Figures of the state reached
+    type(run_figures_t), intent(in) :: figures
+    integer :: ply
+
+    call json%put('plate_size', deck%plate%length)
+    call json%open_list('plies')
+    do ply = 1, size(deck%laminate%angle)
+      call json%open_object('')
+      call json%put('ply', ply)
+      call json%put('made_of', deck%materials(deck%laminate%material(ply))%name)
+      call json%put('angle', deck%laminate%angle(ply))
+      call json%put('thickness', deck%laminate%thickness(ply))
+      if (deck%has_ply_damage) then
+        call json%put('fibre_failure_area', figures%failed_area(1, ply))
+        call json%put('matrix_crack_area', figures%failed_area(2, ply))
+        call json%put('matrix_crushing_area', figures%failed_area(3, ply))
+      end if
+      call json%close()
+    end do
+    call json%close()
+  end subroutine put_plies
+
+  !> Warnings on the deck, which have no time, and those of the run.
+  subroutine put_warnings(json, deck, record)
+    !> The summary
+    type(json_t), intent(inout) :: json
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> What the run remembers
+    type(run_record_t), intent(in) :: record
+    type(line_t), allocatable :: given(:)
+    integer :: i
+
+    given = warnings_given(record, deck%delaminations)
+    call json%open_list('warnings')
+    do i = 1, size(deck%remarks)
+      call json%open_object('')
+      call json%put_null('at')
+      call json%put('text', deck%remarks(i)%text)
+      call json%close()
+    end do
+    do i = 1, size(given)
+      call json%open_object('')
+      call json%put('at', record%warning_times(i))
+      call json%put('text', given(i)%text)
+      call json%close()
+    end do
+    call json%close()
+  end subroutine put_warnings
+
+  !> What the run took.
+  subroutine put_costs(json, stepper, seconds)
+    !> The summary
+    type(json_t), intent(inout) :: json
+    !> What the run has stepped with
+    type(time_stepper_t), intent(in) :: stepper
+    !> Time on the wall since this process began
+    real(wp), intent(in) :: seconds
+
+    call json%open_object('costs')
+    call json%put('unknowns', stepper%operator%numbering%total)
+    call json%put('rejected', stepper%rejected)
+    call json%put('total_iterations', stepper%now%all_iterations)
+    call json%put('total_force_iterations', stepper%now%all_force_iterations)
+    call json%put('refactorisations', stepper%operator%factorizations)
+    call json%put('solves', stepper%operator%solves)
+    call json%put('wall_seconds', seconds)
+    call json%close()
+  end subroutine put_costs
+
+  !> Where the result comes from.
+  subroutine put_provenance(json, provenance)
+    !> The summary
+    type(json_t), intent(inout) :: json
+    !> Version, deck and machine
+    type(provenance_t), intent(in) :: provenance
+
+    call json%open_object('provenance')
+    call json%put('version', provenance%version)
+    call json%put('commit', provenance%commit)
+    call json%put('compiler', provenance%compiler)
+    call json%put('petsc_version', provenance%petsc_version)
+    call json%put('ranks', provenance%ranks)
+    call json%put('started', provenance%started)
+    call json%put('deck', provenance%deck)
+    call json%close()
+  end subroutine put_provenance
+
+  !> Writes the summary aside and puts it in its place in one step.
+  subroutine write_summary(path, content, error)
+    !> Path of the file
+    character(len=*), intent(in) :: path
+    !> The text
+    character(len=*), intent(in) :: content
+    !> Set if it cannot be written
+    type(error_t), allocatable, intent(inout) :: error
+    type(output_stream_t) :: file
+
+    call file%open(path//'.tmp', 'w')
+    call file%put(content)
+    if (file%is_open()) call file%synchronise()
+    call file%close()
+    if (file%failed) then
+      call fail(error, exit_files, "Can't write "//path//': does the folder exist, is the disk full or the quota '// &
+                'used up?')
+    else
+      call rename_file(path//'.tmp', path, error)
+    end if
+  end subroutine write_summary
+end module summary_file

@@ -1,0 +1,203 @@
+!> What a run says at its end in its log: the summary rounded for reading, in the deck's units.
+module summary_lines
+  use deck_contents, only: deck_t
+  use energy_ledgers, only: ledger_t
+  use kinds, only: wp
+  use run_figures, only: run_figures_t
+  use run_records, only: run_record_t
+  use run_warnings, only: warnings_given
+  use states, only: state_t
+  use text, only: line_t, append, rounded_text, to_text
+  implicit none
+  private
+  public :: lines_of_summary
+
+  !> Characters before the figures.
+  integer, parameter :: label_width = 20
+
+contains
+
+  !> The summary as lines of the log.
+  function lines_of_summary(deck, now, record, figures) result(lines)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> The state reached
+    type(state_t), intent(in) :: now
+    !> What the run remembers
+    type(run_record_t), intent(in) :: record
+    !> Figures of the state
+    type(run_figures_t), intent(in) :: figures
+    !> The lines
+    type(line_t), allocatable :: lines(:)
+    character(len=:), allocatable :: at
+
+    at = ' at time '
+    if (deck%has_static) at = ' at load factor '
+    call append(lines, 'Summary, in the units of the deck:')
+    if (deck%has_impactor) call tell_impact(lines, now, record)
+    call tell(lines, 'largest deflection', rounded_text(record%deflection)//at//rounded_text(record%deflection_time))
+    call tell_energies(lines, now%ledger, deck%has_impactor)
+    if (size(figures%interfaces) > 0) call tell_interfaces(lines, deck, record, figures, at)
+    if (deck%has_ply_damage) call tell(lines, 'failed plies', 'fibres '//to_text(figures%failures(1))// &
+      ', matrix cracked '//to_text(figures%failures(2))//', crushed '//to_text(figures%failures(3))// &
+      ' (counted in each element)')
+    call tell_warnings(lines, deck, record)
+  end function lines_of_summary
+
+  !> Adds a line.
+  subroutine tell(lines, label, figures)
+    !> The lines
+    type(line_t), allocatable, intent(inout) :: lines(:)
+    !> What is told; empty goes on with the line before
+    character(len=*), intent(in) :: label
+    !> Its figures
+    character(len=*), intent(in) :: figures
+
+    call append(lines, '  '//label//repeat(' ', max(1, label_width - len(label)))//figures)
+  end subroutine tell
+
+  !> Force, contact and rebound.
+  subroutine tell_impact(lines, now, record)
+    !> The lines
+    type(line_t), allocatable, intent(inout) :: lines(:)
+    !> The state reached
+    type(state_t), intent(in) :: now
+    !> What the run remembers
+    type(run_record_t), intent(in) :: record
+
+    call tell(lines, 'peak force', rounded_text(record%peak_force)//' at time '//rounded_text(record%peak_time))
+    if (now%force > 0) then
+      call tell(lines, 'time in contact', rounded_text(record%contact_duration)//repeated(record%contacts)// &
+                ', and still at the end')
+    else
+      call tell(lines, 'time in contact', rounded_text(record%contact_duration)//repeated(record%contacts)// &
+                ', until '//rounded_text(record%contact_end))
+    end if
+    if (now%force > 0) then
+      call tell(lines, 'velocity at the end', rounded_text(now%impactor%velocity))
+    else if (now%impactor%velocity < 0) then
+      call tell(lines, 'rebound velocity', rounded_text(-now%impactor%velocity))
+    end if
+  end subroutine tell_impact
+
+  !> In how many contacts.
+  pure function repeated(contacts) result(clause)
+    !> Number of contacts
+    integer, intent(in) :: contacts
+    !> Empty for one
+    character(len=:), allocatable :: clause
+
+    clause = ''
+    if (contacts > 1) clause = ' in '//to_text(contacts)//' contacts'
+  end function repeated
+
+  !> What was absorbed, and where the energy is.
+  subroutine tell_energies(lines, ledger, impact)
+    !> The lines
+    type(line_t), allocatable, intent(inout) :: lines(:)
+    !> The ledger
+    type(ledger_t), intent(in) :: ledger
+    !> True: an impactor brought it
+    logical, intent(in) :: impact
+    real(wp) :: absorbed
+
+    absorbed = ledger%initial - ledger%impactor
+    if (impact) call tell(lines, 'impact energy', rounded_text(ledger%initial)//', absorbed '// &
+                          rounded_text(absorbed)//' ('//rounded_text(100*absorbed/ledger%initial, 3)//' %)')
+    if (ledger%external_work /= 0) call tell(lines, 'work of the load', rounded_text(ledger%external_work))
+    call tell(lines, 'of it', 'motion '//rounded_text(ledger%kinetic)//', strain '//rounded_text(ledger%strain)// &
+              ', indentation '//rounded_text(ledger%indentation)//', delamination '// &
+              rounded_text(ledger%delamination)//', ply damage '//rounded_text(ledger%ply_damage))
+    call tell(lines, '', 'contact of faces '//rounded_text(ledger%contact)//', integrators '// &
+              rounded_text(ledger%algorithmic)//', not accounted for '//rounded_text(ledger%error(), 2))
+  end subroutine tell_energies
+
+  !> What has delaminated.
+  subroutine tell_interfaces(lines, deck, record, figures, at)
+    !> The lines
+    type(line_t), allocatable, intent(inout) :: lines(:)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> What the run remembers
+    type(run_record_t), intent(in) :: record
+    !> Figures of the state reached
+    type(run_figures_t), intent(in) :: figures
+    !> Words before a time
+    character(len=*), intent(in) :: at
+    integer :: zone
+
+    call tell(lines, 'delaminated area', rounded_text(sum(figures%interfaces%area))// &
+              ' of all interfaces, projected '//rounded_text(figures%projected_area))
+    do zone = 1, size(figures%interfaces)
+      associate (figure => figures%interfaces(zone))
+        call tell(lines, '  below ply '//to_text(deck%delaminations(zone)%below_ply), 'area '// &
+                  rounded_text(figure%area)//', x '//range_of(figure%bounds(:, 1))//', y '// &
+                  range_of(figure%bounds(:, 2))//', energy '//rounded_text(figure%energy))
+        call tell_event('onset', record%onset(:, zone))
+        call tell_event('first growth', record%growth(:, zone))
+        if (deck%has_impactor) call tell(lines, '', 'closed form '//rounded_text(figures%threshold(zone))//' for '// &
+          to_text(size(figures%interfaces))//' equal circular delaminations'//of_starter(figures%starter_threshold))
+      end associate
+    end do
+
+  contains
+
+    !> When something was first seen, if it was.
+    subroutine tell_event(name, event)
+      !> What
+      character(len=*), intent(in) :: name
+      !> Time, contact force, deflection; time 0: never
+      real(wp), intent(in) :: event(3)
+
+      if (.not. event(1) > 0) then
+        call tell(lines, '', 'no '//name)
+      else if (deck%has_impactor) then
+        call tell(lines, '', name//' under '//rounded_text(event(2))//at//rounded_text(event(1)))
+      else
+        call tell(lines, '', name//at//rounded_text(event(1)))
+      end if
+    end subroutine tell_event
+  end subroutine tell_interfaces
+
+  !> Least and greatest.
+  pure function range_of(bounds) result(words)
+    !> Both
+    real(wp), intent(in) :: bounds(2)
+    !> Such as -0.012 to 0.012
+    character(len=:), allocatable :: words
+
+    words = rounded_text(bounds(1))//' to '//rounded_text(bounds(2))
+  end function range_of
+
+  !> The closed form with the radius of the starter.
+  pure function of_starter(force) result(clause)
+    !> The force; 0: without meaning
+    real(wp), intent(in) :: force
+    !> Empty without
+    character(len=:), allocatable :: clause
+
+    clause = ''
+    if (force > 0) clause = ', '//rounded_text(force)//' with the starter under this patch'
+  end function of_starter
+
+  !> Warnings on the deck and those of the run.
+  subroutine tell_warnings(lines, deck, record)
+    !> The lines
+    type(line_t), allocatable, intent(inout) :: lines(:)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> What the run remembers
+    type(run_record_t), intent(in) :: record
+    type(line_t), allocatable :: given(:)
+    integer :: i
+
+    given = warnings_given(record, deck%delaminations)
+    if (size(deck%remarks) + size(given) == 0) call tell(lines, 'warnings', 'none')
+    do i = 1, size(deck%remarks)
+      call tell(lines, 'warning', deck%remarks(i)%text)
+    end do
+    do i = 1, size(given)
+      call tell(lines, 'warning', given(i)%text)
+    end do
+  end subroutine tell_warnings
+end module summary_lines

@@ -1,0 +1,48 @@
+!> Closed forms for the force on a plate at which delaminations grow, to be held against what a run finds.
+module threshold_forces
+  use kinds, only: wp
+  implicit none
+  private
+  public :: effective_bending_stiffness, threshold_force, patch_factor
+
+  real(wp), parameter :: pi = acos(-1.0_wp)
+
+contains
+
+  !> Bending stiffness of the isotropic plate that deflects as an orthotropic one does under a force at its middle,
+  !> D* = sqrt(D11 D22 (A + 1)/2) with A = (D12 + 2 D66)/sqrt(D11 D22) (Olsson, Composites A 32 (2001) 1207).
+  pure real(wp) function effective_bending_stiffness(stiffness) result(bending)
+    !> Section stiffness of the whole laminate: A, B and D, each 11, 12, 16, 22, 26, 66, then shear
+    real(wp), intent(in) :: stiffness(21)
+    real(wp) :: mean
+
+    associate (d11 => stiffness(13), d12 => stiffness(14), d22 => stiffness(16), d66 => stiffness(18))
+      mean = sqrt(d11*d22)
+      bending = sqrt(mean*(mean + d12 + 2*d66)/2)
+    end associate
+  end function effective_bending_stiffness
+
+  !> Force at the middle of a thin plate under which n equal circular delaminations grow, at any radius: the release
+  !> rate of each is G = (n + 2) P**2/(32 pi**2 D*), hence P = pi sqrt(32 D* G_IIc/(n + 2)).
+  pure real(wp) function threshold_force(bending, toughness, interfaces) result(force)
+    !> Effective bending stiffness of the laminate
+    real(wp), intent(in) :: bending
+    !> Critical energy release rate in shear
+    real(wp), intent(in) :: toughness
+    !> Number of delaminations above each other
+    integer, intent(in) :: interfaces
+
+    force = pi*sqrt(32*bending*toughness/(interfaces + 2))
+  end function threshold_force
+
+  !> What that force is to be multiplied with for one delamination of a certain area under a load spread over a square:
+  !> 1/(1 - rp**2/(2 a**2)), rp and a the radii of the circles of equal area.
+  pure real(wp) function patch_factor(patch, area) result(factor)
+    !> Side of the square
+    real(wp), intent(in) :: patch
+    !> Area of the delamination, that of the square at least
+    real(wp), intent(in) :: area
+
+    factor = 1/(1 - patch**2/(2*max(area, patch**2)))
+  end function patch_factor
+end module threshold_forces

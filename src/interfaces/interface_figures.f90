@@ -1,0 +1,136 @@
+!> What a user asks of an interface: whether it has been damaged or has grown, how far, and at what energy.
+module interface_figures
+  use cohesive_points, only: cohesive_point_t
+  use delamination_parameters, only: law_cohesive
+  use interface_states, only: interface_state_t
+  use kinds, only: wp
+  use models, only: model_t
+  implicit none
+  private
+  public :: interface_figures_t, figures_of, stages_of
+
+  !> How far the failure of an interface has gone beyond its starter: not at all; a point of a cohesive law has begun to
+  !> soften; a point or cell has come apart.
+  integer, parameter, public :: stage_intact = 0, stage_damaged = 1, stage_grown = 2
+
+  !> Bounds of nothing: largest of no numbers.
+  real(wp), parameter :: nowhere = -huge(nowhere)
+
+  !> Figures of one interface of the whole plate, the same on every rank.
+  type :: interface_figures_t
+    !> stage_intact, stage_damaged or stage_grown
+    integer :: stage = stage_intact
+    !> Delaminated area with the starter; with a cohesive law the area dissipated
+    real(wp) :: area = 0
+    !> Energy that fracture has taken
+    real(wp) :: energy = 0
+    !> Least and greatest x, then y, of what has come apart, from the struck point; all 0 if nothing has
+    real(wp) :: bounds(2, 2) = 0
+  end type interface_figures_t
+
+contains
+
+  !> Figures of all interfaces, in the order of the zones. Collective.
+  function figures_of(model, interfaces) result(figures)
+    type(model_t), intent(in) :: model
+    !> The interfaces
+    type(interface_state_t), intent(in) :: interfaces
+    !> (zones)
+    type(interface_figures_t) :: figures(size(model%mesh%zones))
+    real(wp) :: bounds(4, size(figures))
+    integer :: zone
+
+    if (size(figures) == 0) return
+    figures%stage = stages_of(model, interfaces)
+    figures%area = interfaces%faces%area(model) + interfaces%cohesive%area(model)
+    figures%energy = interfaces%faces%fracture + interfaces%cohesive%energy(model)
+    bounds = bounds_of(model, interfaces)
+    do zone = 1, size(figures)
+      if (any(bounds(:, zone) <= nowhere)) cycle
+      figures(zone)%bounds = reshape([-bounds(1, zone), bounds(2, zone), -bounds(3, zone), bounds(4, zone)], [2, 2])
+      if (model%mesh%multiplicity == 4) figures(zone)%bounds(1, :) = -figures(zone)%bounds(2, :)
+    end do
+  end function figures_of
+
+  !> How far the failure of each interface has gone. Collective.
+  function stages_of(model, interfaces) result(stages)
+    type(model_t), intent(in) :: model
+    !> The interfaces
+    type(interface_state_t), intent(in) :: interfaces
+    !> (zones)
+    integer :: stages(size(model%mesh%zones))
+    real(wp) :: furthest(size(stages))
+    integer :: i
+
+    furthest = merge(stage_grown, stage_intact, interfaces%faces%fracture > 0)
+    if (allocated(interfaces%cohesive%cohesive)) then
+      do i = 1, model%distribution%owned
+        ! Starters have come apart before the run.
+        if (.not. interfaces%cohesive%cohesive(i) .or. interfaces%faces%free(i)) cycle
+        furthest(model%zone(i)) = max(furthest(model%zone(i)), real(stage_of(interfaces%cohesive%points(i)), wp))
+      end do
+      call model%communicator%maximum(furthest)
+    end if
+    stages = nint(furthest)
+  end function stages_of
+
+  !> How far the failure of a cohesive point has gone.
+  pure integer function stage_of(point) result(stage)
+    !> The point
+    type(cohesive_point_t), intent(in) :: point
+
+    stage = stage_intact
+    if (point%damage > 0) stage = stage_damaged
+    if (point%damage >= 1) stage = stage_grown
+  end function stage_of
+
+  !> Greatest -x, x, -y and y of what has come apart in the modelled part: nodes where a cohesive law has failed, whole
+  !> cells where fronts release ties. Collective.
+  function bounds_of(model, interfaces) result(bounds)
+    type(model_t), intent(in) :: model
+    !> The interfaces
+    type(interface_state_t), intent(in) :: interfaces
+    !> (4, zones); `nowhere` if nothing has come apart
+    real(wp) :: bounds(4, size(model%mesh%zones))
+    real(wp) :: all_bounds(size(bounds))
+    integer :: i, zone
+
+    bounds = nowhere
+    if (allocated(interfaces%cohesive%cohesive)) then
+      do i = 1, model%distribution%owned
+        if (.not. interfaces%cohesive%cohesive(i)) cycle
+        if (interfaces%cohesive%points(i)%damage < 1) cycle
+        associate (place => model%mesh%node_coordinates(:, model%mesh%point_node(model%distribution%points(i))))
+          bounds(:, model%zone(i)) = max(bounds(:, model%zone(i)), [-place(1), place(1), -place(2), place(2)])
+        end associate
+      end do
+    end if
+    do zone = 1, size(model%mesh%zones)
+      if (model%scene%delaminations(zone)%law /= law_cohesive) bounds(:, zone) = cell_bounds(model, interfaces, zone)
+    end do
+    all_bounds = reshape(bounds, shape(all_bounds))
+    call model%communicator%maximum(all_bounds)
+    bounds = reshape(all_bounds, shape(bounds))
+  end function bounds_of
+
+  !> Greatest -x, x, -y and y of the delaminated cells of a zone.
+  pure function cell_bounds(model, interfaces, zone) result(bounds)
+    type(model_t), intent(in) :: model
+    !> The interfaces
+    type(interface_state_t), intent(in) :: interfaces
+    !> Index of the zone
+    integer, intent(in) :: zone
+    !> `nowhere` if there are none
+    real(wp) :: bounds(4)
+    integer :: i, j
+
+    bounds = nowhere
+    associate (region => interfaces%faces%regions(zone), x => model%mesh%x_edges, y => model%mesh%y_edges)
+      do j = region%rows(1), region%rows(2)
+        do i = region%columns(1), region%columns(2)
+          if (region%is_delaminated(i, j)) bounds = max(bounds, [-x(i), x(i + 1), -y(j), y(j + 1)])
+        end do
+      end do
+    end associate
+  end function cell_bounds
+end module interface_figures

@@ -1,0 +1,68 @@
+!> Header and rows of a history as text. Cells of a row are filled with blanks in front, so that columns stand below
+!> each other and every reader of CSV takes them for numbers. Names have none: many readers would keep them.
+module history_rows
+  use kinds, only: long, wp
+  use text, only: to_text
+  implicit none
+  private
+  public :: header, row, widths_of
+
+  !> Characters of the longest text of a double, -1.2345678901234567e-100, and of a count read at a glance.
+  integer, parameter :: longest_real = 24, longest_count = 10
+
+contains
+
+  !> First line of the file.
+  pure function header(columns) result(line)
+    !> Names of the columns
+    character(len=*), intent(in) :: columns(:)
+    !> The line
+    character(len=:), allocatable :: line
+    integer :: i
+
+    line = ''
+    do i = 1, size(columns)
+      if (i > 1) line = line//','
+      line = line//trim(columns(i))
+    end do
+  end function header
+
+  !> Characters of each column, those of its name at least.
+  pure function widths_of(columns, whole) result(widths)
+    !> Names of the columns
+    character(len=*), intent(in) :: columns(:)
+    !> Columns that hold integers
+    logical, intent(in) :: whole(:)
+    !> The widths
+    integer :: widths(size(columns))
+
+    widths = max(len_trim(columns), merge(longest_count, longest_real, whole))
+  end function widths_of
+
+  !> One row as text: the shortest texts that read back as the same numbers.
+  pure function row(values, whole, widths) result(line)
+    !> The numbers
+    real(wp), intent(in) :: values(:)
+    !> Columns that hold integers
+    logical, intent(in) :: whole(:)
+    !> Characters of each column
+    integer, intent(in) :: widths(:)
+    !> The line
+    character(len=:), allocatable :: line
+    character(len=:), allocatable :: number
+    character(len=20) :: digits
+    integer :: i
+
+    line = ''
+    do i = 1, size(values)
+      if (whole(i)) then
+        write (digits, '(i0)') nint(values(i), long)
+        number = trim(digits)
+      else
+        number = to_text(values(i))
+      end if
+      if (i > 1) line = line//','
+      line = line//repeat(' ', widths(i) - len(number))//number
+    end do
+  end function row
+end module history_rows

@@ -1,0 +1,273 @@
+"""What a run says at its end, held against its history, closed forms and other runs.
+Usage: summaries.py TRIAL IMPLAM FOLDER [LAUNCHER...]     (LAUNCHER takes the number of ranks as its last word)
+
+figures  NAME_summary.json against the history, its rounded figures in the log, several interfaces and plies
+contact  duration of contact and rebound of a ball on a rigid base against Hertz
+restart  a run taken up again says what the undisturbed one says, to the last bit; warnings and onsets too
+ranks    two ranks say what one says, to 1e-9
+endings  runs that were stopped or failed say so, with what they reached
+static   the release rate under a static load grows with its square and is that of the compliance"""
+
+import json
+import math
+import sys
+from pathlib import Path
+
+from restart import start, wait_until
+from solver_runs import (
+    EXIT_CONVERGENCE,
+    EXIT_STOPPED,
+    change_deck,
+    exit_code_of,
+    history_of,
+    read_history,
+    require,
+    run,
+    run_deck,
+    write_deck,
+)
+
+DAMAGE, COHESIVE = "../small/damage.nml", "../small/cohesive.nml"
+# Two interfaces whose zones damage fills, so that onset, growth and warnings come one after the other.
+TWO = ["laminate%angles=0,90,90,0", "laminate%thicknesses=0.5e-3"]
+SECOND = ("&delamination below_ply=1 G_Ic=280 G_IIc=900 law='cohesive' zone=33e-3,19e-3 strength_opening=27e6 "
+          "strength_shear=40e6 /\n")
+PROCESS = ("wall_seconds", "started", "ranks")
+
+
+def summary_of(folder):
+    """Return the only summary in a folder."""
+    path, = folder.glob("*_summary.json")
+    return json.loads(path.read_text(encoding="utf-8"))
+
+
+def flat(value, name=""):
+    """Return the members of a summary by their paths, what belongs to a process left out."""
+    if isinstance(value, dict):
+        items = value.items()
+    elif isinstance(value, list):
+        items = enumerate(value)
+    else:
+        return {name: value}
+    found = {}
+    for key, inner in items:
+        if key not in PROCESS:
+            found |= flat(inner, f"{name}/{key}")
+    return found
+
+
+def require_equal(summary, reference, what, tolerance=0.0):
+    """Fail unless two summaries agree, numbers to a tolerance relative to themselves."""
+    ours, theirs = flat(summary), flat(reference)
+    require(ours.keys() == theirs.keys(), f"{what}: the members differ: {sorted(ours.keys() ^ theirs.keys())}")
+    for name, value in theirs.items():
+        same = ours[name] == value
+        if not same and tolerance and isinstance(value, float) and isinstance(ours[name], float):
+            same = math.isclose(ours[name], value, rel_tol=tolerance, abs_tol=1e-12)
+        require(same, f"{what}: {name} is {ours[name]}, not {value}.")
+
+
+def close(value, expected, tolerance, what):
+    """Fail unless a figure is as expected, to a tolerance relative to it."""
+    require(math.isclose(value, expected, rel_tol=tolerance, abs_tol=1e-300), f"{what} is {value}, not {expected}.")
+
+
+def check_interface(entry, history, has_force):
+    """Hold what is said of an interface against its columns."""
+    ply = entry["ply_above"]
+    column = {name: history[f"{name}_below_{ply}"] for name in ("stage", "area", "energy", "extent_x", "extent_y")}
+    for name, stage in (("onset", 1), ("first_growth", 2)):
+        rows = [row for row, reached in enumerate(column["stage"]) if reached >= stage]
+        require((entry[name] is None) == (not rows), f"{name} is {entry[name]}, not in the rows {rows}.")
+        if rows:
+            require(entry[name]["at"] == history["time"][rows[0]], f"{name} is told for {entry[name]['at']}.")
+            if has_force:
+                require(entry[name]["force"] == history["force"][rows[0]], f"{name}: another force.")
+    for name in ("area", "energy"):
+        close(entry[name], column[name][-1], 1e-14, f"{name} below ply {ply}")
+    for name, axis in (("extent_x", "x"), ("extent_y", "y")):
+        close(entry[axis][1] - entry[axis][0], column[name][-1], 1e-14, name)
+
+
+def check_against_history(folder):
+    """Hold a summary of an impact against its history, and the log against the summary."""
+    summary, history = summary_of(folder), read_history(history_of(folder))
+    peak = max(history["force"])
+    require(summary["peak_force"] == peak, f"The peak force is {summary['peak_force']}, not {peak}.")
+    require(summary["peak_force_at"] == history["time"][history["force"].index(peak)], "The peak is at another time.")
+    require(summary["largest_deflection"] == max(history["deflection"]), "Another largest deflection.")
+    for name in (*(name for name in history if name.startswith("energy_") and name in summary), "work_external",
+                 "impactor_velocity", "projected_area", "delaminated_area"):
+        close(summary[name], history[name][-1], 1e-13, name)
+    kept = summary["energy_impact"] - summary["energy_impactor"]
+    close(summary["energy_absorbed"], kept, 1e-12, "The absorbed energy")
+    for entry in summary["interfaces"]:
+        check_interface(entry, history, True)
+    close(sum(entry["area"] for entry in summary["interfaces"]), summary["delaminated_area"], 1e-13, "The area")
+    close(sum(entry["energy"] for entry in summary["interfaces"]), summary["energy_delamination"], 1e-9, "The energy")
+    log = next(folder.glob("*.log")).read_text(encoding="utf-8")
+    rounded = float(f"{peak:.3e}")
+    told = [line.split() for line in log.splitlines() if line.startswith("  peak force ")]
+    require(len(told) == 1 and float(told[0][2]) == rounded, f"The log says {told}, not {rounded}.")
+    require(float(told[0][5]) == float(f"{summary['peak_force_at']:.3e}"), f"The log says {told}.")
+    for warning in summary["warnings"]:
+        require(log.count(warning["text"]) >= 1, f"The log's end lacks: {warning['text']}")
+    print(f"{folder.name}: {summary['peak_force']:.4g}, {[entry['first_growth'] for entry in summary['interfaces']]}")
+    return summary
+
+
+def check_times(folder):
+    """Times of the history are the shortest texts of round numbers, in columns of one width."""
+    lines = history_of(folder).read_text(encoding="utf-8").splitlines()
+    require(len({len(line) for line in lines[1:]}) == 1, "The rows have different lengths.")
+    texts = [line.split(",")[0].strip() for line in lines[1:]]
+    require(all(len(text) <= 10 for text in texts), f"Times are {texts}.")
+    require("0.00017" in texts and "3e-5" in texts, f"Times are {texts}.")
+
+
+def two_interfaces(folder):
+    """Return a deck with two cohesive interfaces."""
+    deck = write_deck(folder, COHESIVE, TWO)
+    text = deck.read_text(encoding="utf-8")
+    deck.write_text(text.replace("&delamination", f"{SECOND}&delamination", 1), encoding="utf-8")
+    return deck
+
+
+def check_figures(implam, folder, _):
+    """Fronts with failing plies, one and two cohesive interfaces."""
+    deck = write_deck(folder / "damage", DAMAGE, ["time%end=300e-6", "ply_damage%d=1", "output%fields_every=30e-6"])
+    run_deck(implam, deck)
+    check_times(deck.parent)
+    summary = check_against_history(deck.parent)
+    history = read_history(history_of(deck.parent))
+    # Threshold of the cross-ply by hand; its reduced stiffnesses are those of the deck.
+    e1, e2, g, nu = 139e9, 9.4e9, 4.5e9, 0.309
+    q11, q22 = e1 / (1 - nu**2 * e2 / e1), e2 / (1 - nu**2 * e2 / e1)
+    ply = 0.6666667e-3
+    whole, core = (3 * ply)**3 / 12, ply**3 / 12
+    d11, d22 = q11 * (whole - core) + q22 * core, q22 * (whole - core) + q11 * core
+    d12, d66 = nu * q22 * whole, g * whole
+    bending = math.sqrt(math.sqrt(d11 * d22) * (math.sqrt(d11 * d22) + d12 + 2 * d66) / 2)
+    toughness = 400
+    close(summary["interfaces"][0]["threshold_force"], math.pi * math.sqrt(32 * bending * toughness / 3), 1e-9,
+          "The threshold force")
+    for mode in ("fibre_failures", "matrix_cracks", "matrix_crushings"):
+        require(summary[mode] == history[mode][-1], f"{mode} are {summary[mode]}.")
+    cracked = sum(ply["matrix_crack_area"] for ply in summary["plies"])
+    require(summary["matrix_cracks"] > 0 and 0 < cracked < 3 * 0.04**2, f"Cracked area {cracked}.")
+    run_deck(implam, write_deck(folder / "cohesive", COHESIVE))
+    one = check_against_history(folder / "cohesive")
+    require("threshold_force_at_starter" not in one, "There is no starter.")
+    require(any("process zone" in warning["text"] for warning in one["warnings"]), "The process zone isn't told of.")
+    require(any("below ply 2 has reached" in warning["text"] for warning in one["warnings"]), "The border isn't told.")
+    run_deck(implam, two_interfaces(folder / "two"))
+    two = check_against_history(folder / "two")
+    ratio = two["interfaces"][0]["threshold_force"] / two["interfaces"][1]["threshold_force"]
+    close(ratio, math.sqrt(900 / 400), 1e-12, "The ratio of the threshold forces")
+    require(0 < two["projected_area"] <= two["delaminated_area"], "The projected area is out of range.")
+
+
+def check_contact(implam, folder, _):
+    """A ball on a rigid base: Hertz gives the duration 2.9433 alpha/v = 69.829 us; with steps of .25 us."""
+    deck = write_deck(folder, "rigid_base.nml")
+    run_deck(implam, deck)
+    summary = summary_of(folder)
+    require(summary["contacts"] == 1 and not summary["in_contact"], "One contact was expected.")
+    close(summary["contact_duration"], 69.829e-6, 0.125 / 69.829, "The duration of contact")
+    close(summary["contact_until"], 69.829e-6, 0.125 / 69.829, "The end of contact")
+    close(summary["rebound_velocity"], 1, 1e-6, "The rebound")
+    close(summary["peak_force"], 1728.713, 2e-5, "The peak force")
+    print(summary["contact_duration"])
+
+
+def check_restart(implam, folder, _):
+    """From a checkpoint before onset, and from one after growth and warnings."""
+    for name, end in (("before", 150e-6), ("after", 240e-6)):
+        deck = two_interfaces(folder / name)
+        text = deck.read_text(encoding="utf-8")
+        deck.write_text(f"{text}&output checkpoint_every={end - 5e-6!r} /\n", encoding="utf-8")
+        run_deck(implam, deck)
+        reference = summary_of(deck.parent)
+        run([implam, "restart", deck.parent])
+        require_equal(summary_of(deck.parent), reference, name)
+
+
+def check_ranks(implam, folder, launcher):
+    """Two ranks."""
+    deck = two_interfaces(folder)
+    deck.write_text(deck.read_text(encoding="utf-8") + "&solver tolerance=1e-9 /\n", encoding="utf-8")
+    run_deck(implam, deck)
+    reference = summary_of(folder)
+    run_deck(implam, deck, [*launcher, "2"])
+    ours = summary_of(folder)
+    for summary in (ours, reference):
+        for name in ("costs", "energy_error", "energy_contact"):
+            del summary[name]
+    require_equal(ours, reference, "ranks", 1e-6)
+
+
+def check_endings(implam, folder, _):
+    """Stopped before its first step is over; no equilibrium."""
+    deck = write_deck(folder / "stopped", DAMAGE)
+    run([implam, deck, "--output", deck.parent, "--wall-limit", "1e-3"], EXIT_STOPPED)
+    summary = summary_of(deck.parent)
+    require(summary["exit"]["kind"] == "stopped" and summary["exit"]["code"] == EXIT_STOPPED, summary["exit"])
+    require(0 < summary["time_reached"] < 240e-6, f"It reached {summary['time_reached']}.")
+    run([implam, "restart", deck.parent])
+    summary = summary_of(deck.parent)
+    require(summary["exit"] == {"kind": "done", "code": 0, "message": ""}, summary["exit"])
+    reference = write_deck(folder / "whole", DAMAGE)
+    run_deck(implam, reference)
+    require_equal(summary, summary_of(reference.parent), "stopped")
+    deck = write_deck(folder / "failed", "large_deflection.nml", ["pressure%value=1e15", "solver%max_iterations=3"])
+    run([implam, deck, "--output", deck.parent], EXIT_CONVERGENCE)
+    summary = summary_of(deck.parent)
+    require(summary["exit"]["kind"] == "failed" and "No equilibrium" in summary["exit"]["message"], summary["exit"])
+
+
+    killed = write_deck(folder / "killed", DAMAGE)
+    run_deck(implam, killed)
+    killed.write_text(change_deck(killed.read_text(encoding="utf-8"), ["time%end=1"]), encoding="utf-8")
+    process = start(implam, killed, "--output", killed.parent)
+    log = killed.parent / "damage.log"
+    wait_until(lambda: "end=1" in log.read_text(encoding="utf-8"), process)
+    process.kill()
+    process.wait()
+    require(not list(killed.parent.glob("*_summary.json")), "A killed run leaves the summary of the one before.")
+
+
+def static_run(implam, folder, starter):
+    """Return the history and the summary of four load steps on a plate whose lower faces part freely."""
+    deck = write_deck(folder, "../small/static_damage.nml", [
+        "mesh%elements=12,12", "delamination%below_ply=1", "delamination%G_c=400", "delamination%contact='none'",
+        "delamination%zone=60e-3,60e-3", f"delamination%starter={starter}", "static%steps=4"])
+    text = "".join(line for line in deck.read_text(encoding="utf-8").splitlines(keepends=True)
+                   if not line.startswith("&ply_damage"))
+    deck.write_text(text, encoding="utf-8")
+    run_deck(implam, deck)
+    return read_history(history_of(folder)), summary_of(folder)
+
+
+def check_static(implam, folder, _):
+    """The largest rate on the front of a square lies above the mean, which the change of compliance gives."""
+    history, summary = static_run(implam, folder / "small", 30e-3)
+    ratio = history["release_ratio"]
+    require(ratio[-1] > 0, "The release rate is 0.")
+    for row, load in enumerate(history["time"]):
+        close(ratio[row], ratio[-1] * load**2, 1e-6, f"The ratio at load {load}")
+    wider, _ = static_run(implam, folder / "large", 38e-3)
+    growth = wider["delaminated_area"][-1] - history["delaminated_area"][-1]
+    require(growth > 0, "The larger starter isn't larger.")
+    # Under a given load twice the release is what the load's work gains.
+    mean = (wider["energy_strain"][-1] - history["energy_strain"][-1]) / growth / 400
+    print(f"largest {ratio[-1]:.4g}, mean {mean:.4g}")
+    require(0.2 * ratio[-1] < mean < ratio[-1], f"The mean ratio is {mean}, the largest {ratio[-1]}.")
+    require(summary["interfaces"][0]["first_growth"] is None and "peak_force" not in summary, "It tells of growth.")
+
+
+TRIALS = {"figures": check_figures, "contact": check_contact, "restart": check_restart, "ranks": check_ranks,
+          "endings": check_endings, "static": check_static}
+
+if __name__ == "__main__":
+    trial, implam, folder, *launcher = sys.argv[1:]
+    raise SystemExit(exit_code_of(TRIALS[trial], implam, Path(folder), launcher))
