@@ -3,6 +3,7 @@ module deck_reader
   use adapt_deck, only: adapt_group, fill_adapt
   use case_deck, only: fill_case
   use deck_contents, only: deck_t
+  use deck_crack_bands, only: check_crack_bands
   use deck_cross_checks, only: check_across_groups
   use deck_process_zones, only: check_process_zones
   use deck_extents, only: check_sizes, check_extents
@@ -86,6 +87,7 @@ contains
     call check_sizes(deck, problems)
     call check_across_groups(deck, problems)
     call check_extents(deck, problems)
+    if (deck%has_ply_damage) call check_crack_bands(deck, problems)
     call check_process_zones(deck, problems)
   end subroutine read_deck_text
 
