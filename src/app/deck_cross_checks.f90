@@ -8,19 +8,17 @@ module deck_cross_checks
   use deck_remarks, only: tell, remark, remark_idle, are_clear
   use delamination_deck, only: delamination_group, key_below_ply
   use delamination_parameters, only: growth_one_per_step, interface_objection
-  use hou_criteria, only: missing_strengths
+  use failure_criteria, only: needed_strengths
   use impactor_deck, only: impactor_group, key_velocity, key_radius, key_gravity
   use indentation_deck, only: indentation_group, key_k
   use kinds, only: wp
   use laminate_parameters, only: shear_five_sixths
   use material_deck, only: material_group, require_densities
-  use material_parameters, only: material_t
   use mesh_deck, only: mesh_group, key_patch
   use mesh_parameters, only: symmetry_quarter
   use output_deck, only: check_intervals, remark_idle_fields
   use plate_deck, only: plate_group, key_symmetry, check_supports
   use plies, only: ply_t, material_objection
-  use ply_damage_parameters, only: ply_damage_t, criteria_hou
   use pressure_deck, only: pressure_group, key_history
   use stacking, only: stacked_plies, section_stiffness
   use static_deck, only: static_group
@@ -199,7 +197,8 @@ contains
     integer :: i, j
 
     do i = 1, size(deck%materials)
-      needed = words_of(strengths_missing(deck%ply_damage, deck%materials(i)), ',')
+      needed = words_of(needed_strengths(deck%ply_damage%criteria, any(deck%materials(i)%toughness > 0), &
+                                       deck%materials(i)), ',')
       allocate (missing(0))
       do j = 1, size(needed)
         if (needed(j)%text == '') cycle
@@ -210,20 +209,4 @@ contains
       deallocate (missing)
     end do
   end subroutine check_strengths
-
-  !> Names of the strengths that the chosen criteria need and a material lacks.
-  pure function strengths_missing(damage, material) result(names)
-    !> Damage of the plies
-    type(ply_damage_t), intent(in) :: damage
-    !> The material
-    type(material_t), intent(in) :: material
-    !> Separated by commas; empty: it has all
-    character(len=:), allocatable :: names
-
-    names = ''
-    select case (damage%criteria)
-    case (criteria_hou)
-      names = missing_strengths(material)
-    end select
-  end function strengths_missing
 end module deck_cross_checks

@@ -3,6 +3,7 @@ module deck_reader
   use adapt_deck, only: adapt_group, fill_adapt
   use case_deck, only: fill_case
   use deck_contents, only: deck_t
+  use deck_crack_bands, only: check_crack_bands
   use deck_cross_checks, only: check_across_groups
   use deck_interface_remarks, only: check_interfaces
   use deck_process_zones, only: check_process_zones
@@ -88,6 +89,7 @@ contains
     call check_across_groups(deck, problems)
     call check_extents(deck, problems)
     call check_interfaces(deck, problems)
+    if (deck%has_ply_damage) call check_crack_bands(deck, problems)
     call check_process_zones(deck, problems)
     deck%remarks = problems%remarks()
   end subroutine read_deck_text

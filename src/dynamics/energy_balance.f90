@@ -42,7 +42,7 @@ contains
     !> State at the end; receives its ledger
     type(state_t), intent(inout) :: new
     type(products_t) :: products
-    real(wp) :: amplitudes(2), gain, impactor, taken, fracture
+    real(wp) :: amplitudes(2), gain, impactor, taken, fracture, damage
 
     products = step_products(model, old, energy, new)
     amplitudes = model%scene%pressure%amplitude([old%time, new%time])
@@ -53,6 +53,11 @@ contains
     gain = integrator_gain(integrator, step, products, amplitudes(2) - amplitudes(1)) &
            + (products%strain - old%ledger%strain - products%mean_internal)
     new%ledger%algorithmic = old%ledger%algorithmic - gain
+    call new%plies%book(model, damage)
+    new%ledger%ply_damage = new%ledger%ply_damage + damage
+    new%ledger%algorithmic = new%ledger%algorithmic - damage
+    call new%plies%judge(damage, products%strain - old%ledger%strain - products%mean_internal + damage, &
+                         max(new%ledger%initial + new%ledger%external_work, products%strain))
     if (model%map%layered) then
       ! What fracture takes has been booked, and taken off here, when the ties were released.
       call new%interfaces%ties%book(model, old%interfaces%ties, &

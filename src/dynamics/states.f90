@@ -85,7 +85,7 @@ contains
     !> Strain energy
     real(wp), intent(out) :: energy
 
-    call model%internal(self%plies%stiffness, self%motion%displacement, self%motion%internal, energy)
+    call self%plies%find_forces(model, self%motion%displacement, self%motion%internal, energy)
     call self%interfaces%cohesive%add_forces(model, old%interfaces%cohesive, self%motion%displacement, &
                                              self%motion%internal, energy)
   end subroutine find_internal

@@ -142,6 +142,7 @@ contains
     changes = model%scene%kinematics /= kinematics_linear
     ! Plies may have failed since the step before; later only contacts change.
     if (.not. changes) changes = iterations == 0 .and. (model%scene%has_ply_damage .or. model%map%layered)
+    changes = changes .or. model%scene%has_crack_bands()
     if (changes .or. .not. model%map%layered) return
     changes = any(model%scene%delaminations%contact /= contact_none)
   end function changes
@@ -186,7 +187,7 @@ contains
     real(wp), intent(in) :: energy
     !> State at this load
     type(state_t), intent(inout) :: new
-    real(wp) :: sums(5), faces, fracture
+    real(wp) :: sums(5), faces, fracture, damage
     real(wp), allocatable :: change(:, :)
 
     change = new%motion%displacement - old%motion%displacement
@@ -211,7 +212,10 @@ contains
     new%ledger%external_work = old%ledger%external_work + sums(3)
     new%ledger%contact = old%ledger%contact - sums(4)
     fracture = new%interfaces%cohesive%dissipation(model, old%interfaces%cohesive)
+    call new%plies%book(model, damage)
+    new%ledger%ply_damage = old%ledger%ply_damage + damage
     new%ledger%delamination = old%ledger%delamination + fracture
-    new%ledger%algorithmic = old%ledger%algorithmic - (sums(1) - old%ledger%strain - sums(2)) + sums(5) - fracture
+    new%ledger%algorithmic = old%ledger%algorithmic - (sums(1) - old%ledger%strain - sums(2)) + sums(5) - fracture &
+                             - damage
   end subroutine finish
 end module static_steps

@@ -199,6 +199,8 @@ contains
     if (converged .and. model%map%layered) &
       call grow_in_step(problem, model, self%stepping%equilibrium, self%operator, self%now, self%trial, converged, &
                         error)
+    ! Steps of the smallest length are taken as they are: the energy watch tells what they create.
+    if (converged .and. self%trial%plies%leapt) converged = step <= self%smallest_step(model)*(1 + 1.0e-9_wp)
   end subroutine try_step
 
   !> Longest step that the impactor's integrator bears now, as a binary fraction of the step wanted so that

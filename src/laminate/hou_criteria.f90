@@ -5,11 +5,11 @@ module hou_criteria
   use ply_damage_parameters, only: failure_modes, fibre_failure, matrix_cracking, matrix_crushing
   implicit none
   private
-  public :: failure_indices, largest_failure_indices, missing_strengths
+  public :: failure_indices
 
 contains
 
-  !> Value of each criterion; a ply fails where it reaches 1. The strengths must be there (see missing_strengths).
+  !> Value of each criterion; a ply fails where it reaches 1. The strengths must be there (see `needed_strengths`).
   pure function failure_indices(material, stress) result(indices)
     !> Material of the ply
     type(material_t), intent(in) :: material
@@ -28,22 +28,6 @@ contains
       end if
     end associate
   end function failure_indices
-
-  !> Largest value of each criterion over several points of a ply, such as its two faces.
-  pure function largest_failure_indices(material, stresses) result(indices)
-    !> Material of the ply
-    type(material_t), intent(in) :: material
-    !> Stresses of the points, shape (5, points)
-    real(wp), intent(in) :: stresses(:, :)
-    !> Values in the order of the modes
-    real(wp) :: indices(failure_modes)
-    integer :: point
-
-    indices = failure_indices(material, stresses(:, 1))
-    do point = 2, size(stresses, 2)
-      indices = max(indices, failure_indices(material, stresses(:, point)))
-    end do
-  end function largest_failure_indices
 
   !> Strength along the fibres: XC under compression if the deck gives it, else XT for both signs as in the paper.
   pure real(wp) function fibre_strength(material, s11)
@@ -70,23 +54,4 @@ contains
 
     crushing_index = (pressure/strength)**2/4 - yc*pressure/(4*strength**2) + pressure/yc + (s12/strength)**2
   end function crushing_index
-
-  !> Names of the strengths that the criteria need and the material lacks, separated by commas; empty: none.
-  pure function missing_strengths(material) result(names)
-    !> The material
-    type(material_t), intent(in) :: material
-    !> For example `XT, Sf`
-    character(len=:), allocatable :: names
-    character(len=4), parameter :: labels(6) = [character(len=4) :: 'XT', 'YT', 'YC', 'S12', 'Sf', 'Sm23']
-    real(wp) :: strengths(6)
-    integer :: i
-
-    strengths = [material%xt, material%yt, material%yc, material%s12, material%sf, material%sm23]
-    names = ''
-    do i = 1, size(labels)
-      if (strengths(i) > 0) cycle
-      if (len(names) > 0) names = names//', '
-      names = names//trim(labels(i))
-    end do
-  end function missing_strengths
 end module hou_criteria

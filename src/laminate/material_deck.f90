@@ -54,7 +54,17 @@ module material_deck
     'material | Sf | real | 1 | pressure | none | > 0 | &
       &Shear strength that counts in fibre failure.', &
     'material | Sm23 | real | 1 | pressure | none | > 0 | &
-      &Shear strength in the 2-3 plane that counts in matrix failure.']
+      &Shear strength in the 2-3 plane that counts in matrix failure.', &
+    'material | G_ft | real | 1 | energy/area | none | > 0 | &
+      &Energy that breaking fibres in tension takes per area of crack; with G_fc, G_mt and G_mc plies soften by it.', &
+    'material | G_fc | real | 1 | energy/area | none | > 0 | &
+      &Energy that breaking fibres in compression takes per area of crack.', &
+    'material | G_mt | real | 1 | energy/area | none | > 0 | &
+      &Energy that cracking the matrix by tension across the fibres takes per area of crack.', &
+    'material | G_mc | real | 1 | energy/area | none | > 0 | &
+      &Energy that failing the matrix by shear or by compression across the fibres takes per area of crack.']
+  !> Keys of the fracture energies in the order of the modes.
+  character(len=*), parameter, public :: toughness_keys(4) = [character(len=4) :: 'G_ft', 'G_fc', 'G_mt', 'G_mc']
 
   !> Keys of an orthotropic material that have to be there, and all of them.
   character(len=*), parameter :: needed_keys = 'E1 E2 G12 G23 nu12', orthotropic_keys = needed_keys//' G13 nu23'
@@ -95,6 +105,7 @@ contains
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
     logical :: complete
+    integer :: mode
 
     material%name = trim(settings%text_of(material_group, 'name', place))
     material%density = settings%real_of(material_group, 'density', place)
@@ -105,6 +116,9 @@ contains
     material%s12 = settings%real_of(material_group, 'S12', place)
     material%sf = settings%real_of(material_group, 'Sf', place)
     material%sm23 = settings%real_of(material_group, 'Sm23', place)
+    do mode = 1, size(toughness_keys)
+      material%toughness(mode) = settings%real_of(material_group, toughness_keys(mode), place)
+    end do
     call judge_completeness(settings, place, problems, complete)
     if (.not. complete) return
     if (settings%is_given(material_group, 'E', place)) then

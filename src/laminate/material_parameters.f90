@@ -24,5 +24,7 @@ module material_parameters
     real(wp) :: yt = 0, yc = 0
     !> Shear strengths: in the plane, of the fibres, and in the 2-3 plane
     real(wp) :: s12 = 0, sf = 0, sm23 = 0
+    !> Fracture energies per area: fibre tension and compression, matrix tension and compression; 0: not given
+    real(wp) :: toughness(4) = 0
   end type material_t
 end module material_parameters

@@ -3,13 +3,16 @@ module ply_damage_deck
   use deck_choices, only: code_of
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
-  use ply_damage_parameters, only: ply_damage_t, criteria_hou, stress_at_middle, stress_at_faces
+  use ply_damage_parameters, only: ply_damage_t, criteria_hou, criteria_hashin, criteria_puck, stress_at_middle, &
+                                   stress_at_faces
   implicit none
   private
   public :: fill_ply_damage
 
   !> Name that checks across groups use.
   character(len=*), parameter, public :: ply_damage_group = 'ply_damage'
+  !> Keys without effect on plies that soften by their fracture energies.
+  character(len=*), parameter, public :: keys_of_sudden_failure = 'd fade average stress'
   !> Row of the group.
   character(len=group_row_length), parameter, public :: ply_damage_group_row = &
     'ply_damage | optional | Failure of plies: matrix cracking, matrix crushing, fibre failure.'
@@ -23,8 +26,8 @@ module ply_damage_deck
       &Time over which a failure takes its stiffness away, in proportion; 0: at once.', &
     'ply_damage | average | real | 1 | length | 0 | >= 0 | &
       &Distance over which the strains for the criteria are averaged; 0: over each element alone.', &
-    'ply_damage | criteria | choice | 1 | - | ''hou'' | hou | &
-      &Set of failure criteria: those of Hou et al. (Table 1).', &
+    'ply_damage | criteria | choice | 1 | - | ''hou'' | hou hashin puck | &
+      &Set of failure criteria: those of Hou et al. (Table 1), of Hashin (1980) or of Puck (1998).', &
     'ply_damage | stress | choice | 1 | - | ''middle'' | middle faces | &
       &Where in a ply the stresses are taken: its mid-plane, or the worse of its faces.']
 
@@ -41,7 +44,8 @@ contains
     damage%e = settings%real_of(ply_damage_group, 'e')
     damage%fade = settings%real_of(ply_damage_group, 'fade')
     damage%average = settings%real_of(ply_damage_group, 'average')
-    damage%criteria = code_of(settings%text_of(ply_damage_group, 'criteria'), 'hou', [criteria_hou])
+    damage%criteria = code_of(settings%text_of(ply_damage_group, 'criteria'), 'hou hashin puck', &
+                              [criteria_hou, criteria_hashin, criteria_puck])
     damage%stress = code_of(settings%text_of(ply_damage_group, 'stress'), 'middle faces', &
                             [stress_at_middle, stress_at_faces])
   end subroutine fill_ply_damage

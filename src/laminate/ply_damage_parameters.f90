@@ -7,8 +7,13 @@ module ply_damage_parameters
 
   !> Ways a ply fails (Table 1 of the paper), and their number.
   integer, parameter, public :: fibre_failure = 1, matrix_cracking = 2, matrix_crushing = 3, failure_modes = 3
-  !> Sets of failure criteria: those of Hou et al. (Table 1).
+  !> Sets of failure criteria: those of Hou et al. (Table 1), of Hashin (1980), of Puck (1998).
   integer, parameter, public :: criteria_hou = 1
+  integer, parameter, public :: criteria_hashin = 2, criteria_puck = 3
+
+  !> Modes in which plies with fracture energies dissipate, the order of their toughnesses, and their number.
+  integer, parameter, public :: fibre_tension = 1, fibre_compression = 2, matrix_tension = 3, matrix_compression = 4, &
+                                energy_modes = 4
 
   !> Where in a ply the stresses are taken: in its mid-plane, or on the worse of its faces.
   integer, parameter, public :: stress_at_middle = 1, stress_at_faces = 2
@@ -23,7 +28,7 @@ module ply_damage_parameters
     real(wp) :: fade = 0
     !> Distance over which the strains for the criteria are averaged; 0: over each element alone
     real(wp) :: average = 0
-    !> criteria_hou
+    !> criteria_hou, criteria_hashin or criteria_puck
     integer :: criteria = criteria_hou
     !> stress_at_middle or stress_at_faces
     integer :: stress = stress_at_middle

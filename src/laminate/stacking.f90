@@ -7,7 +7,7 @@ module stacking
   use transverse_shear, only: shear_stiffness_from_energy
   implicit none
   private
-  public :: section_t, stacked_plies, section_of, section_stiffness, section_mass
+  public :: section_t, stacked_plies, section_of, section_stiffness, in_plane_section, section_mass
 
   !> A section of the laminate, or of a layer of it, per unit of area; z from the mid-plane of the whole laminate.
   type :: section_t
@@ -66,22 +66,17 @@ contains
     integer, intent(in) :: shear_correction
     !> Packed as in section_t
     real(wp) :: stiffness(21)
-    real(wp) :: z(0:size(plies)), in_plane(6, size(plies)), shear(3, size(plies)), thickness
+    real(wp) :: z(0:size(plies)), in_plane(6, size(plies)), shear(3, size(plies))
     integer :: i
 
-    stiffness = 0
+    stiffness(1:18) = in_plane_section(plies, elasticity)
+    stiffness(19:21) = 0
     z(0) = plies(1)%z_top
     do i = 1, size(plies)
-      associate (top => plies(i)%z_top, bottom => plies(i)%z_bottom)
-        in_plane(:, i) = in_plane_stiffness(plies(i), elasticity(i))
-        shear(:, i) = shear_stiffness(plies(i), elasticity(i))
-        z(i) = bottom
-        thickness = bottom - top
-        stiffness(1:6) = stiffness(1:6) + in_plane(:, i)*thickness
-        stiffness(7:12) = stiffness(7:12) + in_plane(:, i)*(thickness*(bottom + top)/2)
-        stiffness(13:18) = stiffness(13:18) + in_plane(:, i)*(thickness*(bottom**2 + bottom*top + top**2)/3)
-        stiffness(19:21) = stiffness(19:21) + shear(:, i)*thickness
-      end associate
+      in_plane(:, i) = in_plane_stiffness(plies(i), elasticity(i))
+      shear(:, i) = shear_stiffness(plies(i), elasticity(i))
+      z(i) = plies(i)%z_bottom
+      stiffness(19:21) = stiffness(19:21) + shear(:, i)*(plies(i)%z_bottom - plies(i)%z_top)
     end do
     if (shear_correction == shear_energy) then
       stiffness(19:21) = shear_stiffness_from_energy(z, in_plane, shear)
@@ -89,6 +84,29 @@ contains
       stiffness(19:21) = stiffness(19:21)*5/6
     end if
   end function section_stiffness
+
+  !> Stiffness of a range of plies against membrane strains and curvatures.
+  pure function in_plane_section(plies, elasticity) result(stiffness)
+    !> Neighbouring plies: all of the laminate or those of one layer
+    type(ply_t), intent(in) :: plies(:)
+    !> Present elastic constants of these plies
+    type(elasticity_t), intent(in) :: elasticity(:)
+    !> A, B, D, packed as in section_t
+    real(wp) :: stiffness(18)
+    real(wp) :: in_plane(6), thickness
+    integer :: i
+
+    stiffness = 0
+    do i = 1, size(plies)
+      associate (top => plies(i)%z_top, bottom => plies(i)%z_bottom)
+        in_plane = in_plane_stiffness(plies(i), elasticity(i))
+        thickness = bottom - top
+        stiffness(1:6) = stiffness(1:6) + in_plane*thickness
+        stiffness(7:12) = stiffness(7:12) + in_plane*(thickness*(bottom + top)/2)
+        stiffness(13:18) = stiffness(13:18) + in_plane*(thickness*(bottom**2 + bottom*top + top**2)/3)
+      end associate
+    end do
+  end function in_plane_section
 
   !> Mass of a range of plies.
   pure function section_mass(plies) result(mass)

@@ -59,7 +59,7 @@ contains
     call build_loads(self)
     call build_interfaces(self)
     call find_struck_point(self)
-    if (scene%has_ply_damage .and. scene%ply_damage%average > 0) &
+    if (scene%has_ply_damage .and. scene%ply_damage%average > 0 .and. .not. scene%has_crack_bands()) &
       self%surroundings = neighbourhood_of(self%mesh, self%distribution%elements, scene%ply_damage%average)
   end subroutine create_model
 

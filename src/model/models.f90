@@ -7,6 +7,7 @@ module models
   use element_batches, only: element_batches_t
   use internal_forces, only: add_internal_force
   use inertia_forces, only: add_inertia_force
+  use section_laws, only: section_law_t
   use stacking, only: section_t
   use plies, only: ply_t
   use layered_meshes, only: layered_mesh_t
@@ -102,7 +103,7 @@ contains
   end function motion_of
 
   !> Internal forces at the owned points and this rank's share of the strain energy.
-  subroutine internal(self, stiffness, displacement, force, energy)
+  subroutine internal(self, stiffness, displacement, force, energy, law)
     !> The model
     class(model_t), intent(in) :: self
     !> Section stiffness left in the elements, (lanes, 21, batches)
@@ -113,14 +114,16 @@ contains
     real(wp), intent(inout) :: force(:, :)
     !> Strain energy of this rank's elements
     real(wp), intent(out) :: energy
+    !> Makes the stiffness follow the strains; absent: it is what it is
+    class(section_law_t), intent(inout), optional :: law
 
     force = 0
     if (self%map%layered) then
       call add_internal_force(self%elements, stiffness, self%scene%kinematics, self%motion_of(displacement), force, &
-                              energy)
+                              energy, law)
       call self%map%to_unknowns(force)
     else
-      call add_internal_force(self%elements, stiffness, self%scene%kinematics, displacement, force, energy)
+      call add_internal_force(self%elements, stiffness, self%scene%kinematics, displacement, force, energy, law)
     end if
     call self%halo%accumulate(force)
   end subroutine internal

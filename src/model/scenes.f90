@@ -37,5 +37,22 @@ module scenes
     type(ply_damage_t) :: ply_damage
     !> Interfaces that may delaminate, from the struck face downwards; unallocated: none
     type(delamination_t), allocatable :: delaminations(:)
+  contains
+    !> True: plies soften by their fracture energies.
+    procedure :: has_crack_bands
   end type scene_t
+
+contains
+
+  !> True: plies soften by their fracture energies, instead of losing stiffness at once.
+  pure logical function has_crack_bands(self)
+    !> The scene
+    class(scene_t), intent(in) :: self
+    integer :: i
+
+    has_crack_bands = .false.
+    if (.not. self%has_ply_damage) return
+    has_crack_bands = all([(all(self%materials(self%laminate%material(i))%toughness > 0), &
+                            i=1, size(self%laminate%material))])
+  end function has_crack_bands
 end module scenes

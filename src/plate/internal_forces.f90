@@ -6,6 +6,7 @@ module internal_forces
   use reference_fields, only: gather, scatter
   use batch_strains, only: in_plane_strains, add_in_plane_forces, shear_strains, add_shear_forces
   use batch_resultants, only: in_plane_resultants, shear_resultants
+  use section_laws, only: section_law_t
   implicit none
   private
   public :: add_internal_force
@@ -13,7 +14,7 @@ module internal_forces
 contains
 
   !> Adds the internal force of all elements to the forces on the points.
-  subroutine add_internal_force(batches, stiffness, kinematics, u, f, energy)
+  subroutine add_internal_force(batches, stiffness, kinematics, u, f, energy, law)
     !> The elements
     type(element_batches_t), intent(in) :: batches
     !> Section stiffness left, as in the batches (lanes, 21, batches)
@@ -26,27 +27,56 @@ contains
     real(wp), contiguous, intent(inout) :: f(:, :)
     !> Strain energy of these elements
     real(wp), intent(out) :: energy
-    real(wp) :: r(lanes, 9, 5), strains(lanes, 9, 6), slopes(lanes, 9, 2), shear(lanes, batches%shear_points, 2)
-    real(wp) :: energies(lanes)
+    !> Makes the stiffness follow the strains; absent: it is what it is
+    class(section_law_t), intent(inout), optional :: law
+    real(wp) :: r(lanes, 9, 5), strains(lanes, 9, 6), slopes(lanes, 9, 2), c(lanes, 21), energies(lanes)
     integer :: b
 
     energies = 0.0_wp
     do b = 1, batches%batches
       call gather(batches%points(:, :, b), u, r)
       call in_plane_strains(batches%inverse_jacobian(:, :, :, b), kinematics, r, strains, slopes)
-      call shear_strains(batches, b, r, shear)
-      call in_plane_resultants(stiffness(:, :, b), batches%weight(:, :, b), strains, energies)
-      if (batches%shear == shear_assumed) then
-        call shear_resultants(9, stiffness(:, :, b), batches%weight(:, :, b), shear, energies)
+      if (present(law)) then
+        c = stiffness(:, :, b)
+        call law%soften(b, batches%weight(:, :, b), strains, c)
+        call turn_into_forces(batches, b, c, kinematics, slopes, strains, r, energies)
       else
-        call shear_resultants(batches%shear_points, stiffness(:, :, b), batches%shear_weight(:, :, b), &
-                              shear, energies)
+        call turn_into_forces(batches, b, stiffness(:, :, b), kinematics, slopes, strains, r, energies)
       end if
-      r = 0.0_wp
-      call add_in_plane_forces(batches%inverse_jacobian(:, :, :, b), kinematics, strains, slopes, r)
-      call add_shear_forces(batches, b, shear, r)
       call scatter(batches%points(:, :, b), r, f)
     end do
     energy = sum(energies)
   end subroutine add_internal_force
+
+  !> Turns the unknowns of a batch, whose in-plane strains are known, into its nodal forces.
+  pure subroutine turn_into_forces(batches, b, c, kinematics, slopes, strains, r, energies)
+    !> The elements
+    type(element_batches_t), intent(in) :: batches
+    !> Number of the batch
+    integer, intent(in) :: b
+    !> Section stiffness
+    real(wp), intent(in) :: c(lanes, 21)
+    !> One of the kinematics_* choices
+    integer, intent(in) :: kinematics
+    !> Slopes w,x and w,y (lane, point, direction)
+    real(wp), intent(in) :: slopes(lanes, 9, 2)
+    !> In-plane strains on entry, their resultants on return (lane, point, component)
+    real(wp), intent(inout) :: strains(lanes, 9, 6)
+    !> Unknowns of the nodes on entry, forces on them on return
+    real(wp), intent(inout) :: r(lanes, 9, 5)
+    !> Strain energy of each lane, added to
+    real(wp), intent(inout) :: energies(lanes)
+    real(wp) :: shear(lanes, batches%shear_points, 2)
+
+    call shear_strains(batches, b, r, shear)
+    call in_plane_resultants(c, batches%weight(:, :, b), strains, energies)
+    if (batches%shear == shear_assumed) then
+      call shear_resultants(9, c, batches%weight(:, :, b), shear, energies)
+    else
+      call shear_resultants(batches%shear_points, c, batches%shear_weight(:, :, b), shear, energies)
+    end if
+    r = 0.0_wp
+    call add_in_plane_forces(batches%inverse_jacobian(:, :, :, b), kinematics, strains, slopes, r)
+    call add_shear_forces(batches, b, shear, r)
+  end subroutine turn_into_forces
 end module internal_forces

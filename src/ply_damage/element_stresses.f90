@@ -27,7 +27,7 @@ contains
     strains = mean_strains_of_elements(model, displacement)
     do element = 1, size(strains, 2)
       strains(:, element) = strains_of_plies(model, failures%stiffness, element, &
-                                             failures%onset%elasticities(model, element), strains(:, element))
+                                             failures%elasticities(model, element), strains(:, element))
     end do
   end function element_strains
 
@@ -51,7 +51,7 @@ contains
       associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
         if (ply < range(1) .or. ply > range(2)) cycle
       end associate
-      elasticity = failures%onset%elasticity(model, ply, element)
+      elasticity = failures%elasticity(model, ply, element)
       stresses(:, 1, element) = middle_stress(model%plies(ply), elasticity, strains(:, element))
       stresses(:, 2:3, element) = face_stresses(model%plies(ply), elasticity, strains(:, element))
     end do

@@ -8,11 +8,17 @@ module ply_columns
   private
   public :: ply_values
 
-  !> Failures in each mode. A ply counts once in each element.
+  !> Failures in each mode, a ply counting once in each element, and the energies of plies that soften.
   character(len=result_row_length), parameter, public :: ply_rows(*) = [character(len=result_row_length) :: &
     'fibre_failures | integer | - | Plies of elements whose fibres have failed, counted over the whole plate.', &
     'matrix_cracks | integer | - | Plies of elements whose matrix has cracked, counted over the whole plate.', &
-    'matrix_crushings | integer | - | Plies of elements whose matrix was crushed, counted over the whole plate.']
+    'matrix_crushings | integer | - | Plies of elements whose matrix was crushed, counted over the whole plate.', &
+    'energy_fibre_tension | real | energy | Part of energy_ply_damage that breaking fibres in tension took.', &
+    'energy_fibre_compression | real | energy | Part of energy_ply_damage that breaking fibres in compression took.', &
+    'energy_matrix_cracking | real | energy | Part of energy_ply_damage that cracking took, where tension acts across &
+      &the fibres.', &
+    'energy_matrix_crushing | real | energy | Part of energy_ply_damage that failure of the matrix took, where &
+      &compression acts across the fibres.']
 
 contains
 
@@ -24,6 +30,6 @@ contains
     !> A value a column, the same on every rank
     real(wp) :: values(size(ply_rows))
 
-    values = real(plies%counts(model), wp)
+    values = [real(plies%counts(model), wp), plies%dissipated]
   end function ply_values
 end module ply_columns

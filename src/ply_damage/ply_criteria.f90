@@ -3,9 +3,9 @@ module ply_criteria
   use kinds, only: wp
   use element_batches, only: batch_of, lane_of
   use plies, only: elasticity_t
-  use ply_damage_parameters, only: failure_modes, criteria_hou, stress_at_faces
+  use ply_damage_parameters, only: failure_modes, stress_at_faces
   use ply_stresses, only: middle_stress, face_stresses, mean_shear_strain
-  use hou_criteria, only: failure_indices, largest_failure_indices
+  use failure_criteria, only: chosen_indices
   use models, only: model_t
   implicit none
   private
@@ -27,6 +27,7 @@ contains
     real(wp), intent(in) :: strains(8)
     !> The measures
     real(wp) :: measures(failure_modes, size(elasticity))
+    real(wp), allocatable :: stresses(:, :)
     real(wp) :: local(8)
     integer :: i
 
@@ -36,14 +37,12 @@ contains
       do i = 1, size(elasticity)
         associate (ply => model%plies(range(1) + i - 1))
           associate (strength => model%scene%materials(ply%material))
-            select case (model%scene%ply_damage%criteria)
-            case (criteria_hou)
-              if (model%scene%ply_damage%stress == stress_at_faces) then
-                measures(:, i) = largest_failure_indices(strength, face_stresses(ply, elasticity(i), local))
-              else
-                measures(:, i) = failure_indices(strength, middle_stress(ply, elasticity(i), local))
-              end if
-            end select
+            if (model%scene%ply_damage%stress == stress_at_faces) then
+              stresses = face_stresses(ply, elasticity(i), local)
+            else
+              stresses = spread(middle_stress(ply, elasticity(i), local), 2, 1)
+            end if
+            measures(:, i) = chosen_indices(model%scene%ply_damage%criteria, strength, stresses)
           end associate
         end associate
       end do

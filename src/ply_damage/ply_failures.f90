@@ -2,25 +2,46 @@
 module ply_failures
   use kinds, only: wp
   use archives, only: archive_t
+  use crack_band_sections, only: crack_band_sections_t, new_crack_band_sections
   use element_batches, only: batch_of, lane_of
-  use ply_damage_parameters, only: failure_modes
+  use plies, only: elasticity_t
+  use ply_damage_parameters, only: failure_modes, fibre_failure, matrix_cracking, matrix_crushing, energy_modes
   use stacking, only: section_stiffness
   use section_stiffnesses, only: visit_stiffness
   use models, only: model_t
   use ply_onsets, only: ply_onset_t, new_ply_onset
+  use text, only: to_text
   implicit none
   private
   public :: ply_failure_t, new_ply_failure
 
+  !> Energy that a step may create or lose, as a part of what plies dissipate in it, and of all energy.
+  real(wp), parameter :: path_tolerance = 0.1_wp, noticed = 1.0e-4_wp
+
   !> Failures of the plies of this rank's elements.
   type :: ply_failure_t
-    !> When they began
+    !> When they began, where failures take their stiffness at once
     type(ply_onset_t) :: onset
+    !> Plies that soften by their fracture energies; unallocated: they fail at once
+    type(crack_band_sections_t), allocatable :: bands
     !> Section stiffness left in the elements, (lanes, 21, batches)
     real(wp), allocatable :: stiffness(:, :, :)
     !> True if plies took stiffness away after the last step
     logical :: softened = .false.
+    !> Energy dissipated in each mode by plies that soften, of the whole plate
+    real(wp) :: dissipated(energy_modes) = 0
+    !> True if the last step was too long to follow plies that soften
+    logical :: leapt = .false.
   contains
+    !> Internal forces of the plate, with the stiffness that softening leaves under this displacement.
+    procedure :: find_forces
+    !> Books what softening dissipates in a step, and judges whether the step has followed it.
+    procedure :: book
+    procedure :: judge
+    !> Modes that have occurred in a ply, and constants left in it.
+    procedure :: failed
+    procedure :: elasticity
+    procedure :: elasticities
     !> Finds new failures in an accepted state and takes stiffness away.
     procedure :: grow
     !> Number of ply elements failed in each mode, and area failed in each ply, of the whole plate.
@@ -38,9 +59,120 @@ contains
     !> The failures
     type(ply_failure_t) :: self
 
-    self%onset = new_ply_onset(model)
     self%stiffness = model%elements%stiffness
+    if (model%scene%has_crack_bands()) then
+      self%bands = new_crack_band_sections(model)
+    else
+      self%onset = new_ply_onset(model)
+    end if
   end function new_ply_failure
+
+  !> Internal forces of the plate, with the stiffness that softening leaves under this displacement.
+  subroutine find_forces(self, model, displacement, force, energy)
+    !> The failures; remember the trial
+    class(ply_failure_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> Displacement, ghosts up to date, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> Internal forces, (5, points); ghosts zero
+    real(wp), intent(inout) :: force(:, :)
+    !> Strain energy of this rank's elements
+    real(wp), intent(out) :: energy
+
+    if (allocated(self%bands)) then
+      call model%internal(self%stiffness, displacement, force, energy, self%bands)
+      self%stiffness = self%bands%stiffness
+    else
+      call model%internal(self%stiffness, displacement, force, energy)
+    end if
+  end subroutine find_forces
+
+  !> Books what softening dissipates in a step. Collective.
+  subroutine book(self, model, energy)
+    !> The failures with the trial of the step
+    class(ply_failure_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> Energy of all modes, of the whole plate, the same on every rank
+    real(wp), intent(out) :: energy
+    real(wp) :: energies(energy_modes)
+
+    energy = 0
+    if (.not. allocated(self%bands)) return
+    energies = self%bands%dissipation()
+    call model%communicator%sum(energies)
+    energies = energies*model%mesh%multiplicity
+    self%dissipated = self%dissipated + energies
+    energy = sum(energies)
+  end subroutine book
+
+  !> Judges whether a step has followed how plies soften: the work on the plate is then what it stores and they
+  !> dissipate. A step over a jump would find the state behind it without the work that leads there.
+  pure subroutine judge(self, dissipated, created, energy)
+    !> The failures
+    class(ply_failure_t), intent(inout) :: self
+    !> Energy dissipated in the step
+    real(wp), intent(in) :: dissipated
+    !> Energy stored and dissipated in the step beyond the work
+    real(wp), intent(in) :: created
+    !> Energy of the whole run so far
+    real(wp), intent(in) :: energy
+
+    self%leapt = allocated(self%bands) .and. abs(created) > max(path_tolerance*dissipated, noticed*energy)
+  end subroutine judge
+
+  !> Modes that have occurred in a ply; one that softens has failed where it bears nothing any more.
+  pure function failed(self, ply)
+    !> The failures
+    class(ply_failure_t), intent(in) :: self
+    !> Ply of the laminate
+    integer, intent(in) :: ply
+    !> True where a mode has occurred, (modes, elements)
+    logical, allocatable :: failed(:, :)
+
+    if (.not. allocated(self%bands)) then
+      failed = self%onset%failed(ply)
+      return
+    end if
+    associate (broken => self%bands%broken(ply), pressed => self%bands%mostly_pressed(ply))
+      allocate (failed(failure_modes, size(pressed)))
+      failed(fibre_failure, :) = broken(1, :)
+      failed(matrix_cracking, :) = broken(2, :) .and. .not. pressed
+      failed(matrix_crushing, :) = broken(2, :) .and. pressed
+    end associate
+  end function failed
+
+  !> Constants left in a ply of an element.
+  pure function elasticity(self, model, ply, element)
+    !> The failures
+    class(ply_failure_t), intent(in) :: self
+    type(model_t), intent(in) :: model
+    !> Ply of the laminate, and element of this rank
+    integer, intent(in) :: ply, element
+    !> The constants
+    type(elasticity_t) :: elasticity
+
+    if (allocated(self%bands)) then
+      elasticity = self%bands%elasticity(ply, element)
+    else
+      elasticity = self%onset%elasticity(model, ply, element)
+    end if
+  end function elasticity
+
+  !> Constants left in the plies of an element.
+  pure function elasticities(self, model, element)
+    !> The failures
+    class(ply_failure_t), intent(in) :: self
+    type(model_t), intent(in) :: model
+    !> Element of this rank
+    integer, intent(in) :: element
+    !> Those of the element's plies
+    type(elasticity_t), allocatable :: elasticities(:)
+    integer :: ply
+
+    associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
+      elasticities = [(self%elasticity(model, ply, element), ply=range(1), range(2))]
+    end associate
+  end function elasticities
 
   !> Finds new failures in an accepted state and takes away what stiffness goes until the end of the next step.
   subroutine grow(self, model, times, before, after)
@@ -54,7 +186,8 @@ contains
     logical, allocatable :: changing(:)
     integer :: element
 
-    if (.not. model%scene%has_ply_damage) return
+    if (allocated(self%bands)) call self%bands%commit()
+    if (.not. model%scene%has_ply_damage .or. allocated(self%bands)) return
     changing = self%onset%fading()
     call self%onset%find(model, self%stiffness, times, before, after, changing)
     call self%onset%go_on(times)
@@ -92,7 +225,7 @@ contains
     counts = 0
     if (.not. model%scene%has_ply_damage) return
     do ply = 1, size(model%plies)
-      counts = counts + count(self%onset%failed(ply), dim=2)*model%mesh%multiplicity
+      counts = counts + count(self%failed(ply), dim=2)*model%mesh%multiplicity
     end do
     do mode = 1, failure_modes
       call model%communicator%sum(counts(mode))
@@ -129,8 +262,15 @@ contains
     !> Where to or where from
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
+    integer :: mode
 
     call self%onset%visit(archive, model, 'ply_failure/onset/')
+    if (allocated(self%bands)) then
+      call self%bands%visit(archive, model)
+      do mode = 1, energy_modes
+        call archive%item('ply_failure/dissipated_'//to_text(mode), self%dissipated(mode))
+      end do
+    end if
     if (model%scene%has_ply_damage) call visit_stiffness(archive, 'ply_failure/stiffness', model, self%stiffness)
   end subroutine visit
 end module ply_failures

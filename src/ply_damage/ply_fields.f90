@@ -6,6 +6,7 @@ module ply_fields
   use kinds, only: wp
   use models, only: model_t
   use output_parameters, only: output_t, field_ply_damage, field_stress, field_face_stress
+  use plies, only: elasticity_t
   use ply_failures, only: ply_failure_t
   use result_tables, only: result_row_length
   use text, only: to_text
@@ -13,13 +14,16 @@ module ply_fields
   private
   public :: write_ply_fields
 
-  !> Cells between name and meaning: of stresses in the mid-plane of a ply, and of those on its faces.
+  !> Cells between name and meaning: of stiffness lost, of stresses in the mid-plane of a ply and of those on its faces.
+  character(len=*), parameter :: damaged = ' | cells | - | '//field_ply_damage//' | &ply_damage | '
   character(len=*), parameter :: middle = ' | cells | pressure | '//field_stress//' | - | ', &
                                  faces = ' | cells | pressure | '//field_face_stress//' | - | '
   !> The fields; N is the number of the ply from the struck face. Elements without ply N have 0.
   character(len=result_row_length), parameter, public :: ply_field_rows(*) = [character(len=result_row_length) :: &
     'ply_N_failure | cells | - | '//field_ply_damage//' | &ply_damage | Failures of ply N: 1 fibre failure, 2 matrix &
       &cracking, 4 matrix crushing, added up.', &
+    'ply_N_damage_fibre'//damaged//'Part of E1 that ply N has lost.', &
+    'ply_N_damage_matrix'//damaged//'Part of E2 that ply N has lost.', &
     'ply_N_sigma11'//middle//'Stress along the fibres in the mid-plane of ply N.', &
     'ply_N_sigma22'//middle//'Stress across the fibres in the mid-plane of ply N.', &
     'ply_N_tau12'//middle//'Shear stress in the plane, in the mid-plane of ply N.', &
@@ -50,15 +54,19 @@ contains
     character(len=*), parameter :: components(5) = [character(len=7) :: 'sigma11', 'sigma22', 'tau12', 'tau13', 'tau23']
     character(len=*), parameter :: places(3) = [character(len=7) :: '', '_top', '_bottom']
     logical :: wanted(3)
-    real(wp), allocatable :: strains(:, :), stresses(:, :, :)
+    real(wp), allocatable :: strains(:, :), stresses(:, :, :), lost(:, :)
     integer :: ply, place, i
 
     wanted = [output%wants(field_stress), output%wants(field_face_stress), output%wants(field_face_stress)]
     if (any(wanted)) strains = element_strains(model, plies, displacement)
     do ply = 1, size(model%plies)
       associate (name => 'ply_'//to_text(ply)//'_')
-        if (output%wants(field_ply_damage) .and. model%scene%has_ply_damage) &
-          call fields%write_cell_field(name//'failure', failure_code(plies%onset%failed(ply)), error)
+        if (output%wants(field_ply_damage) .and. model%scene%has_ply_damage) then
+          call fields%write_cell_field(name//'failure', failure_code(plies%failed(ply)), error)
+          lost = stiffness_lost(model, plies, ply)
+          call fields%write_cell_field(name//'damage_fibre', lost(1:1, :), error)
+          call fields%write_cell_field(name//'damage_matrix', lost(2:2, :), error)
+        end if
         if (any(wanted)) stresses = stresses_of_ply(model, plies, strains, ply)
         do place = 1, 3
           if (.not. wanted(place)) cycle
@@ -69,6 +77,24 @@ contains
       end associate
     end do
   end subroutine write_ply_fields
+
+  !> Parts of E1 and E2 that one ply has lost.
+  pure function stiffness_lost(model, plies, ply) result(lost)
+    type(model_t), intent(in) :: model
+    !> Failures of its plies
+    type(ply_failure_t), intent(in) :: plies
+    !> Ply of the laminate
+    integer, intent(in) :: ply
+    !> From 0 to 1, (2, elements)
+    real(wp) :: lost(2, model%elements%elements)
+    type(elasticity_t) :: left
+    integer :: element
+
+    do element = 1, size(lost, 2)
+      left = plies%elasticity(model, ply, element)
+      lost(:, element) = 1 - [left%e1, left%e2]/[model%plies(ply)%elasticity%e1, model%plies(ply)%elasticity%e2]
+    end do
+  end function stiffness_lost
 
   !> 1 for fibre failure, 2 for matrix cracking, 4 for crushing, added up.
   pure function failure_code(failed) result(code)

@@ -7,6 +7,7 @@ moments  SIGTERM and SIGKILL while a step with several releases is being compute
 ranks    from 2 ranks to 1, from 1 to 2: to 1e-9
 rejected from checkpoints next to rejected steps, while delaminations grow: bitwise
 cohesive from the checkpoint after each step of a run whose interface is cohesive: bitwise
+softening from the checkpoint after each step of a run whose plies soften: bitwise
 fading   while failed plies lose their stiffness, with an operator factored before: bitwise"""
 
 import signal
@@ -56,9 +57,9 @@ FOLLOWING = ["mesh%elements=8,8", "plate%edges='simple'", "plate%symmetry='none'
              "time%beta=0.28", "time%gamma=0.55"]
 
 
-def growth(history):
-    """Return the area that delaminated in each step but the first."""
-    area = history["delaminated_area"]
+def growth(history, column="delaminated_area"):
+    """Return the area that delaminated in each step but the first, or the growth of another column."""
+    area = history[column]
     return [0.0, *(after - before for before, after in pairwise(area))]
 
 
@@ -77,12 +78,17 @@ def check_cohesive(implam, folder, _):
     check_all_checkpoints(implam, folder, "../small/cohesive.nml", [])
 
 
-def check_all_checkpoints(implam, folder, source, settings):
+def check_softening(implam, folder, _):
+    """From every checkpoint of a run whose plies soften, of whose steps some are tried again."""
+    check_all_checkpoints(implam, folder, "../small/crack_bands.nml", ["time%end=120e-6"], "energy_ply_damage")
+
+
+def check_all_checkpoints(implam, folder, source, settings, grows="delaminated_area"):
     """From the checkpoint after each step of a run to its end."""
     reference = run_deck(implam, write_deck(folder / "uninterrupted", source, settings))
     history = read_history(reference)
     steps = len(history["time"])
-    require(max(growth(history)) > 0 and history["refactorisations"][-1] < steps,
+    require(max(growth(history, grows)) > 0 and history["refactorisations"][-1] < steps,
             "Nothing grew, or the operator followed nothing: the trial proves nothing.")
     deck = write_deck(folder / "step_by_step", source, settings)
     words = [deck, "--output", deck.parent]
@@ -221,7 +227,8 @@ def check_rejected(implam, folder, _):
 
 
 TRIALS = {"every": check_every, "splits": check_splits, "moments": check_moments, "ranks": check_ranks,
-          "rejected": check_rejected, "fading": check_fading, "averages": check_averages, "cohesive": check_cohesive}
+          "rejected": check_rejected, "fading": check_fading, "averages": check_averages, "cohesive": check_cohesive,
+          "softening": check_softening}
 
 
 if __name__ == "__main__":

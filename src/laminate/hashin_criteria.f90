@@ -1,5 +1,5 @@
-!> Stress criteria of ply failure after Z. Hashin, Journal of Applied Mechanics 47 (1980) 329-334, without stress across
-!> the plies. The shear strength of the 2-3 plane is Sm23.
+!> Stress criteria of ply failure after Hashin (Journal of Applied Mechanics 47 (1980) 329-334), in plane stress with
+!> the transverse shear stresses.
 module hashin_criteria
   use kinds, only: wp
   use material_parameters, only: material_t
@@ -10,9 +10,9 @@ module hashin_criteria
 
 contains
 
-  !> Value of each criterion; a ply fails where it reaches 1.
+  !> Value of each criterion; a ply fails where it reaches 1. Needs XT, YT, YC, S12, Sm23.
   pure function hashin_indices(material, stress) result(indices)
-    !> Material of the ply; XT, YT, YC, S12 and Sm23 must be there
+    !> Material of the ply
     type(material_t), intent(in) :: material
     !> s11, s22, s12, s13, s23
     real(wp), intent(in) :: stress(5)
@@ -32,7 +32,7 @@ contains
       if (s22 >= 0) then
         indices(matrix_cracking) = (s22/m%yt)**2 + across + along
       else
-        indices(matrix_crushing) = ((m%yc/(2*m%sm23))**2 - 1)*s22/m%yc + (s22/(2*m%sm23))**2 + across + along
+        indices(matrix_crushing) = (s22/(2*m%sm23))**2 + ((m%yc/(2*m%sm23))**2 - 1)*s22/m%yc + across + along
       end if
     end associate
   end function hashin_indices

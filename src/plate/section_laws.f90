@@ -1,0 +1,32 @@
+!> Sections whose stiffness follows from their strains within the iteration of equilibrium, as that of softening plies.
+module section_laws
+  use kinds, only: wp
+  use element_batches, only: lanes
+  implicit none
+  private
+  public :: section_law_t
+
+  !> What the sections of the elements remember, and how they answer to trial strains.
+  type, abstract :: section_law_t
+  contains
+    !> Stiffness of the sections of a batch under trial strains.
+    procedure(soften_batch), deferred :: soften
+  end type section_law_t
+
+  abstract interface
+    !> Stiffness of the sections of a batch under trial strains.
+    subroutine soften_batch(self, b, weight, strains, stiffness)
+      import :: section_law_t, wp, lanes
+      !> The law; remembers the trial
+      class(section_law_t), intent(inout) :: self
+      !> Number of the batch
+      integer, intent(in) :: b
+      !> Area of each Gauss point
+      real(wp), intent(in) :: weight(lanes, 9)
+      !> Strains exx, eyy, gxy, kxx, kyy, kxy (lane, point, component)
+      real(wp), intent(in) :: strains(lanes, 9, 6)
+      !> Section stiffness: that of the last trial on entry, that of this one on return
+      real(wp), intent(inout) :: stiffness(lanes, 21)
+    end subroutine soften_batch
+  end interface
+end module section_laws

@@ -1,0 +1,259 @@
+!> Plies that soften by their fracture energies, in every element: one state a ply and element, driven by the mean over
+!> the ply's volume there of the squares of its strains. Energy and force are then those of one potential, and what
+!> damage takes of it is what the law dissipates, however the strains vary within the element.
+module crack_band_sections
+  use archives, only: archive_t
+  use crack_bands, only: crack_band_t, band_state_t, create_crack_band, strain_band, elasticity_left, onset_strain
+  use element_batches, only: lanes, first_element
+  use kinds, only: wp
+  use models, only: model_t
+  use plies, only: ply_t, elasticity_t
+  use ply_damage_parameters, only: energy_modes, matrix_tension, matrix_compression
+  use ply_strains, only: strain_moments_t, strain_moments, strains_of_ply
+  use section_laws, only: section_law_t
+  use stacking, only: in_plane_section
+  implicit none
+  private
+  public :: crack_band_sections_t, new_crack_band_sections
+
+  !> The plies of this rank's elements.
+  type, extends(section_law_t) :: crack_band_sections_t
+    !> Damage and energies in the last accepted state and in the trial, (plies, elements)
+    type(band_state_t), allocatable :: accepted(:, :), trial(:, :)
+    !> Section stiffness in the trial, (lanes, 21, batches)
+    real(wp), allocatable :: stiffness(:, :, :)
+    !> Plies of the laminate
+    type(ply_t), allocatable, private :: plies(:)
+    !> Their laws
+    type(crack_band_t), allocatable, private :: bands(:)
+    !> First and last ply of each element, (2, elements)
+    integer, allocatable, private :: range(:, :)
+    !> Sides of each element along x and y, (2, elements)
+    real(wp), allocatable, private :: sides(:, :)
+    !> Strain below which no ply of the laminate can begin to be damaged
+    real(wp), private :: onset = 0
+    !> True where the trial is not the undamaged state, (elements)
+    logical, allocatable, private :: touched(:)
+  contains
+    !> Stiffness of the sections of a batch under trial strains.
+    procedure :: soften
+    !> Makes the trial the accepted state.
+    procedure :: commit
+    !> Energy that the trial dissipates in each mode, on this rank.
+    procedure :: dissipation
+    !> Where fibres and matrix of one ply bear nothing any more, and where compression took most of its matrix.
+    procedure :: broken
+    procedure :: mostly_pressed
+    !> Constants left in a ply of an element.
+    procedure :: elasticity
+    !> Saves or loads.
+    procedure :: visit
+  end type crack_band_sections_t
+
+contains
+
+  !> Plies without damage.
+  pure function new_crack_band_sections(model) result(self)
+    type(model_t), intent(in) :: model
+    !> The plies
+    type(crack_band_sections_t) :: self
+    integer :: i, cell(2)
+
+    self%plies = model%plies
+    self%bands = [(create_crack_band(model%scene%materials(model%plies(i)%material), model%scene%ply_damage), &
+                   i=1, size(model%plies))]
+    self%onset = minval([(onset_strain(self%bands(i)), i=1, size(self%bands))])
+    allocate (self%accepted(size(model%plies), model%elements%elements))
+    self%trial = self%accepted
+    self%stiffness = model%elements%stiffness
+    self%range = model%mesh%element_plies(:, model%distribution%elements)
+    allocate (self%sides(2, model%elements%elements), self%touched(model%elements%elements))
+    self%touched = .false.
+    do i = 1, model%elements%elements
+      cell = model%mesh%place_of(model%mesh%element_cell(model%distribution%elements(i)))
+      self%sides(:, i) = [model%mesh%x_edges(cell(1) + 1) - model%mesh%x_edges(cell(1)), &
+                          model%mesh%y_edges(cell(2) + 1) - model%mesh%y_edges(cell(2))]
+    end do
+  end function new_crack_band_sections
+
+  !> Stiffness of the sections of a batch under trial strains.
+  subroutine soften(self, b, weight, strains, stiffness)
+    !> The plies; remember the trial
+    class(crack_band_sections_t), intent(inout) :: self
+    !> Number of the batch
+    integer, intent(in) :: b
+    !> Area of each Gauss point
+    real(wp), intent(in) :: weight(lanes, 9)
+    !> Strains exx, eyy, gxy, kxx, kyy, kxy (lane, point, component)
+    real(wp), intent(in) :: strains(lanes, 9, 6)
+    !> Section stiffness
+    real(wp), intent(inout) :: stiffness(lanes, 21)
+    real(wp) :: bounds(lanes)
+    integer :: lane, element
+
+    bounds = largest_strains(self%plies, weight, strains)
+    do lane = 1, min(lanes, size(self%touched) - first_element(b) + 1)
+      element = first_element(b) + lane - 1
+      if (self%touched(element) .or. .not. bounds(lane) < self%onset) &
+        call soften_element(self, element, strain_moments(weight(lane, :), strains(lane, :, :)), stiffness(lane, :))
+    end do
+    self%stiffness(:, :, b) = stiffness
+  end subroutine soften
+
+  !> Bounds of the strains in the planes of all plies of a batch, root mean squares over each ply's volume.
+  pure function largest_strains(plies, weight, strains) result(bounds)
+    !> Plies of the laminate
+    type(ply_t), intent(in) :: plies(:)
+    !> Area of each Gauss point
+    real(wp), intent(in) :: weight(lanes, 9)
+    !> Strains exx, eyy, gxy, kxx, kyy, kxy (lane, point, component)
+    real(wp), intent(in) :: strains(lanes, 9, 6)
+    !> In the measure of onset_strain, (lane)
+    real(wp) :: bounds(lanes)
+    real(wp) :: membrane(lanes), curvature(lanes), area(lanes), height
+    integer :: g
+
+    membrane = 0
+    curvature = 0
+    area = tiny(area)
+    do g = 1, 9
+      area = area + weight(:, g)
+      membrane = membrane + weight(:, g)*(strains(:, g, 1)**2 + strains(:, g, 2)**2 + strains(:, g, 3)**2/2)
+      curvature = curvature + weight(:, g)*(strains(:, g, 4)**2 + strains(:, g, 5)**2 + strains(:, g, 6)**2/2)
+    end do
+    height = max(abs(plies(1)%z_top), abs(plies(size(plies))%z_bottom))
+    bounds = sqrt(membrane/area) + height*sqrt(curvature/area)
+  end function largest_strains
+
+  !> Damage of the plies of one element under trial strains, and its section.
+  pure subroutine soften_element(self, element, moments, stiffness)
+    !> The plies
+    class(crack_band_sections_t), intent(inout) :: self
+    !> Element of this rank
+    integer, intent(in) :: element
+    !> Its strains
+    type(strain_moments_t), intent(in) :: moments
+    !> Section stiffness
+    real(wp), intent(inout) :: stiffness(21)
+    type(elasticity_t) :: elasticity(size(self%plies))
+    real(wp) :: before(2), normal(2)
+    logical :: changed
+    integer :: ply
+
+    changed = .false.
+    associate (first => self%range(1, element), last => self%range(2, element))
+      do ply = first, last
+        before = self%trial(ply, element)%damage
+        normal = abs([self%plies(ply)%cosine, self%plies(ply)%sine])
+        ! A straight crack cuts elements of this mean area over its length: the sides' shadow across it.
+        call strain_band(self%bands(ply), [dot_product(normal, self%sides(:, element)), &
+                                           dot_product(normal, self%sides([2, 1], element))], &
+                         strains_of_ply(self%plies(ply), moments), self%accepted(ply, element), &
+                         self%trial(ply, element))
+        changed = changed .or. any(abs(self%trial(ply, element)%damage - before) > 0)
+        elasticity(ply) = elasticity_left(self%bands(ply), self%trial(ply, element)%damage)
+      end do
+      if (.not. changed) return
+      stiffness(:18) = in_plane_section(self%plies(first:last), elasticity(first:last))
+      self%touched(element) = any([(any(self%trial(ply, element)%damage > 0), ply=first, last)])
+    end associate
+  end subroutine soften_element
+
+  !> Makes the trial the accepted state.
+  pure subroutine commit(self)
+    !> The plies
+    class(crack_band_sections_t), intent(inout) :: self
+
+    self%accepted = self%trial
+  end subroutine commit
+
+  !> Energy that the trial dissipates in each mode beyond the accepted state, of this rank's elements.
+  pure function dissipation(self) result(energies)
+    !> The plies
+    class(crack_band_sections_t), intent(in) :: self
+    !> In the order of the modes
+    real(wp) :: energies(energy_modes)
+    integer :: element, ply
+
+    energies = 0
+    do element = 1, size(self%touched)
+      if (.not. self%touched(element)) cycle
+      do ply = self%range(1, element), self%range(2, element)
+        energies = energies + product(self%sides(:, element))*(self%plies(ply)%z_bottom - self%plies(ply)%z_top) &
+                   *(self%trial(ply, element)%dissipated - self%accepted(ply, element)%dissipated)
+      end do
+    end do
+  end function dissipation
+
+  !> Elements of this rank where fibres and matrix of one ply bear nothing any more.
+  pure function broken(self, ply)
+    !> The plies
+    class(crack_band_sections_t), intent(in) :: self
+    !> Ply of the laminate
+    integer, intent(in) :: ply
+    !> True for fibres, and for the matrix, (2, elements)
+    logical :: broken(2, size(self%touched))
+    integer :: element
+
+    do element = 1, size(self%touched)
+      broken(:, element) = self%trial(ply, element)%damage >= 1
+    end do
+  end function broken
+
+  !> True where compression across the fibres has taken more of a ply's matrix than tension has.
+  pure function mostly_pressed(self, ply)
+    !> The plies
+    class(crack_band_sections_t), intent(in) :: self
+    !> Ply of the laminate
+    integer, intent(in) :: ply
+    !> (elements)
+    logical :: mostly_pressed(size(self%touched))
+    integer :: element
+
+    do element = 1, size(self%touched)
+      associate (dissipated => self%trial(ply, element)%dissipated)
+        mostly_pressed(element) = dissipated(matrix_compression) > dissipated(matrix_tension)
+      end associate
+    end do
+  end function mostly_pressed
+
+  !> Constants left in a ply of an element.
+  pure function elasticity(self, ply, element)
+    !> The plies
+    class(crack_band_sections_t), intent(in) :: self
+    !> Ply of the laminate, and element of this rank
+    integer, intent(in) :: ply, element
+    !> The constants
+    type(elasticity_t) :: elasticity
+
+    elasticity = elasticity_left(self%bands(ply), self%trial(ply, element)%damage)
+  end function elasticity
+
+  !> Saves or loads the accepted state.
+  subroutine visit(self, archive, model)
+    !> The plies
+    class(crack_band_sections_t), intent(inout) :: self
+    !> Where to or where from
+    class(archive_t), intent(inout) :: archive
+    type(model_t), intent(in) :: model
+    integer, parameter :: numbers = 2 + energy_modes
+    real(wp) :: table(numbers*size(self%plies), size(self%touched))
+    integer :: element, ply
+
+    do element = 1, size(self%touched)
+      table(:, element) = [([self%accepted(ply, element)%damage, self%accepted(ply, element)%dissipated], &
+                            ply=1, size(self%plies))]
+    end do
+    call archive%field('ply_failure/crack_bands', model%distribution%elements, model%mesh%elements(), table)
+    if (.not. archive%loading) return
+    do element = 1, size(self%touched)
+      do ply = 1, size(self%plies)
+        associate (values => table((ply - 1)*numbers + 1:ply*numbers, element))
+          self%accepted(ply, element) = band_state_t(values(1:2), values(3:))
+        end associate
+      end do
+      self%touched(element) = any([(any(self%accepted(ply, element)%damage > 0), ply=1, size(self%plies))])
+    end do
+    self%trial = self%accepted
+  end subroutine visit
+end module crack_band_sections
