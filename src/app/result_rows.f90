@@ -1,6 +1,7 @@
 !> The columns of the history, joined from the rows that each folder brings, and the values of an accepted step.
 module result_rows
-  use interface_columns, only: area_rows, area_values, border_rows, border_values, release_rows, release_values
+  use interface_columns, only: area_rows, area_values, border_rows, border_values, release_rows, release_values, &
+                               rig_rows, rig_values
   use kinds, only: wp
   use models, only: model_t
   use operator_columns, only: operator_rows, operator_values
@@ -15,7 +16,8 @@ module result_rows
 
   !> The table of columns in their order, of which the first seventeen are the public interface.
   character(len=*), parameter, public :: column_rows(*) = [character(len=result_row_length) :: &
-    motion_rows, area_rows, ledger_rows, step_rows, release_rows, iteration_rows, operator_rows, ply_rows, border_rows]
+    motion_rows, area_rows, ledger_rows, step_rows, release_rows, iteration_rows, operator_rows, ply_rows, &
+    border_rows, rig_rows]
 
 contains
 
@@ -47,13 +49,16 @@ contains
     !> The time stepper
     type(time_stepper_t), intent(in) :: stepper
     !> Values in the order of the columns
-    real(wp) :: row(size(column_rows))
+    real(wp) :: row(size(column_rows)), load
 
     associate (now => stepper%now)
+      load = now%time
+      if (.not. model%scene%has_static) load = model%scene%pressure%amplitude(now%time)
       row = [motion_values(now), area_values(model, now%interfaces), ledger_values(now%ledger), &
              step_values(now, stepper%controller%last), &
              release_values(model, now%interfaces, now%motion%displacement), iteration_values(now, stepper%rejected), &
-             operator_values(stepper%operator), ply_values(model, now%plies), border_values(model, now%interfaces)]
+             operator_values(stepper%operator), ply_values(model, now%plies), border_values(model, now%interfaces), &
+             rig_values(model, now%interfaces, now%motion, load)]
     end associate
   end function row_of
 end module result_rows

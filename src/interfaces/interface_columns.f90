@@ -4,10 +4,11 @@ module interface_columns
   use kinds, only: wp
   use interface_states, only: interface_state_t
   use models, only: model_t
+  use motions, only: motion_t
   use result_tables, only: result_row_length
   implicit none
   private
-  public :: area_values, release_values, border_values
+  public :: area_values, release_values, border_values, rig_values
 
   !> How much has delaminated: a column of the public interface.
   character(len=result_row_length), parameter, public :: area_rows(*) = [character(len=result_row_length) :: &
@@ -30,6 +31,13 @@ module interface_columns
       &on; before that 0.', &
     'projected_area | real | area | Area that a C-scan sees: where several interfaces have delaminated above each &
       &other, the largest of them counts once.']
+
+  !> Forces of the rigs.
+  character(len=result_row_length), parameter, public :: rig_rows(*) = [character(len=result_row_length) :: &
+    'reaction_1 | real | force | Force of the first &support on the plate, frame and clamps together, positive against &
+      &the impact; 0 if there is none.', &
+    'reaction_2 | real | force | Force of the second &support, likewise.', &
+    'reaction_3 | real | force | Force of the third &support, likewise.']
 
 contains
 
@@ -69,6 +77,21 @@ contains
 
     values = [merge(1.0_wp, 0.0_wp, interfaces%border_reached), projected_area(model, interfaces)]
   end function border_values
+
+  !> Forces of the rigs. Collective.
+  function rig_values(model, interfaces, motion, load) result(values)
+    type(model_t), intent(in) :: model
+    !> The interfaces
+    type(interface_state_t), intent(in) :: interfaces
+    !> The motion
+    type(motion_t), intent(in) :: motion
+    !> Part of the deck's pressure that acts
+    real(wp), intent(in) :: load
+    !> A value a column
+    real(wp) :: values(size(rig_rows))
+
+    values = interfaces%rig%reactions(model, motion%displacement, motion%internal, motion%inertia, load)
+  end function rig_values
 
   !> Area in which at least one interface has delaminated, of the whole plate: nodal areas times the largest part
   !> delaminated above each other. Collective.
