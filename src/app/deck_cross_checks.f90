@@ -5,6 +5,7 @@ module deck_cross_checks
   use adapt_deck, only: adapt_group, key_growth_step
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
+  use deck_symmetries, only: check_symmetry
   use deck_remarks, only: tell, remark, remark_idle, are_clear
   use delamination_deck, only: delamination_group, key_below_ply
   use delamination_parameters, only: growth_one_per_step, interface_objection
@@ -12,24 +13,21 @@ module deck_cross_checks
   use impactor_deck, only: impactor_group, key_velocity, key_radius, key_gravity
   use indentation_deck, only: indentation_group, key_k
   use kinds, only: wp
-  use laminate_parameters, only: shear_five_sixths
   use material_deck, only: material_group, require_densities
   use mesh_deck, only: mesh_group, key_patch
-  use mesh_parameters, only: symmetry_quarter
   use output_deck, only: check_intervals, remark_idle_fields
   use plate_deck, only: plate_group, key_symmetry, check_supports
   use plies, only: ply_t, material_objection
+  use plate_deck, only: plate_group, check_edges
+  use ply_damage_parameters, only: ply_damage_t, criteria_hou
   use pressure_deck, only: pressure_group, key_history
-  use stacking, only: stacked_plies, section_stiffness
+  use support_deck, only: check_static_rigs
   use static_deck, only: static_group
   use text, only: line_t, append, joined, words_of
   use time_deck, only: time_group
   implicit none
   private
   public :: check_across_groups
-
-  !> Coupling stiffness that counts as none, relative to the stiffness it couples.
-  real(wp), parameter :: no_coupling = 1.0e-9_wp
 
 contains
 
@@ -78,7 +76,8 @@ contains
     !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
 
-    call check_supports(deck%settings, deck%plate, problems)
+    if (size(deck%supports) == 0) call check_edges(deck%settings, deck%plate, problems)
+    if (size(deck%supports) > 0) call check_static_rigs(deck%settings, deck%supports, problems)
     if (deck%has_time) call remark(deck%settings, problems, time_group, '', 'has no effect on a static analysis.')
     call remark_idle(deck%settings, problems, pressure_group, key_history, 'has no effect on a static analysis.')
     if (.not. problems%concern(static_group)) &
@@ -105,43 +104,6 @@ contains
     call remark_idle(deck%settings, problems, adapt_group, key_growth_step, &
                      'has no effect without growth = ''one_per_step''.')
   end subroutine check_transient
-
-  !> A laminate that a quarter of the plate can stand for.
-  subroutine check_symmetry(deck, problems)
-    !> The deck
-    type(deck_t), intent(in) :: deck
-    !> Faults found are added
-    type(problems_t), intent(inout) :: problems
-
-    if (deck%plate%symmetry /= symmetry_quarter) return
-    if (is_coupled(deck)) call tell(deck%settings, problems, plate_group, key_symmetry, 'the laminate couples '// &
-      'bending or extension with shear or twist (A16, A26, B16, B26, D16, D26 or A45 isn''t 0), so a quarter '// &
-      'can''t stand for the plate; use ''none''.')
-  end subroutine check_symmetry
-
-  !> True: the laminate is clear and not symmetric about both axes of the plate.
-  pure logical function is_coupled(deck)
-    !> The deck
-    type(deck_t), intent(in) :: deck
-    type(ply_t), allocatable :: plies(:)
-    real(wp) :: stiffness(21), thickness, scales(7)
-    integer :: i
-
-    is_coupled = .false.
-    associate (laminate => deck%laminate)
-      if (.not. (allocated(laminate%angle) .and. allocated(laminate%thickness))) return
-      if (.not. allocated(laminate%material)) return
-      if (any([(material_objection(deck%materials(laminate%material(i))) /= '', i=1, size(laminate%material))])) return
-      plies = stacked_plies(laminate, deck%materials)
-      thickness = sum(laminate%thickness)
-    end associate
-    stiffness = section_stiffness(plies, plies%elasticity, shear_five_sixths)
-    scales(1:2) = maxval(stiffness(1:6))
-    scales(3:4) = scales(1)*thickness
-    scales(5:6) = scales(1)*thickness**2
-    scales(7) = maxval(stiffness(19:21))
-    is_coupled = any(abs(stiffness([3, 5, 9, 11, 15, 17, 20])) > no_coupling*scales)
-  end function is_coupled
 
   !> Impactor, its patch and its contact stiffness.
   subroutine check_impact(deck, problems)

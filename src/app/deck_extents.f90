@@ -9,10 +9,11 @@ module deck_extents
   use delamination_deck, only: delamination_group, key_starter, key_zone
   use delamination_parameters, only: delamination_t, law_front
   use gradings, only: core_elements
+  use impactor_deck, only: impactor_group, key_at
   use kinds, only: wp
   use laminate_deck, only: laminate_group, key_thicknesses
   use mesh_deck, only: mesh_group, key_elements, key_patch, key_core, key_cell, most_elements
-  use mesh_parameters, only: symmetry_quarter
+  use mesh_parameters, only: is_halved
   use plate_deck, only: plate_group, key_length, key_symmetry
   use text, only: line_t, to_text
   implicit none
@@ -80,13 +81,16 @@ contains
     shorter = minval(deck%plate%length)
     associate (s => deck%settings, patch => deck%mesh%patch)
       if (patch <= 0) return
-      if (patch > shorter) then
+      if (any(patch/2 + abs(deck%mesh%struck) > deck%plate%length/2) .and. patch <= shorter) then
+        if (are_clear(s, problems, impactor_group, key_at)) call tell(s, problems, impactor_group, key_at, 'the '// &
+          'loaded patch reaches over the border of the plate; strike further inside.')
+      else if (patch > shorter) then
         call tell(s, problems, mesh_group, key_patch, 'is larger than the plate; allowed: up to '// &
                   to_text(shorter)//'.')
       else if (patch < least_patch*shorter) then
         call tell(s, problems, mesh_group, key_patch, 'is too small for the plate; allowed: from '// &
                   to_text(least_patch*shorter)//'.')
-      else if (deck%plate%symmetry /= symmetry_quarter .and. any(deck%mesh%elements == 2 .and. &
+      else if (any(.not. is_halved(deck%plate%symmetry) .and. deck%mesh%elements == 2 .and. &
                patch < deck%plate%length) .and. are_clear(s, problems, mesh_group, key_elements) .and. &
                are_clear(s, problems, plate_group, key_symmetry)) then
         call tell(s, problems, mesh_group, key_elements, 'a loaded patch with plate around it takes at least 3 '// &
@@ -102,18 +106,22 @@ contains
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
     integer :: direction, parts, least
+    logical :: halved(2)
 
     associate (s => deck%settings, mesh => deck%mesh)
       if (minval(mesh%core) <= 0 .or. mesh%cell <= 0) return
-      if (any(mesh%core >= deck%plate%length)) then
-        call tell(s, problems, mesh_group, key_core, 'is as large as the plate; give it smaller or leave it out.')
+      if (any(mesh%core/2 + abs(mesh%struck) >= deck%plate%length/2)) then
+        call tell(s, problems, mesh_group, key_core, &
+                  'reaches the border of the plate; give it smaller or leave it out.')
       else if (any(mesh%core/mesh%cell > most_elements)) then
         call tell(s, problems, mesh_group, key_cell, 'is too small for the core.')
       else if (are_clear(s, problems, mesh_group, key_elements//' '//key_patch) .and. &
                are_clear(s, problems, plate_group, key_symmetry)) then
-        parts = merge(1, 2, deck%plate%symmetry == symmetry_quarter)
+        halved = is_halved(deck%plate%symmetry)
         do direction = 1, 2
+          parts = merge(1, 2, halved(direction))
           least = parts*(sum(core_elements(mesh%patch/2, mesh%core(direction)/2, mesh%cell)) + 1)
+          if (abs(mesh%struck(direction)) > 0) parts = 1
           if (mesh%elements(direction) >= least .and. modulo(mesh%elements(direction), parts) == 0) cycle
           call tell(s, problems, mesh_group, key_elements, 'the core needs at least '//to_text(least)//' along '// &
                     merge('x', 'y', direction == 1)//trim(merge(', and an even number.', '.                    ', &
@@ -156,8 +164,8 @@ contains
     integer :: place
 
     if (problems%errors() > 0 .or. size(deck%delaminations) == 0) return
-    x_edges = cell_edges(deck%plate, deck%mesh, 1)
-    y_edges = cell_edges(deck%plate, deck%mesh, 2)
+    x_edges = cell_edges(deck%plate, deck%mesh, 1) - deck%mesh%struck(1)
+    y_edges = cell_edges(deck%plate, deck%mesh, 2) - deck%mesh%struck(2)
     do place = 1, size(deck%delaminations)
       associate (d => deck%delaminations(place))
         call extents_of(x_edges, y_edges, deck%delaminations(place), zone, starter)
@@ -183,8 +191,8 @@ contains
 
     allocate (lines(size(deck%delaminations)))
     if (size(lines) == 0) return
-    x_edges = cell_edges(deck%plate, deck%mesh, 1)
-    y_edges = cell_edges(deck%plate, deck%mesh, 2)
+    x_edges = cell_edges(deck%plate, deck%mesh, 1) - deck%mesh%struck(1)
+    y_edges = cell_edges(deck%plate, deck%mesh, 2) - deck%mesh%struck(2)
     do place = 1, size(lines)
       call extents_of(x_edges, y_edges, deck%delaminations(place), zone, starter)
       lines(place)%text = 'Interface below ply '//to_text(deck%delaminations(place)%below_ply)//': the mesh makes '// &

@@ -57,8 +57,8 @@ contains
     zone%toughness_shear = toughness(2)
     zone%strength_opening = delamination%strength_opening
     zone%strength_shear = delamination%strength_shear
-    zone%cell = max(longest_cell(cell_edges(deck%plate, deck%mesh, 1), delamination%zone(1)), &
-                    longest_cell(cell_edges(deck%plate, deck%mesh, 2), delamination%zone(2)))
+    zone%cell = max(longest_cell(cell_edges(deck%plate, deck%mesh, 1) - deck%mesh%struck(1), delamination%zone(1)), &
+                    longest_cell(cell_edges(deck%plate, deck%mesh, 2) - deck%mesh%struck(2), delamination%zone(2)))
   end function process_zone
 
   !> Thickness of some plies.

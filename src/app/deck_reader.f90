@@ -30,6 +30,8 @@ module deck_reader
   use ply_damage_deck, only: fill_ply_damage, ply_damage_group
   use pressure_deck, only: fill_pressure, check_pressure, pressure_group
   use static_deck, only: fill_static, static_group
+  use rigs, only: window_lines
+  use support_deck, only: fill_supports, check_rigs
   use time_deck, only: fill_time, check_time, time_group
   implicit none
   private
@@ -118,7 +120,10 @@ contains
     call fill_case(deck%settings, deck%source, deck%name, deck%title)
     call fill_kinematics(deck%settings, deck%kinematics)
     call fill_plate(deck%settings, deck%plate)
+    call fill_supports(deck%settings, deck%supports)
     call fill_mesh(deck%settings, deck%mesh)
+    deck%mesh%x_lines = window_lines(deck%supports, 1)
+    deck%mesh%y_lines = window_lines(deck%supports, 2)
     call fill_element(deck%settings, deck%mesh%shear, deck%mesh%mass)
     call fill_materials(deck%settings, deck%materials, problems)
     call fill_laminate(deck%settings, deck%materials, deck%laminate, problems)
@@ -149,6 +154,7 @@ contains
 
     if (deck%has_time) call fill_time(deck%settings, size(deck%delaminations) > 0, deck%stepping%time)
     call fill_impactor(deck%settings, deck%impactor)
+    if (deck%has_impactor) deck%mesh%struck = deck%impactor%at
     call fill_pressure(deck%settings, deck%stepping%time%end, deck%pressure)
     if (deck%has_static) call fill_static(deck%settings, deck%stepping%static_steps)
     if (.not. deck%has_impactor) return
@@ -177,6 +183,7 @@ contains
     type(problems_t), intent(inout) :: problems
 
     call check_plate(deck%settings, deck%plate, problems)
+    call check_rigs(deck%settings, deck%plate, deck%supports, problems)
     call check_mesh(deck%settings, deck%mesh, problems)
     call check_delaminations(deck%settings, deck%delaminations, problems)
     if (deck%has_impactor .and. deck%has_indentation) call check_indentation(deck%settings, deck%indentation, problems)

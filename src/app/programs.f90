@@ -9,6 +9,7 @@ module programs
   use launchers, only: launched
   use petsc_session, only: start_petsc, finish_petsc
   use linear_solver_deck, only: check_ranks
+  use deck_symmetries, only: symmetry_sentence
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
   use deck_reader, only: read_deck, read_deck_text
@@ -133,7 +134,9 @@ contains
     call read_deck_everywhere(command%target, communicator, deck, problems)
     code = problems%exit_code()
     call print_lines(communicator, problems%lines())
-    if (code == exit_done) call print_lines(communicator, [line_t(command%target//': no errors.')])
+    if (code /= exit_done) return
+    call print_lines(communicator, [line_t(command%target//': no errors.')])
+    if (symmetry_sentence(deck) /= '') call print_lines(communicator, [line_t(symmetry_sentence(deck))])
   end subroutine check
 
   !> Reads a deck on the root rank and gives its text to all.

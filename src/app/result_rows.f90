@@ -4,6 +4,8 @@ module result_rows
   use delamination_parameters, only: delamination_t
   use interface_columns, only: area_rows, area_values, border_rows, border_values, interface_rows, interface_values, &
                                release_rows, release_values
+  use interface_columns, only: area_rows, area_values, border_rows, border_values, release_rows, release_values, &
+                               rig_rows, rig_values
   use kinds, only: wp
   use models, only: model_t
   use operator_columns, only: operator_rows, operator_values
@@ -23,6 +25,10 @@ module result_rows
   !> The table of columns in their order.
   character(len=*), parameter, public :: column_rows(*) = [character(len=result_row_length) :: &
     plate_rows, interface_rows]
+  !> The table of columns in their order, of which the first seventeen are the public interface.
+  character(len=*), parameter, public :: column_rows(*) = [character(len=result_row_length) :: &
+    motion_rows, area_rows, ledger_rows, step_rows, release_rows, iteration_rows, operator_rows, ply_rows, &
+    border_rows, rig_rows]
 
 contains
 
@@ -71,13 +77,17 @@ contains
     type(time_stepper_t), intent(in) :: stepper
     !> Values in the order of the columns
     real(wp), allocatable :: row(:)
+    real(wp) :: row(size(column_rows)), load
 
     associate (now => stepper%now)
+      load = now%time
+      if (.not. model%scene%has_static) load = model%scene%pressure%amplitude(now%time)
       row = [motion_values(now), area_values(model, now%interfaces), ledger_values(now%ledger), &
              step_values(now, stepper%controller%last), &
              release_values(model, now%interfaces, now%motion%displacement), iteration_values(now, stepper%rejected), &
              operator_values(stepper%operator), ply_values(model, now%plies), border_values(model, now%interfaces), &
              interface_values(model, now%interfaces)]
+             rig_values(model, now%interfaces, now%motion, load)]
     end associate
     row(1) = shown_time(row(1))
   end function row_of

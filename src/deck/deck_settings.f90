@@ -270,13 +270,15 @@ contains
   end function integer_of
 
   !> Truth value of a key; false if there is none.
-  pure logical function logical_of(self, group, key)
+  pure logical function logical_of(self, group, key, place)
     class(settings_t), intent(in) :: self
     !> Names of group and key
     character(len=*), intent(in) :: group, key
+    !> Which of the groups of this name
+    integer, intent(in), optional :: place
     type(value_t), allocatable :: values(:)
 
-    call self%take_values(group, key, values)
+    call self%take_values(group, key, values, place)
     logical_of = .false.
     if (size(values) > 0) logical_of = logical_value(values(1))
   end function logical_of

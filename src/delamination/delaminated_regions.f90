@@ -47,8 +47,8 @@ contains
     self%rows = mesh%zones(zone)%rows
     allocate (self%delaminated(self%columns(1):self%columns(2), self%rows(1):self%rows(2)), source=.false.)
     if (.not. starter > 0) return
-    columns = cells_within(mesh%x_edges, starter)
-    rows = cells_within(mesh%y_edges, starter)
+    columns = cells_within(mesh%x_edges - mesh%struck(1), starter)
+    rows = cells_within(mesh%y_edges - mesh%struck(2), starter)
     columns = [max(columns(1), self%columns(1)), min(columns(2), self%columns(2))]
     rows = [max(rows(1), self%rows(1)), min(rows(2), self%rows(2))]
     self%delaminated(columns(1):columns(2), rows(1):rows(2)) = .true.
@@ -87,7 +87,7 @@ contains
 
     range = cells_within(edges, extent)
     taken = edges(range(2) + 1) - edges(range(1))
-    ! A model that begins at the struck point is half of the line.
+    ! A model that begins at the plate's centre, and is struck there, is half of the line.
     if (edges(1) > -1.0e-9_wp*edges(size(edges))) taken = 2*taken
   end function extent_of_cells
 

@@ -13,13 +13,13 @@ module front_smoothing
 contains
 
   !> Means of the rates along the straight runs of a front, with weights that fall off to zero within a length.
-  pure function smoothed_along_front(segments, length, quarter, rates) result(smooth)
+  pure function smoothed_along_front(segments, length, mirrored, rates) result(smooth)
     !> The front
     type(front_segment_t), intent(in) :: segments(:)
     !> Distance along the front at which a rate no longer counts
     real(wp), intent(in) :: length
-    !> True: a quarter of the plate, whose first column and row lie at lines of symmetry
-    logical, intent(in) :: quarter
+    !> True: the first column, and the first row, lies at a line of symmetry
+    logical, intent(in) :: mirrored(2)
     !> Rates of each segment, (modes, segments)
     real(wp), intent(in) :: rates(:, :)
     !> The means, (modes, segments)
@@ -36,7 +36,8 @@ contains
         distance = 0
         do
           cell = cell + side
-          next = segment_of_run(segments, segments(s), merge(1 - cell, cell, quarter .and. cell < 1))
+          next = segment_of_run(segments, segments(s), merge(1 - cell, cell, cell < 1 .and. &
+                                                                    mirrored(3 - segments(s)%direction)))
           if (next == 0) exit
           distance = distance + (segments(here)%width + segments(next)%width)/2
           if (distance >= length) exit

@@ -87,7 +87,7 @@ contains
       new%motion%displacement = self%step*old%motion%velocity
       call new%interfaces%faces%hold(model, new%motion%displacement)
       new%motion%displacement = old%motion%displacement + new%motion%displacement
-      call new%interfaces%faces%keep_touching(model, new%motion%displacement)
+      call new%interfaces%keep_touching(model, new%motion%displacement)
     end if
     call self%complete(old, new)
     new%iterations = 0

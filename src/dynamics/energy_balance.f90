@@ -116,8 +116,8 @@ contains
     sums(8) = energy
     if (allocated(model%pressure)) &
       sums(9) = model%product(new%motion%displacement - old%motion%displacement, model%pressure)
-    if (model%map%layered) sums(10) = new%interfaces%faces%work(model, new%motion%displacement, &
-                                                          new%motion%displacement - old%motion%displacement)
+    if (model%has_bonds) sums(10) = new%interfaces%contact_work(model, new%motion%displacement, &
+                                                                new%motion%displacement - old%motion%displacement)
     call model%communicator%sum(sums)
     sums = sums*model%mesh%multiplicity
     products = products_t(kinetic=sums(1), mean_internal=sums(2)/2, internal_change=sums(3), inertia_change=sums(4), &

@@ -58,6 +58,25 @@ contains
     real(wp), intent(in) :: force(:, :)
     !> Of u, v, w and of theta_x, theta_y
     real(wp) :: squares(2)
+    real(wp), allocatable :: folded(:, :)
+
+    if (any(numbering%leader(:numbering%owned) > 0)) then
+      folded = force(:, :numbering%owned)
+      call numbering%fold(folded)
+      squares = plain_sums(numbering, folded)
+    else
+      squares = plain_sums(numbering, force)
+    end if
+  end function sums_of_squares
+
+  !> The same of points that give no other one its motion.
+  pure function plain_sums(numbering, force) result(squares)
+    !> Knows which unknowns are held
+    type(numbering_t), intent(in) :: numbering
+    !> Nodal forces, (5, points)
+    real(wp), intent(in) :: force(:, :)
+    !> Of u, v, w and of theta_x, theta_y
+    real(wp) :: squares(2)
     integer :: point, component
 
     squares = 0
@@ -69,5 +88,5 @@ contains
         if (numbering%equation(component, point) >= 0) squares(2) = squares(2) + force(component, point)**2
       end do
     end do
-  end function sums_of_squares
+  end function plain_sums
 end module residual_norms

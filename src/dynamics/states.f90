@@ -88,6 +88,7 @@ contains
     call self%plies%find_forces(model, self%motion%displacement, self%motion%internal, energy)
     call self%interfaces%cohesive%add_forces(model, old%interfaces%cohesive, self%motion%displacement, &
                                              self%motion%internal, energy)
+    call self%interfaces%rig%add_springs(model, self%motion%displacement, self%motion%internal, energy)
   end subroutine find_internal
 
   !> Counts a step and its iterations.

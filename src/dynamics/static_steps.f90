@@ -139,7 +139,7 @@ contains
     !> Iterations of this step so far
     integer, intent(in) :: iterations
 
-    changes = model%scene%kinematics /= kinematics_linear
+    changes = model%scene%kinematics /= kinematics_linear .or. model%rig%unilateral
     ! Plies may have failed since the step before; later only contacts change.
     if (.not. changes) changes = iterations == 0 .and. (model%scene%has_ply_damage .or. model%map%layered)
     changes = changes .or. model%scene%has_crack_bands()
@@ -195,9 +195,9 @@ contains
     sums(2) = model%product(change, new%motion%internal + old%motion%internal)/2
     sums(3) = (new%time + old%time)/2*model%product(change, model%pressure)
     sums(4:5) = 0
-    if (model%map%layered) then
-      faces = old%interfaces%faces%work(model, old%motion%displacement, change)
-      sums(4) = (faces + new%interfaces%faces%work(model, new%motion%displacement, change))/2
+    if (model%has_bonds) then
+      faces = old%interfaces%contact_work(model, old%motion%displacement, change)
+      sums(4) = (faces + new%interfaces%contact_work(model, new%motion%displacement, change))/2
       sums(5) = faces/2
     end if
     ! Plies that failed left the state before out of equilibrium. What that sets free would go into motion.

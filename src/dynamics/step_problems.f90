@@ -194,8 +194,8 @@ contains
       if (converged) converged = problem%may_stop(model, new, pressures_new)
       pressures_new = .false.
       if (converged) then
-        call new%interfaces%faces%settle(model, new%motion%displacement, problem%contact_tolerance, &
-                                         new%contact_iterations, converged)
+        call new%interfaces%settle(model, new%motion%displacement, problem%contact_tolerance, &
+                                   new%contact_iterations, converged)
         if (converged) exit
         pressures_new = .true.
         call operator%anderson%pause()

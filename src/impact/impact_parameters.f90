@@ -23,6 +23,8 @@ module impact_parameters
     real(wp) :: radius = 0
     !> Acceleration of gravity along the impact direction; 0: none
     real(wp) :: gravity = 0
+    !> The struck point, from the plate's centre
+    real(wp) :: at(2) = 0
     !> One of the integrators above
     integer :: integrator = integrator_gear4
   end type impactor_parameters_t

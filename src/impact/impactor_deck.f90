@@ -11,16 +11,18 @@ module impactor_deck
 
   !> Names that checks across groups use.
   character(len=*), parameter, public :: impactor_group = 'impactor', key_velocity = 'velocity', &
-                                         key_radius = 'radius', key_gravity = 'gravity'
+                                         key_radius = 'radius', key_gravity = 'gravity', key_at = 'at'
   !> Row of the group.
   character(len=group_row_length), parameter, public :: impactor_group_row = &
-    'impactor | optional | The rigid impactor that strikes the middle of the plate.'
+    'impactor | optional | The rigid impactor that strikes the plate, in its middle or elsewhere.'
   !> Rows of the keys.
   character(len=key_row_length), parameter, public :: impactor_rows(*) = [character(len=key_row_length) :: &
     'impactor | mass | real | 1 | mass | required | > 0 | &
       &Mass of the whole impactor, also under symmetry.', &
     'impactor | velocity | real | 1 | length/time | required | >= 0 | &
       &Speed towards the plate at first touch.', &
+    'impactor | at | real | 2 | length | none | any | &
+      &The struck point from the plate''s centre, its default; patch, core, zones and starters go with it.', &
     'impactor | radius | real | 1 | length | none | > 0 | &
       &Radius of the nose; needed if the contact stiffness k isn''t given.', &
     'impactor | gravity | real | 1 | length/time^2 | 0 | any | &
@@ -40,6 +42,7 @@ contains
     impactor%mass = settings%real_of(impactor_group, 'mass')
     impactor%velocity = settings%real_of(impactor_group, key_velocity)
     impactor%radius = settings%real_of(impactor_group, key_radius)
+    if (settings%is_known(impactor_group, key_at)) impactor%at = settings%reals_of(impactor_group, key_at)
     impactor%gravity = settings%real_of(impactor_group, key_gravity)
     impactor%integrator = code_of(settings%text_of(impactor_group, 'integrator'), &
                                   'gear4 trapezoidal central conserving', &

@@ -5,7 +5,6 @@ module front_energy_release
   use delamination_fronts, only: front_segment_t, find_front
   use virtual_crack_closure, only: vcct_release, over_outside_cells
   use front_smoothing, only: smoothed_along_front
-  use mesh_parameters, only: symmetry_quarter
   use benzeggagh_kenane, only: release_ratio
   use motions, only: motion_t
   use contact_and_ties, only: contact_and_ties_t
@@ -86,7 +85,7 @@ contains
                                  reshape(values(36*s - 17:36*s), [3, 2, 3]))
     end do
     modes = over_outside_cells(segments, smoothed_along_front(segments, model%thickness, &
-      model%scene%plate%symmetry == symmetry_quarter, modes))
+      model%mesh%mirrored, modes))
   end function vcct_rates
 
   !> Force that holds the jump at a node, on the rank that owns it: external less internal and inertia forces.

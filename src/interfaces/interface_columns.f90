@@ -5,10 +5,12 @@ module interface_columns
   use interface_figures, only: figures_of, interface_figures_t
   use interface_states, only: interface_state_t
   use models, only: model_t
+  use motions, only: motion_t
   use result_tables, only: result_row_length
   implicit none
   private
   public :: area_values, release_values, border_values, interface_values
+  public :: area_values, release_values, border_values, rig_values
 
   !> How much has delaminated: a column of the public interface.
   character(len=result_row_length), parameter, public :: area_rows(*) = [character(len=result_row_length) :: &
@@ -42,6 +44,12 @@ module interface_columns
     'extent_x_below_N | real | length | Length along x of what has come apart below ply N, starter included: cells, or &
       &nodes where a cohesive law has failed.', &
     'extent_y_below_N | real | length | The same along y.']
+  !> Forces of the rigs.
+  character(len=result_row_length), parameter, public :: rig_rows(*) = [character(len=result_row_length) :: &
+    'reaction_1 | real | force | Force of the first &support on the plate, frame and clamps together, positive against &
+      &the impact; 0 if there is none.', &
+    'reaction_2 | real | force | Force of the second &support, likewise.', &
+    'reaction_3 | real | force | Force of the third &support, likewise.']
 
 contains
 
@@ -84,6 +92,24 @@ contains
 
   !> Figures of each interface, one interface after the other. Collective.
   function interface_values(model, interfaces) result(values)
+  !> Forces of the rigs. Collective.
+  function rig_values(model, interfaces, motion, load) result(values)
+    type(model_t), intent(in) :: model
+    !> The interfaces
+    type(interface_state_t), intent(in) :: interfaces
+    !> The motion
+    type(motion_t), intent(in) :: motion
+    !> Part of the deck's pressure that acts
+    real(wp), intent(in) :: load
+    !> A value a column
+    real(wp) :: values(size(rig_rows))
+
+    values = interfaces%rig%reactions(model, motion%displacement, motion%internal, motion%inertia, load)
+  end function rig_values
+
+  !> Area in which at least one interface has delaminated, of the whole plate: nodal areas times the largest part
+  !> delaminated above each other. Collective.
+  function projected_area(model, interfaces) result(area)
     type(model_t), intent(in) :: model
     !> The interfaces
     type(interface_state_t), intent(in) :: interfaces

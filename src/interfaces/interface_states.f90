@@ -1,4 +1,5 @@
-!> What evolves of all interfaces: ties, contact, the release of ties and how near the fronts are to growth.
+!> What evolves of all interfaces, those with frames of rigs among them: ties, contact, the release of ties and how near
+!> the fronts are to growth.
 module interface_states
   use kinds, only: wp
   use archives, only: archive_t
@@ -6,6 +7,7 @@ module interface_states
   use contact_and_ties, only: contact_and_ties_t, new_contact_and_ties
   use cohesive_interfaces, only: cohesive_interfaces_t, new_cohesive_interfaces
   use tie_release, only: tie_release_t, new_tie_release
+  use rig_contact, only: rig_contact_t, new_rig_contact
   implicit none
   private
   public :: interface_state_t, new_interface_state
@@ -18,6 +20,8 @@ module interface_states
     type(cohesive_interfaces_t) :: cohesive
     !> Released ties whose forces fade, and the energy they released
     type(tie_release_t) :: ties
+    !> The plate on its rigs
+    type(rig_contact_t) :: rig
     !> Largest energy release rate on the fronts over its critical value
     real(wp) :: release_ratio = 0
     !> The same of those fronts that can grow, not at the border of their zone
@@ -29,6 +33,14 @@ module interface_states
     procedure :: act
     !> Area that a C-scan sees.
     procedure :: projected_area
+    !> Takes the contact pressures found as the next estimates.
+    procedure :: settle
+    !> Keeps what touches together in a first guess.
+    procedure :: keep_touching
+    !> Work of contact and penalty ties in a step.
+    procedure :: contact_work
+    !> Area delaminated at every node of the mesh.
+    procedure :: area_at_nodes
     !> Stiffness that ties, contact and cohesive laws add to the diagonal.
     procedure :: added_stiffness
     !> Saves or loads the state.
@@ -46,6 +58,7 @@ contains
     allocate (self%border_reached(size(model%mesh%zones)), source=.false.)
     self%faces = new_contact_and_ties(model)
     self%ties = new_tie_release(model)
+    self%rig = new_rig_contact(model)
     if (model%map%layered) self%cohesive = new_cohesive_interfaces(model, self%faces%free)
   end function new_interface_state
 
@@ -61,12 +74,63 @@ contains
 
     call self%ties%act(model, residual)
     call self%faces%act(model, displacement, residual)
+    call self%rig%act(model, displacement, residual)
   end subroutine act
 
   !> Area in which at least one interface has delaminated, of the whole plate: nodal areas times the largest part
   !> delaminated above each other. A node where ties are released has delaminated as a whole, a cohesive one by the part
   !> dissipated. All points of a node belong to one rank, so that only the sum is collective.
   function projected_area(self, model) result(area)
+  !> Takes the contact pressures found, of faces and frames, as the next estimates.
+  subroutine settle(self, model, displacement, tolerance, rounds, settled)
+    !> The state
+    class(interface_state_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> Unknowns, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> Complementarity at which they have settled
+    real(wp), intent(in) :: tolerance
+    !> Counts the times that there was something to settle
+    integer, intent(inout) :: rounds
+    !> True if they have
+    logical, intent(out) :: settled
+    logical :: rig_settled
+    integer :: rig_rounds
+
+    rig_rounds = rounds
+    call self%faces%settle(model, displacement, tolerance, rounds, settled)
+    call self%rig%settle(model, displacement, tolerance, rig_rounds, rig_settled)
+    settled = settled .and. rig_settled
+    rounds = max(rounds, rig_rounds)
+  end subroutine settle
+
+  !> Keeps touching faces together and what rests on a frame there, in a first guess.
+  subroutine keep_touching(self, model, guess)
+    !> The state
+    class(interface_state_t), intent(in) :: self
+    type(model_t), intent(in) :: model
+    !> Guess of the unknowns at its end, (5, points)
+    real(wp), intent(inout) :: guess(:, :)
+
+    call self%faces%keep_touching(model, guess)
+    call self%rig%keep_touching(model, guess)
+  end subroutine keep_touching
+
+  !> Work of contact and penalty ties in a step, of this rank's points.
+  pure real(wp) function contact_work(self, model, displacement, change) result(work)
+    !> The state
+    class(interface_state_t), intent(in) :: self
+    type(model_t), intent(in) :: model
+    !> Unknowns at the end of the step and their change, (5, points)
+    real(wp), intent(in) :: displacement(:, :), change(:, :)
+
+    work = self%rig%work(model, change)
+    if (model%map%layered) work = work + self%faces%work(model, displacement, change)
+  end function contact_work
+
+  !> Area that has delaminated at the nodes of the mesh, of this rank's points: a node where ties are released has its
+  !> whole area, a cohesive one the part dissipated.
+  pure function area_at_nodes(self, model) result(area)
     !> The state
     class(interface_state_t), intent(in) :: self
     type(model_t), intent(in) :: model
@@ -118,10 +182,12 @@ contains
     integer :: i
 
     call self%faces%added_stiffness(model, diagonal, added)
-    if (.not. allocated(self%cohesive%cohesive)) return
-    do i = 1, model%distribution%owned
-      if (self%cohesive%cohesive(i)) added(:, i) = stiffness_factor*self%cohesive%stiffness(:, i)
-    end do
+    if (allocated(self%cohesive%cohesive)) then
+      do i = 1, model%distribution%owned
+        if (self%cohesive%cohesive(i)) added(:, i) = stiffness_factor*self%cohesive%stiffness(:, i)
+      end do
+    end if
+    call self%rig%add_stiffness(model, stiffness_factor, added)
   end subroutine added_stiffness
 
   !> Saves or loads the state.
@@ -141,5 +207,6 @@ contains
     call self%faces%visit(archive, model)
     call self%ties%visit(archive, model)
     call self%cohesive%visit(archive, model)
+    call self%rig%visit(archive, model)
   end subroutine visit
 end module interface_states

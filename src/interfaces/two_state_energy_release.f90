@@ -13,7 +13,6 @@
 module two_state_energy_release
   use kinds, only: wp
   use element_batches, only: lanes, batch_of, lane_of
-  use mesh_parameters, only: symmetry_quarter
   use strain_recovery, only: nodal_strains
   use delamination_fronts, only: front_segment_t
   use virtual_crack_closure, only: two_state_release, carried_over, segment_mean
@@ -118,8 +117,8 @@ contains
     integer :: direction
 
     symmetric = strains
-    if (model%scene%plate%symmetry /= symmetry_quarter) return
     do direction = 1, 2
+      if (.not. model%mesh%mirrored(direction)) cycle
       if (abs(model%mesh%node_coordinates(direction, node)) > 0) cycle
       symmetric([3, 6, 6 + direction]) = 0
     end do

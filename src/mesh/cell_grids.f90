@@ -1,8 +1,8 @@
 !> The grid of nine-node cells over the modelled part of the plate, a rectangle.
 module cell_grids
   use kinds, only: wp
-  use mesh_parameters, only: plate_t, mesh_t, symmetry_quarter
-  use gradings, only: graded_half_line, graded_line, cored_half_line
+  use mesh_parameters, only: plate_t, mesh_t, parts_of, is_halved, is_mirrored
+  use gradings, only: graded_half_line, graded_line, cored_half_line, off_centre_line, move_to_lines
   use nine_node_grids, only: nine_node_grid_t, last_line
   implicit none
   private
@@ -14,10 +14,14 @@ module cell_grids
     real(wp), allocatable :: x_edges(:), y_edges(:)
     !> Coordinates of the nodes, (2, nodes), x fastest
     real(wp), allocatable :: node_coordinates(:, :)
-    !> Node at the struck point
+    !> The struck point
+    real(wp) :: struck(2) = 0
+    !> Node there
     integer :: struck_node = 0
     !> Models that make up the whole plate: 4 for a quarter
     integer :: multiplicity = 1
+    !> Directions along which the model begins at the plate's centre, and in which it is mirrored there
+    logical :: halved(2) = .false., mirrored(2) = .false.
   contains
     !> Number of nodes.
     procedure :: nodes
@@ -25,6 +29,10 @@ module cell_grids
     procedure :: cell_area
     !> True where a cell lies under the loaded patch.
     procedure :: in_patch
+    !> Node that moves as a node does on the line at which a turned plate is cut.
+    procedure :: turned_node
+    !> True for a node whose motion another one gives.
+    procedure :: follows
   end type cell_grid_t
 
 contains
@@ -38,11 +46,14 @@ contains
     !> The grid
     class(cell_grid_t), intent(inout) :: self
 
-    self%multiplicity = merge(4, 1, plate%symmetry == symmetry_quarter)
+    self%multiplicity = parts_of(plate%symmetry)
+    self%halved = is_halved(plate%symmetry)
+    self%mirrored = is_mirrored(plate%symmetry)
+    self%struck = mesh%struck
     self%cells = mesh%elements
     self%x_edges = cell_edges(plate, mesh, 1)
     self%y_edges = cell_edges(plate, mesh, 2)
-    call place_nodes(self, plate%symmetry == symmetry_quarter)
+    call place_nodes(self)
   end subroutine create_grid
 
   !> Edges of the cells along x or y.
@@ -55,27 +66,35 @@ contains
     integer, intent(in) :: direction
     !> Ascending coordinates, (0:cells)
     real(wp), allocatable :: edges(:)
+    real(wp) :: kept(5)
+    logical :: halved(2)
     integer :: half
 
     allocate (edges(0:mesh%elements(direction)))
-    if (mesh%cell > 0) then
-      half = merge(0, mesh%elements(direction)/2, plate%symmetry == symmetry_quarter)
+    halved = is_halved(plate%symmetry)
+    if (abs(mesh%struck(direction)) > 0) then
+      edges(:) = off_centre_line(plate%length(direction), mesh%elements(direction), mesh%patch, mesh%grading, &
+                                 mesh%core(direction), mesh%cell, mesh%struck(direction))
+    else if (mesh%cell > 0) then
+      half = merge(0, mesh%elements(direction)/2, halved(direction))
       edges(half:) = cored_half_line(plate%length(direction)/2, mesh%elements(direction) - half, mesh%patch/2, &
                                      mesh%grading, mesh%core(direction)/2, mesh%cell)
       edges(:half) = -edges(2*half:half:-1)
-    else if (plate%symmetry == symmetry_quarter) then
+    else if (halved(direction)) then
       edges(:) = graded_half_line(plate%length(direction)/2, mesh%elements(direction), mesh%patch/2, mesh%grading)
     else
       edges(:) = graded_line(plate%length(direction), mesh%elements(direction), mesh%patch, mesh%grading)
     end if
+    kept = mesh%struck(direction) + [-mesh%core(direction), -mesh%patch, 0.0_wp, mesh%patch, mesh%core(direction)]/2
+    if (direction == 1 .and. allocated(mesh%x_lines)) call move_to_lines(edges, kept, mesh%x_lines)
+    if (direction == 2 .and. allocated(mesh%y_lines)) call move_to_lines(edges, kept, mesh%y_lines)
   end function cell_edges
 
-  !> Nodes at the edges and middles of the cells.
-  pure subroutine place_nodes(self, quarter)
+  !> Nodes at the edges and middles of the cells. The struck one lies on the line next to the struck point, which has
+  !> one of its own on every mesh that the checks let pass.
+  pure subroutine place_nodes(self)
     !> The grid, with its edges known
     class(cell_grid_t), intent(inout) :: self
-    !> True: the struck point is the corner of the model
-    logical, intent(in) :: quarter
     real(wp) :: x(0:last_line(self%cells(1))), y(0:last_line(self%cells(2)))
     integer :: i, j
 
@@ -87,8 +106,8 @@ contains
         self%node_coordinates(:, self%node_at(i, j)) = [x(i), y(j)]
       end do
     end do
-    self%struck_node = 1
-    if (.not. quarter) self%struck_node = self%node_at(size(x)/2, size(y)/2)
+    self%struck_node = self%node_at(minloc(abs(x - self%struck(1)), dim=1) - 1, &
+                                    minloc(abs(y - self%struck(2)), dim=1) - 1)
   end subroutine place_nodes
 
   !> Coordinates of the cells' edges with their middles in between.
@@ -119,6 +138,32 @@ contains
     area = (self%x_edges(place(1) + 1) - self%x_edges(place(1)))*(self%y_edges(place(2) + 1) - self%y_edges(place(2)))
   end function cell_area
 
+  !> Image of a node on the line at which a plate is cut that a turn by 180 degrees leaves as it is: at (0, -y) for
+  !> (0, y). There w is the same; displacements in the plane and rotations have the other sign. The centre is its own
+  !> image; other nodes have none, 0.
+  pure integer function turned_node(self, node) result(image)
+    !> The grid
+    class(cell_grid_t), intent(in) :: self
+    !> Node
+    integer, intent(in) :: node
+    integer :: lines(2)
+
+    image = 0
+    if (.not. self%halved(1) .or. self%mirrored(1)) return
+    lines = self%lines_of(node)
+    if (lines(1) == 0) image = self%node_at(0, last_line(self%cells(2)) - lines(2))
+  end function turned_node
+
+  !> True for a node whose motion that of its image gives, which is the one with the higher number.
+  pure logical function follows(self, node)
+    !> The grid
+    class(cell_grid_t), intent(in) :: self
+    !> Node
+    integer, intent(in) :: node
+
+    follows = self%turned_node(node) > node
+  end function follows
+
   !> True where a cell lies under the loaded patch.
   pure logical function in_patch(self, cell, patch)
     !> The grid
@@ -130,6 +175,6 @@ contains
     integer :: nodes(9)
 
     nodes = self%cell_nodes(cell)
-    in_patch = all(abs(self%node_coordinates(:, nodes(5))) < patch/2)
+    in_patch = all(abs(self%node_coordinates(:, nodes(5)) - self%struck) < patch/2)
   end function in_patch
 end module cell_grids

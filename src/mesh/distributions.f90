@@ -86,7 +86,7 @@ contains
     neighbours = neighbours(:found)
   end subroutine cell_graph
 
-  !> Gives each point to the lowest rank whose cells touch its node.
+  !> Gives each point to the lowest rank whose cells touch its node or the one that it moves with.
   pure subroutine own_points(mesh, part, owner)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
@@ -94,12 +94,18 @@ contains
     integer, intent(in) :: part(:)
     !> Rank of each point, from 0
     integer, intent(out) :: owner(:)
-    integer :: node_owner(mesh%nodes()), cell, nodes(9)
+    integer :: node_owner(mesh%nodes()), cell, node, nodes(9)
 
     node_owner = huge(1)
     do cell = 1, size(part)
       nodes = mesh%cell_nodes(cell)
       node_owner(nodes) = min(node_owner(nodes), part(cell))
+    end do
+    ! Nodes that give each other their motion stay together.
+    do node = 1, mesh%nodes()
+      if (.not. mesh%follows(node)) cycle
+      nodes(:2) = [node, mesh%turned_node(node)]
+      node_owner(nodes(:2)) = minval(node_owner(nodes(:2)))
     end do
     owner = node_owner(mesh%point_node)
   end subroutine own_points

@@ -4,7 +4,7 @@ module gradings
   use kinds, only: wp
   implicit none
   private
-  public :: graded_half_line, graded_line, cored_half_line, core_elements
+  public :: graded_half_line, graded_line, cored_half_line, off_centre_line, core_elements, move_to_lines
 
 contains
 
@@ -104,6 +104,89 @@ contains
     edges(outside + inside:) = outer_edges(border, length/2, outside, 2*border/max(inside, 1), grading)
     edges(:outside) = -edges(elements:elements - outside:-1)
   end function graded_line
+
+  !> Element edges from border to border about a struck point anywhere between them. Both sides share the elements so
+  !> that their sizes change alike.
+  pure function off_centre_line(length, elements, patch, grading, core, cell, struck) result(edges)
+    !> Length of the plate
+    real(wp), intent(in) :: length
+    !> Number of elements
+    integer, intent(in) :: elements
+    !> Side of the loaded patch; 0: none
+    real(wp), intent(in) :: patch
+    !> Largest over smallest element edge outside the core; 0: smooth from the core's elements
+    real(wp), intent(in) :: grading
+    !> Extent of the core; 0: the patch alone
+    real(wp), intent(in) :: core
+    !> Side of its elements; 0: as many elements on the patch as it has of the length
+    real(wp), intent(in) :: cell
+    !> The struck point, from the middle
+    real(wp), intent(in) :: struck
+    !> Ascending coordinates of the element edges from the middle, (0:elements)
+    real(wp) :: edges(0:elements)
+    real(wp) :: side, outside(2), ratios(2), best
+    integer :: inside, low, chosen
+
+    side = cell
+    if (side <= 0) side = length/elements
+    inside = sum(core_elements(patch/2, core/2, side))
+    outside = length/2 + [struck, -struck] - max(patch, core)/2
+    chosen = 1
+    best = huge(best)
+    do low = 1, elements - 2*inside - 1
+      ratios = log([smooth_ratio(outside(1)/side, low), smooth_ratio(outside(2)/side, elements - 2*inside - low)])
+      if (maxval(abs(ratios)) >= best) cycle
+      best = maxval(abs(ratios))
+      chosen = low
+    end do
+    low = inside + chosen
+    edges(low:) = struck + cored_half_line(length/2 - struck, elements - low, patch/2, grading, core/2, side)
+    edges(low:0:-1) = struck - cored_half_line(length/2 + struck, low, patch/2, grading, core/2, side)
+  end function off_centre_line
+
+  !> Moves edges to where edges must be: the nearest one is taken, and those up to the next edge that has its place, on
+  !> either side, are stretched or drawn together alike. An edge that no other one can reach is left out.
+  pure subroutine move_to_lines(edges, kept, lines)
+    !> Ascending coordinates of the element edges
+    real(wp), intent(inout) :: edges(0:)
+    !> Coordinates of edges that stay, besides the first and last one
+    real(wp), intent(in) :: kept(:)
+    !> Coordinates to meet; those beyond the edges are left out
+    real(wp), intent(in) :: lines(:)
+    logical :: fixed(0:ubound(edges, 1))
+    real(wp) :: rounding
+    integer :: i, line, nearest, low, high
+
+    rounding = 1.0e-9_wp*(edges(ubound(edges, 1)) - edges(0))
+    fixed = [(any(abs(edges(line) - kept) <= rounding), line=0, ubound(edges, 1))]
+    fixed([0, ubound(edges, 1)]) = .true.
+    do i = 1, size(lines)
+      if (lines(i) <= edges(0) .or. lines(i) >= edges(ubound(edges, 1)) .or. all(fixed)) cycle
+      if (any(fixed .and. abs(edges - lines(i)) <= rounding)) cycle
+      nearest = minloc(abs(edges - lines(i)), dim=1, mask=.not. fixed) - 1
+      low = findloc(fixed(:nearest), .true., dim=1, back=.true.) - 1
+      high = nearest + findloc(fixed(nearest:), .true., dim=1) - 1
+      if (lines(i) <= edges(low) .or. lines(i) >= edges(high)) cycle
+      edges(low + 1:nearest - 1) = between(edges(low), edges(nearest), edges(low + 1:nearest - 1))
+      edges(nearest + 1:high - 1) = between(edges(high), edges(nearest), edges(nearest + 1:high - 1))
+      edges(nearest) = lines(i)
+      fixed(nearest) = .true.
+    end do
+
+  contains
+
+    !> Edges moved in proportion to their distance from one that stays.
+    pure function between(stays, moves, old) result(new)
+      !> The edge that stays, and the one that moves to the line
+      real(wp), intent(in) :: stays, moves
+      !> Edges between them
+      real(wp), intent(in) :: old(:)
+      !> Where they go
+      real(wp) :: new(size(old))
+
+      new = stays + (old - stays)*((lines(i) - stays)/(moves - stays))
+    end function between
+  end subroutine move_to_lines
 
   !> Number of elements across the patch: as near as can be to the mean element size, at least one.
   pure integer function patch_elements(patch, length, elements, stride) result(inside)

@@ -41,6 +41,8 @@ module layered_meshes
     !> Element of a cell that contains a ply, and point of a node below an interface.
     procedure :: element_at
     procedure :: lower_point
+    !> Point that gives a point its motion.
+    procedure :: leader
   end type layered_mesh_t
 
 contains
@@ -183,6 +185,19 @@ contains
     end do
     point = 0
   end function lower_point
+
+  !> Point that gives a point its motion, on the line at which a turned plate is cut; 0: it has its own.
+  pure integer function leader(self, point)
+    !> The mesh
+    class(layered_mesh_t), intent(in) :: self
+    !> Point
+    integer, intent(in) :: point
+
+    leader = 0
+    associate (node => self%point_node(point))
+      if (self%follows(node)) leader = self%first_point(self%turned_node(node)) + point - self%first_point(node)
+    end associate
+  end function leader
 
   !> True if a zone covers a cell.
   pure logical function covers(zone, place)

@@ -1,4 +1,5 @@
-!> The pattern of the matrix: an unknown is coupled to all unknowns at the nodes that share a cell with its own.
+!> The pattern of the matrix: an unknown is coupled to all unknowns at the nodes that share a cell with its own, or with
+!> a node that follows it on the line at which a turned plate is cut.
 module matrix_patterns
   use layered_meshes, only: layered_mesh_t
   use nine_node_grids, only: lines_around
@@ -20,7 +21,8 @@ contains
     integer, allocatable, intent(out) :: row_start(:)
     !> Columns, from 0, ascending in each row
     integer, allocatable, intent(out) :: columns(:)
-    integer :: row, node, start, width
+    integer, allocatable :: around(:)
+    integer :: row, node, width
 
     allocate (row_start(size(nodes) + 1))
     row_start(1) = 1
@@ -33,18 +35,13 @@ contains
     allocate (columns(row_start(size(row_start)) - 1))
     node = 0
     do row = 1, size(nodes)
-      start = row_start(row)
-      width = row_start(row + 1) - start
-      if (nodes(row) /= node) then
-        call list_columns(mesh, equation, nodes(row), columns(start:start + width - 1))
-      else
-        columns(start:start + width - 1) = columns(start - width:start - 1)
-      end if
+      if (nodes(row) /= node) call list_columns(mesh, equation, nodes(row), around)
+      columns(row_start(row):row_start(row + 1) - 1) = around
       node = nodes(row)
     end do
   end subroutine find_pattern
 
-  !> Number of equations of all points at the nodes that share a cell with a node.
+  !> Number of equations that a node is coupled to.
   pure integer function columns_around(mesh, equation, node) result(columns)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
@@ -52,8 +49,14 @@ contains
     integer, intent(in) :: equation(:, :)
     !> The node
     integer, intent(in) :: node
+    integer, allocatable :: list(:)
     integer :: lines, first(5), last(5), line
 
+    if (near_cut(mesh, node)) then
+      call list_columns(mesh, equation, node, list)
+      columns = size(list)
+      return
+    end if
     call find_points_around(mesh, node, lines, first, last)
     columns = 0
     do line = 1, lines
@@ -61,7 +64,20 @@ contains
     end do
   end function columns_around
 
-  !> These equations, ascending.
+  !> True if equations may occur twice around a node, or those around its image count too: it shares a cell with the
+  !> line at which a turned plate is cut.
+  pure logical function near_cut(mesh, node)
+    !> The mesh
+    type(layered_mesh_t), intent(in) :: mesh
+    !> The node
+    integer, intent(in) :: node
+    integer :: lines(2)
+
+    lines = mesh%lines_of(node)
+    near_cut = mesh%halved(1) .and. .not. mesh%mirrored(1) .and. lines(1) <= 2
+  end function near_cut
+
+  !> The equations that a node is coupled to, ascending.
   pure subroutine list_columns(mesh, equation, node, columns)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
@@ -70,22 +86,45 @@ contains
     !> The node
     integer, intent(in) :: node
     !> Equations, from 0, (`columns_around` of them)
-    integer, intent(out) :: columns(:)
-    integer :: lines, first(5), last(5), line, point, component, column
+    integer, allocatable, intent(out) :: columns(:)
+    integer :: image
+
+    columns = equations_around(mesh, equation, node)
+    image = mesh%turned_node(node)
+    if (image > 0 .and. image /= node) columns = [columns, equations_around(mesh, equation, image)]
+    call sort(columns)
+    if (near_cut(mesh, node)) columns = pack(columns, [.true., columns(2:) > columns(:size(columns) - 1)])
+  end subroutine list_columns
+
+  !> Equations of all points at the nodes that share a cell with a node.
+  pure function equations_around(mesh, equation, node) result(list)
+    !> The mesh
+    type(layered_mesh_t), intent(in) :: mesh
+    !> Equations of every point
+    integer, intent(in) :: equation(:, :)
+    !> The node
+    integer, intent(in) :: node
+    !> Equations, from 0
+    integer, allocatable :: list(:)
+    integer :: lines, first(5), last(5), line, point, component, found
 
     call find_points_around(mesh, node, lines, first, last)
-    column = 0
+    found = 0
+    do line = 1, lines
+      found = found + count(equation(:, first(line):last(line)) >= 0)
+    end do
+    allocate (list(found))
+    found = 0
     do line = 1, lines
       do point = first(line), last(line)
         do component = 1, 5
           if (equation(component, point) < 0) cycle
-          column = column + 1
-          columns(column) = equation(component, point)
+          found = found + 1
+          list(found) = equation(component, point)
         end do
       end do
     end do
-    call sort(columns)
-  end subroutine list_columns
+  end function equations_around
 
   !> First and last point on each line of nodes, of those that share a cell with a node.
   pure subroutine find_points_around(mesh, node, lines, first, last)

@@ -4,12 +4,14 @@ module mesh_parameters
   use plate_options, only: shear_assumed, mass_consistent
   implicit none
   private
-  public :: plate_t, mesh_t
+  public :: plate_t, mesh_t, parts_of, is_halved, is_mirrored
 
   !> Supports of an edge.
   integer, parameter, public :: edge_free = 0, edge_simple = 1, edge_clamped = 2
-  !> Parts of the plate that are modelled.
-  integer, parameter, public :: symmetry_none = 1, symmetry_quarter = 2
+  !> Parts of the plate that are modelled: all; x >= 0 and y >= 0; x >= 0; y >= 0; x >= 0 of a plate that a turn by 180
+  !> degrees leaves as it is.
+  integer, parameter, public :: symmetry_none = 1, symmetry_quarter = 2, symmetry_half_x = 3, symmetry_half_y = 4, &
+                                symmetry_point = 5
 
   !> The plate; lengths are of the whole plate, also under symmetry.
   type :: plate_t
@@ -19,7 +21,7 @@ module mesh_parameters
     integer :: edges(4) = edge_clamped
     !> True: supported edges hold the plate in its plane too
     logical :: in_plane_fixed = .true.
-    !> symmetry_none or symmetry_quarter (the part x >= 0, y >= 0)
+    !> Part that is modelled, one of the constants above
     integer :: symmetry = symmetry_none
   end type plate_t
 
@@ -31,6 +33,10 @@ module mesh_parameters
     real(wp) :: grading = 0
     !> Side of the loaded square, centred on the struck point; 0: none
     real(wp) :: patch = 0
+    !> The struck point, from the plate's centre; 0 along directions that symmetry halves
+    real(wp) :: struck(2) = 0
+    !> Coordinates that must be lines of the mesh besides, as the edges of windows are; unallocated: none
+    real(wp), allocatable :: x_lines(:), y_lines(:)
     !> Full extents along x and y of the rectangle of equal elements around the patch, and their side; 0: none
     real(wp) :: core(2) = 0, cell = 0
     !> Transverse shear of the element, one of `plate_options`
@@ -38,4 +44,35 @@ module mesh_parameters
     !> Mass matrix, one of `plate_options`
     integer :: mass = mass_consistent
   end type mesh_t
+contains
+
+  !> Number of models that make up the whole plate.
+  pure integer function parts_of(symmetry) result(parts)
+    !> Part that is modelled
+    integer, intent(in) :: symmetry
+
+    parts = product(merge(2, 1, is_halved(symmetry)))
+  end function parts_of
+
+  !> Directions along which the model begins at the plate's centre.
+  pure function is_halved(symmetry) result(halved)
+    !> Part that is modelled
+    integer, intent(in) :: symmetry
+    !> Along x and y
+    logical :: halved(2)
+
+    halved = is_mirrored(symmetry)
+    if (symmetry == symmetry_point) halved(1) = .true.
+  end function is_halved
+
+  !> Directions in which the plate is its own mirror image.
+  pure function is_mirrored(symmetry) result(mirrored)
+    !> Part that is modelled
+    integer, intent(in) :: symmetry
+    !> Along x and y
+    logical :: mirrored(2)
+
+    mirrored = [symmetry == symmetry_quarter .or. symmetry == symmetry_half_x, &
+                symmetry == symmetry_quarter .or. symmetry == symmetry_half_y]
+  end function is_mirrored
 end module mesh_parameters

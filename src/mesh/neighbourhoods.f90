@@ -2,7 +2,8 @@
 !> layer.
 !>
 !> Weights fall off in proportion to the distance of the elements' centres and go with their areas. Lines of symmetry
-!> reflect: what lies beyond them counts with the sign that the component has there.
+!> reflect, and the line that a turned plate is cut at turns: what lies beyond them counts with the sign that the
+!> component has there.
 module neighbourhoods
   use kinds, only: wp
   use layered_meshes, only: layered_mesh_t
@@ -71,15 +72,45 @@ contains
     real(wp), allocatable, intent(out) :: weight(:, :)
     integer, allocatable :: columns(:), rows(:)
     real(wp), allocatable :: x(:), y(:)
-    real(wp) :: share
-    integer :: place(2), i, j, other
+    integer :: place(2), j
 
-    associate (cell => mesh%element_cell(element), quarter => mesh%multiplicity > 1)
-      place = mesh%place_of(cell)
-      call find_lines(mesh%x_edges, place(1), length, quarter, columns, x)
-      call find_lines(mesh%y_edges, place(2), length, quarter, rows, y)
-    end associate
+    place = mesh%place_of(mesh%element_cell(element))
+    call find_lines(mesh%x_edges, place(1), length, mesh%mirrored(1), columns, x)
+    call find_lines(mesh%y_edges, place(2), length, mesh%mirrored(2), rows, y)
     allocate (member(0), weight(4, 0))
+    call add_cells(mesh, element, length, columns, rows, x, y, member, weight)
+    if (mesh%halved(1) .and. .not. mesh%mirrored(1)) then
+      ! What lies beyond the line that a turned plate is cut at is the plate itself, turned.
+      call find_lines(mesh%x_edges, place(1), length, .true., columns, x)
+      x = pack(x, columns < 0)
+      columns = pack(columns, columns < 0)
+      rows = [(-j, j=1, mesh%cells(2))]
+      y = [(-mesh%y_edges(j) - mesh%y_edges(j + 1) - mesh%y_edges(place(2)) - mesh%y_edges(place(2) + 1), &
+            j=1, mesh%cells(2))]/2
+      call add_cells(mesh, element, length, columns, rows, x, y, member, weight)
+    end if
+    weight = weight/sum(weight(even, :))
+  end subroutine find_members
+
+  !> Adds the elements on some columns and rows that are near enough.
+  pure subroutine add_cells(mesh, element, length, columns, rows, x, y, member, weight)
+    !> The mesh
+    type(layered_mesh_t), intent(in) :: mesh
+    !> Element of the mesh
+    integer, intent(in) :: element
+    !> Distance at which an element no longer counts
+    real(wp), intent(in) :: length
+    !> Columns and rows, negative: reflected
+    integer, intent(in) :: columns(:), rows(:)
+    !> Their distances from the element
+    real(wp), intent(in) :: x(:), y(:)
+    !> Elements of the mesh
+    integer, allocatable, intent(inout) :: member(:)
+    !> Their weights, (4, members)
+    real(wp), allocatable, intent(inout) :: weight(:, :)
+    real(wp) :: share
+    integer :: i, j, other
+
     do j = 1, size(rows)
       do i = 1, size(columns)
         if (norm2([x(i), y(j)]) >= length) cycle
@@ -91,8 +122,7 @@ contains
                                          sign(1, columns(i))*sign(1, rows(j))]], [4, size(member)])
       end do
     end do
-    weight = weight/sum(weight(even, :))
-  end subroutine find_members
+  end subroutine add_cells
 
   !> Columns, or rows, whose centres are nearer than a length to that of one of them, with their distances.
   pure subroutine find_lines(edges, here, length, mirrored, lines, distances)

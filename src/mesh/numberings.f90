@@ -1,5 +1,8 @@
 !> Equations: one for every unknown that is not held, numbered rank by rank, and the pattern of the
 !> matrix that couples them. Renewed as a whole when unknowns are released.
+!>
+!> Points that follow others, on the line at which a turned plate is cut, have the equations of these; `turned` is the
+!> sign of each component of their motion. So a vector holds every free motion once, and a field all of it.
 module numberings
   use kinds, only: wp
   use layered_meshes, only: layered_mesh_t
@@ -7,7 +10,10 @@ module numberings
   use matrix_patterns, only: find_pattern
   implicit none
   private
-  public :: numbering_t, number_equations
+  public :: numbering_t, number_equations, turned
+
+  !> Sign of u, v, w, theta_x, theta_y of a point that follows another one.
+  real(wp), parameter :: turned(5) = [-1.0_wp, -1.0_wp, 1.0_wp, -1.0_wp, -1.0_wp]
 
   !> Equation numbers and the rows of this rank.
   type :: numbering_t
@@ -17,6 +23,8 @@ module numberings
     integer :: first_row = 0, rows = 0, total = 0
     !> Points that this rank owns
     integer :: owned = 0
+    !> Point of this rank that gives a point its motion, or itself if another rank has it; 0: none, (local points)
+    integer, allocatable :: leader(:)
     !> Pattern of this rank's rows: start of each row (from 1) and columns (from 0, ascending)
     integer, allocatable :: row_start(:), columns(:)
     !> Point and component of each row of this rank, (2, rows)
@@ -29,6 +37,9 @@ module numberings
     !> Copies between fields over points and vectors of this rank's rows.
     procedure :: gather
     procedure :: scatter
+    !> Adds the forces on points that follow to those on their leaders, or gives them their leaders' motion.
+    procedure :: fold
+    procedure :: spread
   end type numbering_t
 
 contains
@@ -43,14 +54,28 @@ contains
     logical, intent(in) :: held(:, :)
     !> The numbering
     type(numbering_t), intent(out) :: self
-    integer :: equation(5, mesh%points())
+    integer :: equation(5, mesh%points()), leader(mesh%points()), point, i
+    logical :: free(5, mesh%points())
 
-    call number_all(distribution, held, equation)
-    self%total = count(.not. held)
+    leader = [(mesh%leader(point), point=1, size(leader))]
+    free = .not. held
+    do point = 1, size(leader)
+      if (leader(point) > 0) free(:, point) = .false.
+    end do
+    call number_all(distribution, free, equation)
+    self%total = count(free)
     self%owned = distribution%owned
-    self%rows = count(.not. held(:, distribution%points(:distribution%owned)))
+    self%rows = count(free(:, distribution%points(:distribution%owned)))
     self%first_row = first_row_of(equation, distribution)
+    do point = 1, size(leader)
+      if (leader(point) > 0) equation(:, point) = equation(:, leader(point))
+    end do
     self%equation = equation(:, distribution%points)
+    self%leader = leader(distribution%points)
+    do i = 1, size(self%leader)
+      if (self%leader(i) > 0) self%leader(i) = merge(distribution%local(self%leader(i)), i, &
+                                                     distribution%local(self%leader(i)) > 0)
+    end do
     call find_places(self)
     call find_pattern(mesh, equation, mesh%point_node(distribution%points(self%places(1, :))), &
                       self%row_start, self%columns)
@@ -64,6 +89,7 @@ contains
 
     allocate (self%places(2, self%rows))
     do point = 1, self%owned
+      if (self%leader(point) > 0) cycle
       do component = 1, 5
         if (self%equation(component, point) < 0) cycle
         self%places(:, self%equation(component, point) - self%first_row + 1) = [point, component]
@@ -95,21 +121,21 @@ contains
   end subroutine place_of
 
   !> Equation numbers of every point of the mesh, in rank order.
-  subroutine number_all(distribution, held, equation)
+  subroutine number_all(distribution, free, equation)
     !> Rank order of the points
     type(distribution_t), intent(in) :: distribution
-    !> Held unknowns
-    logical, intent(in) :: held(:, :)
+    !> Unknowns that get one
+    logical, intent(in) :: free(:, :)
     !> Equations, from 0; -1: held
     integer, intent(out) :: equation(:, :)
-    integer :: in_order(size(held, 2)), place, component, next
+    integer :: in_order(size(free, 2)), place, component, next
 
     in_order(distribution%number + 1) = [(place, place=1, size(in_order))]
     next = 0
     equation = -1
     do place = 1, size(in_order)
       do component = 1, 5
-        if (held(component, in_order(place))) cycle
+        if (.not. free(component, in_order(place))) cycle
         equation(component, in_order(place)) = next
         next = next + 1
       end do
@@ -132,7 +158,7 @@ contains
     end do
   end function first_row_of
 
-  !> Rows of this rank from a field over its points.
+  !> Rows of this rank from a field of forces over its points.
   pure subroutine gather(self, field, vector)
     !> The numbering
     class(numbering_t), intent(in) :: self
@@ -144,15 +170,24 @@ contains
 
     row = 0
     do point = 1, self%owned
+      if (self%leader(point) > 0) cycle
       do component = 1, 5
         if (self%equation(component, point) < 0) cycle
         row = row + 1
         vector(row) = field(component, point)
       end do
     end do
+    do point = 1, self%owned
+      if (self%leader(point) == 0) cycle
+      do component = 1, 5
+        if (self%equation(component, point) < 0) cycle
+        row = self%equation(component, point) - self%first_row + 1
+        vector(row) = vector(row) + turned(component)*field(component, point)
+      end do
+    end do
   end subroutine gather
 
-  !> Field over the owned points from the rows of this rank; held unknowns become zero, ghosts are left alone.
+  !> Field of motion over the owned points from the rows of this rank; held unknowns become zero, ghosts are left alone.
   pure subroutine scatter(self, vector, field)
     !> The numbering
     class(numbering_t), intent(in) :: self
@@ -164,6 +199,7 @@ contains
 
     row = 0
     do point = 1, self%owned
+      if (self%leader(point) > 0) cycle
       do component = 1, 5
         if (self%equation(component, point) < 0) then
           field(component, point) = 0
@@ -173,5 +209,34 @@ contains
         end if
       end do
     end do
+    call self%spread(field)
   end subroutine scatter
+
+  !> Adds forces on this rank's points that follow others to those on their leaders, and leaves none.
+  pure subroutine fold(self, field)
+    !> The numbering
+    class(numbering_t), intent(in) :: self
+    !> The first components of forces or of stiffness, (up to 5, local points)
+    real(wp), intent(inout) :: field(:, :)
+    integer :: point
+
+    do point = 1, self%owned
+      if (self%leader(point) == 0) cycle
+      field(:, self%leader(point)) = field(:, self%leader(point)) + turned(:size(field, 1))*field(:, point)
+      field(:, point) = 0
+    end do
+  end subroutine fold
+
+  !> Gives this rank's points that follow others the motion of their leaders.
+  pure subroutine spread(self, field)
+    !> The numbering
+    class(numbering_t), intent(in) :: self
+    !> (5, local points)
+    real(wp), intent(inout) :: field(:, :)
+    integer :: point
+
+    do point = 1, self%owned
+      if (self%leader(point) > 0) field(:, point) = turned*field(:, self%leader(point))
+    end do
+  end subroutine spread
 end module numberings

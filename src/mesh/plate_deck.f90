@@ -6,11 +6,12 @@ module plate_deck
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
   use kinds, only: wp
-  use mesh_parameters, only: plate_t, edge_free, edge_simple, edge_clamped, symmetry_none, symmetry_quarter
+  use mesh_parameters, only: plate_t, edge_free, edge_simple, edge_clamped, symmetry_none, symmetry_quarter, &
+                             symmetry_half_x, symmetry_half_y, symmetry_point, is_halved
   use text, only: line_t, lower_case, to_text
   implicit none
   private
-  public :: fill_plate, check_plate, check_supports
+  public :: fill_plate, check_plate, check_edges
 
   !> Names that checks across groups use.
   character(len=*), parameter, public :: plate_group = 'plate', key_length = 'length', key_symmetry = 'symmetry'
@@ -25,8 +26,8 @@ module plate_deck
       &Supports at x-min, x-max, y-min, y-max; one value serves all.', &
     'plate | in_plane | choice | 1 | - | ''fixed'' | fixed free | &
       &Whether the supported edges also hold the plate in its plane.', &
-    'plate | symmetry | choice | 1 | - | ''none'' | none quarter | &
-      &Part that is modelled: all, or the quarter x >= 0, y >= 0.']
+    'plate | symmetry | choice | 1 | - | ''none'' | none quarter half_x half_y point | &
+      &Part that is modelled: all, x >= 0 and y >= 0, x >= 0, y >= 0, or x >= 0 of one that a half turn leaves as is.']
 
   !> Largest ratio of the plate's sides.
   real(wp), parameter :: most_oblong = 1.0e3_wp
@@ -49,8 +50,8 @@ contains
                                [edge_free, edge_simple, edge_clamped])
     end do
     plate%in_plane_fixed = lower_case(settings%text_of(plate_group, 'in_plane')) /= 'free'
-    plate%symmetry = code_of(settings%text_of(plate_group, key_symmetry), 'none quarter', &
-                             [symmetry_none, symmetry_quarter])
+    plate%symmetry = code_of(settings%text_of(plate_group, key_symmetry), 'none quarter half_x half_y point', &
+                             [symmetry_none, symmetry_quarter, symmetry_half_x, symmetry_half_y, symmetry_point])
   end subroutine fill_plate
 
   !> Its sides against each other, and its supports against its symmetry.
@@ -61,18 +62,20 @@ contains
     type(plate_t), intent(in) :: plate
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
+    logical :: halved(2)
 
+    ! A plate that is turned onto itself has all opposite edges alike.
+    halved = is_halved(plate%symmetry) .or. plate%symmetry == symmetry_point
     if (settings%is_known(plate_group, key_length) .and. maxval(plate%length) > most_oblong*minval(plate%length)) &
       call tell(settings, problems, plate_group, key_length, 'one side is more than '//to_text(most_oblong)// &
                 ' times the other; such a strip is no plate.')
-    if (plate%symmetry /= symmetry_quarter) return
-    if (plate%edges(1) /= plate%edges(2) .or. plate%edges(3) /= plate%edges(4)) &
-      call tell(settings, problems, plate_group, 'edges', &
-                'symmetry = ''quarter'' needs the same support at opposite edges.')
+    if (plate%edges(1) /= plate%edges(2) .and. halved(1) .or. plate%edges(3) /= plate%edges(4) .and. halved(2)) &
+      call tell(settings, problems, plate_group, 'edges', 'symmetry = '''// &
+                lower_case(settings%text_of(plate_group, key_symmetry))//''' needs the same support at opposite edges.')
   end subroutine check_plate
 
-  !> Supports that hold the plate in equilibrium; only a static analysis needs them.
-  subroutine check_supports(settings, plate, problems)
+  !> Edges that hold a plate without rigs in equilibrium; only a static analysis needs them.
+  subroutine check_edges(settings, plate, problems)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> The plate
@@ -88,5 +91,5 @@ contains
       call tell(settings, problems, plate_group, 'edges', 'in a static analysis the plate turns about its one '// &
                 'simply supported edge; clamp it or support another one.')
     end if
-  end subroutine check_supports
+  end subroutine check_edges
 end module plate_deck

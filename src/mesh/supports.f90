@@ -2,7 +2,7 @@
 !> joined, or because the scene never moves them.
 module supports
   use kinds, only: wp
-  use mesh_parameters, only: plate_t, edge_free, edge_clamped, symmetry_quarter
+  use mesh_parameters, only: plate_t, edge_free, edge_clamped
   use layered_meshes, only: layered_mesh_t
   use nine_node_grids, only: last_line
   implicit none
@@ -12,7 +12,7 @@ module supports
 contains
 
   !> Table of the unknowns held at zero by supports and symmetry, and of the whole membrane when it is idle.
-  pure function held_unknowns(mesh, plate, membrane_idle, pin_plane) result(held)
+  pure function held_unknowns(mesh, plate, membrane_idle, adrift) result(held)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Supports and symmetry
@@ -20,7 +20,7 @@ contains
     !> True: nothing ever moves u and v, so they need no equations
     logical, intent(in) :: membrane_idle
     !> True: hold rigid motion in the plane, which no support does
-    logical, intent(in) :: pin_plane
+    logical, intent(in) :: adrift
     !> (5, points): u, v, w, theta_x, theta_y
     logical, allocatable :: held(:, :)
     integer :: point
@@ -28,9 +28,10 @@ contains
     allocate (held(5, mesh%points()), source=.false.)
     do point = 1, mesh%points()
       held(:, point) = held_on_borders(mesh, plate, mesh%lines_of(mesh%point_node(point)))
+      if (mesh%turned_node(mesh%point_node(point)) == mesh%point_node(point)) held([1, 2, 4, 5], point) = .true.
       if (membrane_idle) held(1:2, point) = .true.
     end do
-    if (pin_plane) call pin(mesh, held)
+    if (adrift) call pin(mesh, held)
   end function held_unknowns
 
   !> Unknowns held at a node by the borders it lies on.
@@ -48,9 +49,9 @@ contains
     held = .false.
     do direction = 1, 2
       if (line(direction) == 0) then
-        if (plate%symmetry == symmetry_quarter) then
+        if (mesh%mirrored(direction)) then
           held([direction, 3 + direction]) = .true.
-        else
+        else if (.not. mesh%halved(direction)) then
           held = held .or. held_by_edge(plate%edges(2*direction - 1), direction, plate%in_plane_fixed)
         end if
       else if (line(direction) == last_line(mesh%cells(direction))) then
@@ -78,7 +79,8 @@ contains
     if (in_plane_fixed) held(1:2) = .true.
   end function held_by_edge
 
-  !> Holds the three rigid motions in the plane at the struck node and the node beside it along x.
+  !> Holds what symmetry leaves of the three rigid motions in the plane: at the struck node, and the turn at the node
+  !> beside it along x.
   pure subroutine pin(mesh, held)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
@@ -87,7 +89,8 @@ contains
     integer :: node
 
     node = mesh%struck_node
-    held(1:2, mesh%first_point(node)) = .true.
-    held(2, mesh%first_point(node + 1)) = .true.
+    if (.not. mesh%mirrored(1)) held(1, mesh%first_point(node)) = .true.
+    if (.not. mesh%mirrored(2)) held(2, mesh%first_point(node)) = .true.
+    if (.not. any(mesh%mirrored)) held(2, mesh%first_point(node + 1)) = .true.
   end subroutine pin
 end module supports

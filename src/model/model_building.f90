@@ -7,17 +7,18 @@ module model_building
   use inertia_forces, only: add_lumped_mass
   use load_vectors, only: add_pressure, gauss_coordinates, add_patch_weights
   use stacking, only: section_t, stacked_plies, section_of
-  use mesh_parameters, only: edge_free, symmetry_none
+  use mesh_parameters, only: edge_free, symmetry_quarter
   use cell_grids, only: cell_edges
   use layered_meshes, only: zone_t, layered_mesh_t, create_mesh
   use layer_maps, only: create_layer_map
   use delaminated_regions, only: cells_within
   use face_contact, only: create_contact_law
   use cohesive_laws, only: create_cohesive_law
-  use delamination_parameters, only: law_cohesive, toughnesses
+  use delamination_parameters, only: contact_augmented_lagrangian, law_cohesive, toughnesses
   use distributions, only: distribute
   use neighbourhoods, only: neighbourhood_of
   use supports, only: held_unknowns
+  use rig_models, only: new_rig_model, hold_by_rigs
   use pressure_loads, only: distribution_sine
   use models, only: model_t
   use scenes, only: scene_t
@@ -49,6 +50,7 @@ contains
     self%membrane_idle = scene%kinematics == kinematics_linear .and. size(zones) == 0 .and. &
                          .not. scene%has_ply_damage .and. uncoupled(self%section)
     self%held = held_unknowns(self%mesh, scene%plate, self%membrane_idle, adrift(scene))
+    if (allocated(scene%supports)) call hold_by_rigs(self%mesh, scene%plate, scene%supports, self%held)
     call distribute(self%mesh, communicator, self%distribution, error)
     if (.not. allocated(error)) call build_elements(self, error)
     call communicator%agree(error)
@@ -58,6 +60,8 @@ contains
     if (allocated(error)) return
     call build_loads(self)
     call build_interfaces(self)
+    if (allocated(scene%supports)) call build_rigs(self)
+    self%has_bonds = self%map%layered .or. self%rig%unilateral .or. self%rig%elastic
     call find_struck_point(self)
     if (scene%has_ply_damage .and. scene%ply_damage%average > 0 .and. .not. scene%has_crack_bands()) &
       self%surroundings = neighbourhood_of(self%mesh, self%distribution%elements, scene%ply_damage%average)
@@ -78,9 +82,14 @@ contains
   pure logical function adrift(scene)
     !> The scene
     type(scene_t), intent(in) :: scene
+    integer :: i
 
-    adrift = scene%has_static .and. scene%plate%symmetry == symmetry_none .and. &
+    adrift = scene%has_static .and. scene%plate%symmetry /= symmetry_quarter .and. &
              (.not. scene%plate%in_plane_fixed .or. all(scene%plate%edges == edge_free))
+    if (.not. allocated(scene%supports)) return
+    do i = 1, size(scene%supports)
+      if (allocated(scene%supports(i)%clamps)) adrift = adrift .and. .not. scene%plate%in_plane_fixed
+    end do
   end function adrift
 
   !> Batches of this rank's elements, with their sections.
@@ -199,11 +208,34 @@ contains
     do i = 1, size(zones)
       associate (interface => scene%delaminations(i))
         zones(i)%below_ply = interface%below_ply
-        zones(i)%columns = cells_within(cell_edges(scene%plate, scene%mesh, 1), interface%zone(1))
-        zones(i)%rows = cells_within(cell_edges(scene%plate, scene%mesh, 2), interface%zone(2))
+        zones(i)%columns = cells_within(cell_edges(scene%plate, scene%mesh, 1) - scene%mesh%struck(1), &
+                                        interface%zone(1))
+        zones(i)%rows = cells_within(cell_edges(scene%plate, scene%mesh, 2) - scene%mesh%struck(2), &
+                                        interface%zone(2))
       end associate
     end do
   end function zones_of
+
+  !> How rigs hold this rank's points, and the contact with frames that the plate may lift off: that of the laminate's
+  !> face with a rigid one.
+  subroutine build_rigs(self)
+    !> The model, with its elements and halo
+    type(model_t), intent(inout) :: self
+    real(wp), allocatable :: areas(:, :)
+    integer :: i
+
+    self%rig = new_rig_model(self%mesh, self%scene%plate, self%scene%supports, self%distribution)
+    if (.not. self%rig%unilateral) return
+    associate (share => self%distribution, last => self%plies(size(self%plies)))
+      allocate (areas(1, size(share%points)), source=0.0_wp)
+      call add_patch_weights(self%elements, pack([(i, i=1, self%elements%elements)], &
+                                                 self%mesh%element_plies(1, share%elements) == 1), areas(1, :))
+      call self%halo%accumulate(areas)
+      self%rig_area = areas(1, :)
+      self%rig_law = create_contact_law(contact_augmented_lagrangian, 1.0_wp, last%elasticity%e2/self%thickness, &
+                                        self%thickness, moving=.not. self%scene%has_static)
+    end associate
+  end subroutine build_rigs
 
   !> Heights, areas and contact laws of the interfaces.
   subroutine build_interfaces(self)

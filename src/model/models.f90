@@ -16,6 +16,7 @@ module models
   use cohesive_laws, only: cohesive_law_t
   use distributions, only: distribution_t
   use neighbourhoods, only: neighbourhood_t
+  use rig_models, only: rig_model_t
   use scenes, only: scene_t
   implicit none
   private
@@ -58,6 +59,14 @@ module models
     type(contact_law_t), allocatable :: contact_laws(:)
     !> Cohesive law of each zone; without meaning where fronts release ties
     type(cohesive_law_t), allocatable :: cohesive_laws(:)
+    !> How rigs hold the plate
+    type(rig_model_t) :: rig
+    !> Area that belongs to each node, (local points); allocated only if the plate may lift off a frame
+    real(wp), allocatable :: rig_area(:)
+    !> Contact with that frame
+    type(contact_law_t) :: rig_law
+    !> True if layers, frames or clamps add stiffness to the operator's diagonal
+    logical :: has_bonds = .false.
     !> True for points next to the border of their zone, where growth ends, (local points)
     logical, allocatable :: beside_border(:)
     !> Zone of each of this rank's points; 0: first layer

@@ -2,6 +2,7 @@
 module scenes
   use plate_options, only: kinematics_von_karman
   use mesh_parameters, only: plate_t, mesh_t
+  use support_parameters, only: support_t
   use material_parameters, only: material_t
   use laminate_parameters, only: laminate_t
   use ply_damage_parameters, only: ply_damage_t
@@ -12,7 +13,7 @@ module scenes
   private
   public :: scene_t
 
-  !> One scene.
+  !> One scene, with many components because each group of physics has one.
   type :: scene_t
     !> kinematics_von_karman or kinematics_linear
     integer :: kinematics = kinematics_von_karman
@@ -20,6 +21,8 @@ module scenes
     type(plate_t) :: plate
     !> Mesh and element
     type(mesh_t) :: mesh
+    !> Rigs under the plate; unallocated: none
+    type(support_t), allocatable :: supports(:)
     !> Materials
     type(material_t), allocatable :: materials(:)
     !> Stacking

@@ -6,7 +6,7 @@ module operator_assembly
   use element_batches, only: lanes, first_element
   use element_tangents, only: tangent
   use linear_solvers, only: linear_solver_t
-  use numberings, only: numbering_t
+  use numberings, only: numbering_t, turned
   use models, only: model_t
   implicit none
   private
@@ -96,9 +96,16 @@ contains
     class(linear_solver_t), intent(inout) :: solver
     !> Receives its diagonal
     real(wp), intent(inout) :: diagonal(:, :)
+    real(wp), allocatable :: signs(:)
     integer :: a, component
 
-    call solver%add(reshape(numbering%equation(:, points), [5*size(points)]), matrix)
+    if (any(numbering%leader(points) > 0)) then
+      signs = [(merge(turned, 1.0_wp, numbering%leader(points(a)) > 0), a=1, size(points))]
+      call solver%add(reshape(numbering%equation(:, points), [5*size(points)]), &
+                      matrix*spread(signs, 1, size(signs))*spread(signs, 2, size(signs)))
+    else
+      call solver%add(reshape(numbering%equation(:, points), [5*size(points)]), matrix)
+    end if
     do a = 1, size(points)
       do component = 1, 5
         diagonal(component, points(a)) = diagonal(component, points(a)) &
@@ -107,19 +114,19 @@ contains
     end do
   end subroutine add_to
 
-  !> Adds stiffness to the diagonals of the jumps.
+  !> Adds stiffness to the diagonals of the jumps, and of w and the clamped unknowns on rigs.
   subroutine assemble_diagonal(model, numbering, added, solver)
     type(model_t), intent(in) :: model
     !> Equations
     type(numbering_t), intent(in) :: numbering
-    !> Stiffness added to the three jumps, (3, points)
+    !> Stiffness added to the three jumps, and to u, v and w of first points, (3, points)
     real(wp), intent(in) :: added(:, :)
     !> Receives it
     class(linear_solver_t), intent(inout) :: solver
     integer :: i, component
 
     do i = 1, model%distribution%owned
-      if (model%zone(i) == 0) cycle
+      if (model%zone(i) == 0 .and. .not. any(abs(added(:, i)) > 0)) cycle
       do component = 1, 3
         if (numbering%equation(component, i) >= 0) &
           call solver%add([numbering%equation(component, i)], reshape([added(component, i)], [1, 1]))

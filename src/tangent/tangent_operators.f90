@@ -153,7 +153,7 @@ contains
     !> Set if the operator is singular
     type(error_t), allocatable, intent(inout) :: error
 
-    if (model%map%layered) call assemble_diagonal(model, self%numbering, self%added, self%solver)
+    if (model%has_bonds) call assemble_diagonal(model, self%numbering, self%added, self%solver)
     call self%solver%finish_assembly(error)
     call self%timers%start('factorization')
     if (.not. allocated(error)) call self%solver%factorize(error)
@@ -202,7 +202,7 @@ contains
     integer :: k
 
     possible = .true.
-    if (.not. model%map%layered) return
+    if (.not. model%has_bonds) return
     allocate (wanted, mold=self%added)
     call interfaces%added_stiffness(model, self%diagonal, self%stiffness_factor, wanted)
     if (self%condenses) where (spread(interfaces%cohesive%cohesive, 1, 3)) wanted = self%present
@@ -348,7 +348,7 @@ contains
     call self%changes%spread_out(self%numbering, changed)
     associate (share => model%distribution)
       call archive%field('operator/displacement', share%points(:share%owned), model%mesh%points(), self%displacement)
-      if (model%map%layered) then
+      if (model%has_bonds) then
         call archive%field('operator/added', share%points(:share%owned), model%mesh%points(), self%added)
         call archive%field('operator/changed', share%points(:share%owned), model%mesh%points(), changed)
       end if
@@ -392,7 +392,7 @@ contains
       call find_columns(self, model, columns(k:k + 2*columns(k + 1) - 2:2), error)
       k = k + 2*columns(k + 1)
     end do
-    if (.not. allocated(error) .and. model%map%layered) then
+    if (.not. allocated(error) .and. model%has_bonds) then
       call gather_changes(model%communicator, self%numbering, changed(:, :self%numbering%owned), equations, stiffness)
       if (size(equations) > 0) call put_in_force(self, model, equations, stiffness, error)
     end if

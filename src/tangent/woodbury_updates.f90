@@ -123,7 +123,8 @@ contains
     end associate
   end subroutine list_changes
 
-  !> Lists changes of the jumps' stiffness, those that are not zero, on every rank.
+  !> Lists changes of the jumps' stiffness, those that are not zero, on every rank. Points that follow add theirs to
+  !> those of their leaders.
   subroutine gather_changes(communicator, numbering, change, equations, stiffness)
     !> The ranks
     type(communicator_t), intent(in) :: communicator
@@ -135,11 +136,19 @@ contains
     integer, allocatable, intent(out) :: equations(:)
     !> Change of stiffness of each
     real(wp), allocatable, intent(out) :: stiffness(:)
+    real(wp) :: total(3, size(change, 2))
     logical, allocatable :: changed(:, :)
+    integer :: point
 
-    changed = .not. abs(change) <= 0
+    total = change
+    do point = 1, size(total, 2)
+      if (numbering%leader(point) == 0) cycle
+      total(:, numbering%leader(point)) = total(:, numbering%leader(point)) + total(:, point)
+      total(:, point) = 0
+    end do
+    changed = .not. abs(total) <= 0
     call communicator%allgather(pack(numbering%equation(1:3, :numbering%owned), changed), equations)
-    call communicator%allgather(pack(change, changed), stiffness)
+    call communicator%allgather(pack(total, changed), stiffness)
   end subroutine gather_changes
 
   !> Position of the column of an equation; 0: not found yet.
@@ -221,6 +230,12 @@ contains
       call numbering%place_of(self%equations(k), point, component)
       field(component, point) = self%stiffness(k)
     end do
+    ! A point that follows has the same as its leader.
+    do point = 1, numbering%owned
+      if (numbering%leader(point) == 0) cycle
+      field(:, numbering%leader(point)) = field(:, numbering%leader(point))/2
+      field(:, point) = field(:, numbering%leader(point))
+    end do
   end subroutine spread_out
 
   !> Puts changes in force whose columns are all kept.
@@ -268,6 +283,7 @@ contains
       call numbering%place_of(self%equations(k), point, component)
       solution(component, point) = forces(k)/self%stiffness(k)
     end do
+    call numbering%spread(solution)
   end subroutine correct
 
   !> Takes a combination of columns out of a solution.

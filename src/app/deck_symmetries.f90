@@ -1,0 +1,208 @@
+!> Which part of the plate can stand for the whole: what laminate, edges, rigs, struck point and interfaces leave
+!> possible.
+module deck_symmetries
+  use deck_contents, only: deck_t
+  use deck_problems, only: problems_t
+  use deck_remarks, only: tell, are_clear
+  use delamination_parameters, only: law_front
+  use impactor_deck, only: impactor_group, key_at
+  use kinds, only: wp
+  use laminate_parameters, only: shear_five_sixths
+  use mesh_parameters, only: is_halved, is_mirrored, symmetry_half_x, symmetry_half_y, symmetry_none, symmetry_point, &
+                             symmetry_quarter
+  use plate_deck, only: plate_group, key_symmetry
+  use plies, only: ply_t, material_objection
+  use stacking, only: stacked_plies, section_stiffness
+  use support_deck, only: support_group, key_clamps
+  use text, only: lower_case
+  implicit none
+  private
+  public :: check_symmetry, symmetry_sentence
+
+  !> Coupling stiffness that counts as none, relative to the stiffness it couples.
+  real(wp), parameter :: no_coupling = 1.0e-9_wp
+  !> Distance of a clamp from the image of another one that counts as none, relative to the plate.
+  real(wp), parameter :: same_place = 1.0e-6_wp
+
+contains
+
+  !> Refuses a symmetry that the deck does not have.
+  subroutine check_symmetry(deck, problems)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    character(len=:), allocatable :: name, part
+
+    if (deck%plate%symmetry == symmetry_none) return
+    name = ''''//lower_case(deck%settings%text_of(plate_group, key_symmetry))//''''
+    part = trim(merge('quarter', 'half   ', deck%plate%symmetry == symmetry_quarter))
+    associate (s => deck%settings, symmetry => deck%plate%symmetry)
+      if (any(is_mirrored(symmetry)) .and. is_coupled(deck)) call tell(s, problems, plate_group, key_symmetry, &
+        culprit(deck)//' couples bending or extension with shear or twist (A16, A26, B16, B26, D16, D26 or A45 '// &
+        'isn''t 0), so a '//part//' can''t stand for the plate; use ''none'' or ''point''.')
+      if (struck_aside(deck, symmetry) .and. are_clear(s, problems, impactor_group, key_at)) &
+        call tell(s, problems, impactor_group, key_at, 'the impactor strikes beside the lines of symmetry = '//name// &
+                  '; use ''none''.')
+      if (.not. rigs_alike(deck, symmetry) .and. .not. problems%concern(support_group)) &
+        call tell(s, problems, support_group, key_clamps, 'clamps have no image under symmetry = '//name// &
+                  '; list all of the whole plate, or use ''none''.')
+      if (symmetry == symmetry_point .and. any_front(deck)) call tell(s, problems, plate_group, key_symmetry, &
+        'fronts are not followed across the line that a turned plate is cut at; use ''none'', or law = ''cohesive''.')
+    end associate
+  end subroutine check_symmetry
+
+  !> Sentence on the smallest part of the plate that could stand for the whole; empty if the deck has it already.
+  function symmetry_sentence(deck) result(sentence)
+    !> The deck, checked
+    type(deck_t), intent(in) :: deck
+    !> The sentence
+    character(len=:), allocatable :: sentence
+
+    sentence = ''
+    if (deck%plate%symmetry == symmetry_quarter) return
+    if (suits(deck, symmetry_quarter)) then
+      sentence = 'quarter'
+    else if (deck%plate%symmetry /= symmetry_none) then
+      return
+    else if (suits(deck, symmetry_half_x)) then
+      sentence = 'half_x'
+    else if (suits(deck, symmetry_half_y)) then
+      sentence = 'half_y'
+    else if (suits(deck, symmetry_point)) then
+      sentence = 'point'
+    end if
+    if (sentence /= '') sentence = 'Laminate, supports and struck point allow symmetry = '''//sentence// &
+                                   ''', which computes less of the plate.'
+  end function symmetry_sentence
+
+  !> True if a part of the plate can stand for the whole.
+  logical function suits(deck, symmetry)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> The part
+    integer, intent(in) :: symmetry
+    logical :: alike(2)
+
+    alike = deck%plate%edges([1, 3]) == deck%plate%edges([2, 4])
+    suits = all(alike .or. .not. is_halved(symmetry)) .and. (symmetry /= symmetry_point .or. all(alike)) .and. &
+            .not. struck_aside(deck, symmetry) .and. rigs_alike(deck, symmetry)
+    if (.not. suits) return
+    if (symmetry == symmetry_point) then
+      suits = .not. any_front(deck)
+    else
+      suits = .not. is_coupled(deck)
+    end if
+  end function suits
+
+  !> True if a front releases ties of some interface.
+  pure logical function any_front(deck)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+
+    any_front = any(deck%delaminations%law == law_front)
+  end function any_front
+
+  !> True if the impactor strikes off the centre in a direction that matters.
+  pure logical function struck_aside(deck, symmetry)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> The part
+    integer, intent(in) :: symmetry
+
+    struck_aside = any(abs(deck%mesh%struck) > 0 .and. (is_halved(symmetry) .or. symmetry == symmetry_point))
+  end function struck_aside
+
+  !> True if each clamp has its images in the rig; windows lie at the centre.
+  pure logical function rigs_alike(deck, symmetry) result(alike)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> The part
+    integer, intent(in) :: symmetry
+    logical :: mirrored(2)
+    integer :: i
+
+    mirrored = is_mirrored(symmetry)
+    alike = .true.
+    do i = 1, size(deck%supports)
+      if (.not. allocated(deck%supports(i)%clamps)) cycle
+      associate (clamps => deck%supports(i)%clamps)
+        if (mirrored(1)) alike = alike .and. have_images([-1, 1])
+        if (mirrored(2)) alike = alike .and. have_images([1, -1])
+        if (symmetry == symmetry_point) alike = alike .and. have_images([-1, -1])
+      end associate
+    end do
+
+  contains
+
+    !> True if the image of each clamp is one too.
+    pure logical function have_images(signs)
+      !> Factors of x and y that make the image
+      integer, intent(in) :: signs(2)
+      integer :: j, k
+
+      associate (clamps => deck%supports(i)%clamps)
+        have_images = all([(any([(maxval(abs(signs*clamps(:, j) - clamps(:, k))) <= &
+                                  same_place*maxval(deck%plate%length), k=1, size(clamps, 2))]), &
+                            j=1, size(clamps, 2))])
+      end associate
+    end function have_images
+  end function rigs_alike
+
+  !> What of a laminate that is coupled couples: all of it, or only parts.
+  pure function culprit(deck) result(words)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Such as `the laminate`
+    character(len=:), allocatable :: words
+
+    words = 'the laminate'
+    if (couples(stacked_plies(deck%laminate, deck%materials))) return
+    words = 'a layer between interfaces'
+    if (deck%has_ply_damage) words = 'a ply that may fail'
+  end function culprit
+
+  !> True: the laminate is clear and is not symmetric about the axes of the plate, or a part of it is not that may act
+  !> by itself: a layer between interfaces, or with damage each ply.
+  pure logical function is_coupled(deck)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    type(ply_t), allocatable :: plies(:)
+    integer, allocatable :: last(:)
+    integer :: i
+
+    is_coupled = .false.
+    associate (laminate => deck%laminate)
+      if (.not. (allocated(laminate%angle) .and. allocated(laminate%thickness))) return
+      if (.not. allocated(laminate%material)) return
+      if (any([(material_objection(deck%materials(laminate%material(i))) /= '', i=1, size(laminate%material))])) return
+      plies = stacked_plies(laminate, deck%materials)
+    end associate
+    is_coupled = couples(plies)
+    last = [pack(deck%delaminations%below_ply, deck%delaminations%below_ply > 0 .and. &
+                 deck%delaminations%below_ply < size(plies)), size(plies)]
+    if (deck%has_ply_damage) last = [(i, i=1, size(plies))]
+    do i = 1, size(last)
+      if (i == 1) then
+        is_coupled = is_coupled .or. couples(plies(:last(1)))
+      else if (last(i) > last(i - 1)) then
+        is_coupled = is_coupled .or. couples(plies(last(i - 1) + 1:last(i)))
+      end if
+    end do
+  end function is_coupled
+
+  !> True if some plies couple bending or extension with shear or twist.
+  pure logical function couples(plies)
+    !> Neighbouring plies
+    type(ply_t), intent(in) :: plies(:)
+    real(wp) :: stiffness(21), thickness, scales(7)
+
+    stiffness = section_stiffness(plies, plies%elasticity, shear_five_sixths)
+    thickness = 2*max(abs(plies(1)%z_top), abs(plies(size(plies))%z_bottom))
+    scales(1:2) = maxval(stiffness(1:6))
+    scales(3:4) = scales(1)*thickness
+    scales(5:6) = scales(1)*thickness**2
+    scales(7) = maxval(stiffness(19:21))
+    couples = any(abs(stiffness([3, 5, 9, 11, 15, 17, 20])) > no_coupling*scales)
+  end function couples
+end module deck_symmetries

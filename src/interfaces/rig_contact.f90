@@ -1,0 +1,240 @@
+!> The plate on its rigs: pressure where it rests on a frame that it may lift off, springs of clamps, and reactions.
+!>
+!> The frame is rigid and bears the plate by a bound on w at its nodes. The law is that of faces that touch
+!> (`face_contact`), with -w as the gap: one multiplier a node, which settles when the equations of motion are solved.
+module rig_contact
+  use kinds, only: wp
+  use archives, only: archive_t
+  use face_contact, only: contact_pressure, unmet_contact, updated_multiplier
+  use models, only: model_t
+  use support_parameters, only: most_supports
+  implicit none
+  private
+  public :: rig_contact_t, new_rig_contact
+
+  !> State of the contact with frames; unallocated lists: none may lift off.
+  type :: rig_contact_t
+    !> Estimate of the pressure and the pressure found, (local points)
+    real(wp), allocatable :: multiplier(:), pressure(:)
+    !> Slope of the pressure by the gap, not positive, (local points)
+    real(wp), allocatable :: slope(:)
+    !> Largest pressure so far
+    real(wp) :: peak = 0
+  contains
+    !> Adds the pressure's forces to a residual.
+    procedure :: act
+    !> Adds the forces of springs to internal forces.
+    procedure :: add_springs
+    !> Takes the pressures found as the next estimates.
+    procedure :: settle
+    !> Work of the pressure in a step.
+    procedure :: work
+    !> Keeps what rests on a frame there in a first guess.
+    procedure :: keep_touching
+    !> Stiffness that frames and clamps add to the diagonal.
+    procedure :: add_stiffness
+    !> Forces of each rig on the plate.
+    procedure :: reactions
+    !> Saves or loads.
+    procedure :: visit
+  end type rig_contact_t
+
+contains
+
+  !> The plate resting on its frames without weight. Slopes are those of contact, so that frames hold it from the start.
+  pure function new_rig_contact(model) result(self)
+    type(model_t), intent(in) :: model
+    !> The state
+    type(rig_contact_t) :: self
+
+    if (.not. model%rig%unilateral) return
+    allocate (self%multiplier(size(model%rig%bears)), self%pressure(size(model%rig%bears)), &
+              self%slope(size(model%rig%bears)), source=0.0_wp)
+    where (model%rig%bears > 0) self%slope = -model%rig_law%stiffness
+  end function new_rig_contact
+
+  !> Owned points that a frame bears by pressure.
+  pure function borne(model) result(points)
+    type(model_t), intent(in) :: model
+    !> Points of this rank, ascending
+    integer, allocatable :: points(:)
+    integer :: i
+
+    points = pack([(i, i=1, model%distribution%owned)], model%rig%bears(:model%distribution%owned) > 0)
+  end function borne
+
+  !> Adds the pressure's forces to a residual.
+  pure subroutine act(self, model, displacement, residual)
+    !> The state; receives pressures and slopes
+    class(rig_contact_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> Unknowns, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> Residual at the owned points, (5, points)
+    real(wp), intent(inout) :: residual(:, :)
+    integer :: i
+
+    if (.not. model%rig%unilateral) return
+    do i = 1, model%distribution%owned
+      if (model%rig%bears(i) == 0) cycle
+      call contact_pressure(model%rig_law, 0.0_wp, -displacement(3, i), self%multiplier(i), self%pressure(i), &
+                            self%slope(i))
+      ! A plate that just touches is held too: without weight, nothing else would hold it on the first step.
+      if (self%multiplier(i) + model%rig_law%stiffness*displacement(3, i) >= 0) &
+        self%slope(i) = -model%rig_law%stiffness
+      residual(3, i) = residual(3, i) - model%rig_area(i)*self%pressure(i)
+    end do
+  end subroutine act
+
+  !> Adds the forces of springs to internal forces, and what they store to an energy.
+  pure subroutine add_springs(self, model, displacement, force, energy)
+    !> The state
+    class(rig_contact_t), intent(in) :: self
+    type(model_t), intent(in) :: model
+    !> Unknowns, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> Internal forces at the owned points, (5, points)
+    real(wp), intent(inout) :: force(:, :)
+    !> Energy of this rank
+    real(wp), intent(inout) :: energy
+    integer :: i
+
+    if (.not. model%rig%elastic) return
+    do i = 1, model%distribution%owned
+      force(1:3, i) = force(1:3, i) + model%rig%springs(:, i)*displacement(1:3, i)
+      energy = energy + dot_product(model%rig%springs(:, i), displacement(1:3, i)**2)/2
+    end do
+  end subroutine add_springs
+
+  !> Takes the pressures found as the next estimates; they have settled once they go with the gaps.
+  subroutine settle(self, model, displacement, tolerance, rounds, settled)
+    !> The state
+    class(rig_contact_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> Unknowns, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> Complementarity at which they have settled
+    real(wp), intent(in) :: tolerance
+    !> Counts the times that there was something to settle
+    integer, intent(inout) :: rounds
+    !> True if they have
+    logical, intent(out) :: settled
+    integer, allocatable :: points(:)
+    real(wp) :: unmet, largest
+
+    settled = .true.
+    if (.not. model%rig%unilateral) return
+    points = borne(model)
+    largest = maxval([0.0_wp, self%pressure(points)])
+    unmet = maxval([0.0_wp, unmet_contact(model%rig_law, -displacement(3, points), self%pressure(points))])
+    call model%communicator%maximum(largest)
+    call model%communicator%maximum(unmet)
+    self%peak = max(self%peak, largest)
+    if (self%peak > 0) settled = unmet <= tolerance*self%peak
+    self%multiplier(points) = updated_multiplier(model%rig_law, -displacement(3, points), self%pressure(points))
+    rounds = rounds + merge(1, 0, unmet > 0)
+  end subroutine settle
+
+  !> Work of the pressure in a step, of this rank's points.
+  pure real(wp) function work(self, model, change)
+    !> The state
+    class(rig_contact_t), intent(in) :: self
+    type(model_t), intent(in) :: model
+    !> Change of the unknowns, (5, points)
+    real(wp), intent(in) :: change(:, :)
+
+    work = 0
+    if (.not. model%rig%unilateral) return
+    associate (points => borne(model))
+      work = -sum(model%rig_area(points)*self%pressure(points)*change(3, points))
+    end associate
+  end function work
+
+  !> Keeps what rests on a frame there in a first guess, and keeps the rest from passing into it.
+  subroutine keep_touching(self, model, guess)
+    !> The state
+    class(rig_contact_t), intent(in) :: self
+    type(model_t), intent(in) :: model
+    !> Guess of the unknowns at its end, (5, points)
+    real(wp), intent(inout) :: guess(:, :)
+    integer, allocatable :: points(:)
+
+    if (.not. model%rig%unilateral) return
+    points = borne(model)
+    guess(3, points) = merge(0.0_wp, min(0.0_wp, guess(3, points)), self%multiplier(points) > 0)
+    call model%halo%update(guess)
+  end subroutine keep_touching
+
+  !> Adds the stiffness of frames and clamps to that of the diagonal.
+  pure subroutine add_stiffness(self, model, stiffness_factor, added)
+    !> The state
+    class(rig_contact_t), intent(in) :: self
+    type(model_t), intent(in) :: model
+    !> Factor of internal forces in the operator
+    real(wp), intent(in) :: stiffness_factor
+    !> Stiffness added to u, v and w, (3, points); ghosts zero
+    real(wp), intent(inout) :: added(:, :)
+    integer :: i
+
+    if (.not. (model%rig%unilateral .or. model%rig%elastic)) return
+    do i = 1, model%distribution%owned
+      added(:, i) = added(:, i) + stiffness_factor*model%rig%springs(:, i)
+      if (model%rig%bears(i) > 0) added(3, i) = added(3, i) - model%rig_area(i)*self%slope(i)
+    end do
+  end subroutine add_stiffness
+
+  !> Forces of each rig on the whole plate, positive against the impact: what the equations of motion leave at the
+  !> w that it holds, the pressure on its frame, and the springs of its clamps. The same on every rank.
+  function reactions(self, model, displacement, internal, inertia, load)
+    !> The state
+    class(rig_contact_t), intent(in) :: self
+    type(model_t), intent(in) :: model
+    !> Unknowns, internal forces and forces of inertia at the owned points, (5, points)
+    real(wp), intent(in) :: displacement(:, :), internal(:, :), inertia(:, :)
+    !> Part of the deck's pressure that acts
+    real(wp), intent(in) :: load
+    !> A force a rig, 0 for those that the deck does not have
+    real(wp) :: reactions(most_supports)
+    integer :: i
+
+    reactions = 0
+    if (.not. allocated(model%rig%holds)) return
+    do i = 1, model%distribution%owned
+      associate (holds => model%rig%holds(i), bears => model%rig%bears(i), clamps => model%rig%clamps(i))
+        if (holds > 0) then
+          reactions(holds) = reactions(holds) - internal(3, i) - inertia(3, i)
+          if (allocated(model%pressure)) reactions(holds) = reactions(holds) + load*model%pressure(3, i)
+        else
+          if (bears > 0) reactions(bears) = reactions(bears) + model%rig_area(i)*self%pressure(i)
+          if (clamps > 0) reactions(clamps) = reactions(clamps) + model%rig%springs(3, i)*displacement(3, i)
+        end if
+      end associate
+    end do
+    call model%communicator%sum(reactions)
+    reactions = reactions*model%mesh%multiplicity
+  end function reactions
+
+  !> Saves or loads.
+  subroutine visit(self, archive, model)
+    !> The state
+    class(rig_contact_t), intent(inout) :: self
+    !> Where to or where from
+    class(archive_t), intent(inout) :: archive
+    type(model_t), intent(in) :: model
+    real(wp), allocatable :: fields(:, :)
+
+    if (.not. model%rig%unilateral) return
+    call archive%item('rig/peak', self%peak)
+    allocate (fields(3, size(self%pressure)))
+    fields(1, :) = self%multiplier
+    fields(2, :) = self%pressure
+    fields(3, :) = self%slope
+    associate (share => model%distribution)
+      call archive%field('rig/pressures', share%points(:share%owned), model%mesh%points(), fields)
+    end associate
+    if (.not. archive%loading) return
+    self%multiplier = fields(1, :)
+    self%pressure = fields(2, :)
+    self%slope = fields(3, :)
+  end subroutine visit
+end module rig_contact

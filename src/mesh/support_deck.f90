@@ -1,0 +1,200 @@
+!> Rigs of the deck: rows of its table, filling and checks.
+module support_deck
+  use deck_choices, only: code_of
+  use deck_problems, only: problems_t
+  use deck_remarks, only: tell, remark_idle, are_clear
+  use deck_settings, only: settings_t
+  use deck_vocabulary, only: group_row_length, key_row_length
+  use kinds, only: wp
+  use mesh_parameters, only: plate_t, edge_free
+  use plate_deck, only: plate_group, key_length
+  use support_parameters, only: support_t, most_supports, window_none, window_rectangle, window_circle, bearing_edge, &
+                                bearing_face
+  use text, only: to_text
+  implicit none
+  private
+  public :: fill_supports, check_rigs, check_static_rigs
+
+  !> Names that checks across groups use.
+  character(len=*), parameter, public :: support_group = 'support', key_clamps = 'clamps', key_window = 'window', &
+                                         key_window_radius = 'radius'
+  character(len=*), parameter :: group = support_group
+  !> Row of the group.
+  character(len=group_row_length), parameter, public :: support_group_row = &
+    'support | several | A rig under a plate with free edges: a frame with a window, clamps at points, or both.'
+  !> Rows of the keys.
+  character(len=key_row_length), parameter, public :: support_rows(*) = [character(len=key_row_length) :: &
+    'support | shape | choice | 1 | - | ''rectangle'' | rectangle circle | &
+      &Shape of the frame''s window, which is centred on the plate.', &
+    'support | window | real | 2 | length | none | > 0 | &
+      &Lengths along x and y of a rectangular window; its edges become lines of the mesh.', &
+    'support | radius | real | 1 | length | none | > 0 | &
+      &Radius of a circular window.', &
+    'support | unilateral | logical | 1 | - | .false. | - | &
+      &Whether the plate may lift off the frame, which then bears it by pressure only.', &
+    'support | bearing | choice | 1 | - | = face if unilateral, else edge | edge face | &
+      &What bears the plate: the edge of the window, a simple support, or all of the frame''s face.', &
+    'support | clamps | real | 1 or more | length | none | any | &
+      &Points from the plate''s centre, x and y in turn, at which clamps hold u, v and w, or with in_plane = free w.', &
+    'support | clamp_stiffness | real | 1 | force/length | none | > 0 | &
+      &Stiffness of each clamp along u, v and w; left out: clamps are rigid.']
+
+contains
+
+  !> All rigs, in the order of the deck.
+  subroutine fill_supports(settings, supports)
+    !> Keys in effect; gets what the deck doesn't give
+    type(settings_t), intent(inout) :: settings
+    !> Receives them
+    type(support_t), allocatable, intent(out) :: supports(:)
+    real(wp), allocatable :: clamps(:)
+    integer :: place
+
+    allocate (supports(settings%groups_named(group)))
+    do place = 1, size(supports)
+      associate (s => supports(place))
+        if (settings%is_known(group, key_window, place)) s%window = settings%reals_of(group, key_window, place)
+        s%radius = settings%real_of(group, key_window_radius, place)
+        s%shape = code_of(settings%text_of(group, 'shape', place), 'rectangle circle', &
+                          [window_rectangle, window_circle])
+        if (.not. settings%is_given(group, trim(merge(key_window, key_window_radius, s%shape == window_rectangle)), &
+                                    place)) s%shape = window_none
+        s%unilateral = settings%logical_of(group, 'unilateral', place)
+        if (.not. settings%is_given(group, 'bearing', place)) &
+          call settings%derive(group, 'bearing', trim(merge('face', 'edge', s%unilateral)), .true., place)
+        s%bearing = code_of(settings%text_of(group, 'bearing', place), 'edge face', [bearing_edge, bearing_face])
+        s%clamp_stiffness = settings%real_of(group, 'clamp_stiffness', place)
+        clamps = settings%reals_of(group, key_clamps, place)
+        if (size(clamps) > 1) s%clamps = reshape(clamps, [2, size(clamps)/2])
+      end associate
+    end do
+  end subroutine fill_supports
+
+  !> Each rig by itself and against the plate.
+  subroutine check_rigs(settings, plate, supports, problems)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+    !> The plate
+    type(plate_t), intent(in) :: plate
+    !> The rigs
+    type(support_t), intent(in) :: supports(:)
+    !> Faults and remarks are added
+    type(problems_t), intent(inout) :: problems
+    integer :: place
+
+    if (size(supports) > most_supports) call tell(settings, problems, group, '', 'is one too many; allowed: up to '// &
+                                                  to_text(most_supports)//'.', most_supports + 1)
+    if (size(supports) > 0 .and. any(plate%edges /= edge_free) .and. &
+        are_clear(settings, problems, plate_group, 'edges')) &
+      call tell(settings, problems, plate_group, 'edges', 'a plate on a rig has free edges; allowed with &support: '// &
+                '''free''.')
+    do place = 1, size(supports)
+      call check_parts(settings, supports(place), place, problems)
+      if (.not. are_clear(settings, problems, plate_group, key_length)) cycle
+      call check_window(settings, plate, supports(place), place, problems)
+      call check_clamps(settings, plate, supports(place), place, problems)
+    end do
+  end subroutine check_rigs
+
+  !> A rig that has something to hold the plate by, and no key that its shape has no use for.
+  subroutine check_parts(settings, support, place, problems)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+    !> The rig
+    type(support_t), intent(in) :: support
+    !> Which of the groups
+    integer, intent(in) :: place
+    !> Faults and remarks are added
+    type(problems_t), intent(inout) :: problems
+    logical :: circle
+
+    circle = settings%text_of(group, 'shape', place) == 'circle'
+    if (support%shape == window_none .and. settings%is_given(group, 'shape', place) .and. &
+        are_clear(settings, problems, group, key_window//' '//key_window_radius//' shape', place)) then
+      call tell(settings, problems, group, trim(merge(key_window_radius, key_window, circle)), &
+                'is missing; give it with this shape.', place)
+    else if (support%shape == window_none .and. .not. allocated(support%clamps) .and. &
+             are_clear(settings, problems, group, key_window//' '//key_window_radius//' clamps', place)) then
+      call tell(settings, problems, group, '', 'holds nothing; give a window, a radius with shape = ''circle'', or '// &
+                'clamps.', place)
+    end if
+    if (circle) call remark_idle(settings, problems, group, key_window, 'has no effect on a circle.', place)
+    if (.not. circle) call remark_idle(settings, problems, group, key_window_radius, 'has no effect on a rectangle.', &
+                                       place)
+    if (support%shape == window_none) &
+      call remark_idle(settings, problems, group, 'unilateral bearing', 'has no effect without a window.', place)
+    if (.not. allocated(support%clamps)) &
+      call remark_idle(settings, problems, group, 'clamp_stiffness', 'has no effect without clamps.', place)
+  end subroutine check_parts
+
+  !> A window that the plate covers.
+  subroutine check_window(settings, plate, support, place, problems)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+    !> The plate
+    type(plate_t), intent(in) :: plate
+    !> The rig
+    type(support_t), intent(in) :: support
+    !> Which of the groups
+    integer, intent(in) :: place
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+
+    if (support%shape == window_rectangle .and. any(support%window > plate%length)) then
+      call tell(settings, problems, group, key_window, 'is larger than the plate, which would fall through; '// &
+                'allowed: up to '//to_text(plate%length(1))//', '//to_text(plate%length(2))//'.', place)
+    else if (support%shape == window_circle .and. 2*support%radius > minval(plate%length)) then
+      call tell(settings, problems, group, key_window_radius, 'is larger than half the plate''s width; allowed: '// &
+                'up to '//to_text(minval(plate%length)/2)//'.', place)
+    end if
+  end subroutine check_window
+
+  !> Clamps given in pairs of coordinates, on the plate.
+  subroutine check_clamps(settings, plate, support, place, problems)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+    !> The plate
+    type(plate_t), intent(in) :: plate
+    !> The rig
+    type(support_t), intent(in) :: support
+    !> Which of the groups
+    integer, intent(in) :: place
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    integer :: i
+
+    if (.not. are_clear(settings, problems, group, key_clamps, place)) return
+    if (modulo(size(settings%reals_of(group, key_clamps, place)), 2) == 1) then
+      call tell(settings, problems, group, key_clamps, 'a coordinate is missing; allowed: x and y of each clamp in '// &
+                'turn.', place)
+    else if (allocated(support%clamps)) then
+      if (any([(any(abs(support%clamps(:, i)) > plate%length/2), i=1, size(support%clamps, 2))])) &
+        call tell(settings, problems, group, key_clamps, 'a clamp lies off the plate; allowed: up to '// &
+                  to_text(plate%length(1)/2)//', '//to_text(plate%length(2)/2)//' either way from its centre.', place)
+    end if
+  end subroutine check_clamps
+
+  !> Rigs that hold the plate in equilibrium without inertia.
+  subroutine check_static_rigs(settings, supports, problems)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+    !> The rigs
+    type(support_t), intent(in) :: supports(:)
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    integer :: place, clamps
+
+    if (problems%concern(group)) return
+    clamps = 0
+    do place = 1, size(supports)
+      if (allocated(supports(place)%clamps)) clamps = clamps + size(supports(place)%clamps, 2)
+    end do
+    if (clamps == 1) then
+      call tell(settings, problems, group, key_clamps, 'one clamp lets the plate turn in a static analysis; '// &
+                'allowed: none, or two and more.')
+    else if (clamps < 3 .and. all(supports%shape == window_none)) then
+      call tell(settings, problems, group, '', 'nothing holds the plate in a static analysis; give a window, or '// &
+                'three clamps.')
+    end if
+  end subroutine check_static_rigs
+end module support_deck

@@ -1,0 +1,51 @@
+!> Rigs under the plate, as the deck gives them: frames with a window, and clamps at points.
+module support_parameters
+  use kinds, only: wp
+  implicit none
+  private
+  public :: support_t, most_supports
+
+  !> Shapes of a window.
+  integer, parameter, public :: window_none = 0, window_rectangle = 1, window_circle = 2
+  !> What of a frame bears the plate: the edge of its window, or all of its face.
+  integer, parameter, public :: bearing_edge = 1, bearing_face = 2
+  !> Most supports of a plate: each has a column of its own in the history.
+  integer, parameter :: most_supports = 3
+
+  !> One rig. The plate lies on the frame with the face opposite to the struck one.
+  type :: support_t
+    !> Shape of the window; window_none: there are clamps only
+    integer :: shape = window_none
+    !> Lengths of a rectangular window along x and y, centred on the plate
+    real(wp) :: window(2) = 0
+    !> Radius of a circular window, centred on the plate
+    real(wp) :: radius = 0
+    !> bearing_edge or bearing_face
+    integer :: bearing = bearing_edge
+    !> True: the plate may lift off the frame
+    logical :: unilateral = .false.
+    !> Points from the plate's centre at which it is clamped, (2, clamps)
+    real(wp), allocatable :: clamps(:, :)
+    !> Force per displacement of a clamp along u, v and w; 0: rigid
+    real(wp) :: clamp_stiffness = 0
+  contains
+    !> Distance of a point from the window's edge.
+    procedure :: beyond
+  end type support_t
+
+contains
+
+  !> How far a point lies beyond the window's edge, where the frame is; negative within the window.
+  pure real(wp) function beyond(self, point) result(distance)
+    !> The rig, which has a frame
+    class(support_t), intent(in) :: self
+    !> Coordinates from the plate's centre
+    real(wp), intent(in) :: point(2)
+
+    if (self%shape == window_circle) then
+      distance = norm2(point) - self%radius
+    else
+      distance = maxval(abs(point) - self%window/2)
+    end if
+  end function beyond
+end module support_parameters
