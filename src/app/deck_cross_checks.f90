@@ -9,7 +9,7 @@ module deck_cross_checks
   use delamination_deck, only: delamination_group, key_below_ply
   use delamination_parameters, only: growth_one_per_step, interface_objection
   use hou_criteria, only: missing_strengths
-  use impactor_deck, only: impactor_group, key_velocity, key_radius, key_gravity
+  use impactor_deck, only: impactor_group, key_velocity, key_radius, key_gravity, keys_of_motion
   use indentation_deck, only: indentation_group, key_k
   use kinds, only: wp
   use laminate_parameters, only: shear_five_sixths
@@ -166,7 +166,7 @@ contains
                   'is missing; give it, or the contact stiffness &indentation k.')
       if (deck%impactor%velocity <= 0 .and. deck%impactor%gravity <= 0 .and. .not. deck%has_pressure .and. &
           .not. problems%concern(pressure_group) .and. &
-          are_clear(s, problems, impactor_group, key_velocity//' '//key_gravity)) &
+          are_clear(s, problems, impactor_group, keys_of_motion(s)//' '//key_gravity)) &
         call tell(s, problems, impactor_group, key_velocity, &
                   'nothing moves the impactor towards the plate; give a velocity or gravity > 0.')
     end associate
