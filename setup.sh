@@ -13,8 +13,13 @@ fi
 packages=(gfortran cmake ninja-build pkg-config git openmpi-bin libopenmpi-dev libpetsc-real-dev libmumps-dev
   libmetis-dev libhdf5-openmpi-dev libopenblas0-pthread hdf5-tools python3-venv)
 
+# What happens now, since each stage may take a minute.
+stage() {
+  echo "== $1"
+}
+
 install_packages() {
-  local missing=() package
+  local missing=() package log
   if ! command -v apt-get >/dev/null; then
     echo "No apt here: assuming that a Fortran compiler, CMake, Ninja, MPI, PETSc, METIS and parallel HDF5 are installed."
     return
@@ -27,9 +32,16 @@ install_packages() {
     echo "Packages are missing; as root run: apt-get install --no-install-recommends ${missing[*]}" >&2
     exit 1
   fi
+  stage "Installing ${#missing[@]} packages: ${missing[*]}"
   export DEBIAN_FRONTEND=noninteractive
-  apt-get -o DPkg::Lock::Timeout=300 -qq update
-  apt-get -o DPkg::Lock::Timeout=300 -qq install --no-install-recommends "${missing[@]}"
+  log=$(mktemp)
+  # apt and dpkg tell every package three times; what they say is shown if they fail.
+  if ! { apt-get -o DPkg::Lock::Timeout=300 -qq update &&
+    apt-get -o DPkg::Lock::Timeout=300 -qq install --no-install-recommends "${missing[@]}"; } >"$log" 2>&1; then
+    cat "$log" >&2
+    exit 1
+  fi
+  rm "$log"
 }
 
 # The commands that check and plot results go into .venv, and with them, for the tests, a checker of style and readers
@@ -41,6 +53,7 @@ install_python_tools() {
   if [[ -e $stamp && -z $(find postproc -name '*.py' -newer "$stamp" -o -name pyproject.toml -newer "$stamp") ]]; then
     return
   fi
+  stage "Installing the Python commands into .venv"
   if { [[ -x .venv/bin/pip ]] || "$python" -m venv --clear .venv; } &&
     .venv/bin/pip install --quiet --disable-pip-version-check "${tools[@]}"; then
     touch "$stamp"
@@ -51,14 +64,19 @@ install_python_tools() {
 
 install_packages
 install_python_tools
+stage "Configuring"
 cmake --preset release
 
 if [[ $task == test ]]; then
+  stage "Building program and tests"
   cmake --build --preset release
+  stage "Testing"
   exec ctest --preset release
 fi
 
+stage "Building the program"
 cmake --build --preset release --target implam
+stage "Striking a first plate, input/peanut.nml"
 export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
 build/implam input/peanut.nml --output results/peanut
 echo

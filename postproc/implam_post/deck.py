@@ -10,6 +10,7 @@ from implam_post.errors import DeckError, FileError
 from implam_post.indentation import IndentationLaw
 from implam_post.laminate import Material, Ply, Section, section_of
 from implam_post.namelist import Group, Value, read_namelist
+from implam_post.stacking import angles_of
 
 STRENGTHS = ("XT", "XC", "YT", "YC", "S12", "Sf", "Sm23")
 
@@ -86,9 +87,9 @@ class Deck:
     def plies(self) -> list[Ply]:
         """Return the stacking sequence from the struck face on."""
         materials = self._materials()
-        angles = self.values("laminate", "angles")
-        names, thicknesses = (self._spread(self.values("laminate", key), len(angles), "laminate")
-                              for key in ("materials", "thicknesses"))
+        angles, thicknesses = self._stack()
+        names, thicknesses = (self._spread(values, len(angles), "laminate")
+                              for values in (self.values("laminate", "materials"), thicknesses))
         where = f"{self.path.name}: &laminate"
         plies = []
         for name, angle, thickness in zip(names, angles, thicknesses, strict=True):
@@ -110,11 +111,15 @@ class Deck:
         """Return the impactor."""
         if not self.has("impactor"):
             raise DeckError(f"{self.path.name} has no &impactor: there is no impact to check.")
-        impactor = Impactor(self.number("impactor", "mass"), self.number("impactor", "velocity"),
-                            self.number("impactor", "gravity", 0.0))
-        if impactor.mass <= 0:
+        mass = self.number("impactor", "mass")
+        if mass <= 0:
             raise self.error("impactor", "the mass must be greater than zero.")
-        return impactor
+        if not self.values("impactor", "energy"):
+            return Impactor(mass, self.number("impactor", "velocity"), self.number("impactor", "gravity", 0.0))
+        energy = self.number("impactor", "energy")
+        if self.values("impactor", "velocity") or energy < 0:
+            raise self.error("impactor", "velocity or energy, one of them, is needed, and not below zero.")
+        return Impactor(mass, float(np.sqrt(2 * energy / mass)), self.number("impactor", "gravity", 0.0))
 
     def indentation_law(self) -> IndentationLaw:
         """Return the indentation law, elastic if the deck has no &indentation; k by Sun's formula if none is given."""
@@ -135,6 +140,18 @@ class Deck:
     def error(self, group: str, sentence: str) -> DeckError:
         """Return an error that names deck and group."""
         return DeckError(f"{self.path.name}: &{group}: {sentence}")
+
+    def _stack(self) -> tuple[list[Value], list[Value]]:
+        """Return angles, one a ply, and thicknesses, one a ply or one for all."""
+        if not (self.values("laminate", "stacking") or self.values("laminate", "ply_thickness")):
+            return self.values("laminate", "angles"), self.values("laminate", "thicknesses")
+        if self.values("laminate", "angles") or self.values("laminate", "thicknesses"):
+            raise self.error("laminate", "stacking and ply_thickness, or angles and thicknesses, are needed.")
+        try:
+            angles = angles_of(str(self.value("laminate", "stacking")))
+        except DeckError as error:
+            raise self.error("laminate", str(error)) from None
+        return [*angles], self.values("laminate", "ply_thickness")
 
     def _sun_stiffness(self) -> float:
         """Return k = 4/3 sqrt(R) / [(1 - nu**2)/E + 1/E2]: E and nu of the impactor (no E: rigid), E2 of ply 1."""

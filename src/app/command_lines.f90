@@ -4,11 +4,11 @@ module command_lines
   use kinds, only: wp
   implicit none
   private
-  public :: command_t, read_command_line, usage
+  public :: command_t, read_command_line
 
   !> What the program is asked to do.
   integer, parameter, public :: verb_run = 1, verb_check = 2, verb_explain = 3, verb_restart = 4, &
-                                verb_version = 5, verb_help = 6
+                                verb_version = 5, verb_help = 6, verb_new = 7, verb_completion = 8, verb_man = 9
 
   !> A command line, taken apart.
   type :: command_t
@@ -44,7 +44,7 @@ contains
     i = 1
     do while (i <= command_argument_count())
       word = argument(i)
-      if (index(word, '--') == 1) then
+      if (index(word, '--') == 1 .or. word == '-h') then
         call read_option(command, word, i, error)
       else if (index(word, '-') == 1) then
         command%petsc_options = command%petsc_options//' '//word
@@ -57,6 +57,8 @@ contains
         command%verb = verb_of(word)
       else if (command%target == '') then
         command%target = word
+      else if (any(command%verb == [verb_explain, verb_help]) .and. scan(command%target, '%. ') == 0) then
+        command%target = command%target//'%'//word
       else
         call fail(error, exit_usage, 'Unexpected argument "'//word//'": one deck, checkpoint or topic at a time.')
       end if
@@ -80,7 +82,7 @@ contains
     select case (word)
     case ('--version')
       command%verb = verb_version
-    case ('--help')
+    case ('--help', '-h')
       command%verb = verb_help
     case ('--markdown')
       command%markdown = .true.
@@ -94,7 +96,7 @@ contains
       if (i <= command_argument_count()) command%wall_limit = seconds_of(argument(i))
       if (.not. command%wall_limit > 0) call fail(error, exit_usage, '--wall-limit needs a number of seconds above 0.')
     case default
-      call fail(error, exit_usage, 'Unknown option "'//word//'"; see implam --help.')
+      call fail(error, exit_usage, 'Unknown option "'//word//'"; see implam help.')
     end select
   end subroutine read_option
 
@@ -120,7 +122,9 @@ contains
     if (command%target /= '') return
     select case (command%verb)
     case (verb_run, verb_check)
-      call fail(error, exit_usage, 'No deck given; see implam --help.')
+      call fail(error, exit_usage, 'No deck given; `implam new` writes one to start from, `implam help` tells more.')
+    case (verb_completion)
+      call fail(error, exit_usage, 'implam completion needs the name of a shell, bash or zsh.')
     end select
   end subroutine require_target
 
@@ -138,6 +142,14 @@ contains
       verb = verb_explain
     case ('restart')
       verb = verb_restart
+    case ('new')
+      verb = verb_new
+    case ('completion')
+      verb = verb_completion
+    case ('man')
+      verb = verb_man
+    case ('help')
+      verb = verb_help
     case default
       verb = 0
     end select
@@ -170,32 +182,4 @@ contains
     allocate (character(len=length) :: word)
     call get_command_argument(i, word)
   end function argument
-
-  !> What the program tells of its use.
-  pure function usage() result(text)
-    !> Lines of the text
-    character(len=96) :: text(20)
-
-    text = [character(len=96) :: &
-            'Usage: implam [run] DECK.nml       run a deck', &
-            '       implam check DECK.nml       read and check a deck, list every fault, run nothing', &
-            '       implam explain [GROUP[%KEY]] what a deck can say: keys, units, defaults, meaning', &
-            '       implam explain history|fields  what results hold: names, units, meaning', &
-            '       implam restart [FILE]       go on from a checkpoint (NAME_restart.h5), or from the newest', &
-            '                                   of a folder: the one named, that of --output, or this one', &
-            '       implam --version | --help', &
-            'Options:', &
-            '  --output DIR   folder of the results, instead of the deck''s', &
-            '  --wall-limit SECONDS  end with a checkpoint before so many seconds have passed on the wall', &
-            '  --markdown     explain as a table for the manual', &
-            '  -mat_..., -ksp_..., -log_view and other words with one dash go to PETSc', &
-            'Under mpirun the same but for signals. Exit codes:', &
-            '  0 done  1 usage  2 deck  3 no convergence at the smallest step  4 files  5 internal', &
-            '  75 stopped by a signal of the queue or the time on the wall, with a checkpoint written:', &
-            '     go on with restart', &
-            'Signals: TERM, INT, USR1, USR2 and XCPU end the run after the step at hand, with a', &
-            '  checkpoint. Under mpirun send USR1 to mpirun, or any of them to every rank: mpirun itself', &
-            '  takes TERM and INT, kills the ranks a second later and ends with code 1.', &
-            '']
-  end function usage
 end module command_lines

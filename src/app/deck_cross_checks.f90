@@ -11,6 +11,8 @@ module deck_cross_checks
   use delamination_parameters, only: growth_one_per_step, interface_objection
   use failure_criteria, only: needed_strengths
   use impactor_deck, only: impactor_group, key_velocity, key_radius, key_gravity
+  use hou_criteria, only: missing_strengths
+  use impactor_deck, only: impactor_group, key_velocity, key_radius, key_gravity, keys_of_motion
   use indentation_deck, only: indentation_group, key_k
   use kinds, only: wp
   use material_deck, only: material_group, require_densities
@@ -126,7 +128,7 @@ contains
                   'is missing; give it, or the contact stiffness &indentation k.')
       if (deck%impactor%velocity <= 0 .and. deck%impactor%gravity <= 0 .and. .not. deck%has_pressure .and. &
           .not. problems%concern(pressure_group) .and. &
-          are_clear(s, problems, impactor_group, key_velocity//' '//key_gravity)) &
+          are_clear(s, problems, impactor_group, keys_of_motion(s)//' '//key_gravity)) &
         call tell(s, problems, impactor_group, key_velocity, &
                   'nothing moves the impactor towards the plate; give a velocity or gravity > 0.')
     end associate

@@ -84,7 +84,7 @@ contains
     if (problems%is_full()) return
     call note_groups(deck)
     call fill_bodies(deck, problems)
-    call fill_loads(deck)
+    call fill_loads(deck, problems)
     call fill_steps(deck)
     call check_groups(deck, problems)
     call check_sizes(deck, problems)
@@ -147,14 +147,17 @@ contains
   end function ply_strengths
 
   !> Time, impactor, indentation, pressure and load steps, as far as the deck has them.
-  subroutine fill_loads(deck)
+  subroutine fill_loads(deck, problems)
     !> Receives them
     type(deck_t), intent(inout) :: deck
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
     real(wp) :: compliance
 
     if (deck%has_time) call fill_time(deck%settings, size(deck%delaminations) > 0, deck%stepping%time)
     call fill_impactor(deck%settings, deck%impactor)
     if (deck%has_impactor) deck%mesh%struck = deck%impactor%at
+    call fill_impactor(deck%settings, deck%impactor, problems)
     call fill_pressure(deck%settings, deck%stepping%time%end, deck%pressure)
     if (deck%has_static) call fill_static(deck%settings, deck%stepping%static_steps)
     if (.not. deck%has_impactor) return

@@ -20,11 +20,14 @@ module programs
   use checkpoints, only: checkpoint_archive_t, newest_checkpoint
   use files, only: is_directory
   use build_information, only: version, commit, compiler, petsc_version
-  use command_lines, only: command_t, read_command_line, usage, verb_run, verb_check, verb_explain, verb_restart, &
-                           verb_version, verb_help
+  use command_lines, only: command_t, read_command_line, verb_run, verb_check, verb_explain, verb_restart, &
+                           verb_version, verb_help, verb_new, verb_completion, verb_man
   use queue_signals, only: catch_stop_signals
   use result_explain, only: explain_results, is_result_topic, result_topics_sentence
+  use shell_pages, only: completion, manual_page
   use simulations, only: simulation_t
+  use starter_decks, only: starter_name, write_starter
+  use usage_texts, only: usage_lines
   implicit none
   private
   public :: run_program
@@ -44,6 +47,7 @@ contains
 
     code = exit_done
     if (launched()) call start_mpi(communicator)
+    if (command_argument_count() == 0) call tell_usage(communicator)
     call read_command_line(command, error)
     if (.not. allocated(error)) then
       select case (command%verb)
@@ -51,9 +55,17 @@ contains
         call print_lines(communicator, &
                          [line_t('Implam '//version//' ('//commit//'), '//compiler//', PETSc '//petsc_version)])
       case (verb_help)
-        call print_usage(communicator)
+        if (command%target == '') then
+          call tell_usage(communicator)
+        else
+          call explain_topic(command, communicator, error)
+        end if
       case (verb_explain)
         call explain_topic(command, communicator, error)
+      case (verb_completion, verb_man)
+        call tell_page(command, communicator, error)
+      case (verb_new)
+        call start_deck(command, communicator, error)
       case (verb_check)
         call check(command, communicator, code)
       case (verb_run, verb_restart)
@@ -85,12 +97,51 @@ contains
   end subroutine print_lines
 
   !> Prints how the program is used.
-  subroutine print_usage(communicator)
+  subroutine tell_usage(communicator)
     !> The ranks
     type(communicator_t), intent(in) :: communicator
+    type(line_t), allocatable :: lines(:)
 
-    if (communicator%is_root()) write (output_unit, '(a)') usage()
-  end subroutine print_usage
+    call usage_lines(lines)
+    call print_lines(communicator, lines)
+  end subroutine tell_usage
+
+  !> Prints the manual page, or what a shell completes.
+  subroutine tell_page(command, communicator, error)
+    !> What is asked
+    type(command_t), intent(in) :: command
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> Set (usage) if the shell is not known
+    type(error_t), allocatable, intent(inout) :: error
+    type(vocabulary_t) :: vocabulary
+    type(line_t), allocatable :: lines(:)
+
+    call load_deck_table(vocabulary)
+    if (command%verb == verb_man) then
+      call manual_page(vocabulary, version, lines)
+    else
+      call completion(command%target, vocabulary, lines, error)
+    end if
+    if (.not. allocated(error)) call print_lines(communicator, lines)
+  end subroutine tell_page
+
+  !> Writes a deck to start from.
+  subroutine start_deck(command, communicator, error)
+    !> What is asked
+    type(command_t), intent(in) :: command
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> Set (files) if it can't be written
+    type(error_t), allocatable, intent(inout) :: error
+    character(len=:), allocatable :: path
+
+    path = command%target
+    if (path == '') path = starter_name
+    if (.not. communicator%is_root()) return
+    call write_starter(path, error)
+    if (.not. allocated(error)) call print_lines(communicator, [line_t('Wrote '//path//'. To run it: implam '//path)])
+  end subroutine start_deck
 
   !> Explains a group or key of the deck, or what results hold.
   subroutine explain_topic(command, communicator, error)

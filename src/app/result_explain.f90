@@ -8,6 +8,8 @@ module result_explain
   private
   public :: explain_results, is_result_topic
 
+  !> Their names.
+  character(len=*), parameter, public :: result_topics = 'history fields'
   !> How to ask for the tables.
   character(len=*), parameter, public :: result_topics_sentence = &
     '`implam explain history` lists the columns of NAME_history.csv, `implam explain fields` the fields of NAME.h5.'

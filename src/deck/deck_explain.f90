@@ -14,7 +14,7 @@ contains
   subroutine explain(vocabulary, topic, lines, error)
     !> The table
     type(vocabulary_t), intent(in) :: vocabulary
-    !> Empty, `plate`, `plate%length` or `length`, with or without &
+    !> Empty, `plate`, `plate%length`, `plate.length`, `plate length` or `length`, with or without &
     character(len=*), intent(in) :: topic
     !> The explanation
     type(line_t), allocatable, intent(out) :: lines(:)
@@ -27,7 +27,7 @@ contains
     allocate (lines(0))
     group = trim(adjustl(topic))
     if (index(group, '&') == 1) group = group(2:)
-    mark = index(group, '%')
+    mark = scan(group, '%. ')
     owners = vocabulary%groups_with(group)
     if (len(group) == 0) then
       call explain_groups(vocabulary, lines)
@@ -57,7 +57,7 @@ contains
                     presence_in_words(group)//') '//group%meaning)
       end associate
     end do
-    call append(lines, '`implam explain GROUP` lists the keys of a group, `implam explain GROUP%KEY` one key.')
+    call append(lines, '`implam explain GROUP` lists the keys of a group, `implam explain GROUP KEY` one key.')
   end subroutine explain_groups
 
   !> A group and its keys.

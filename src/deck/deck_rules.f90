@@ -4,7 +4,7 @@ module deck_rules
   use deck_problems, only: problems_t
   use deck_scanner, only: scan_t
   use deck_settings, only: settings_t, setting_t, present_group_t
-  use deck_values, only: fault_of_value, fault_of_count, allowed_sentence, limit_of_size, literal_value
+  use deck_values, only: fault_of_value, fault_of_count, decimal_commas, allowed_sentence, limit_of_size, literal_value
   use deck_vocabulary, only: vocabulary_t, key_entry_t
   use text, only: line_t, append, joined, lower_case, nearest_name, to_text
   implicit none
@@ -267,7 +267,7 @@ contains
     logical, intent(out) :: sound
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
-    character(len=:), allocatable :: fault, limit
+    character(len=:), allocatable :: fault, count_fault, limit
     integer :: i, forgotten
 
     fault = ''
@@ -285,7 +285,12 @@ contains
       sound = .false.
       return
     end do
-    if (fault == '') fault = fault_of_count(key, size(entry%values))
+    count_fault = fault_of_count(key, size(entry%values))
+    if (index(count_fault, 'too many') == 1 .and. decimal_commas(key, entry%values) /= '') then
+      fault = count_fault//decimal_commas(key, entry%values)
+    else if (fault == '') then
+      fault = count_fault
+    end if
     sound = fault == ''
     if (.not. sound) call problems%error(entry%line, key%group, key%name, message_head(key%group, entry)// &
                                          fault//'; '//allowed_sentence(key)//limit//'.', place)

@@ -6,6 +6,7 @@ module deck_scanner
   use deck_problems, only: problems_t, any_key
   use deck_tokens, only: token_t, cursor_t, next_token, skip_to_group, token_end, token_group, token_slash, &
                          token_key, token_word, token_quoted, token_cut, token_comma, token_equals
+  use deck_typography, only: take_plain
   use text, only: to_text, lower_case
   implicit none
   private
@@ -33,22 +34,23 @@ module deck_scanner
 contains
 
   !> Finds groups, keys and values; tells every fault of the writing.
-  subroutine scan_deck(deck, scan, problems)
+  subroutine scan_deck(content, scan, problems)
     !> Text of the deck
-    character(len=*), intent(in) :: deck
+    character(len=*), intent(in) :: content
     !> What it consists of
     type(scan_t), intent(out) :: scan
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
     type(cursor_t) :: cursor
     type(token_t) :: token
-    character(len=:), allocatable :: junk
+    character(len=:), allocatable :: deck, junk
     integer :: junk_line
     logical :: readable
 
     allocate (scan%blocks(0), scan%entries(0))
-    call check_characters(deck, problems, readable)
+    call check_characters(content, problems, readable)
     if (.not. readable) return
+    call take_plain(content, problems, deck)
     if (index(deck, byte_order_mark()) == 1) cursor%at = 4
     do while (.not. problems%is_full() .and. scan%values < most_values)
       if (.not. scan%open) then

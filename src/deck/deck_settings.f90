@@ -3,7 +3,7 @@ module deck_settings
   use deck_entries, only: value_t
   use deck_values, only: real_value, integer_value, logical_value
   use kinds, only: wp
-  use text, only: line_t, append, lower_case
+  use text, only: line_t, append, lower_case, to_text
   implicit none
   private
   public :: settings_t, setting_t, present_group_t
@@ -55,6 +55,7 @@ module deck_settings
     procedure :: integer_of
     procedure :: logical_of
     procedure :: derive
+    procedure :: derive_numbers
   end type settings_t
 
 contains
@@ -304,4 +305,23 @@ contains
     values(1)%quoted = quoted
     call move_alloc(values, self%items(i)%values)
   end subroutine derive
+
+  !> Sets the numbers of a key that the deck doesn't give and that follow from others.
+  pure subroutine derive_numbers(self, group, key, numbers)
+    class(settings_t), intent(inout) :: self
+    !> Names of group and key
+    character(len=*), intent(in) :: group, key
+    !> The numbers
+    real(wp), intent(in) :: numbers(:)
+    type(value_t), allocatable :: values(:)
+    integer :: i, item
+
+    item = self%find(group, key)
+    if (item == 0) return
+    allocate (values(size(numbers)))
+    do i = 1, size(numbers)
+      values(i)%text = to_text(numbers(i))
+    end do
+    call move_alloc(values, self%items(item)%values)
+  end subroutine derive_numbers
 end module deck_settings

@@ -6,8 +6,8 @@ module deck_values
   use text, only: line_t, append, words_of, lower_case, joined, nearest_name, to_text
   implicit none
   private
-  public :: fault_of_value, fault_of_count, allowed_sentence, limit_of_size, literal_value, real_value, &
-            integer_value, logical_value
+  public :: fault_of_value, fault_of_count, decimal_commas, allowed_sentence, limit_of_size, literal_value, &
+            real_value, integer_value, logical_value
 
   !> Decades that numbers keep within, so that their products stay finite and nonzero: reals other than 0 are at least
   !> 10**-29 and less than 10**30 in size, whole numbers less than 10**9.
@@ -156,6 +156,29 @@ contains
     fault = ''
     if (.not. right) fault = trim(merge('too many', 'too few ', number > 2 .or. key%values == '1'))//' values'
   end function fault_of_count
+
+  !> What may be behind too many values, or an empty text: halves of numbers that were written with decimal commas.
+  pure function decimal_commas(key, values) result(hint)
+    !> The key as the table has it
+    type(key_entry_t), intent(in) :: key
+    !> Its values, too many
+    type(value_t), intent(in) :: values(:)
+    !> Part of a sentence
+    character(len=:), allocatable :: hint
+    character(len=:), allocatable :: whole, fraction
+    integer :: i
+
+    hint = ''
+    if (key%kind /= 'real' .or. mod(size(values), 2) == 1 .or. any(values%quoted)) return
+    do i = 1, size(values), 2
+      ! A sign and digits, then digits and perhaps an exponent.
+      if (verify(values(i)%text, '+-0123456789') > 0 .or. verify(values(i + 1)%text, '0123456789eEdD+-') > 0 .or. &
+          verify(values(i + 1)%text(:1), '0123456789') > 0) return
+    end do
+    whole = values(1)%text
+    fraction = values(2)%text
+    hint = ' (a comma parts values; for a decimal write '//whole//'.'//fraction//')'
+  end function decimal_commas
 
   !> What a key takes, for the end of a message.
   pure function allowed_sentence(key) result(sentence)

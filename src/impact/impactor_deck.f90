@@ -1,17 +1,23 @@
 !> The impactor of the deck: rows of its table and their filling.
 module impactor_deck
   use deck_choices, only: code_of
+  use deck_problems, only: problems_t
+  use deck_remarks, only: tell, are_clear
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
+  use kinds, only: wp
   use impact_parameters, only: impactor_parameters_t, integrator_gear4, integrator_trapezoidal, integrator_central, &
                                integrator_conserving
   implicit none
   private
-  public :: fill_impactor
+  public :: fill_impactor, keys_of_motion
 
   !> Names that checks across groups use.
   character(len=*), parameter, public :: impactor_group = 'impactor', key_velocity = 'velocity', &
                                          key_radius = 'radius', key_gravity = 'gravity', key_at = 'at'
+                                         key_radius = 'radius', key_gravity = 'gravity'
+  !> Names used here more than once.
+  character(len=*), parameter :: key_mass = 'mass', key_energy = 'energy'
   !> Row of the group.
   character(len=group_row_length), parameter, public :: impactor_group_row = &
     'impactor | optional | The rigid impactor that strikes the plate, in its middle or elsewhere.'
@@ -19,10 +25,12 @@ module impactor_deck
   character(len=key_row_length), parameter, public :: impactor_rows(*) = [character(len=key_row_length) :: &
     'impactor | mass | real | 1 | mass | required | > 0 | &
       &Mass of the whole impactor, also under symmetry.', &
-    'impactor | velocity | real | 1 | length/time | required | >= 0 | &
+    'impactor | velocity | real | 1 | length/time | = sqrt(2 energy/mass) | >= 0 | &
       &Speed towards the plate at first touch.', &
     'impactor | at | real | 2 | length | none | any | &
       &The struck point from the plate''s centre, its default; patch, core, zones and starters go with it.', &
+    'impactor | energy | real | 1 | energy | none | >= 0 | &
+      &Kinetic energy of the whole impactor at first touch, instead of velocity.', &
     'impactor | radius | real | 1 | length | none | > 0 | &
       &Radius of the nose; needed if the contact stiffness k isn''t given.', &
     'impactor | gravity | real | 1 | length/time^2 | 0 | any | &
@@ -33,13 +41,16 @@ module impactor_deck
 contains
 
   !> The impactor.
-  subroutine fill_impactor(settings, impactor)
-    !> Keys in effect
-    type(settings_t), intent(in) :: settings
+  subroutine fill_impactor(settings, impactor, problems)
+    !> Keys in effect; get the velocity that the energy stands for
+    type(settings_t), intent(inout) :: settings
     !> Receives them
     type(impactor_parameters_t), intent(inout) :: impactor
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
 
-    impactor%mass = settings%real_of(impactor_group, 'mass')
+    call settle_energy(settings, problems)
+    impactor%mass = settings%real_of(impactor_group, key_mass)
     impactor%velocity = settings%real_of(impactor_group, key_velocity)
     impactor%radius = settings%real_of(impactor_group, key_radius)
     if (settings%is_known(impactor_group, key_at)) impactor%at = settings%reals_of(impactor_group, key_at)
@@ -48,4 +59,37 @@ contains
                                   'gear4 trapezoidal central conserving', &
                                   [integrator_gear4, integrator_trapezoidal, integrator_central, integrator_conserving])
   end subroutine fill_impactor
+
+  !> Turns the energy into the velocity, and tells if neither is given or both are.
+  subroutine settle_energy(settings, problems)
+    !> Keys in effect
+    type(settings_t), intent(inout) :: settings
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    real(wp) :: mass, energy
+
+    if (.not. settings%has_group(impactor_group)) return
+    if (.not. settings%is_given(impactor_group, key_energy)) then
+      if (.not. settings%is_given(impactor_group, key_velocity) .and. &
+          are_clear(settings, problems, impactor_group, key_velocity//' '//key_energy)) &
+        call tell(settings, problems, impactor_group, key_velocity, 'is missing; give it, or the energy.')
+    else if (settings%is_given(impactor_group, key_velocity)) then
+      call tell(settings, problems, impactor_group, key_energy, 'the velocity is given too; give one of them.')
+    else if (settings%is_known(impactor_group, key_mass) .and. settings%is_known(impactor_group, key_energy)) then
+      mass = settings%real_of(impactor_group, key_mass)
+      energy = settings%real_of(impactor_group, key_energy)
+      call settings%derive_numbers(impactor_group, key_velocity, [sqrt(2*energy/mass)])
+    end if
+  end subroutine settle_energy
+
+  !> Names of the keys that say how fast the impactor is, parted by blanks.
+  pure function keys_of_motion(settings) result(keys)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+    !> The names
+    character(len=:), allocatable :: keys
+
+    keys = key_velocity//' '//key_energy
+    if (settings%is_given(impactor_group, key_energy)) keys = keys//' '//key_mass
+  end function keys_of_motion
 end module impactor_deck

@@ -2,13 +2,14 @@
 module laminate_deck
   use deck_choices, only: code_of
   use deck_problems, only: problems_t
-  use deck_remarks, only: tell
+  use deck_remarks, only: tell, are_clear
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
   use kinds, only: wp
   use laminate_parameters, only: laminate_t, shear_five_sixths, shear_energy
   use material_deck, only: material_group
   use material_parameters, only: material_t
+  use stacking_sequences, only: read_sequence, most_plies
   use text, only: line_t, append, joined, nearest_name, to_text
   implicit none
   private
@@ -16,6 +17,8 @@ module laminate_deck
 
   !> Names that checks across groups use.
   character(len=*), parameter, public :: laminate_group = 'laminate', key_thicknesses = 'thicknesses'
+  !> Names used here more than once.
+  character(len=*), parameter :: key_angles = 'angles', key_stacking = 'stacking', key_ply_thickness = 'ply_thickness'
   !> Row of the group.
   character(len=group_row_length), parameter, public :: laminate_group_row = &
     'laminate | required | The plies, from the struck face to the back.'
@@ -23,22 +26,23 @@ module laminate_deck
   character(len=key_row_length), parameter, public :: laminate_rows(*) = [character(len=key_row_length) :: &
     'laminate | materials | text | 1 or plies | - | required | names of &material groups | &
       &Material of each ply from the struck face; one value serves all.', &
-    'laminate | angles | real | plies | degree | required | >= -360, <= 360 | &
+    'laminate | angles | real | plies | degree | = stacking | >= -360, <= 360 | &
       &Fibre angle of each ply from x; their number is the number of plies.', &
-    'laminate | thicknesses | real | 1 or plies | length | required | > 0 | &
+    'laminate | thicknesses | real | 1 or plies | length | = ply_thickness | > 0 | &
       &Thickness of each ply; one value serves all.', &
+    'laminate | stacking | text | 1 | - | none | not empty | &
+      &Plies as in [45/0/-45/90]2s, instead of angles and thicknesses.', &
+    'laminate | ply_thickness | real | 1 | length | none | > 0 | &
+      &Thickness of every ply of stacking.', &
     'laminate | shear_correction | choice | 1 | - | ''5/6'' | 5/6 energy | &
       &Reduction of the transverse shear stiffness: a factor, or equal shear energy.']
-
-  !> Most plies of a laminate.
-  integer, parameter :: most_plies = 1000
 
 contains
 
   !> The plies. Lists that aren't clear stay unallocated.
   subroutine fill_laminate(settings, materials, laminate, problems)
-    !> Keys in effect
-    type(settings_t), intent(in) :: settings
+    !> Keys in effect; get the angles and thicknesses that stacking stands for
+    type(settings_t), intent(inout) :: settings
     !> The materials
     type(material_t), intent(in) :: materials(:)
     !> Receives them
@@ -52,7 +56,8 @@ contains
 
     laminate%shear_correction = code_of(settings%text_of(laminate_group, 'shear_correction'), '5/6 energy', &
                                         [shear_five_sixths, shear_energy])
-    angles = settings%reals_of(laminate_group, 'angles')
+    call settle_stacking(settings, problems)
+    angles = settings%reals_of(laminate_group, key_angles)
     thicknesses = settings%reals_of(laminate_group, key_thicknesses)
     names = settings%texts_of(laminate_group, 'materials')
     plies = size(angles)
@@ -60,7 +65,7 @@ contains
     do i = 1, size(names)
       call find_material(settings, materials, trim(names(i)%text), problems, indices(i))
     end do
-    if (plies > most_plies) call tell(settings, problems, laminate_group, 'angles', &
+    if (plies > most_plies) call tell(settings, problems, laminate_group, key_angles, &
                                       'more than '//to_text(most_plies)//' plies.')
     if (plies == 0 .or. plies > most_plies) return
     call check_number(settings, key_thicknesses, size(thicknesses), plies, problems)
@@ -72,6 +77,55 @@ contains
     if (size(indices) == plies .or. size(indices) == 1) &
       laminate%material = [(indices(min(i, size(indices))), i=1, plies)]
   end subroutine fill_laminate
+
+  !> Turns stacking and ply_thickness into angles and thicknesses, and tells what is missing or given twice.
+  subroutine settle_stacking(settings, problems)
+    !> Keys in effect
+    type(settings_t), intent(inout) :: settings
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    character(len=*), parameter :: listed(2) = [character(len=11) :: key_angles, key_thicknesses], &
+                                   noted(2) = [character(len=13) :: key_stacking, key_ply_thickness]
+    character(len=*), parameter :: either = 'give stacking and ply_thickness, or angles and thicknesses.'
+    character(len=:), allocatable :: fault
+    real(wp), allocatable :: angles(:)
+    integer :: i
+
+    if (.not. settings%has_group(laminate_group)) return
+    if (any([(settings%is_given(laminate_group, noted(i)), i=1, 2)])) then
+      do i = 1, 2
+        if (settings%is_given(laminate_group, listed(i))) call tell(settings, problems, laminate_group, &
+          trim(listed(i)), trim(noted(i))//' is its other form; '//either)
+      end do
+      call require(noted)
+      if (.not. are_clear(settings, problems, laminate_group, key_stacking)) return
+      if (any([(settings%is_given(laminate_group, listed(i)), i=1, 2)])) return
+      call read_sequence(settings%text_of(laminate_group, key_stacking), angles, fault)
+      if (fault /= '') then
+        call tell(settings, problems, laminate_group, key_stacking, fault//'.')
+        return
+      end if
+      call settings%derive_numbers(laminate_group, key_angles, angles)
+      call settings%derive_numbers(laminate_group, key_thicknesses, &
+                                   settings%reals_of(laminate_group, key_ply_thickness))
+    else
+      call require(listed)
+    end if
+
+  contains
+
+    !> Tells those of some keys that are missing.
+    subroutine require(keys)
+      !> Their names
+      character(len=*), intent(in) :: keys(:)
+      integer :: j
+
+      do j = 1, size(keys)
+        if (settings%is_given(laminate_group, keys(j)) .or. problems%concern(laminate_group, trim(keys(j)))) cycle
+        call tell(settings, problems, laminate_group, trim(keys(j)), 'is missing; '//either)
+      end do
+    end subroutine require
+  end subroutine settle_stacking
 
   !> A list that has one value or one a ply.
   subroutine check_number(settings, key, number, plies, problems)

@@ -1,0 +1,70 @@
+!> The deck that `implam new` writes: a drop-weight test on a quasi-isotropic coupon, small enough to run at once.
+module starter_decks
+  use errors, only: error_t, fail, exit_files
+  use files, only: file_exists
+  implicit none
+  private
+  public :: write_starter
+
+  !> Name that it has without another.
+  character(len=*), parameter, public :: starter_name = 'impact.nml'
+  !> Its lines. The material is that of the specimens in Tan and Sun's and Li's papers, T300/976.
+  character(len=104), parameter :: lines(*) = [character(len=104) :: &
+    '! A drop weight strikes the middle of a composite plate. Lengths are in m, masses in kg, times in s,', &
+    '! so forces are in N, energies in J, stresses in Pa; any other units that go together will do.', &
+    '! `implam explain GROUP` tells all keys of a group, with their defaults.', &
+    '', &
+    '&plate        length=0.10, 0.10        ! sides along x and y', &
+    '              edges=''clamped'' /        ! or ''simple'', ''free''; four values: x-min, x-max, y-min, y-max', &
+    '', &
+    '&mesh         elements=18, 18          ! along x and y; more are more accurate and take longer', &
+    '              core=30e-3, 30e-3        ! around the struck point cells are equal,', &
+    '              cell=2.5e-3              ! of this side; outside they grow', &
+    '              patch=5e-3 /             ! side of the square that the impactor presses on', &
+    '', &
+    '&material     name=''carbon/epoxy''  density=1580', &
+    '              E1=139e9  E2=9.4e9  G12=4.5e9  G23=2.98e9  nu12=0.309   ! stiffness of a ply', &
+    '              XT=1517e6  XC=1590e6  YT=46e6  YC=253e6  S12=105e6      ! strengths: along and across', &
+    '              Sf=500e6  Sm23=105e6 /                                  ! the fibres, in shear', &
+    '', &
+    '&laminate     materials=''carbon/epoxy''', &
+    '              stacking=''[45/0/-45/90]2s''  ply_thickness=0.125e-3 /    ! from the struck face', &
+    '', &
+    '&impactor     mass=1.0  energy=3.0     ! or velocity instead of energy', &
+    '              radius=8e-3 /            ! of the nose', &
+    '&indentation  law=''tan_sun''  alpha_cr=80.3e-6 /        ! how the struck face gives way', &
+    '', &
+    '! Plies crack, and the interface below ply 15 (between 0 and 45 degrees, near the back) delaminates:', &
+    '! leave these groups out for a plate that stays whole.', &
+    '&ply_damage   d=100  e=1e-3 /          ! what stiffness a failed ply loses', &
+    '&delamination below_ply=15  G_c=300    ! energy per area that growth takes', &
+    '              starter=10e-3            ! side of the square flaw that it grows from', &
+    '              zone=30e-3, 30e-3 /      ! where it may grow', &
+    '', &
+    '&time         end=4e-3  step=20e-6 /   ! the blow lasts about 3 ms', &
+    '&output       directory=''results''  fields_every=0.5e-3 /   ! history, fields for ParaView, checkpoint']
+
+contains
+
+  !> Writes the deck into a new file.
+  subroutine write_starter(path, error)
+    !> Its path
+    character(len=*), intent(in) :: path
+    !> Raised if there is such a file already, or it can't be written
+    type(error_t), allocatable, intent(inout) :: error
+    integer :: unit, status, i
+
+    if (file_exists(path)) then
+      call fail(error, exit_files, path//' is there already and stays as it is; give another name.')
+      return
+    end if
+    open (newunit=unit, file=path, status='new', action='write', iostat=status)
+    if (status == 0) then
+      do i = 1, size(lines)
+        if (status == 0) write (unit, '(a)', iostat=status) trim(lines(i))
+      end do
+      close (unit)
+    end if
+    if (status /= 0) call fail(error, exit_files, 'Can''t write the deck '//path//'.')
+  end subroutine write_starter
+end module starter_decks

@@ -1,0 +1,109 @@
+!> What the program tells of its use: one table of commands, options and exit codes, for --help, the manual page of Unix
+!> and the completions of shells.
+module usage_texts
+  use text, only: line_t, append, words_of
+  implicit none
+  private
+  public :: usage_lines
+
+  !> Characters of a term and of an explanation; columns of explanations and of the page.
+  integer, parameter, public :: text_length = 400
+  integer, parameter :: indent = 31, width = 96
+
+  !> Commands: what is typed behind `implam`, and what it does.
+  character(len=text_length), parameter, public :: command_rows(2, 9) = reshape([character(len=text_length) :: &
+    '[run] DECK.nml', 'run a deck', &
+    'check DECK.nml', 'read and check a deck, list every fault, run nothing', &
+    'new [NAME.nml]', 'write a commented deck to start from, which runs as it is; no file is overwritten', &
+    'explain [GROUP [KEY]]', 'what a deck can say: keys, units, defaults, meaning; GROUP.KEY and GROUP%KEY will &
+      &do too', &
+    'explain history|fields', 'what results hold: names, units, meaning', &
+    'restart [FILE]', 'go on from a checkpoint (NAME_restart.h5), or from the newest of a folder: the one named, &
+      &that of --output, or this one', &
+    'completion bash|zsh', 'print what lets a shell complete commands, groups and keys', &
+    'man', 'print this page and all keys as a manual page of Unix: implam man | man -l -', &
+    'help [GROUP [KEY]]', 'this page, or the same as explain'], [2, 9])
+  !> Options.
+  character(len=text_length), parameter, public :: option_rows(2, 6) = reshape([character(len=text_length) :: &
+    '--output DIR', 'folder of the results, instead of the deck''s', &
+    '--wall-limit SECONDS', 'end with a checkpoint before so many seconds have passed on the wall', &
+    '--markdown', 'explain as a table for the manual', &
+    '--version', 'version, commit, compiler and PETSc', &
+    '-h, --help', 'this page', &
+    '-mat_..., -ksp_..., -log_view', 'these and other words with one dash go to PETSc'], [2, 6])
+  !> Exit codes.
+  character(len=text_length), parameter, public :: code_rows(2, 7) = reshape([character(len=text_length) :: &
+    '0', 'done', '1', 'usage', '2', 'deck', '3', 'no convergence at the smallest step', '4', 'files', '5', 'internal', &
+    '75', 'stopped by a signal of the queue or the time on the wall, with a checkpoint written: restart goes &
+      &on'], [2, 7])
+  !> Paragraphs on ranks and signals.
+  character(len=text_length), parameter, public :: notes(2) = [character(len=text_length) :: &
+    'Under mpirun the same holds but for signals.', &
+    'TERM, INT, USR1, USR2 and XCPU end the run after the step at hand, with a checkpoint. Under mpirun send USR1 '// &
+    'to mpirun, or any of them to every rank: mpirun itself takes TERM and INT, kills the ranks a second later and '// &
+    'ends with code 1.']
+
+contains
+
+  !> The help of the program.
+  pure subroutine usage_lines(lines)
+    !> Lines for the terminal
+    type(line_t), allocatable, intent(out) :: lines(:)
+    integer :: i
+
+    allocate (lines(0))
+    call append_rows(lines, 'Usage:', 'implam ', command_rows)
+    call append_rows(lines, 'Options:', '', option_rows)
+    call append_rows(lines, 'Exit codes:', '', code_rows)
+    call append(lines, 'Ranks and signals:')
+    do i = 1, size(notes)
+      call append_wrapped(lines, '', trim(notes(i)), 2)
+    end do
+  end subroutine usage_lines
+
+  !> A heading and its rows.
+  pure subroutine append_rows(lines, heading, prefix, rows)
+    !> Lines are added
+    type(line_t), allocatable, intent(inout) :: lines(:)
+    !> Line above
+    character(len=*), intent(in) :: heading
+    !> What every term begins with
+    character(len=*), intent(in) :: prefix
+    !> Terms and explanations, (2, rows)
+    character(len=*), intent(in) :: rows(:, :)
+    integer :: i
+
+    call append(lines, heading)
+    do i = 1, size(rows, 2)
+      call append_wrapped(lines, prefix//trim(rows(1, i)), trim(rows(2, i)), indent)
+    end do
+  end subroutine append_rows
+
+  !> A term with its explanation beside it.
+  pure subroutine append_wrapped(lines, term, words, column)
+    !> Lines are added
+    type(line_t), allocatable, intent(inout) :: lines(:)
+    !> The term; empty: none
+    character(len=*), intent(in) :: term
+    !> The explanation
+    character(len=*), intent(in) :: words
+    !> Blanks in front of each line of it
+    integer, intent(in) :: column
+    type(line_t), allocatable :: word(:)
+    character(len=:), allocatable :: line
+    integer :: i
+
+    line = '  '//term
+    line = line//repeat(' ', max(2, column - len(line)))
+    if (term == '') line = repeat(' ', column)
+    word = words_of(words, ' ')
+    do i = 1, size(word)
+      if (len(line) + len(word(i)%text) > width) then
+        call append(lines, trim(line))
+        line = repeat(' ', column)
+      end if
+      line = line//word(i)%text//' '
+    end do
+    call append(lines, trim(line))
+  end subroutine append_wrapped
+end module usage_texts
