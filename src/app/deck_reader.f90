@@ -12,6 +12,7 @@ module deck_reader
   use deck_scales, only: check_scales
   use deck_scanner, only: scan_t, scan_deck, most_bytes
   use deck_table, only: load_deck_table
+  use deck_units, only: check_units
   use deck_vocabulary, only: vocabulary_t
   use delamination_deck, only: fill_delaminations, check_delaminations, delamination_group
   use element_deck, only: fill_kinematics, fill_element
@@ -91,6 +92,7 @@ contains
     call check_extents(deck, problems)
     call check_process_zones(deck, problems)
     call check_scales(deck, problems)
+    call check_units(deck, problems)
   end subroutine read_deck_text
 
   !> Which groups the deck has, of those that bring physics or a kind of analysis.

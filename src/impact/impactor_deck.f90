@@ -11,7 +11,7 @@ module impactor_deck
 
   !> Names that checks across groups use.
   character(len=*), parameter, public :: impactor_group = 'impactor', key_velocity = 'velocity', &
-                                         key_radius = 'radius', key_gravity = 'gravity'
+                                         key_radius = 'radius', key_gravity = 'gravity', key_mass = 'mass'
   !> Row of the group.
   character(len=group_row_length), parameter, public :: impactor_group_row = &
     'impactor | optional | The rigid impactor that strikes the middle of the plate.'
@@ -37,7 +37,7 @@ contains
     !> Receives them
     type(impactor_parameters_t), intent(inout) :: impactor
 
-    impactor%mass = settings%real_of(impactor_group, 'mass')
+    impactor%mass = settings%real_of(impactor_group, key_mass)
     impactor%velocity = settings%real_of(impactor_group, key_velocity)
     impactor%radius = settings%real_of(impactor_group, key_radius)
     impactor%gravity = settings%real_of(impactor_group, key_gravity)
