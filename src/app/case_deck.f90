@@ -1,11 +1,12 @@
 !> Name and title of the case: rows of the deck's table and their filling.
 module case_deck
   use deck_settings, only: settings_t
+  use kinds, only: wp
   use deck_vocabulary, only: group_row_length, key_row_length
   use text, only: lower_case
   implicit none
   private
-  public :: fill_case
+  public :: fill_case, fill_claims, has_accuracy
 
   !> Name of the group.
   character(len=*), parameter :: group = 'case'
@@ -17,7 +18,16 @@ module case_deck
     'case | name | name | 1 | - | = the deck''s file name | letters, digits, . _ - | &
       &Names the output files.', &
     'case | title | text | 1 | - | '''' | any text | &
-      &Free text kept with the results.']
+      &Free text kept with the results.', &
+    'case | accuracy | choice or real | 1 | % | none | draft standard reference, >= 0.01, <= 20 | &
+      &Error of the peak force allowed; what &mesh and &time leave out follows. By name 5, 1 and 0.2.', &
+    'case | units | choice | 1 | - | none | SI mm-t-s mm-kg-ms | &
+      &Units that the deck is in: the check holds its values against them, and results name them.', &
+    'case | strict | logical | 1 | - | .false. | .true. .false. | &
+      &Whether a run ends with exit code 3 where it passes the model''s limits, instead of a warning.']
+
+  !> Errors of the peak force that the names of `accuracy` stand for, %.
+  real(wp), parameter :: draft_error = 5, standard_error = 1, reference_error = 0.2_wp
 
 contains
 
@@ -36,6 +46,39 @@ contains
     name = settings%text_of(group, 'name')
     title = settings%text_of(group, 'title')
   end subroutine fill_case
+
+  !> True: the deck states the accuracy that mesh and steps follow from.
+  pure logical function has_accuracy(settings)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+
+    has_accuracy = settings%is_given(group, 'accuracy')
+  end function has_accuracy
+
+  !> What the case claims of its results.
+  pure subroutine fill_claims(settings, accuracy, units, strict)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+    !> Error of the peak force allowed, %; 0: mesh and steps are the deck's
+    real(wp), intent(out) :: accuracy
+    !> Units of the deck; empty: any that are consistent
+    character(len=:), allocatable, intent(out) :: units
+    !> True: a run ends where it passes the model's limits
+    logical, intent(out) :: strict
+
+    units = settings%text_of(group, 'units')
+    strict = settings%logical_of(group, 'strict')
+    select case (lower_case(settings%text_of(group, 'accuracy')))
+    case ('draft')
+      accuracy = draft_error
+    case ('standard')
+      accuracy = standard_error
+    case ('reference')
+      accuracy = reference_error
+    case default
+      accuracy = settings%real_of(group, 'accuracy')
+    end select
+  end subroutine fill_claims
 
   !> File name of a path without folders and extension; characters that a case name can't have become _.
   pure function name_from(path) result(name)

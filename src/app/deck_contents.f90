@@ -1,9 +1,11 @@
 !> What a deck says, as plain parameters together with the text they came from.
 module deck_contents
   use deck_settings, only: settings_t
+  use kinds, only: wp
   use stepping_parameters, only: stepping_t
   use linear_solver_parameters, only: linear_solver_parameters_t
   use output_parameters, only: output_t
+  use scene_pilots, only: scene_outlook_t
   use scenes, only: scene_t
   use text, only: line_t
   implicit none
@@ -20,6 +22,16 @@ module deck_contents
     character(len=:), allocatable :: name
     !> Title of the case
     character(len=:), allocatable :: title
+    !> Error of the peak force that mesh and steps follow from, %; 0: they are the deck's
+    real(wp) :: accuracy = 0
+    !> Units of the deck; empty: any that are consistent
+    character(len=:), allocatable :: units
+    !> True: the run ends where it passes the model's limits
+    logical :: strict = .false.
+    !> What was chosen for the accuracy and why
+    type(line_t), allocatable :: reasons(:)
+    !> Scales of the scene, and what the run is to show
+    type(scene_outlook_t) :: outlook
     !> Which groups on the steps the deck has
     logical :: has_time = .false., has_adapt = .false.
     !> How steps are taken

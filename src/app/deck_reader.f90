@@ -1,7 +1,8 @@
 !> Reads a deck: scan, rules, parameters, checks across groups. All faults are told, none stops the reading.
 module deck_reader
   use adapt_deck, only: adapt_group, fill_adapt
-  use case_deck, only: fill_case
+  use case_deck, only: fill_case, fill_claims, has_accuracy
+  use deck_accuracy, only: check_left_out, choose_by_accuracy
   use deck_contents, only: deck_t
   use deck_crack_bands, only: check_crack_bands
   use deck_cross_checks, only: check_across_groups
@@ -10,8 +11,10 @@ module deck_reader
   use deck_extents, only: check_sizes, check_extents
   use deck_problems, only: problems_t
   use deck_rules, only: settle
+  use deck_scales, only: check_scales
   use deck_scanner, only: scan_t, scan_deck, most_bytes
   use deck_table, only: load_deck_table
+  use deck_units, only: check_units
   use deck_vocabulary, only: vocabulary_t
   use delamination_deck, only: fill_delaminations, check_delaminations, delamination_group
   use element_deck, only: fill_kinematics, fill_element
@@ -83,6 +86,7 @@ contains
     call settle(scan, vocabulary, deck%settings, problems)
     if (problems%is_full()) return
     call note_groups(deck)
+    call check_left_out(deck%settings, problems)
     call fill_bodies(deck, problems)
     call fill_loads(deck, problems)
     call fill_steps(deck)
@@ -94,6 +98,8 @@ contains
     if (deck%has_ply_damage) call check_crack_bands(deck, problems)
     call check_process_zones(deck, problems)
     deck%remarks = problems%remarks()
+    call check_scales(deck, problems)
+    call check_units(deck, problems)
   end subroutine read_deck_text
 
   !> Which groups the deck has, of those that bring physics or a kind of analysis.
@@ -106,7 +112,9 @@ contains
     deck%has_pressure = deck%settings%has_group(pressure_group)
     deck%has_static = deck%settings%has_group(static_group)
     deck%has_ply_damage = deck%settings%has_group(ply_damage_group)
-    deck%has_time = deck%settings%has_group(time_group)
+    deck%has_time = deck%settings%has_group(time_group) .or. &
+                    has_accuracy(deck%settings) .and. .not. deck%has_static
+    if (.not. deck%has_time) call deck%settings%set_aside(time_group)
     deck%has_adapt = deck%settings%has_group(adapt_group)
   end subroutine note_groups
 
@@ -118,6 +126,7 @@ contains
     type(problems_t), intent(inout) :: problems
 
     call fill_case(deck%settings, deck%source, deck%name, deck%title)
+    call fill_claims(deck%settings, deck%accuracy, deck%units, deck%strict)
     call fill_kinematics(deck%settings, deck%kinematics)
     call fill_plate(deck%settings, deck%plate)
     call fill_supports(deck%settings, deck%supports)
@@ -151,20 +160,28 @@ contains
     !> Receives them
     type(deck_t), intent(inout) :: deck
     !> Faults found are added
+  !> Impactor, indentation, time, pressure and load steps, as far as the deck has them; what the deck leaves to its
+  !> accuracy is chosen before the rest follows.
+  subroutine fill_loads(deck, problems)
+    !> Receives them
+    type(deck_t), intent(inout) :: deck
+    !> Faults so far; faults found are added
     type(problems_t), intent(inout) :: problems
     real(wp) :: compliance
 
-    if (deck%has_time) call fill_time(deck%settings, size(deck%delaminations) > 0, deck%stepping%time)
     call fill_impactor(deck%settings, deck%impactor)
     if (deck%has_impactor) deck%mesh%struck = deck%impactor%at
     call fill_impactor(deck%settings, deck%impactor, problems)
+    if (deck%has_impactor) then
+      compliance = 0
+      if (allocated(deck%laminate%material)) compliance = normal_compliance( &
+        deck%settings, deck%laminate%material(1), deck%materials(deck%laminate%material(1)))
+      call fill_indentation(deck%settings, deck%impactor%radius, compliance, deck%indentation)
+    end if
+    if (deck%accuracy > 0) call choose_by_accuracy(deck, problems)
+    if (deck%has_time) call fill_time(deck%settings, size(deck%delaminations) > 0, deck%stepping%time)
     call fill_pressure(deck%settings, deck%stepping%time%end, deck%pressure)
     if (deck%has_static) call fill_static(deck%settings, deck%stepping%static_steps)
-    if (.not. deck%has_impactor) return
-    compliance = 0
-    if (allocated(deck%laminate%material)) compliance = normal_compliance( &
-      deck%settings, deck%laminate%material(1), deck%materials(deck%laminate%material(1)))
-    call fill_indentation(deck%settings, deck%impactor%radius, compliance, deck%indentation)
   end subroutine fill_loads
 
   !> How steps are taken and written.

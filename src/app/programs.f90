@@ -13,6 +13,7 @@ module programs
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
   use deck_reader, only: read_deck, read_deck_text
+  use deck_scales, only: scale_lines
   use deck_table, only: load_deck_table
   use deck_vocabulary, only: vocabulary_t
   use deck_explain, only: explain, explain_table
@@ -188,6 +189,7 @@ contains
     if (code /= exit_done) return
     call print_lines(communicator, [line_t(command%target//': no errors.')])
     if (symmetry_sentence(deck) /= '') call print_lines(communicator, [line_t(symmetry_sentence(deck))])
+    call print_lines(communicator, scale_lines(deck))
   end subroutine check
 
   !> Reads a deck on the root rank and gives its text to all.

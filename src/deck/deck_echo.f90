@@ -1,4 +1,4 @@
-!> Tells every key in effect and whether it is from the deck or by default, for the log.
+!> Tells every key in effect and whether it is from the deck, by default or chosen, for the log.
 module deck_echo
   use deck_entries, only: written_values
   use deck_settings, only: settings_t, setting_t
@@ -18,16 +18,18 @@ contains
     type(settings_t), intent(in) :: settings
     !> One line a key
     type(line_t), allocatable, intent(out) :: lines(:)
-    character(len=:), allocatable :: words
+    character(len=:), allocatable :: words, origin
     integer :: i
 
     allocate (lines(0))
     do i = 1, size(settings%items)
       associate (item => settings%items(i))
         words = value_in_effect(vocabulary, item)
-        if (words == '') cycle
-        call append(lines, '&'//item%group//' '//item%key//' = '//words// &
-                    trim(merge(' [deck]   ', ' [default]', item%given)))
+        if (words == '' .or. item%idle) cycle
+        origin = ' [default]'
+        if (item%chosen) origin = ' [accuracy]'
+        if (item%given) origin = ' [deck]'
+        call append(lines, '&'//item%group//' '//item%key//' = '//words//origin)
       end associate
     end do
   end subroutine echo

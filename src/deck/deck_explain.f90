@@ -220,6 +220,10 @@ contains
       choices = words_of(key%allowed, ' ')
       allowed = '`'''//joined(choices, '''`, `''')//'''`'
     end if
+    if (key%kind == 'choice or real') then
+      choices = words_of(allowed(:index(allowed, ',') - 1), ' ')
+      allowed = '`'''//joined(choices, '''`, `''')//'''`'//allowed(index(allowed, ','):)
+    end if
     row = '| `'//key%name//'` | '//key%kind//' | '//key%values//' | '//key%unit//' | '//default//' | '//allowed// &
           ' | '//key%meaning//' |'
   end function table_row

@@ -20,6 +20,10 @@ module deck_settings
     logical :: given = .false.
     !> True: the values can be used
     logical :: sound = .true.
+    !> True: not from the deck but chosen for the accuracy that it asks for
+    logical :: chosen = .false.
+    !> True: without effect on this deck, so the echo leaves it out
+    logical :: idle = .false.
     !> The values; none if the key has no default
     type(value_t), allocatable :: values(:)
   end type setting_t
@@ -56,6 +60,8 @@ module deck_settings
     procedure :: logical_of
     procedure :: derive
     procedure :: derive_numbers
+    procedure :: choose
+    procedure :: set_aside
   end type settings_t
 
 contains
@@ -324,4 +330,37 @@ contains
     end do
     call move_alloc(values, self%items(item)%values)
   end subroutine derive_numbers
+  !> Sets the numbers of a key that the deck leaves to the accuracy it asks for.
+  pure subroutine choose(self, group, key, words)
+    class(settings_t), intent(inout) :: self
+    !> Names of group and key
+    character(len=*), intent(in) :: group, key
+    !> The numbers as they would stand in a deck
+    type(line_t), intent(in) :: words(:)
+    type(value_t), allocatable :: values(:)
+    integer :: i, place
+
+    place = self%find(group, key)
+    if (place == 0) return
+    allocate (values(size(words)))
+    do i = 1, size(words)
+      values(i)%text = words(i)%text
+      values(i)%quoted = .false.
+    end do
+    call move_alloc(values, self%items(place)%values)
+    self%items(place)%chosen = .true.
+  end subroutine choose
+
+  !> Leaves a group that the deck hasn't got out of the echo.
+  pure subroutine set_aside(self, group)
+    class(settings_t), intent(inout) :: self
+    !> Name of the group
+    character(len=*), intent(in) :: group
+    integer :: i
+
+    if (self%has_group(group)) return
+    do i = 1, size(self%items)
+      if (self%items(i)%group == lower_case(group)) self%items(i)%idle = .true.
+    end do
+  end subroutine set_aside
 end module deck_settings

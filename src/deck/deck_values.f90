@@ -37,6 +37,12 @@ contains
         [character(len=7) :: '.true.', '.false.', 'true', 'false', '.t.', '.f.', 't', 'f'])) then
         fault = shown(value%text)//' is neither .true. nor .false.'
       end if
+    case ('choice or real')
+      if (value%quoted) then
+        fault = fault_of_choice(branch_of(key, 'choice'), value%text)
+      else
+        fault = fault_of_number(branch_of(key, 'real'), value)
+      end if
     case default
       if (.not. value%quoted) then
         fault = shown(value%text)//' stands without quotes'
@@ -45,6 +51,23 @@ contains
       end if
     end select
   end function fault_of_value
+
+  !> One side of a key that takes a choice or a number; in the table its choices stand before the conditions.
+  pure function branch_of(key, kind) result(branch)
+    !> The key as the table has it
+    type(key_entry_t), intent(in) :: key
+    !> `choice` or `real`
+    character(len=*), intent(in) :: kind
+    !> A key of that kind alone
+    type(key_entry_t) :: branch
+    integer :: comma
+
+    branch = key
+    branch%kind = kind
+    comma = index(key%allowed, ',')
+    branch%allowed = key%allowed(:comma - 1)
+    if (kind == 'real') branch%allowed = key%allowed(comma + 2:)
+  end function branch_of
 
   !> What is wrong with a number, or an empty text.
   pure function fault_of_number(key, value) result(fault)
@@ -125,7 +148,7 @@ contains
     fault = ''
     do j = 1, size(chosen)
       associate (name => chosen(j)%text)
-        if (any([(choices(i)%text == lower_case(name), i=1, size(choices))])) cycle
+        if (any([(lower_case(choices(i)%text) == lower_case(name), i=1, size(choices))])) cycle
         fault = ''''//shown(name)//''' is not a choice'
         if (nearest_name(name, choices) /= '') fault = fault//' (meant '''//nearest_name(name, choices)//'''?)'
         return
@@ -181,13 +204,18 @@ contains
   end function decimal_commas
 
   !> What a key takes, for the end of a message.
-  pure function allowed_sentence(key) result(sentence)
+  pure recursive function allowed_sentence(key) result(sentence)
     !> The key as the table has it
     type(key_entry_t), intent(in) :: key
     !> Such as `allowed: 2 real values > 0`
     character(len=:), allocatable :: sentence
     type(line_t), allocatable :: choices(:)
 
+    if (key%kind == 'choice or real') then
+      sentence = allowed_sentence(branch_of(key, 'real'))
+      sentence = allowed_sentence(branch_of(key, 'choice'))//' or'//sentence(len('allowed:') + 1:)
+      return
+    end if
     sentence = 'allowed: '//key%values//' '//key%kind//trim(merge('  ', 's ', key%values == '1'))
     if (key%kind == 'real' .or. key%kind == 'text') sentence = 'allowed: '//key%values//' '//key%kind// &
                                                                trim(merge(' value ', ' values', key%values == '1'))

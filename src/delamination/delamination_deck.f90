@@ -19,7 +19,8 @@ module delamination_deck
 
   !> Names that checks across groups use.
   character(len=*), parameter, public :: delamination_group = 'delamination', key_below_ply = 'below_ply', &
-                                         key_zone = 'zone', key_starter = 'starter'
+                                         key_zone = 'zone', key_starter = 'starter', &
+                                         key_toughness = 'G_c', key_toughness_shear = 'G_IIc'
   character(len=*), parameter :: group = delamination_group
   !> Keys that have no effect on a cohesive interface.
   character(len=*), parameter :: keys_of_fronts = &

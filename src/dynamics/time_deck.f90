@@ -12,16 +12,16 @@ module time_deck
   private
   public :: fill_time, check_time
 
-  !> Name that checks across groups use.
-  character(len=*), parameter, public :: time_group = 'time'
+  !> Names that checks across groups use.
+  character(len=*), parameter, public :: time_group = 'time', key_end = 'end', key_step = 'step'
   !> Row of the group.
   character(len=group_row_length), parameter, public :: time_group_row = &
-    'time | optional | Time integration of the plate; needed unless the analysis is static.'
+    'time | settings | Time integration of the plate; needed unless the analysis is static.'
   !> Rows of the keys.
   character(len=key_row_length), parameter, public :: time_rows(*) = [character(len=key_row_length) :: &
-    'time | end | real | 1 | time | required | > 0 | &
+    'time | end | real | 1 | time | = by &case accuracy | > 0 | &
       &End of the run.', &
-    'time | step | real | 1 | time | required | > 0 | &
+    'time | step | real | 1 | time | = by &case accuracy | > 0 | &
       &First time step, and the step if it doesn''t adapt.', &
     'time | step_min | real | 1 | time | = step/1024 | > 0 | &
       &Smallest step tried before giving up.', &
@@ -53,8 +53,8 @@ contains
     type(time_t), intent(inout) :: time
 
     associate (s => settings)
-      time%end = s%real_of(time_group, 'end')
-      time%step = s%real_of(time_group, 'step')
+      time%end = s%real_of(time_group, key_end)
+      time%step = s%real_of(time_group, key_step)
       if (.not. s%is_given(time_group, 'step_min')) &
         call s%derive(time_group, 'step_min', to_text(time%step/1024), .false.)
       if (.not. s%is_given(time_group, 'step_max')) call s%derive(time_group, 'step_max', to_text(time%step), .false.)

@@ -18,6 +18,7 @@ module impactor_deck
                                          key_radius = 'radius', key_gravity = 'gravity'
   !> Names used here more than once.
   character(len=*), parameter :: key_mass = 'mass', key_energy = 'energy'
+                                         key_radius = 'radius', key_gravity = 'gravity', key_mass = 'mass'
   !> Row of the group.
   character(len=group_row_length), parameter, public :: impactor_group_row = &
     'impactor | optional | The rigid impactor that strikes the plate, in its middle or elsewhere.'

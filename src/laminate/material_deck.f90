@@ -13,7 +13,8 @@ module material_deck
   public :: fill_materials, require_densities, normal_compliance
 
   !> Name that checks across groups use.
-  character(len=*), parameter, public :: material_group = 'material'
+  character(len=*), parameter, public :: material_group = 'material', key_isotropic = 'E ', key_along = 'E1', &
+                                         key_density = 'density', key_tension = 'XT'
   !> Row of the group.
   character(len=group_row_length), parameter, public :: material_group_row = &
     'material | repeatable | One ply material, orthotropic or isotropic; may be given several times.'

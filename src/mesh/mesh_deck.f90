@@ -13,15 +13,15 @@ module mesh_deck
 
   !> Names that checks across groups use.
   character(len=*), parameter, public :: mesh_group = 'mesh', key_elements = 'elements', key_patch = 'patch', &
-                                         key_core = 'core', key_cell = 'cell'
+                                         key_core = 'core', key_cell = 'cell', key_grading = 'grading'
   !> Most elements: more pass the range of default integers.
   real(wp), parameter, public :: most_elements = 1.0e6_wp
   !> Row of the group.
   character(len=group_row_length), parameter, public :: mesh_group_row = &
-    'mesh | required | The rectangle of nine-node elements and the loaded patch.'
+    'mesh | settings | The rectangle of nine-node elements and the loaded patch.'
   !> Rows of the keys.
   character(len=key_row_length), parameter, public :: mesh_rows(*) = [character(len=key_row_length) :: &
-    'mesh | elements | integer | 2 | - | required | >= 2, <= 2000 | &
+    'mesh | elements | integer | 2 | - | = by &case accuracy | >= 2, <= 2000 | &
       &Elements along x and y of the modelled part.', &
     'mesh | grading | real | 1 | - | 0 | >= 0, <= 1000 | &
       &Largest over smallest element edge outside the patch; 0: sizes change smoothly.', &
@@ -42,7 +42,7 @@ contains
     type(mesh_t), intent(inout) :: mesh
 
     if (settings%is_known(mesh_group, key_elements)) mesh%elements = settings%integers_of(mesh_group, key_elements)
-    mesh%grading = settings%real_of(mesh_group, 'grading')
+    mesh%grading = settings%real_of(mesh_group, key_grading)
     mesh%patch = settings%real_of(mesh_group, key_patch)
     if (settings%is_known(mesh_group, key_core)) mesh%core = settings%reals_of(mesh_group, key_core)
     if (settings%is_known(mesh_group, key_cell)) mesh%cell = settings%real_of(mesh_group, key_cell)
@@ -59,12 +59,12 @@ contains
 
     if (product(real(mesh%elements, wp)) > most_elements) call tell(settings, problems, mesh_group, key_elements, &
       'more than '//to_text(most_elements)//' elements in all; give fewer.')
-    if (mesh%grading > 0 .and. mesh%grading < 1) call tell(settings, problems, mesh_group, 'grading', &
+    if (mesh%grading > 0 .and. mesh%grading < 1) call tell(settings, problems, mesh_group, key_grading, &
       'the largest edge is not smaller than the smallest; allowed: 0 or >= 1.')
     if (.not. are_clear(settings, problems, mesh_group, key_core//' '//key_cell)) return
-    if (settings%is_given(mesh_group, key_core) .and. .not. settings%is_given(mesh_group, key_cell)) then
+    if (settings%is_given(mesh_group, key_core) .and. .not. settings%is_known(mesh_group, key_cell)) then
       call tell(settings, problems, mesh_group, key_cell, 'is missing; `core` and `cell` go together.')
-    else if (settings%is_given(mesh_group, key_cell) .and. .not. settings%is_given(mesh_group, key_core)) then
+    else if (settings%is_given(mesh_group, key_cell) .and. .not. settings%is_known(mesh_group, key_core)) then
       call tell(settings, problems, mesh_group, key_core, 'is missing; `core` and `cell` go together.')
     end if
   end subroutine check_mesh

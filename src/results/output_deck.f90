@@ -12,7 +12,9 @@ module output_deck
   private
   public :: fill_output, check_intervals, remark_idle_fields
 
-  character(len=*), parameter :: group = 'output'
+  !> Names that checks across groups use.
+  character(len=*), parameter, public :: output_group = 'output', key_fields_every = 'fields_every'
+  character(len=*), parameter :: group = output_group
   !> Row of the group.
   character(len=group_row_length), parameter, public :: output_group_row = &
     'output | settings | What is written, how often and where.'
@@ -50,7 +52,7 @@ contains
 
     output%directory = settings%text_of(group, 'directory')
     output%history_every = settings%real_of(group, 'history_every')
-    output%fields_every = settings%real_of(group, 'fields_every')
+    output%fields_every = settings%real_of(group, key_fields_every)
     output%checkpoint_every = settings%real_of(group, 'checkpoint_every')
     if (.not. settings%is_given(group, 'fields')) call settings%derive(group, 'fields', usual_fields, .true.)
     output%fields = lower_case(joined(words_of(joined(settings%texts_of(group, 'fields'), ','), ','), ','))

@@ -1,0 +1,215 @@
+!> Mesh, step and output clocks that a deck leaves to the accuracy it asks for. What the deck gives stands.
+module deck_accuracy
+  use case_deck, only: has_accuracy
+  use deck_contents, only: deck_t
+  use deck_problems, only: problems_t
+  use deck_settings, only: settings_t
+  use kinds, only: wp
+  use mesh_deck, only: mesh_group, key_elements, key_patch, key_core, key_cell, key_grading, fill_mesh
+  use mesh_parameters, only: symmetry_quarter
+  use output_deck, only: output_group, key_fields_every
+  use pilot_impacts, only: pilot_t
+  use scene_pilots, only: scene_pilot_t, start_pilot, contact_end, largest_step, largest_cell
+  use scene_scales, only: scene_scales_t, scales_of, contact_side, has_blow
+  use short_numbers, only: short_text
+  use text, only: line_t, append, to_text
+  use time_deck, only: time_group, key_end, key_step
+  implicit none
+  private
+  public :: check_left_out, choose_by_accuracy
+
+  !> Error of the history allowed over that of the peak: 3 % and 1 %. Mesh and step get half of both each.
+  real(wp), parameter :: history_over_peak = 3, share = 0.5_wp
+  !> Time from touch to the end of the run over that to the end of the contact.
+  real(wp), parameter :: beyond_contact = 1.25_wp
+  !> Most elements along one direction.
+  integer, parameter :: most_along = 600
+  !> Elements across the smaller side of the zone of an interface that may delaminate.
+  integer, parameter :: zone_elements = 24
+  !> Fields written in a run.
+  integer, parameter :: fields_written = 10
+  !> Parts of the plate's shorter side that elements have without an impactor, at an error of 1 %, and of its first
+  !> period that steps have. The element's error falls with the fourth power of its side, the step's with the square.
+  real(wp), parameter :: part_of_side = 1.0_wp/16, part_of_period = 1.0_wp/40
+
+contains
+
+  !> Keys that only `accuracy` makes up for.
+  subroutine check_left_out(settings, problems)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+
+    if (has_accuracy(settings)) return
+    if (settings%has_group(mesh_group)) then
+      call require(mesh_group, key_elements, '2 integers >= 2')
+    else if (.not. problems%concern(mesh_group)) then
+      call problems%error(0, mesh_group, '', '&'//mesh_group//' is missing; `implam explain '//mesh_group// &
+                          '` shows what it takes.')
+    end if
+    if (.not. settings%has_group(time_group)) return
+    call require(time_group, key_end, '1 real value > 0')
+    call require(time_group, key_step, '1 real value > 0')
+
+  contains
+
+    !> Tells a key that is missing.
+    subroutine require(group, key, allowed)
+      !> Names of group and key
+      character(len=*), intent(in) :: group, key
+      !> What it takes
+      character(len=*), intent(in) :: allowed
+
+      if (settings%is_given(group, key) .or. problems%concern(group, key)) return
+      call problems%error(settings%line_of_group(group), group, key, '&'//group//' '//key//' is missing; allowed: '// &
+                          allowed//', or &case accuracy, which chooses it.', 1)
+    end subroutine require
+  end subroutine check_left_out
+
+  !> Chooses what the deck leaves out, once all that it follows from is without fault.
+  subroutine choose_by_accuracy(deck, problems)
+    !> Plate, laminate, impactor and interfaces are filled; receives mesh and times
+    type(deck_t), intent(inout) :: deck
+    !> Faults so far
+    type(problems_t), intent(inout) :: problems
+    type(scene_scales_t) :: scales
+
+    if (problems%errors() > 0) return
+    allocate (deck%reasons(0))
+    scales = scales_of(deck%scene_t)
+    if (has_blow(deck%scene_t) .and. scales%area_mass > 0) then
+      call choose_for_impact(deck, scales)
+    else
+      call choose_for_pressure(deck, scales, problems)
+    end if
+    call fill_mesh(deck%settings, deck%mesh)
+  end subroutine choose_by_accuracy
+
+  !> Patch, end, step and mesh of an impact, by pilot calculations.
+  subroutine choose_for_impact(deck, scales)
+    !> The deck
+    type(deck_t), intent(inout) :: deck
+    !> Scales of its scene
+    type(scene_scales_t), intent(in) :: scales
+    type(scene_pilot_t) :: pilot
+    type(pilot_t) :: first
+    real(wp) :: end, step, bounds(2), error(2)
+
+    bounds = share*deck%accuracy/100*[1.0_wp, history_over_peak]
+    end = deck%settings%real_of(time_group, key_end)
+    pilot = start_pilot(deck%scene_t, scales)
+    first = contact_end(pilot, end)
+    if (.not. deck%mesh%patch > 0) then
+      call choose_one(deck, mesh_group, key_patch, min(contact_side(deck%scene_t, first%indentation), &
+                                                       minval(deck%plate%length)/4))
+      deck%mesh%patch = deck%settings%real_of(mesh_group, key_patch)
+      call append(deck%reasons, 'Patch '//short_text(deck%mesh%patch)//': the circle of contact at an indentation '// &
+                  'of '//short_text(first%indentation)//', spread over the thickness.')
+      pilot = start_pilot(deck%scene_t, scales)
+      first = contact_end(pilot, end)
+    end if
+    if (.not. end > 0) then
+      call choose_one(deck, time_group, key_end, beyond_contact*first%last_contact)
+      end = deck%settings%real_of(time_group, key_end)
+      call append(deck%reasons, 'End '//short_text(end)//': the contact, '//to_text(first%contacts)// &
+                  ' time(s), is over at '//short_text(first%last_contact)//' in a pilot calculation by modes.')
+    end if
+    step = deck%settings%real_of(time_group, key_step)
+    if (.not. step > 0) then
+      call largest_step(pilot, end, bounds, step, error)
+      call choose_one(deck, time_group, key_step, step)
+      step = deck%settings%real_of(time_group, key_step)
+      call append(deck%reasons, 'Step '//short_text(step)//': '//to_text(ceiling(end/step))// &
+                  ' steps; half of it changes the force history of the pilot by '//short_text(100*error(2))//' %.')
+    end if
+    call choose_clocks(deck, step, end)
+    if (deck%settings%is_given(mesh_group, key_elements)) return
+    call choose_elements(deck, largest_cell(pilot, step, min(end, beyond_contact*first%last_contact), bounds), scales)
+  end subroutine choose_for_impact
+
+  !> Mesh, and in time the step, of a plate under pressure.
+  subroutine choose_for_pressure(deck, scales, problems)
+    !> The deck
+    type(deck_t), intent(inout) :: deck
+    !> Scales of its scene
+    type(scene_scales_t), intent(in) :: scales
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+
+    if (.not. deck%settings%is_given(mesh_group, key_elements)) &
+      call choose_elements(deck, part_of_side*minval(deck%plate%length)*deck%accuracy**0.25_wp, scales)
+    if (deck%has_static) return
+    if (.not. deck%settings%is_given(time_group, key_end)) then
+      call problems%error(deck%settings%line_of_group(time_group), time_group, key_end, '&'//time_group//' '// &
+                          key_end//' is missing; &case accuracy chooses it where an impactor comes with a velocity.', 1)
+    else if (.not. deck%settings%is_given(time_group, key_step)) then
+      call choose_one(deck, time_group, key_step, part_of_period*scales%first_period*sqrt(deck%accuracy))
+    end if
+  end subroutine choose_for_pressure
+
+  !> Number and sizes of elements that are nowhere longer than a side.
+  subroutine choose_elements(deck, side, scales)
+    !> The deck
+    type(deck_t), intent(inout) :: deck
+    !> Largest side wanted
+    real(wp), intent(in) :: side
+    !> Scales of its scene
+    type(scene_scales_t), intent(in) :: scales
+    real(wp) :: half(2), cell
+    integer :: number(2), parts
+    type(line_t), allocatable :: words(:)
+
+    parts = merge(1, 2, deck%plate%symmetry == symmetry_quarter)
+    half = deck%plate%length/2
+    cell = side
+    if (deck%settings%is_known(mesh_group, key_cell)) cell = max(cell, deck%mesh%cell)
+    if (size(deck%delaminations) > 0) cell = min(cell, smallest_zone(deck)/zone_elements)
+    number = min(most_along/parts, max(2, ceiling(half/cell - 0.01_wp)))
+    if (deck%mesh%patch > 0) number = max(number, 1 + max(1, ceiling((half - deck%mesh%patch/2)/cell - 0.01_wp)))
+    number = min(number, most_along/parts)*parts
+    allocate (words(0))
+    call append(words, to_text(number(1)))
+    call append(words, to_text(number(2)))
+    call deck%settings%choose(mesh_group, key_elements, words)
+    if (.not. deck%settings%is_given(mesh_group, key_grading)) &
+      call deck%settings%choose(mesh_group, key_grading, [line_t('1')])
+    if (scales%wave_length > 0) then
+      call append(deck%reasons, 'Elements of '//short_text(cell)//': the waves of first contact are '// &
+                  short_text(scales%wave_length)//' long.')
+    end if
+  end subroutine choose_elements
+
+  !> Smallest side of the zones.
+  pure real(wp) function smallest_zone(deck) result(side)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    integer :: i
+
+    side = minval([(minval(deck%delaminations(i)%zone), i=1, size(deck%delaminations))])
+  end function smallest_zone
+
+  !> Fields are written at whole steps.
+  subroutine choose_clocks(deck, step, end)
+    !> The deck
+    type(deck_t), intent(inout) :: deck
+    !> Step and end of the run
+    real(wp), intent(in) :: step, end
+
+    if (deck%settings%is_given(output_group, key_fields_every)) return
+    call deck%settings%choose(output_group, key_fields_every, &
+                              [line_t(to_text(step*max(1, nint(end/step/fields_written))))])
+  end subroutine choose_clocks
+
+  !> Sets one number, to three digits.
+  subroutine choose_one(deck, group, key, value)
+    !> The deck
+    type(deck_t), intent(inout) :: deck
+    !> Names of group and key
+    character(len=*), intent(in) :: group, key
+    !> The number
+    real(wp), intent(in) :: value
+
+    call deck%settings%choose(group, key, [line_t(short_text(value))])
+  end subroutine choose_one
+end module deck_accuracy

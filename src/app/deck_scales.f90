@@ -1,0 +1,127 @@
+!> What the deck's scene has to resolve, as a table and as warnings where mesh or step don't.
+module deck_scales
+  use cell_grids, only: cell_edges
+  use deck_contents, only: deck_t
+  use deck_problems, only: problems_t
+  use deck_remarks, only: remark
+  use kinds, only: wp
+  use mesh_deck, only: mesh_group, key_elements, key_patch
+  use scene_pilots, only: outlook_of
+  use scene_scales, only: scene_scales_t, scales_of, has_blow
+  use short_numbers, only: short_text
+  use text, only: line_t, append
+  use time_deck, only: time_group, key_step
+  implicit none
+  private
+  public :: check_scales, scale_lines
+
+  !> Errors of peak and history, by pilot calculations, that a user is warned of.
+  real(wp), parameter :: noticeable(2) = [0.05_wp, 0.2_wp]
+  !> The same for the size of the patch, which is an estimate itself.
+  real(wp), parameter :: noticeable_patch(2) = [0.1_wp, 0.2_wp]
+
+contains
+
+  !> Looks ahead at the run, and warns of a step, a mesh and a patch that don't resolve the impact.
+  subroutine check_scales(deck, problems)
+    !> The deck, checked; receives the outlook
+    type(deck_t), intent(inout) :: deck
+    !> Warnings are added
+    type(problems_t), intent(inout) :: problems
+    type(scene_scales_t) :: scales
+
+    if (problems%errors() > 0) return
+    scales = scales_of(deck%scene_t)
+    if (has_blow(deck%scene_t) .and. .not. deck%has_static) then
+      deck%outlook = outlook_of(deck%scene_t, scales, deck%stepping%time%step, deck%stepping%time%end, &
+                                edge_near(deck, scales%wave_length))
+      call check_resolution(deck, problems)
+    end if
+    deck%outlook%scales = scales
+  end subroutine check_scales
+
+  !> Warns of a step, a mesh and a patch that don't resolve the impact.
+  subroutine check_resolution(deck, problems)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Warnings are added
+    type(problems_t), intent(inout) :: problems
+
+    associate (o => deck%outlook)
+      if (any(o%step_error > noticeable)) call remark(deck%settings, problems, time_group, key_step, &
+        'is too long for this impact: by a pilot calculation the largest force would be '// &
+        short_text(100*o%step_error(1))//' % off, its history '//short_text(100*o%step_error(2))// &
+        ' %; make it shorter, or leave it out with &case accuracy.')
+      if (any(o%mesh_error > noticeable)) call remark(deck%settings, problems, mesh_group, key_elements, &
+        'are too large for this impact, '//short_text(o%edge)//' near the struck point: by a pilot calculation the '// &
+        'largest force would be '//short_text(100*o%mesh_error(1))//' % off, its history '// &
+        short_text(100*o%mesh_error(2))//' %; give more, or leave them out with &case accuracy.')
+      if (any(o%patch_error > noticeable_patch)) call remark(deck%settings, problems, mesh_group, key_patch, &
+        'is larger than the contact that it stands for, whose force spreads over '//short_text(o%contact_side)// &
+        ' in the middle of the thickness: the largest force changes by '//short_text(100*o%patch_error(1))// &
+        ' %, its history by '//short_text(100*o%patch_error(2))//' %.')
+    end associate
+  end subroutine check_resolution
+
+  !> The table of scales.
+  function scale_lines(deck) result(lines)
+    !> The deck, checked
+    type(deck_t), intent(in) :: deck
+    !> One line each
+    type(line_t), allocatable :: lines(:)
+
+    allocate (lines(0))
+    associate (o => deck%outlook, scales => deck%outlook%scales)
+      call put('thickness of the laminate', scales%thickness)
+      call put('mass of the plate', scales%plate_mass)
+      call put('period of the plate''s first bending', scales%first_period)
+      call put('force at which delaminations grow', scales%threshold)
+      if (.not. o%of_impact) return
+      call put('energy of the impactor', scales%energy)
+      call put('force per indentation**1.5, k', deck%indentation%k)
+      call put('rise of the first contact', scales%contact_time)
+      call put('steps in that rise', scales%contact_time/deck%stepping%time%step)
+      call put('length of the waves', scales%wave_length)
+      call put('elements in a wave', scales%wave_length/o%edge)
+      call put('expected force', o%force)
+      call put('expected indentation', o%indentation)
+      call put('expected deflection over thickness', o%deflection/scales%thickness)
+      call put('contacts', real(o%contacts, wp))
+      call put('end of the last contact', o%last_contact)
+      call put('error of the peak force by the step, %', 100*o%step_error(1))
+      call put('error of the force history by the step, %', 100*o%step_error(2))
+      call put('error of the peak force by the mesh, %', 100*o%mesh_error(1))
+      call put('error of the force history by the mesh, %', 100*o%mesh_error(2))
+    end associate
+
+  contains
+
+    !> Adds a line; what isn't known, or nil, has none.
+    subroutine put(name, value)
+      !> What it is
+      character(len=*), intent(in) :: name
+      !> Its size
+      real(wp), intent(in) :: value
+
+      if (value > 0) call append(lines, '  '//name//repeat(' ', max(1, 44 - len(name)))//short_text(value))
+    end subroutine put
+  end function scale_lines
+
+  !> Mean edge of the elements within a distance of the struck point, along the direction where it is longer.
+  pure real(wp) function edge_near(deck, distance) result(edge)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> The distance
+    real(wp), intent(in) :: distance
+    real(wp), allocatable :: edges(:)
+    integer :: direction, first, last
+
+    edge = 0
+    do direction = 1, 2
+      edges = cell_edges(deck%plate, deck%mesh, direction)
+      first = minloc(abs(edges), 1)
+      last = max(first + 1, count(edges <= distance))
+      edge = max(edge, (edges(last) - edges(first))/(last - first))
+    end do
+  end function edge_near
+end module deck_scales

@@ -1,0 +1,263 @@
+!> Values of the deck that look as if they were in another unit than the rest.
+!>
+!> Any consistent units will do, so the system is the one of `&case units`, or else that which most values fit. A value
+!> is told only if its size is odd in that system and usual in a unit that people write. Three figures are held against
+!> each other rather than against ranges: the run's time against the plate's period, the mass of a steel ball against
+!> its radius, and the contact stiffness against Sun's formula.
+module deck_units
+  use deck_contents, only: deck_t
+  use deck_problems, only: problems_t
+  use deck_remarks, only: remark
+  use delamination_deck, only: delamination_group, key_toughness, key_toughness_shear
+  use delamination_parameters, only: toughnesses
+  use hertz_contact, only: sun_stiffness
+  use impactor_deck, only: impactor_group, key_mass, key_radius, key_velocity
+  use indentation_deck, only: indentation_group, key_k
+  use kinds, only: wp
+  use laminate_deck, only: laminate_group, key_thicknesses
+  use material_deck, only: material_group, key_isotropic, key_along, key_density, key_tension
+  use plate_deck, only: plate_group, key_length
+  use short_numbers, only: short_text
+  use text, only: lower_case
+  use time_deck, only: time_group, key_end
+  use unit_systems, only: is_odd, unit_that_fits, unit_name, systems, quantities, of_pressure, of_density, of_length, &
+                          of_thickness, of_radius, of_mass, of_velocity, of_toughness, of_time, of_strength
+  implicit none
+  private
+  public :: check_units
+
+  !> One value of the deck with the key to name.
+  type :: quantity_t
+    !> Kind of the quantity
+    integer :: quantity = 0
+    !> Its value
+    real(wp) :: value = 0
+    !> Group and key
+    character(len=16) :: group = '', key = ''
+    !> Which of the groups of this name
+    integer :: place = 1
+  end type quantity_t
+
+  !> End of the run over the plate's period or the contact, whichever is longer: beyond these it looks wrong.
+  real(wp), parameter :: shortest_run = 5.0e-3_wp, longest_run = 100
+  !> Times that a contact takes as long as its force rises.
+  real(wp), parameter :: contact_rises = 10
+  !> Density of steel, kg/m^3, and how near to it a ball's is taken to be steel's.
+  real(wp), parameter :: steel = 7850, near = 0.03_wp
+  !> Contact stiffness over that of Sun's formula for a rigid ball: a usual one, and one that looks wrong.
+  real(wp), parameter :: usual_stiffness(2) = [0.02_wp, 5.0_wp], odd_stiffness(2) = [1.0e-3_wp, 1.0e3_wp]
+  !> N/m^1.5 in one N/mm^1.5.
+  real(wp), parameter :: per_millimetre = 31622.8_wp
+
+contains
+
+  !> Warns of values in other units.
+  subroutine check_units(deck, problems)
+    !> The deck, checked, with its outlook
+    type(deck_t), intent(in) :: deck
+    !> Warnings are added
+    type(problems_t), intent(inout) :: problems
+    type(quantity_t), allocatable :: list(:)
+    character(len=:), allocatable :: fits
+    integer :: system, i
+
+    if (problems%errors() > 0) return
+    call gather(deck, list)
+    system = likeliest_system(deck, list)
+    if (system == 0) return
+    do i = 1, size(list)
+      if (.not. is_odd(list(i)%quantity, list(i)%value, system)) cycle
+      fits = unit_that_fits(list(i)%quantity, list(i)%value)
+      if (fits == '') cycle
+      call tell_unit(deck, problems, list(i), system, 'is odd', fits)
+    end do
+    if (deck%has_time .and. .not. deck%has_static) call check_times(deck, system, problems)
+    if (deck%has_impactor) call check_ball(deck, system, problems)
+  end subroutine check_units
+
+  !> Adds a warning.
+  subroutine tell_unit(deck, problems, item, system, finding, fits)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Receives the warning
+    type(problems_t), intent(inout) :: problems
+    !> The value
+    type(quantity_t), intent(in) :: item
+    !> Index of the system
+    integer, intent(in) :: system
+    !> What is odd about it
+    character(len=*), intent(in) :: finding
+    !> Unit that fits
+    character(len=*), intent(in) :: fits
+
+    call remark(deck%settings, problems, trim(item%group), trim(item%key), short_text(item%value)//' '// &
+                unit_name(item%quantity, system)//' '//finding//' beside the other values, which fit '// &
+                trim(systems(system))//'; it looks as if it were in '//fits//'.', item%place)
+  end subroutine tell_unit
+
+  !> Values with a size that can be told to be odd.
+  subroutine gather(deck, list)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> The values
+    type(quantity_t), allocatable, intent(out) :: list(:)
+    real(wp) :: toughness(2)
+    integer :: i
+
+    allocate (list(0))
+    call add(of_length, minval(deck%plate%length), plate_group, key_length, 1)
+    call add(of_thickness, sum(deck%laminate%thickness), laminate_group, key_thicknesses, 1)
+    do i = 1, size(deck%materials)
+      call add(of_pressure, deck%materials(i)%e1, material_group, &
+               merge(key_isotropic, key_along, deck%settings%is_given(material_group, key_isotropic, i)), i)
+      call add(of_density, deck%materials(i)%density, material_group, key_density, i)
+      call add(of_strength, deck%materials(i)%xt, material_group, key_tension, i)
+    end do
+    do i = 1, size(deck%delaminations)
+      toughness = toughnesses(deck%delaminations(i))
+      if (deck%delaminations(i)%toughness > 0) then
+        call add(of_toughness, toughness(2), delamination_group, key_toughness, i)
+      else
+        call add(of_toughness, toughness(2), delamination_group, key_toughness_shear, i)
+      end if
+    end do
+    if (.not. deck%has_impactor) return
+    call add(of_mass, deck%impactor%mass, impactor_group, key_mass, 1)
+    call add(of_velocity, deck%impactor%velocity, impactor_group, key_velocity, 1)
+    call add(of_radius, deck%impactor%radius, impactor_group, key_radius, 1)
+
+  contains
+
+    !> Adds a value that is there.
+    subroutine add(quantity, value, group, key, place)
+      !> Kind of the quantity
+      integer, intent(in) :: quantity
+      !> The value
+      real(wp), intent(in) :: value
+      !> Names of group and key
+      character(len=*), intent(in) :: group, key
+      !> Which of the groups of this name
+      integer, intent(in) :: place
+      type(quantity_t) :: item
+
+      if (.not. value > 0) return
+      item%quantity = quantity
+      item%value = value
+      item%group = group
+      item%key = key
+      item%place = place
+      list = [list, item]
+    end subroutine add
+  end subroutine gather
+
+  !> The system that the deck names, or else that with the fewest kinds of quantities at odds; 0: the deck fits none, so
+  !> it is in units of its own.
+  pure integer function likeliest_system(deck, list) result(system)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Its values
+    type(quantity_t), intent(in) :: list(:)
+    integer :: odd(size(systems)), present_kinds, i
+
+    do system = 1, size(systems)
+      if (lower_case(deck%units) == lower_case(trim(systems(system)))) return
+    end do
+    present_kinds = count([(any(list%quantity == i), i=1, quantities)])
+    do i = 1, size(systems)
+      odd(i) = odd_kinds(list, i)
+    end do
+    system = minloc(odd, 1)
+    ! Without an impactor there are too few values to tell, and plates of unit density are common.
+    if (2*odd(system) > present_kinds .or. .not. deck%has_impactor) system = 0
+  end function likeliest_system
+
+  !> Kinds of quantities with a value of odd size. Lengths are typed in one unit: all sorts of them count as one.
+  pure integer function odd_kinds(list, system) result(number)
+    !> Values of the deck
+    type(quantity_t), intent(in) :: list(:)
+    !> Index of the system
+    integer, intent(in) :: system
+    logical :: odd(quantities)
+    integer :: i
+
+    odd = .false.
+    do i = 1, size(list)
+      if (is_odd(list(i)%quantity, list(i)%value, system)) odd(list(i)%quantity) = .true.
+    end do
+    odd(of_length) = odd(of_length) .or. odd(of_thickness) .or. odd(of_radius)
+    odd([of_thickness, of_radius]) = .false.
+    number = count(odd)
+  end function odd_kinds
+
+  !> The run's time against what is to happen in it.
+  subroutine check_times(deck, system, problems)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Index of the system
+    integer, intent(in) :: system
+    !> Warnings are added
+    type(problems_t), intent(inout) :: problems
+    real(wp) :: longest, ratio
+    real(wp), parameter :: pi = acos(-1.0_wp)
+    integer :: i
+    real(wp), parameter :: thousands(4) = [1.0e-3_wp, 1.0e-6_wp, 1.0e3_wp, 1.0e6_wp]
+    character(len=2), parameter :: of_si(4) = [character(len=2) :: 'ms', 'us', '', ''], &
+                                   of_ms(4) = [character(len=2) :: 'us', '', 's', '']
+
+    if (deck%settings%is_known(time_group, key_end) .and. .not. deck%settings%is_given(time_group, key_end)) return
+    longest = max(deck%outlook%scales%first_period, contact_rises*deck%outlook%scales%contact_time)
+    if (deck%has_impactor) longest = max(longest, pi*sqrt(deck%impactor%mass*deck%outlook%scales%compliance))
+    if (.not. longest > 0) return
+    ratio = deck%stepping%time%end/longest
+    if (ratio > shortest_run .and. ratio < longest_run) return
+    do i = 1, size(thousands)
+      if (ratio*thousands(i) < shortest_run .or. ratio*thousands(i) > longest_run) cycle
+      associate (unit => merge(of_ms(i), of_si(i), unit_name(of_time, system) == 'ms'))
+        if (unit /= '') call tell_unit(deck, problems, quantity_t(of_time, deck%stepping%time%end, time_group, key_end), &
+                                       system, 'is '//short_text(ratio)//' times what happens', trim(unit))
+      end associate
+      return
+    end do
+  end subroutine check_times
+
+  !> Mass and contact stiffness of the ball against its radius.
+  subroutine check_ball(deck, system, problems)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Index of the system
+    integer, intent(in) :: system
+    !> Warnings are added
+    type(problems_t), intent(inout) :: problems
+    real(wp), parameter :: pi = acos(-1.0_wp)
+    real(wp) :: ball, ratio
+
+    associate (impactor => deck%impactor, law => deck%indentation)
+      if (.not. impactor%radius > 0) return
+      if (is_odd(of_radius, impactor%radius, system)) return
+      ! kg/m^3 from t/mm^3 or kg/mm^3.
+      ball = impactor%mass/(4*pi/3*impactor%radius**3)
+      if (unit_name(of_mass, system) == 't') ball = ball*1.0e12_wp
+      if (unit_name(of_time, system) == 'ms') ball = ball*1.0e9_wp
+      if (abs(ball/(1000*steel) - 1) < near) then
+        call tell_unit(deck, problems, quantity_t(of_mass, impactor%mass, impactor_group, key_mass), system, &
+                       'is a thousand times a steel ball''s', &
+                       trim(merge('kg', 'g ', unit_name(of_mass, system) == 't')))
+      end if
+      if (.not. deck%settings%is_given(indentation_group, key_k)) return
+      ratio = law%k/sun_stiffness(impactor%radius, 1/deck%materials(deck%laminate%material(1))%e2)
+      if (ratio > odd_stiffness(1) .and. ratio < odd_stiffness(2)) return
+      if (usual(ratio*per_millimetre)) call remark(deck%settings, problems, indentation_group, key_k, 'is '// &
+        short_text(ratio)//' times that of Sun''s formula; it looks as if it were in N/mm^1.5.')
+      if (usual(ratio/per_millimetre)) call remark(deck%settings, problems, indentation_group, key_k, 'is '// &
+        short_text(ratio)//' times that of Sun''s formula; it looks as if it were in N/m^1.5.')
+    end associate
+  end subroutine check_ball
+
+  !> True: a contact stiffness that balls have.
+  pure logical function usual(ratio)
+    !> Over that of Sun's formula
+    real(wp), intent(in) :: ratio
+
+    usual = ratio > usual_stiffness(1) .and. ratio < usual_stiffness(2)
+  end function usual
+end module deck_units

@@ -1,0 +1,165 @@
+!> A plate struck in its middle as the sum of its modes, for estimates ahead of a run.
+!>
+!> The modes are Navier's of a simply supported orthotropic Mindlin plate with rotary inertia, the rotations condensed
+!> out. Other supports are estimated: a clamped edge shortens the plate to the length whose first frequency is right,
+!> and free opposite edges have cosines, the plate's rigid motion included.
+module modal_plates
+  use kinds, only: wp
+  use mesh_parameters, only: edge_free, edge_simple, edge_clamped
+  implicit none
+  private
+  public :: modal_plate_t, modal_plate_of, reduced
+
+  !> Modes that a force spread over a patch in the middle excites.
+  type :: modal_plate_t
+    !> Circular frequency of each mode
+    real(wp), allocatable :: frequency(:)
+    !> Square of the mode's mean over the patch, over its modal mass, 1/mass
+    real(wp), allocatable :: weight(:)
+    !> Wave numbers along x and y, (2, modes)
+    real(wp), allocatable :: wave_number(:, :)
+    !> Deflection of the patch per force by all modes that aren't listed
+    real(wp) :: rest = 0
+  end type modal_plate_t
+
+  !> Length of a simply supported plate over that of one with a pair of other supports. Square plates have their first
+  !> frequency at 19.74 (SSSS), 28.95 (SCSC) and 23.65 (SSSC) times sqrt(D/(rho h))/a**2 (Leissa 1969); beams with a
+  !> free end at 3.516 instead of 9.870, and 15.42 for the first bending of one that turns about its support.
+  real(wp), parameter :: shortened_clamped = 0.719_wp, shortened_one_clamped = 0.846_wp, &
+                         lengthened_cantilever = 1.68_wp, shortened_hinged = 0.8_wp
+  !> Most modes along one direction; the deflection by higher ones is below what an estimate needs.
+  integer, parameter :: most_modes = 300
+  !> Modes along one direction whose half wave is no shorter than this part of the patch are summed up.
+  real(wp), parameter :: part_of_patch = 0.25_wp
+
+contains
+
+  !> Modes of a plate up to a frequency, and the compliance of all others.
+  pure function modal_plate_of(length, edges, stiffness, mass, patch, cutoff) result(plate)
+    !> Lengths of the whole plate along x and y
+    real(wp), intent(in) :: length(2)
+    !> Supports at x-min, x-max, y-min, y-max
+    integer, intent(in) :: edges(4)
+    !> Section stiffness, packed as in section_t
+    real(wp), intent(in) :: stiffness(21)
+    !> Integrals of density, density z and density z**2
+    real(wp), intent(in) :: mass(3)
+    !> Side of the loaded square
+    real(wp), intent(in) :: patch
+    !> Circular frequency up to which modes are listed
+    real(wp), intent(in) :: cutoff
+    !> The modes
+    type(modal_plate_t) :: plate
+    real(wp), allocatable :: x(:, :), y(:, :)
+    real(wp), allocatable :: frequency(:), weight(:), wave_number(:, :)
+    real(wp) :: condensed(2), this
+    integer :: i, j, found
+
+    x = modes_along(length(1), edges(1:2), patch)
+    y = modes_along(length(2), edges(3:4), patch)
+    allocate (frequency(size(x, 2)*size(y, 2)), weight(size(x, 2)*size(y, 2)), wave_number(2, size(x, 2)*size(y, 2)))
+    found = 0
+    do j = 1, size(y, 2)
+      do i = 1, size(x, 2)
+        condensed = condensed_mode(x(1, i), y(1, j), stiffness, mass)
+        this = x(2, i)*y(2, j)/condensed(2)
+        if (condensed(1) > cutoff**2*condensed(2)) then
+          plate%rest = plate%rest + this*condensed(2)/condensed(1)
+        else
+          found = found + 1
+          frequency(found) = sqrt(condensed(1)/condensed(2))
+          weight(found) = this
+          wave_number(:, found) = [x(1, i), y(1, j)]
+        end if
+      end do
+    end do
+    plate%frequency = frequency(:found)
+    plate%weight = weight(:found)
+    plate%wave_number = wave_number(:, :found)
+  end function modal_plate_of
+
+  !> Wave numbers along one direction, and the squares of the modes' means over the patch over their norms, (2, modes).
+  pure function modes_along(length, edges, patch) result(modes)
+    !> Length of the plate
+    real(wp), intent(in) :: length
+    !> Supports at both ends
+    integer, intent(in) :: edges(2)
+    !> Side of the loaded square
+    real(wp), intent(in) :: patch
+    !> Wave number; square of the mean over the norm, 1/length
+    real(wp), allocatable :: modes(:, :)
+    real(wp), parameter :: pi = acos(-1.0_wp)
+    real(wp) :: extent, half
+    logical :: free
+    integer :: i, number
+
+    free = all(edges == edge_free)
+    extent = length*length_factor(edges)
+    number = min(most_modes, 4 + int(extent/(2*part_of_patch*patch)))
+    allocate (modes(2, number))
+    do i = 1, number
+      modes(1, i) = (2*i - merge(2, 1, free))*pi/extent
+      half = modes(1, i)*patch/2
+      modes(2, i) = merge(1, 2, modes(1, i) <= 0)/extent
+      if (half > 0) modes(2, i) = modes(2, i)*(sin(half)/half)**2
+    end do
+  end function modes_along
+
+  !> Length of the simply supported (or free) plate that stands for one with other supports, over its length.
+  pure real(wp) function length_factor(edges) result(factor)
+    !> Supports at both ends
+    integer, intent(in) :: edges(2)
+
+    factor = 1
+    if (all(edges == edge_clamped)) then
+      factor = shortened_clamped
+    else if (any(edges == edge_clamped) .and. any(edges == edge_simple)) then
+      factor = shortened_one_clamped
+    else if (any(edges == edge_clamped) .and. any(edges == edge_free)) then
+      factor = lengthened_cantilever
+    else if (any(edges == edge_simple) .and. any(edges == edge_free)) then
+      factor = shortened_hinged
+    end if
+  end function length_factor
+
+  !> Stiffness and mass of a mode against its deflection, per area, the rotations following without inertia of their own
+  !> but for that of the slope.
+  pure function condensed_mode(a, b, stiffness, mass) result(condensed)
+    !> Wave numbers along x and y
+    real(wp), intent(in) :: a, b
+    !> Section stiffness, packed as in section_t
+    real(wp), intent(in) :: stiffness(21)
+    !> Integrals of density, density z and density z**2
+    real(wp), intent(in) :: mass(3)
+    !> Stiffness and mass
+    real(wp) :: condensed(2)
+    real(wp) :: k22, k23, k33, det, turn(2), shear(2)
+
+    shear = [stiffness(19)*a, stiffness(21)*b]
+    k22 = stiffness(13)*a**2 + stiffness(18)*b**2 + stiffness(19)
+    k23 = (stiffness(14) + stiffness(18))*a*b
+    k33 = stiffness(18)*a**2 + stiffness(16)*b**2 + stiffness(21)
+    det = k22*k33 - k23**2
+    turn = [k33*shear(1) - k23*shear(2), k22*shear(2) - k23*shear(1)]/det
+    condensed(1) = stiffness(19)*a**2 + stiffness(21)*b**2 - dot_product(shear, turn)
+    condensed(2) = mass(1) + mass(3)*dot_product(turn, turn)
+  end function condensed_mode
+
+  !> The plate with its modes up to a lower frequency; the others become compliance.
+  pure function reduced(plate, cutoff) result(fewer)
+    !> The plate
+    type(modal_plate_t), intent(in) :: plate
+    !> Circular frequency, > 0
+    real(wp), intent(in) :: cutoff
+    !> The same with fewer modes
+    type(modal_plate_t) :: fewer
+    logical :: kept(size(plate%frequency))
+    integer :: i
+
+    kept = plate%frequency <= cutoff
+    fewer%frequency = pack(plate%frequency, kept)
+    fewer%weight = pack(plate%weight, kept)
+    fewer%wave_number = plate%wave_number(:, pack([(i, i=1, size(kept))], kept))
+    fewer%rest = plate%rest + sum(plate%weight/max(plate%frequency, tiny(1.0_wp))**2, mask=.not. kept)
+  end function reduced
+end module modal_plates

@@ -1,0 +1,227 @@
+!> What a step and a mesh are worth for a scene, by pilot calculations: the largest step and the largest elements that
+!> keep peak and history of the force within an error.
+module scene_pilots
+  use kinds, only: wp
+  use modal_plates, only: modal_plate_t, reduced
+  use pilot_impacts, only: pilot_t, run_pilot, difference
+  use scene_scales, only: scene_scales_t, plate_modes, contact_side
+  use scenes, only: scene_t
+  implicit none
+  private
+  public :: scene_pilot_t, scene_outlook_t, start_pilot, contact_end, largest_step, largest_cell, outlook_of
+
+  !> A scene made ready for pilot calculations.
+  type :: scene_pilot_t
+    !> The scene
+    type(scene_t) :: scene
+    !> Its scales
+    type(scene_scales_t) :: scales
+    !> The plate with all modes that any step considered follows
+    type(modal_plate_t) :: plate
+  end type scene_pilot_t
+
+  !> What a run with the mesh and step of the deck is to show.
+  type :: scene_outlook_t
+    !> Scales of the scene
+    type(scene_scales_t) :: scales
+    !> True: there is an impact to look at, and the rest holds
+    logical :: of_impact = .false.
+    !> Largest force, indentation and deflection
+    real(wp) :: force = 0, indentation = 0, deflection = 0
+    !> Times of contact
+    integer :: contacts = 0
+    !> End of the last one
+    real(wp) :: last_contact = 0
+    !> Side of the elements near the struck point
+    real(wp) :: edge = 0
+    !> Relative errors of the force's peak and history, by the step and by the mesh; negative: not known
+    real(wp) :: step_error(2) = -1, mesh_error(2) = -1
+    !> Side of the area that carries the contact force, and what a larger patch changes of peak and history
+    real(wp) :: contact_side = 0, patch_error(2) = -1
+  end type scene_outlook_t
+
+  !> Modes are listed up to this part of the inverse of a step; beyond, a step follows none and they act by stiffness.
+  real(wp), parameter :: followed = 5
+  !> Steps of the first pilot in one contact time, and of the finest one considered.
+  real(wp), parameter :: first_steps = 2, fine_steps = 64
+  !> Most steps of a pilot, and most steps times modes: some hundredths of a second.
+  integer, parameter :: most_steps = 40000
+  real(wp), parameter :: most_work = 3.0e7_wp
+  !> Steps that a contact takes at least.
+  integer, parameter :: least_steps = 24
+  !> Relative rise of a mode's frequency on elements of side e, (kappa e)**4 times this, kappa its wave number. Settled
+  !> by `tests/bench/elastic_scenes.py`.
+  real(wp), parameter :: dispersion = 6.0e-4_wp
+
+contains
+
+  !> Makes a scene ready.
+  pure function start_pilot(scene, scales) result(pilot)
+    !> The scene, with an impactor that has a velocity
+    type(scene_t), intent(in) :: scene
+    !> Its scales
+    type(scene_scales_t), intent(in) :: scales
+    !> The pilot
+    type(scene_pilot_t) :: pilot
+
+    pilot%scene = scene
+    pilot%scales = scales
+    pilot%plate = plate_modes(scene, followed*2*fine_steps/scales%contact_time)
+  end function start_pilot
+
+  !> A pilot calculation with some step; `complete` is false where it would take too long.
+  pure function run_of(self, step, end, cell) result(run)
+    !> The pilot
+    type(scene_pilot_t), intent(in) :: self
+    !> Step
+    real(wp), intent(in) :: step
+    !> End; 0: that of the contact
+    real(wp), intent(in) :: end
+    !> Side of the elements; 0: infinitely fine
+    real(wp), intent(in) :: cell
+    !> What was found
+    type(pilot_t) :: run
+    type(modal_plate_t) :: plate
+    integer :: steps
+
+    plate = reduced(self%plate, followed/step)
+    if (cell > 0) call disperse(plate, cell)
+    steps = most_steps
+    if (end > 0) steps = min(most_steps, max(1, nint(end/step)))
+    steps = min(steps, int(most_work/max(1, size(plate%frequency))))
+    run = run_pilot(plate, self%scene%impactor, self%scene%indentation, step, steps, end > 0)
+    if (end > 0) run%complete = steps >= nint(end/step)
+  end function run_of
+
+  !> The contact from touch to end by a first, coarse pilot; looked at no longer than the run lasts.
+  pure function contact_end(self, end) result(run)
+    !> The pilot
+    type(scene_pilot_t), intent(in) :: self
+    !> End of the run; 0: not known
+    real(wp), intent(in) :: end
+    !> What was found
+    type(pilot_t) :: run
+
+    run = run_of(self, self%scales%contact_time/first_steps, end, 0.0_wp)
+  end function contact_end
+
+  !> What a run is to show with a step and elements of some side. The method is of second order in the step.
+  pure function outlook_of(scene, scales, step, end, edge) result(outlook)
+    !> The scene, with an impactor that has a velocity
+    type(scene_t), intent(in) :: scene
+    !> Its scales
+    type(scene_scales_t), intent(in) :: scales
+    !> Step and end of the run
+    real(wp), intent(in) :: step, end
+    !> Side of the elements near the struck point
+    real(wp), intent(in) :: edge
+    !> Forces, times and errors
+    type(scene_outlook_t) :: outlook
+    type(scene_pilot_t) :: pilot
+    type(pilot_t) :: coarse, fine, meshed
+
+    outlook%of_impact = .true.
+    outlook%edge = edge
+    pilot%scene = scene
+    pilot%scales = scales
+    pilot%plate = plate_modes(scene, 2*followed/step)
+    coarse = run_of(pilot, step, end, 0.0_wp)
+    fine = run_of(pilot, step/2, end, 0.0_wp)
+    if (fine%complete) outlook%step_error = difference(coarse, fine, 2)*4/3
+    if (.not. fine%complete) fine = coarse
+    if (coarse%complete) then
+      meshed = run_of(pilot, step, end, edge)
+      outlook%mesh_error = difference(meshed, coarse, 1)
+    end if
+    outlook%force = fine%peak
+    outlook%indentation = fine%indentation
+    outlook%deflection = fine%deflection
+    outlook%contacts = fine%contacts
+    outlook%last_contact = fine%last_contact
+    outlook%contact_side = contact_side(scene, fine%indentation)
+    if (.not. scene%mesh%patch > outlook%contact_side) return
+    pilot%scene%mesh%patch = outlook%contact_side
+    pilot%plate = plate_modes(pilot%scene, followed/step)
+    outlook%patch_error = difference(run_of(pilot, step, end, 0.0_wp), coarse, 1)
+  end function outlook_of
+
+  !> The largest step whose errors stay within bounds.
+  pure subroutine largest_step(self, end, bounds, step, error)
+    !> The pilot
+    type(scene_pilot_t), intent(in) :: self
+    !> Time looked at
+    real(wp), intent(in) :: end
+    !> Relative errors of peak and history allowed
+    real(wp), intent(in) :: bounds(2)
+    !> The step
+    real(wp), intent(out) :: step
+    !> Its errors
+    real(wp), intent(out) :: error(2)
+    type(pilot_t) :: finest
+    integer :: finer, steps, ratio
+
+    ! Coarse pilots could agree on what both miss, so each is held against the finest that can be had.
+    finer = 0
+    do while (2**finer*least_steps*self%scales%contact_time < fine_steps*end)
+      finer = finer + 1
+    end do
+    do
+      ratio = 2**finer
+      finest = run_of(self, end/(ratio*least_steps), end, 0.0_wp)
+      if (finest%complete .or. finer == 1) exit
+      finer = finer - 1
+    end do
+    do
+      steps = least_steps*2**finer/ratio
+      step = end/steps
+      error = difference(run_of(self, step, end, 0.0_wp), finest, ratio)/(1 - 1/real(ratio, wp)**2)
+      if (all(error <= bounds) .or. ratio == 2) exit
+      ratio = ratio/2
+    end do
+    if (all(error <= bounds)) then
+      step = end/ceiling(end/(step*min(1.5_wp, sqrt(minval(bounds/max(error, tiny(1.0_wp)))))))
+    else if (finest%complete) then
+      ! The finest is better by the order of the method.
+      step = finest%step
+      error = error/4
+    else
+      error = -1
+    end if
+  end subroutine largest_step
+
+  !> The largest elements whose errors stay within bounds.
+  pure function largest_cell(self, step, end, bounds) result(cell)
+    !> The pilot
+    type(scene_pilot_t), intent(in) :: self
+    !> Step
+    real(wp), intent(in) :: step
+    !> Time looked at
+    real(wp), intent(in) :: end
+    !> Relative errors of peak and history allowed
+    real(wp), intent(in) :: bounds(2)
+    !> Side of the elements
+    real(wp) :: cell
+    type(pilot_t) :: exact
+    real(wp), parameter :: finer = 0.85_wp
+
+    exact = run_of(self, step, end, 0.0_wp)
+    cell = minval(self%scene%plate%length)/4
+    do while (cell > self%scales%wave_length/20)
+      if (all(difference(run_of(self, step, end, cell), exact, 1) <= bounds)) exit
+      cell = cell*finer
+    end do
+  end function largest_cell
+
+  !> Gives the modes the frequencies that they have on elements of some side. The
+  !> modes that are too short for the elements become too stiff to matter.
+  pure subroutine disperse(plate, cell)
+    !> The plate
+    type(modal_plate_t), intent(inout) :: plate
+    !> Side of the elements
+    real(wp), intent(in) :: cell
+    real(wp) :: rise(size(plate%frequency))
+
+    rise = 1 + dispersion*maxval(plate%wave_number*cell, 1)**4
+    plate%frequency = plate%frequency*rise
+  end subroutine disperse
+end module scene_pilots

@@ -1,0 +1,156 @@
+!> Scales of a scene from its parameters alone: what its mesh and its steps have to resolve.
+module scene_scales
+  use delamination_parameters, only: toughnesses
+  use kinds, only: wp
+  use modal_plates, only: modal_plate_t, modal_plate_of
+  use packed_matrices, only: unpacked, inverse
+  use scenes, only: scene_t
+  use stacking, only: section_t, stacked_plies, section_of
+  implicit none
+  private
+  public :: scene_scales_t, scales_of, plate_modes, contact_side, has_blow
+
+  !> Scales of a scene. It has many components because each is one line of the table that users read.
+  type :: scene_scales_t
+    !> Thickness and mass per area of the laminate
+    real(wp) :: thickness = 0, area_mass = 0
+    !> Mean bending stiffness (E1 + E2)/2 h**3/12 as the section has it, (D11 + D22)/2
+    real(wp) :: bending = 0
+    !> Mass of the whole plate
+    real(wp) :: plate_mass = 0
+    !> Period of the plate's first bending, without rigid motion
+    real(wp) :: first_period = 0
+    !> Energy of the impactor
+    real(wp) :: energy = 0
+    !> Time in which the force of first contact rises
+    real(wp) :: contact_time = 0
+    !> Length of the bending waves that it sends out
+    real(wp) :: wave_length = 0
+    !> Deflection of the middle per force, in a static test
+    real(wp) :: compliance = 0
+    !> Force at which delaminations begin to grow; 0: no interface may delaminate
+    real(wp) :: threshold = 0
+  end type scene_scales_t
+
+  !> Hertz' contact of two bodies that move freely lasts 2.943 alpha_max/v, Goldsmith 1960.
+  real(wp), parameter :: hertz_duration = 2.943_wp
+  real(wp), parameter :: pi = acos(-1.0_wp)
+
+contains
+
+  !> The scales. A scene without impactor has only those of its plate.
+  pure function scales_of(scene) result(scales)
+    !> The scene, checked
+    type(scene_t), intent(in) :: scene
+    !> Its scales
+    type(scene_scales_t) :: scales
+    type(section_t) :: section
+    type(modal_plate_t) :: plate
+    real(wp) :: bent
+
+    section = bending_section(scene)
+    scales%thickness = sum(scene%laminate%thickness)
+    scales%area_mass = section%mass(1)
+    scales%bending = (section%stiffness(13) + section%stiffness(16))/2
+    scales%plate_mass = section%mass(1)*product(scene%plate%length)
+    plate = modal_plate_of(scene%plate%length, scene%plate%edges, section%stiffness, [1.0_wp, 0.0_wp, 0.0_wp], &
+                           loaded_side(scene), huge(1.0_wp))
+    bent = minval(plate%frequency, mask=plate%frequency > 1.0e-6_wp*maxval(plate%frequency))
+    if (section%mass(1) > 0) scales%first_period = 2*pi*sqrt(section%mass(1))/bent
+    scales%compliance = sum(plate%weight/plate%frequency**2, mask=plate%frequency >= bent)
+    if (allocated(scene%delaminations)) scales%threshold = growth_threshold(scene, scales%bending)
+    if (.not. has_blow(scene)) return
+    associate (m => scene%impactor%mass, v => scene%impactor%velocity, k => scene%indentation%k)
+      scales%energy = m*v**2/2
+      ! The plate answers waves like a dashpot of 8 sqrt(D rho h) (Boussinesq; Olsson 1992).
+      scales%contact_time = min((8*sqrt(scales%bending*scales%area_mass)*v/k)**(2.0_wp/3)/v, &
+                                hertz_duration/2*(1.25_wp*m*v**2/k)**0.4_wp/v)
+      scales%wave_length = 2*pi*(scales%bending/scales%area_mass)**0.25_wp*sqrt(scales%contact_time/pi)
+    end associate
+  end function scales_of
+
+  !> True: an impactor comes with a velocity.
+  pure logical function has_blow(scene)
+    !> The scene
+    type(scene_t), intent(in) :: scene
+
+    has_blow = scene%has_impactor .and. scene%impactor%mass > 0 .and. scene%impactor%velocity > 0 .and. &
+               scene%indentation%k > 0
+  end function has_blow
+
+  !> Section of the laminate as it bends where its plane is free to stretch: D - B inverse(A) B (Reissner and Stavsky).
+  pure function bending_section(scene) result(section)
+    !> The scene
+    type(scene_t), intent(in) :: scene
+    !> Stiffness and mass
+    type(section_t) :: section
+    real(wp) :: extension(3, 3), coupling(3, 3), bending(3, 3)
+
+    section = section_of(stacked_plies(scene%laminate, scene%materials), scene%laminate%shear_correction)
+    extension = unpacked(section%stiffness(1:6))
+    coupling = unpacked(section%stiffness(7:12))
+    bending = unpacked(section%stiffness(13:18)) - matmul(coupling, matmul(inverse(extension), coupling))
+    section%stiffness(13:18) = [bending(1, 1), bending(1, 2), bending(1, 3), bending(2, 2), bending(2, 3), &
+                                bending(3, 3)]
+  end function bending_section
+
+  !> Modes of the scene's plate up to a frequency.
+  pure function plate_modes(scene, cutoff) result(plate)
+    !> The scene
+    type(scene_t), intent(in) :: scene
+    !> Circular frequency
+    real(wp), intent(in) :: cutoff
+    !> The modes
+    type(modal_plate_t) :: plate
+    type(section_t) :: section
+
+    section = bending_section(scene)
+    plate = modal_plate_of(scene%plate%length, scene%plate%edges, section%stiffness, section%mass, &
+                           loaded_side(scene), cutoff)
+  end function plate_modes
+
+  !> Side of the loaded square; where the deck has none, as small as plate theory can tell.
+  pure real(wp) function loaded_side(scene) result(side)
+    !> The scene
+    type(scene_t), intent(in) :: scene
+
+    side = scene%mesh%patch
+    if (.not. side > 0) side = min(sum(scene%laminate%thickness), minval(scene%plate%length))
+  end function loaded_side
+
+  !> Side of the square in the plate's middle plane that carries the contact force. It is as large as the circle of
+  !> contact by Hertz, and the force spreads at 45 degrees from the struck face down to the middle plane. What is
+  !> smaller than the thickness isn't the plate's: the indentation law stands for it.
+  pure real(wp) function contact_side(scene, indentation) result(side)
+    !> The scene
+    type(scene_t), intent(in) :: scene
+    !> Largest indentation
+    real(wp), intent(in) :: indentation
+    real(wp) :: radius
+
+    radius = scene%impactor%radius
+    ! Without a radius, that of the k which Sun's formula would give for a rigid ball.
+    if (.not. radius > 0) &
+      radius = (0.75_wp*scene%indentation%k/scene%materials(scene%laminate%material(1))%e2)**2
+    side = sqrt(pi*radius*indentation) + sum(scene%laminate%thickness)
+  end function contact_side
+
+  !> Force at which delaminations grow under a central load, pi sqrt(32 D G_IIc/(n + 2)) with n of them (Olsson 2001;
+  !> n = 1 is the closed form of Davies and Robinson 1992).
+  pure real(wp) function growth_threshold(scene, bending) result(force)
+    !> The scene
+    type(scene_t), intent(in) :: scene
+    !> Bending stiffness
+    real(wp), intent(in) :: bending
+    real(wp) :: toughness(2), least
+    integer :: i
+
+    least = huge(least)
+    do i = 1, size(scene%delaminations)
+      toughness = toughnesses(scene%delaminations(i))
+      least = min(least, toughness(2))
+    end do
+    force = 0
+    if (size(scene%delaminations) > 0) force = pi*sqrt(32*bending*least/(size(scene%delaminations) + 2))
+  end function growth_threshold
+end module scene_scales

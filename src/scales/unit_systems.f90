@@ -1,0 +1,132 @@
+!> Systems of units that decks are written in, and values whose size does not fit the system.
+module unit_systems
+  use kinds, only: wp
+  implicit none
+  private
+  public :: is_odd, unit_that_fits, unit_name
+
+  !> Kinds of quantities.
+  integer, parameter, public :: of_pressure = 1, of_density = 2, of_length = 3, of_thickness = 4, of_radius = 5, &
+                                of_mass = 6, of_velocity = 7, of_toughness = 8, of_time = 9, of_strength = 10
+  !> Number of kinds of quantities.
+  integer, parameter, public :: quantities = 10
+  !> The systems: metre, kilogram, second; millimetre, tonne, second; millimetre, kilogram, millisecond.
+  character(len=*), parameter, public :: systems(3) = [character(len=8) :: 'SI', 'mm-t-s', 'mm-kg-ms']
+
+  !> A unit that people write.
+  type :: unit_t
+    !> Its symbol
+    character(len=8) :: name
+    !> The kind of quantity it measures
+    integer :: quantity
+    !> SI units in it
+    real(wp) :: size
+  end type unit_t
+
+  !> The units, in order of their kinds. A thickness, a radius and a strength have those of lengths and pressures.
+  type(unit_t), parameter :: units(*) = [ &
+    unit_t('Pa', of_pressure, 1.0_wp), unit_t('MPa', of_pressure, 1.0e6_wp), unit_t('GPa', of_pressure, 1.0e9_wp), &
+    unit_t('kg/m^3', of_density, 1.0_wp), unit_t('g/cm^3', of_density, 1.0e3_wp), &
+    unit_t('kg/mm^3', of_density, 1.0e9_wp), unit_t('t/mm^3', of_density, 1.0e12_wp), &
+    unit_t('m', of_length, 1.0_wp), unit_t('mm', of_length, 1.0e-3_wp), &
+    unit_t('kg', of_mass, 1.0_wp), unit_t('g', of_mass, 1.0e-3_wp), unit_t('t', of_mass, 1.0e3_wp), &
+    unit_t('m/s', of_velocity, 1.0_wp), unit_t('mm/s', of_velocity, 1.0e-3_wp), &
+    unit_t('J/m^2', of_toughness, 1.0_wp), unit_t('N/mm', of_toughness, 1.0e3_wp), &
+    unit_t('kN/mm', of_toughness, 1.0e6_wp), &
+    unit_t('s', of_time, 1.0_wp), unit_t('ms', of_time, 1.0e-3_wp), unit_t('us', of_time, 1.0e-6_wp)]
+  !> Which of them each system has for pressure, density, length, mass, velocity, toughness and time.
+  character(len=*), parameter :: unit_of(9, 3) = reshape([character(len=8) :: &
+    'Pa', 'kg/m^3', 'm', 'm', 'm', 'kg', 'm/s', 'J/m^2', 's', &
+    'MPa', 't/mm^3', 'mm', 'mm', 'mm', 't', 'mm/s', 'N/mm', 's', &
+    'GPa', 'kg/mm^3', 'mm', 'mm', 'mm', 'kg', 'm/s', 'kN/mm', 'ms'], [9, 3])
+  !> Least and largest that plates, impactors and their materials have, SI. Moduli reach from foam to diamond, densities
+  !> from foam to platinum, velocities from a tool that slips to a fragment, strengths from glue to fibres.
+  real(wp), parameter :: least(quantities) = &
+    [1.0e7_wp, 10.0_wp, 1.0e-3_wp, 2.0e-5_wp, 1.0e-4_wp, 1.0e-6_wp, 0.05_wp, 5.0_wp, 1.0e-8_wp, 1.0e5_wp]
+  real(wp), parameter :: largest(quantities) = &
+    [1.5e12_wp, 2.5e4_wp, 20.0_wp, 0.5_wp, 1.0_wp, 1.0e5_wp, 1.0e3_wp, 1.0e5_wp, 1.0e2_wp, 2.0e10_wp]
+  !> What most have, by which one of several units that fit is chosen.
+  real(wp), parameter :: usual(quantities) = &
+    [7.0e10_wp, 1.6e3_wp, 0.2_wp, 2.0e-3_wp, 1.0e-2_wp, 0.3_wp, 3.0_wp, 6.0e2_wp, 1.0e-3_wp, 5.0e8_wp]
+
+contains
+
+  !> True: a value in the units of a system is of no size that its kind of quantity has.
+  pure logical function is_odd(quantity, value, system)
+    !> Kind of the quantity
+    integer, intent(in) :: quantity
+    !> The value
+    real(wp), intent(in) :: value
+    !> Index of the system
+    integer, intent(in) :: system
+
+    is_odd = .not. in_range(quantity, value*size_of(quantity, unit_name(quantity, system)))
+  end function is_odd
+
+  !> The unit in which a value would be of usual size, or an empty text if there is none.
+  pure function unit_that_fits(quantity, value) result(name)
+    !> Kind of the quantity
+    integer, intent(in) :: quantity
+    !> The value
+    real(wp), intent(in) :: value
+    !> Symbol of the unit
+    character(len=:), allocatable :: name
+    real(wp) :: decades, nearest
+    integer :: i
+
+    name = ''
+    nearest = huge(nearest)
+    do i = 1, size(units)
+      if (units(i)%quantity /= dimension_of(quantity) .or. .not. in_range(quantity, value*units(i)%size)) cycle
+      decades = abs(log(value*units(i)%size/usual(quantity)))
+      if (decades < nearest) name = trim(units(i)%name)
+      nearest = min(nearest, decades)
+    end do
+  end function unit_that_fits
+
+  !> Unit of a system.
+  pure function unit_name(quantity, system) result(name)
+    !> Kind of the quantity
+    integer, intent(in) :: quantity
+    !> Index of the system
+    integer, intent(in) :: system
+    !> Its symbol
+    character(len=:), allocatable :: name
+
+    name = trim(unit_of(dimension_of(quantity), system))
+  end function unit_name
+
+  !> True: a size that the kind of quantity has.
+  pure logical function in_range(quantity, value)
+    !> Kind of the quantity
+    integer, intent(in) :: quantity
+    !> The value, SI
+    real(wp), intent(in) :: value
+
+    in_range = value >= least(quantity) .and. value <= largest(quantity)
+  end function in_range
+
+  !> SI units in a unit.
+  pure real(wp) function size_of(quantity, name)
+    !> Kind of the quantity
+    integer, intent(in) :: quantity
+    !> Symbol of the unit
+    character(len=*), intent(in) :: name
+    integer :: i
+
+    size_of = 1
+    do i = 1, size(units)
+      if (units(i)%quantity == dimension_of(quantity) .and. units(i)%name == name) size_of = units(i)%size
+    end do
+  end function size_of
+
+  !> The kind of quantity that has the units of another one.
+  pure integer function dimension_of(quantity)
+    !> Kind of the quantity
+    integer, intent(in) :: quantity
+
+    dimension_of = quantity
+    if (quantity == of_thickness .or. quantity == of_radius) dimension_of = of_length
+    if (quantity == of_strength) dimension_of = of_pressure
+  end function dimension_of
+end module unit_systems

@@ -1,0 +1,161 @@
+#!/usr/bin/env python3
+"""Holds meshes and steps that `&case accuracy` chooses against semi-analytic answers. See README.md."""
+import argparse
+import csv
+import math
+import os
+import pathlib
+import re
+import subprocess
+import tempfile
+
+import numpy as np
+
+from modal_impact import Scene, answer
+
+# One thread, so that processor time is comparable; Open MPI refuses root unless told twice.
+ENVIRONMENT = dict(os.environ, OMP_NUM_THREADS='1', OPENBLAS_NUM_THREADS='1',
+                   OMPI_ALLOW_RUN_AS_ROOT='1', OMPI_ALLOW_RUN_AS_ROOT_CONFIRM='1')
+
+DECK = """&case name='{name}' kinematics='linear' {case} /
+&plate length={length[0]:.6g}, {length[1]:.6g} edges='simple' symmetry='quarter' /
+{mesh}
+&material name='ply' density={density} E1={moduli[0]:.6g} E2={moduli[1]:.6g} G12={moduli[2]:.6g} G13={moduli[3]:.6g}
+          G23={moduli[4]:.6g} nu12={moduli[5]} /
+&laminate materials='ply' angles={angles} thicknesses={ply:.6g} /
+&impactor mass={mass:.6g} velocity={velocity:.6g} radius={radius:.6g} {impactor} /
+&indentation {law} k={k:.6g} /
+{time}
+{more}
+"""
+
+
+def random_scenes(count, seed):
+    """Cross-ply plates and balls of all sizes that low-velocity impact knows, all laws."""
+    random = np.random.default_rng(seed)
+
+    def spread(low, high):
+        return float(f'{math.exp(random.uniform(math.log(low), math.log(high))):.4g}')
+
+    scenes = []
+    while len(scenes) < count:
+        plies = int(random.integers(1, 25))
+        half = [int(90*random.integers(0, 2)) for _ in range((plies + 1)//2)]
+        angles = half + half[:plies//2][::-1]
+        ply = spread(0.1e-3, 0.4e-3)
+        longer = spread(30e-3, 1)
+        length = (longer, float(f'{longer*random.uniform(0.5, 1):.4g}'))
+        moduli = (spread(40e9, 200e9), spread(6e9, 12e9), spread(3e9, 7e9), spread(3e9, 7e9), spread(2.5e9, 5e9), 0.3)
+        radius = spread(3e-3, 30e-3)
+        scene = Scene(length, angles, ply, moduli, spread(1400, 2000), spread(1e-4, 10), spread(0.3, 30), radius,
+                      float(f'{4/3*math.sqrt(radius)*moduli[1]:.5g}'),
+                      str(random.choice(['hertz', 'tan_sun', 'yang_sun'])), name=f'scene_{len(scenes) + 1}')
+        if 10 < min(length)/scene.thickness < 1000:
+            scenes.append(scene)
+    return scenes
+
+
+def deck_of(scene, case='', mesh='', impactor='', time='', more=''):
+    """The scene as a deck."""
+    law = ("law='hertz'" if scene.law == 'hertz' else
+           f"law='tan_sun' dent='{scene.law}' q={scene.q} alpha_cr={scene.alpha_cr} " +
+           (f'beta={scene.beta}' if scene.law == 'tan_sun' else ''))
+    fields = {key: getattr(scene, key) for key in ('name', 'length', 'moduli', 'density', 'ply', 'mass', 'velocity',
+                                                   'radius', 'k')}
+    return DECK.format(**fields, angles=','.join(map(str, scene.angles)), law=law, case=case, mesh=mesh,
+                       impactor=impactor, time=time, more=more)
+
+
+class Run:
+    """One run: exit code, processor time, log, history, and how far it is from the semi-analytic answer."""
+
+    def __init__(self, program, deck, name):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder, name + '.nml')
+            path.write_text(deck)
+            with open(pathlib.Path(folder, 'said'), 'w') as said:
+                process = subprocess.Popen([program, path, '--output', folder], stdout=said, stderr=said, env=ENVIRONMENT)
+                _, status, usage = os.wait4(process.pid, 0)
+            process.returncode = self.code = os.waitstatus_to_exitcode(status)
+            self.seconds = usage.ru_utime + usage.ru_stime
+            self.said = pathlib.Path(folder, 'said').read_text()
+            log = pathlib.Path(folder, name + '.log')
+            self.log = log.read_text() if log.exists() else ''
+            if self.code:
+                return
+            with open(pathlib.Path(folder, name + '_history.csv')) as lines:
+                rows = list(csv.DictReader(line for line in lines if not line.startswith('#')))
+        self.time = np.array([float(row['time']) for row in rows])
+        self.force = np.array([float(row['force']) for row in rows])
+        self.steps = int(re.search(r'(\d+) steps', self.log)[1])
+        self.unknowns = int(re.search(r'(\d+) unknowns', self.log)[1])
+
+    def key(self, group, name):
+        """Numbers of a key as the log lists it."""
+        found = re.search(rf"&{group} {name} = (.*?) \[", self.log)
+        return [float(word) for word in re.split('[ ,]+', found[1])]
+
+    def errors(self, times, forces):
+        """Relative errors of peak force and of the force history (L2)."""
+        mine = np.interp(times, np.append(0, self.time), np.append(0, self.force))
+        return self.force.max()/forces.max() - 1, math.sqrt(np.sum((mine - forces)**2)/np.sum(forces**2))
+
+
+def compare(program, scene, accuracy):
+    """One row of the table: the run with the accuracy asked for, and its errors."""
+    run = Run(program, deck_of(scene, case=f'accuracy={accuracy}'), scene.name)
+    if run.code:
+        return run, None
+    tau = scene.contact_time()
+    end = run.key('time', 'end')[0]
+    # A long contact answers to low modes: its peak and history change by less than 0.1 % with twice as many.
+    long = end > 300*tau
+    times, forces, _, _ = answer(scene, run.key('mesh', 'patch')[0], end, *((20, 20) if long else (60, 50)))
+    return run, run.errors(times, forces)
+
+
+def main():
+    """Run the scenes and print the table."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument('program')
+    parser.add_argument('--accuracy', default="'standard'", help="a name in quotes of the deck, or a number in %%")
+    parser.add_argument('--bounds', type=float, nargs=2, default=(1, 3), help='errors of peak and history allowed, %%')
+    parser.add_argument('--count', type=int, default=40)
+    parser.add_argument('--seed', type=int, default=1)
+    parser.add_argument('--longest', type=float, default=2000,
+                        help='contacts that last more rises than this have no answer here')
+    parser.add_argument('--only', type=int, nargs='+', help='numbers of scenes')
+    parser.add_argument('--at-least', type=int, default=0, help='scenes within the bounds, or else exit code 1')
+    options = parser.parse_args()
+    within, seconds, answered = 0, [], 0
+    print('scene      peak, %  history, %  elements  steps  in a rise  end/rise  processor, s')
+    for number, scene in enumerate(random_scenes(options.count, options.seed), 1):
+        if options.only and number not in options.only:
+            continue
+        tau = scene.contact_time()
+        said = subprocess.run([options.program, 'check', '/dev/stdin'], env=ENVIRONMENT, capture_output=True, text=True,
+                              input=deck_of(scene, case=f'accuracy={options.accuracy}'), check=False).stdout
+        last = re.search(r'end of the last contact +(.*)', said)
+        if last and float(last[1]) > options.longest*tau:
+            print(f'{scene.name:9s}  the contact lasts {float(last[1])/tau:.0f} rises')
+            continue
+        run, errors = compare(options.program, scene, options.accuracy)
+        seconds.append(run.seconds)
+        answered += 1
+        if run.code:
+            print(f'{scene.name:9s}  exit code {run.code}: {run.said.splitlines()[-1][:90]}')
+            continue
+        good = abs(errors[0])*100 <= options.bounds[0] and errors[1]*100 <= options.bounds[1]
+        within += good
+        elements = 'x'.join(f'{n:.0f}' for n in run.key('mesh', 'elements'))
+        step = run.key('time', 'step')[0]
+        print(f'{scene.name:9s}  {100*errors[0]:+7.2f}  {100*errors[1]:10.2f}  {elements:>8s}  {run.steps:5d}'
+              f'  {tau/step:9.1f}  {run.time[-1]/tau:8.1f}  {run.seconds:12.2f}{"" if good else "  misses"}', flush=True)
+    print(f'{within} of {answered} within {options.bounds[0]:g} % and {options.bounds[1]:g} %; processor time of the '
+          f'median scene {np.median(seconds):.2f} s')
+    if within < options.at_least:
+        raise SystemExit(1)
+
+
+if __name__ == '__main__':
+    main()

@@ -1,0 +1,73 @@
+#!/usr/bin/env python3
+"""Decks in wrong units: `implam check` has to name the value and the unit it seems to be in.
+
+usage: check_units.py IMPLAM
+
+Each row changes values of a deck of input/ as people who mix up units do. The decks of input/ themselves get no warning
+but that of process zones, which is true of them.
+"""
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+INPUT = pathlib.Path(__file__).resolve().parents[2]/'input'
+# What is wrong, the deck, changes (key, factor), and the keys one of which has to be named with one of the units.
+ROWS = (
+    ('moduli in GPa', 'sun_chen', (('E1', 1e-9), ('E2', 1e-9), ('G12', 1e-9), ('G13', 1e-9), ('G23', 1e-9)), 'E1', 'GPa'),
+    ('moduli in MPa', 'sun_chen', (('E1', 1e-6), ('E2', 1e-6), ('G12', 1e-6), ('G13', 1e-6), ('G23', 1e-6)), 'E1', 'MPa'),
+    ('lengths in mm', 'sun_chen', (('length', 1e3), ('patch', 1e3), ('thicknesses', 1e3), ('radius', 1e3),
+                                   ('alpha_cr', 1e3)), 'length', 'mm'),
+    ('density in g/cm^3', 'sun_chen', (('density', 1e-3),), 'density', 'g/cm^3'),
+    ('times in ms', 'sun_chen', (('end', 1e3), ('step', 1e3), ('fields_every', 1e3)), 'end', 'ms'),
+    ('radius in mm', 'peanut', (('radius', 800),), 'radius', 'mm'),
+    ('velocity in mm/s', 'sun_chen', (('velocity', 1e3),), 'velocity', 'mm/s'),
+    ('mass in g', 'sun_chen', (('mass', 1e3),), 'mass', 'g'),
+    ('toughness in N/mm', 'peanut', (('G_Ic', 1e-3), ('G_IIc', 1e-3)), 'G_IIc', 'N/mm'),
+    ('k in N/mm^1.5', 'sun_chen', (('k', 10**-4.5),), 'k', 'N/mm^1.5'),
+    ('strengths in MPa', 'peanut', (('XT', 1e-6), ('XC', 1e-6), ('YT', 1e-6), ('YC', 1e-6), ('S12', 1e-6), ('Sf', 1e-6),
+                                    ('Sm23', 1e-6)), 'XT', 'MPa'),
+)
+
+
+def changed(text, key, factor):
+    """The deck with the numbers of a key multiplied."""
+    def multiplied(found):
+        return found[1] + ', '.join(f'{float(word)*factor:.10g}' for word in found[2].split(','))
+
+    new, times = re.subn(rf'(\b{key} *= *)([-+.\deE]+(?:, *[-+.\deE]+)*)', multiplied, text)
+    if times != 1:
+        sys.exit(f'{key} is there {times} times.')
+    return new
+
+
+def warnings(program, deck, text=None):
+    """Warnings of a check."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = pathlib.Path(folder, deck.name)
+        path.write_text(text or deck.read_text())
+        done = subprocess.run([program, 'check', path], capture_output=True, text=True, timeout=60, check=False)
+    return [line for line in done.stdout.splitlines() if ': warning: ' in line]
+
+
+def main(program):
+    """Run all rows; at most two may go unnamed."""
+    named, wrong = 0, []
+    for fault, deck, changes, key, unit in ROWS:
+        path = INPUT/(deck + '.nml')
+        text = ''.join(line for line in path.read_text().splitlines(True) if line[0] != '!')
+        for change in changes:
+            text = changed(text, *change)
+        told = [line for line in warnings(program, path, text) if f' {key} =' in line and f' in {unit}.' in line]
+        named += bool(told)
+        print(f'{fault}: {told[0].split("warning: ")[1] if told else "not named"}')
+    for path in sorted(INPUT.glob('**/*.nml')):
+        wrong += [line for line in warnings(program, path) if 'process zone' not in line]
+    print(f'{named} of {len(ROWS)} named')
+    print('\n'.join(wrong))
+    return 0 if named == len(ROWS) and not wrong else 1
+
+
+if __name__ == '__main__':
+    sys.exit(main(sys.argv[1]))
