@@ -10,18 +10,14 @@ module deck_cross_checks
   use delamination_deck, only: delamination_group, key_below_ply
   use delamination_parameters, only: growth_one_per_step, interface_objection
   use failure_criteria, only: needed_strengths
-  use impactor_deck, only: impactor_group, key_velocity, key_radius, key_gravity
-  use hou_criteria, only: missing_strengths
   use impactor_deck, only: impactor_group, key_velocity, key_radius, key_gravity, keys_of_motion
   use indentation_deck, only: indentation_group, key_k
   use kinds, only: wp
   use material_deck, only: material_group, require_densities
   use mesh_deck, only: mesh_group, key_patch
   use output_deck, only: check_intervals, remark_idle_fields
-  use plate_deck, only: plate_group, key_symmetry, check_supports
   use plies, only: ply_t, material_objection
   use plate_deck, only: plate_group, check_edges
-  use ply_damage_parameters, only: ply_damage_t, criteria_hou
   use pressure_deck, only: pressure_group, key_history
   use support_deck, only: check_static_rigs
   use static_deck, only: static_group

@@ -97,9 +97,9 @@ contains
     call check_interfaces(deck, problems)
     if (deck%has_ply_damage) call check_crack_bands(deck, problems)
     call check_process_zones(deck, problems)
-    deck%remarks = problems%remarks()
     call check_scales(deck, problems)
     call check_units(deck, problems)
+    deck%remarks = problems%remarks()
   end subroutine read_deck_text
 
   !> Which groups the deck has, of those that bring physics or a kind of analysis.
@@ -155,11 +155,6 @@ contains
                           ply=1, size(deck%laminate%material))], [2, size(deck%laminate%material)])
   end function ply_strengths
 
-  !> Time, impactor, indentation, pressure and load steps, as far as the deck has them.
-  subroutine fill_loads(deck, problems)
-    !> Receives them
-    type(deck_t), intent(inout) :: deck
-    !> Faults found are added
   !> Impactor, indentation, time, pressure and load steps, as far as the deck has them; what the deck leaves to its
   !> accuracy is chosen before the rest follows.
   subroutine fill_loads(deck, problems)
@@ -169,9 +164,8 @@ contains
     type(problems_t), intent(inout) :: problems
     real(wp) :: compliance
 
-    call fill_impactor(deck%settings, deck%impactor)
-    if (deck%has_impactor) deck%mesh%struck = deck%impactor%at
     call fill_impactor(deck%settings, deck%impactor, problems)
+    if (deck%has_impactor) deck%mesh%struck = deck%impactor%at
     if (deck%has_impactor) then
       compliance = 0
       if (allocated(deck%laminate%material)) compliance = normal_compliance( &

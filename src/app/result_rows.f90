@@ -3,9 +3,7 @@
 module result_rows
   use delamination_parameters, only: delamination_t
   use interface_columns, only: area_rows, area_values, border_rows, border_values, interface_rows, interface_values, &
-                               release_rows, release_values
-  use interface_columns, only: area_rows, area_values, border_rows, border_values, release_rows, release_values, &
-                               rig_rows, rig_values
+                               release_rows, release_values, rig_rows, rig_values
   use kinds, only: wp
   use models, only: model_t
   use operator_columns, only: operator_rows, operator_values
@@ -21,14 +19,11 @@ module result_rows
 
   !> Columns that every history has, of which the first seventeen are the public interface.
   character(len=*), parameter :: plate_rows(*) = [character(len=result_row_length) :: &
-    motion_rows, area_rows, ledger_rows, step_rows, release_rows, iteration_rows, operator_rows, ply_rows, border_rows]
+    motion_rows, area_rows, ledger_rows, step_rows, release_rows, iteration_rows, operator_rows, ply_rows, &
+    border_rows, rig_rows]
   !> The table of columns in their order.
   character(len=*), parameter, public :: column_rows(*) = [character(len=result_row_length) :: &
     plate_rows, interface_rows]
-  !> The table of columns in their order, of which the first seventeen are the public interface.
-  character(len=*), parameter, public :: column_rows(*) = [character(len=result_row_length) :: &
-    motion_rows, area_rows, ledger_rows, step_rows, release_rows, iteration_rows, operator_rows, ply_rows, &
-    border_rows, rig_rows]
 
 contains
 
@@ -77,7 +72,7 @@ contains
     type(time_stepper_t), intent(in) :: stepper
     !> Values in the order of the columns
     real(wp), allocatable :: row(:)
-    real(wp) :: row(size(column_rows)), load
+    real(wp) :: load
 
     associate (now => stepper%now)
       load = now%time
@@ -86,8 +81,7 @@ contains
              step_values(now, stepper%controller%last), &
              release_values(model, now%interfaces, now%motion%displacement), iteration_values(now, stepper%rejected), &
              operator_values(stepper%operator), ply_values(model, now%plies), border_values(model, now%interfaces), &
-             interface_values(model, now%interfaces)]
-             rig_values(model, now%interfaces, now%motion, load)]
+             rig_values(model, now%interfaces, now%motion, load), interface_values(model, now%interfaces)]
     end associate
     row(1) = shown_time(row(1))
   end function row_of

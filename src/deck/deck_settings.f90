@@ -330,6 +330,7 @@ contains
     end do
     call move_alloc(values, self%items(item)%values)
   end subroutine derive_numbers
+
   !> Sets the numbers of a key that the deck leaves to the accuracy it asks for.
   pure subroutine choose(self, group, key, words)
     class(settings_t), intent(inout) :: self

@@ -9,8 +9,7 @@ module interface_columns
   use result_tables, only: result_row_length
   implicit none
   private
-  public :: area_values, release_values, border_values, interface_values
-  public :: area_values, release_values, border_values, rig_values
+  public :: area_values, release_values, border_values, rig_values, interface_values
 
   !> How much has delaminated: a column of the public interface.
   character(len=result_row_length), parameter, public :: area_rows(*) = [character(len=result_row_length) :: &
@@ -90,8 +89,6 @@ contains
     values = [merge(1.0_wp, 0.0_wp, any(interfaces%border_reached)), interfaces%projected_area(model)]
   end function border_values
 
-  !> Figures of each interface, one interface after the other. Collective.
-  function interface_values(model, interfaces) result(values)
   !> Forces of the rigs. Collective.
   function rig_values(model, interfaces, motion, load) result(values)
     type(model_t), intent(in) :: model
@@ -107,9 +104,8 @@ contains
     values = interfaces%rig%reactions(model, motion%displacement, motion%internal, motion%inertia, load)
   end function rig_values
 
-  !> Area in which at least one interface has delaminated, of the whole plate: nodal areas times the largest part
-  !> delaminated above each other. Collective.
-  function projected_area(model, interfaces) result(area)
+  !> Figures of each interface, one interface after the other. Collective.
+  function interface_values(model, interfaces) result(values)
     type(model_t), intent(in) :: model
     !> The interfaces
     type(interface_state_t), intent(in) :: interfaces

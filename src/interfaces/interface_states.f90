@@ -39,8 +39,6 @@ module interface_states
     procedure :: keep_touching
     !> Work of contact and penalty ties in a step.
     procedure :: contact_work
-    !> Area delaminated at every node of the mesh.
-    procedure :: area_at_nodes
     !> Stiffness that ties, contact and cohesive laws add to the diagonal.
     procedure :: added_stiffness
     !> Saves or loads the state.
@@ -77,10 +75,6 @@ contains
     call self%rig%act(model, displacement, residual)
   end subroutine act
 
-  !> Area in which at least one interface has delaminated, of the whole plate: nodal areas times the largest part
-  !> delaminated above each other. A node where ties are released has delaminated as a whole, a cohesive one by the part
-  !> dissipated. All points of a node belong to one rank, so that only the sum is collective.
-  function projected_area(self, model) result(area)
   !> Takes the contact pressures found, of faces and frames, as the next estimates.
   subroutine settle(self, model, displacement, tolerance, rounds, settled)
     !> The state
@@ -128,9 +122,10 @@ contains
     if (model%map%layered) work = work + self%faces%work(model, displacement, change)
   end function contact_work
 
-  !> Area that has delaminated at the nodes of the mesh, of this rank's points: a node where ties are released has its
-  !> whole area, a cohesive one the part dissipated.
-  pure function area_at_nodes(self, model) result(area)
+  !> Area in which at least one interface has delaminated, of the whole plate: nodal areas times the largest part
+  !> delaminated above each other. A node where ties are released has delaminated as a whole, a cohesive one by the part
+  !> dissipated. All points of a node belong to one rank, so that only the sum is collective.
+  function projected_area(self, model) result(area)
     !> The state
     class(interface_state_t), intent(in) :: self
     type(model_t), intent(in) :: model
