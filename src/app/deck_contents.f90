@@ -12,7 +12,8 @@ module deck_contents
   private
   public :: deck_t
 
-  !> A deck that was read: the scene to model, and what is around it.
+  !> A deck that was read: the scene to model, and what is around it; it has many components because every group of the
+  !> deck has one.
   type, extends(scene_t) :: deck_t
     !> Path or name it was read from
     character(len=:), allocatable :: source

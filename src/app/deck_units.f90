@@ -213,7 +213,8 @@ contains
     do i = 1, size(thousands)
       if (ratio*thousands(i) < shortest_run .or. ratio*thousands(i) > longest_run) cycle
       associate (unit => merge(of_ms(i), of_si(i), unit_name(of_time, system) == 'ms'))
-        if (unit /= '') call tell_unit(deck, problems, quantity_t(of_time, deck%stepping%time%end, time_group, key_end), &
+        if (unit /= '') call tell_unit(deck, problems, &
+                                       quantity_t(of_time, deck%stepping%time%end, time_group, key_end), &
                                        system, 'is '//short_text(ratio)//' times what happens', trim(unit))
       end associate
       return

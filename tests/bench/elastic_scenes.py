@@ -74,7 +74,8 @@ class Run:
             path = pathlib.Path(folder, name + '.nml')
             path.write_text(deck)
             with open(pathlib.Path(folder, 'said'), 'w') as said:
-                process = subprocess.Popen([program, path, '--output', folder], stdout=said, stderr=said, env=ENVIRONMENT)
+                process = subprocess.Popen([program, path, '--output', folder], stdout=said, stderr=said,
+                                           env=ENVIRONMENT)
                 _, status, usage = os.wait4(process.pid, 0)
             process.returncode = self.code = os.waitstatus_to_exitcode(status)
             self.seconds = usage.ru_utime + usage.ru_stime
@@ -150,7 +151,8 @@ def main():
         elements = 'x'.join(f'{n:.0f}' for n in run.key('mesh', 'elements'))
         step = run.key('time', 'step')[0]
         print(f'{scene.name:9s}  {100*errors[0]:+7.2f}  {100*errors[1]:10.2f}  {elements:>8s}  {run.steps:5d}'
-              f'  {tau/step:9.1f}  {run.time[-1]/tau:8.1f}  {run.seconds:12.2f}{"" if good else "  misses"}', flush=True)
+              f'  {tau/step:9.1f}  {run.time[-1]/tau:8.1f}  {run.seconds:12.2f}{"" if good else "  misses"}',
+              flush=True)
     print(f'{within} of {answered} within {options.bounds[0]:g} % and {options.bounds[1]:g} %; processor time of the '
           f'median scene {np.median(seconds):.2f} s')
     if within < options.at_least:

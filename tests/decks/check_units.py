@@ -15,8 +15,10 @@ import tempfile
 INPUT = pathlib.Path(__file__).resolve().parents[2]/'input'
 # What is wrong, the deck, changes (key, factor), and the keys one of which has to be named with one of the units.
 ROWS = (
-    ('moduli in GPa', 'sun_chen', (('E1', 1e-9), ('E2', 1e-9), ('G12', 1e-9), ('G13', 1e-9), ('G23', 1e-9)), 'E1', 'GPa'),
-    ('moduli in MPa', 'sun_chen', (('E1', 1e-6), ('E2', 1e-6), ('G12', 1e-6), ('G13', 1e-6), ('G23', 1e-6)), 'E1', 'MPa'),
+    ('moduli in GPa', 'sun_chen', (('E1', 1e-9), ('E2', 1e-9), ('G12', 1e-9), ('G13', 1e-9),
+                                   ('G23', 1e-9)), 'E1', 'GPa'),
+    ('moduli in MPa', 'sun_chen', (('E1', 1e-6), ('E2', 1e-6), ('G12', 1e-6), ('G13', 1e-6),
+                                   ('G23', 1e-6)), 'E1', 'MPa'),
     ('lengths in mm', 'sun_chen', (('length', 1e3), ('patch', 1e3), ('thicknesses', 1e3), ('radius', 1e3),
                                    ('alpha_cr', 1e3)), 'length', 'mm'),
     ('density in g/cm^3', 'sun_chen', (('density', 1e-3),), 'density', 'g/cm^3'),
@@ -63,7 +65,7 @@ def main(program):
         named += bool(told)
         print(f'{fault}: {told[0].split("warning: ")[1] if told else "not named"}')
     for path in sorted(INPUT.glob('**/*.nml')):
-        wrong += [line for line in warnings(program, path) if 'process zone' not in line]
+        wrong += [line for line in warnings(program, path) if 'looks as if' in line]
     print(f'{named} of {len(ROWS)} named')
     print('\n'.join(wrong))
     return 0 if named == len(ROWS) and not wrong else 1
