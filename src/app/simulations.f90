@@ -2,7 +2,7 @@
 module simulations
   use kinds, only: wp
   use errors, only: error_t, fail, exit_stopped
-  use text, only: line_t, rounded_text, to_text
+  use text, only: rounded_text, to_text
   use files, only: make_directory, remove_file
   use logger, only: log_t
   use timers, only: timer_set_t, wall_time
@@ -17,11 +17,10 @@ module simulations
   use run_provenance, only: provenance_t, this_run
   use run_progress, only: progress_t
   use run_records, only: run_record_t, new_run_record
-  use run_figures, only: run_figures_t, ending_of, find_figures
   use run_reports, only: log_echo, log_costs, summary
   use run_warnings, only: give_warnings
-  use summary_file, only: summary_ending, summary_text, write_summary
-  use summary_lines, only: lines_of_summary
+  use run_summaries, only: summarise
+  use summary_file, only: summary_ending
   use history_file, only: history_file_t
   use fields_file, only: fields_file_t
   use checkpoints, only: checkpoint_archive_t, checkpoint_ending, retire_checkpoint
@@ -111,8 +110,17 @@ contains
     call self%fields%create(communicator, self%base, self%provenance, part_of(self), error)
     if (allocated(error)) return
     call write_mesh(self%model, self%fields, error)
-    self%is_ready = .not. allocated(error)
+    if (.not. allocated(error)) call make_ready(self)
   end subroutine initialize
+
+  !> From now on the run can tell what it has come to, and what one before it did no longer holds.
+  subroutine make_ready(self)
+    !> The run
+    class(simulation_t), intent(inout) :: self
+
+    self%is_ready = .true.
+    if (self%communicator%is_root()) call remove_file(self%base//summary_ending)
+  end subroutine make_ready
 
   !> What initialise and resume have in common: log, model, state at rest.
   subroutine prepare(self, deck, communicator, begun, append, error)
@@ -146,8 +154,6 @@ contains
     if (allocated(error)) return
     ! A launcher hands its ranks a terminal of its own, whose output may go to a file.
     if (launched()) self%log%interactive = .false.
-    ! What an earlier run has come to is not what this one will say.
-    if (communicator%is_root()) call remove_file(self%base//summary_ending)
     self%provenance = this_run(this_build(), deck%text, communicator%size)
     self%provenance%case_name = deck%name
     call self%provenance%report(self%log)
@@ -213,7 +219,7 @@ contains
     if (allocated(error)) return
     call write_mesh(self%model, self%fields, error)
     call self%progress%start(self%stepper%now%time/end_of(self))
-    self%is_ready = .not. allocated(error)
+    if (.not. allocated(error)) call make_ready(self)
   end subroutine resume
 
   !> Saves or loads all that evolves.
@@ -371,23 +377,9 @@ contains
     class(simulation_t), intent(inout) :: self
     !> What ended the run before its time; set, if nothing did, if the summary cannot be written
     type(error_t), allocatable, intent(inout) :: error
-    type(run_figures_t) :: figures
-    type(error_t), allocatable :: fault
-    type(line_t), allocatable :: lines(:)
-    integer :: i
 
-    if (.not. self%is_ready) return
-    call find_figures(self%model, self%stepper%now, figures)
-    lines = lines_of_summary(self%deck, self%stepper%now, self%record, figures)
-    do i = 1, size(lines)
-      call self%log%note(lines(i)%text)
-    end do
-    if (self%communicator%is_root()) &
-      call write_summary(self%base//summary_ending, &
-                         summary_text(self%deck, self%stepper, self%record, figures, ending_of(error), &
-                                      self%provenance, wall_time() - self%begun), fault)
-    call self%communicator%agree(fault)
-    if (allocated(fault) .and. .not. allocated(error)) error = fault
+    if (self%is_ready) call summarise(self%deck, self%model, self%stepper, self%record, self%provenance, &
+                                      wall_time() - self%begun, self%base//summary_ending, self%log, error)
   end subroutine conclude
 
 end module simulations

@@ -21,7 +21,8 @@ def warnings_of(implam, folder, history, time):
     folder.mkdir(parents=True, exist_ok=True)
     deck = folder / "pressed.nml"
     deck.write_text(f"{BEGINNING}&pressure value=2e6 history='{history}' /\n&time end=1e-3 {time} /\n", "utf-8")
-    return run([implam, deck, "--output", folder]).count(WARNING)
+    lines = run([implam, deck, "--output", folder]).splitlines()
+    return sum(line.startswith("implam: warning: ") and WARNING in line for line in lines)
 
 
 def main(implam, folder):

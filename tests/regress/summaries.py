@@ -229,8 +229,7 @@ def check_endings(implam, folder, _):
     run_deck(implam, killed)
     killed.write_text(change_deck(killed.read_text(encoding="utf-8"), ["time%end=1"]), encoding="utf-8")
     process = start(implam, killed, "--output", killed.parent)
-    log = killed.parent / "damage.log"
-    wait_until(lambda: "end=1" in log.read_text(encoding="utf-8"), process)
+    wait_until(lambda: not list(killed.parent.glob("*_summary.json")), process)
     process.kill()
     process.wait()
     require(not list(killed.parent.glob("*_summary.json")), "A killed run leaves the summary of the one before.")

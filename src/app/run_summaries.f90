@@ -1,0 +1,56 @@
+!> The end of a run in words and figures: found once, told in the log and written to NAME_summary.json.
+module run_summaries
+  use deck_contents, only: deck_t
+  use errors, only: error_t
+  use kinds, only: wp
+  use logger, only: log_t
+  use models, only: model_t
+  use run_figures, only: run_figures_t, ending_of, find_figures
+  use run_provenance, only: provenance_t
+  use run_records, only: run_record_t
+  use summary_file, only: summary_text, write_summary
+  use summary_lines, only: lines_of_summary
+  use text, only: line_t
+  use time_stepping, only: time_stepper_t
+  implicit none
+  private
+  public :: summarise
+
+contains
+
+  !> Says what a run has come to, also one that has been stopped or has failed. Collective.
+  subroutine summarise(deck, model, stepper, record, provenance, seconds, path, log, error)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    type(model_t), intent(in) :: model
+    !> What the run has stepped with
+    type(time_stepper_t), intent(in) :: stepper
+    !> What it remembers
+    type(run_record_t), intent(in) :: record
+    !> Version, deck and machine
+    type(provenance_t), intent(in) :: provenance
+    !> Time on the wall since this process began
+    real(wp), intent(in) :: seconds
+    !> Path of the file
+    character(len=*), intent(in) :: path
+    !> The log
+    type(log_t), intent(inout) :: log
+    !> What ended the run before its time; set, if nothing did, if the summary cannot be written
+    type(error_t), allocatable, intent(inout) :: error
+    type(run_figures_t) :: figures
+    type(error_t), allocatable :: fault
+    type(line_t), allocatable :: lines(:)
+    integer :: i
+
+    call find_figures(model, stepper%now, figures)
+    lines = lines_of_summary(deck, stepper%now, record, figures)
+    do i = 1, size(lines)
+      call log%note(lines(i)%text)
+    end do
+    if (model%communicator%is_root()) &
+      call write_summary(path, summary_text(deck, stepper, record, figures, ending_of(error), provenance, seconds), &
+                         fault)
+    call model%communicator%agree(fault)
+    if (allocated(fault) .and. .not. allocated(error)) error = fault
+  end subroutine summarise
+end module run_summaries
