@@ -58,9 +58,10 @@ contains
 
     if (deck%has_static .and. deck%has_impactor) then
       call tell(deck%settings, problems, static_group, '', 'an impactor needs time; leave out &static or &impactor.')
-    else if (deck%has_static .and. .not. (deck%has_pressure .or. problems%concern(pressure_group))) then
+    else if (deck%has_static .and. .not. (deck%has_pressure .or. deck%has_thermal .or. &
+                                          problems%concern(pressure_group))) then
       call tell(deck%settings, problems, static_group, '', 'there is no load; give &pressure.')
-    else if (.not. (deck%has_static .or. deck%has_impactor .or. deck%has_pressure .or. &
+    else if (.not. (deck%has_static .or. deck%has_impactor .or. deck%has_pressure .or. deck%has_thermal .or. &
                     problems%concern(static_group) .or. problems%concern(impactor_group) .or. &
                     problems%concern(pressure_group))) then
       call problems%error(0, pressure_group, '', 'nothing loads the plate; give &impactor or &pressure.')

@@ -35,6 +35,7 @@ module deck_reader
   use static_deck, only: fill_static, static_group
   use rigs, only: window_lines
   use support_deck, only: fill_supports, check_rigs
+  use thermal_deck, only: fill_thermal, check_thermal, thermal_group
   use time_deck, only: fill_time, check_time, time_group
   implicit none
   private
@@ -110,6 +111,7 @@ contains
     deck%has_impactor = deck%settings%has_group(impactor_group)
     deck%has_indentation = deck%settings%has_group(indentation_group)
     deck%has_pressure = deck%settings%has_group(pressure_group)
+    deck%has_thermal = deck%settings%has_group(thermal_group)
     deck%has_static = deck%settings%has_group(static_group)
     deck%has_ply_damage = deck%settings%has_group(ply_damage_group)
     deck%has_time = deck%settings%has_group(time_group) .or. &
@@ -175,6 +177,7 @@ contains
     if (deck%accuracy > 0) call choose_by_accuracy(deck, problems)
     if (deck%has_time) call fill_time(deck%settings, size(deck%delaminations) > 0, deck%stepping%time)
     call fill_pressure(deck%settings, deck%stepping%time%end, deck%pressure)
+    if (deck%has_thermal) call fill_thermal(deck%settings, deck%temperature_change)
     if (deck%has_static) call fill_static(deck%settings, deck%stepping%static_steps)
   end subroutine fill_loads
 
@@ -202,6 +205,7 @@ contains
     call check_delaminations(deck%settings, deck%delaminations, problems)
     if (deck%has_impactor .and. deck%has_indentation) call check_indentation(deck%settings, deck%indentation, problems)
     if (deck%has_pressure) call check_pressure(deck%settings, deck%pressure, problems)
+    if (deck%has_thermal) call check_thermal(deck%settings, deck%materials, problems)
     if (deck%has_time) call check_time(deck%settings, deck%stepping%time, problems)
     call check_petsc_options(deck%settings, deck%linear_solver, problems)
   end subroutine check_groups

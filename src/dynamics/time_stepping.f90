@@ -4,6 +4,7 @@ module time_stepping
   use errors, only: error_t, fail, exit_convergence
   use archives, only: archive_t
   use text, only: rounded_text
+  use initial_equilibrium, only: find_initial_equilibrium
   use impactor_integrators, only: largest_safe_step
   use stepping_parameters, only: stepping_t
   use linear_solver_parameters, only: linear_solver_parameters_t
@@ -71,6 +72,8 @@ contains
     allocate (self%trial, source=self%now)
     self%controller%wanted = 1.0_wp/self%stepping%static_steps
     call self%operator%create(model, linear_solver%factorization, error)
+    if (.not. allocated(error) .and. model%scene%has_thermal) &
+      call find_initial_equilibrium(model, self%operator, self%now, error)
     if (allocated(error) .or. model%scene%has_static) return
     self%integrator = plate_integrator(self%stepping%time)
     self%operator%condenses = allocated(self%now%interfaces%cohesive%cohesive)

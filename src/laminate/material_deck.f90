@@ -63,7 +63,11 @@ module material_deck
     'material | G_mt | real | 1 | energy/area | none | > 0 | &
       &Energy that cracking the matrix by tension across the fibres takes per area of crack.', &
     'material | G_mc | real | 1 | energy/area | none | > 0 | &
-      &Energy that failing the matrix by shear or by compression across the fibres takes per area of crack.']
+      &Energy that failing the matrix by shear or by compression across the fibres takes per area of crack.', &
+    'material | alpha1 | real | 1 | 1/temperature | 0 | any | &
+      &Thermal expansion along the fibres.', &
+    'material | alpha2 | real | 1 | 1/temperature | 0 | any | &
+      &Thermal expansion across the fibres.']
   !> Keys of the fracture energies in the order of the modes.
   character(len=*), parameter, public :: toughness_keys(4) = [character(len=4) :: 'G_ft', 'G_fc', 'G_mt', 'G_mc']
 
@@ -117,6 +121,8 @@ contains
     material%s12 = settings%real_of(material_group, 'S12', place)
     material%sf = settings%real_of(material_group, 'Sf', place)
     material%sm23 = settings%real_of(material_group, 'Sm23', place)
+    material%expansion = [settings%real_of(material_group, 'alpha1', place), &
+                          settings%real_of(material_group, 'alpha2', place)]
     do mode = 1, size(toughness_keys)
       material%toughness(mode) = settings%real_of(material_group, toughness_keys(mode), place)
     end do

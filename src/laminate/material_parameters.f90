@@ -26,5 +26,7 @@ module material_parameters
     real(wp) :: s12 = 0, sf = 0, sm23 = 0
     !> Fracture energies per area: fibre tension and compression, matrix tension and compression; 0: not given
     real(wp) :: toughness(4) = 0
+    !> Thermal expansion along and across the fibres
+    real(wp) :: expansion(2) = 0
   end type material_t
 end module material_parameters

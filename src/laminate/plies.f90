@@ -31,6 +31,8 @@ module plies
     real(wp) :: cosine = 1, sine = 0
     !> z of the face towards the struck side and of the other one
     real(wp) :: z_top = 0, z_bottom = 0
+    !> Strains along and across the fibres that go without stress, as by cooling
+    real(wp) :: free_strain(2) = 0
   end type ply_t
 
 contains

@@ -40,7 +40,7 @@ contains
     end do
   end function strain_moments
 
-  !> Strains of a ply in its own axes.
+  !> Strains of a ply in its own axes, less those that go without stress.
   pure function strains_of_ply(ply, moments) result(strains)
     !> The ply
     type(ply_t), intent(in) :: ply
@@ -62,6 +62,11 @@ contains
                     dot_product(across, moments%mean(1:3) + middle*moments%mean(4:6))]
     strains%square = [dot_product(along, matmul(squares, along)), dot_product(across, matmul(squares, across)), &
                       dot_product(along, matmul(squares, across))]
+    associate (mean => strains%mean, free => ply%free_strain)
+      strains%square = strains%square - [(2*mean(1) - free(1))*free(1), (2*mean(2) - free(2))*free(2), &
+                                         mean(1)*free(2) + mean(2)*free(1) - free(1)*free(2)]
+      mean = mean - free
+    end associate
     strains%shear_square = max(0.0_wp, dot_product(shear, matmul(squares, shear)))
   end function strains_of_ply
 end module ply_strains

@@ -16,7 +16,7 @@ contains
 
   !> Stresses of a ply at a height.
   pure function ply_stress(ply, elasticity, strains, z) result(stress)
-    !> The ply, for its angle
+    !> The ply, for its angle and its strains without stress
     type(ply_t), intent(in) :: ply
     !> Its present elastic constants
     type(elasticity_t), intent(in) :: elasticity
@@ -31,8 +31,8 @@ contains
     in_plane = strains(1:3) + z*strains(4:6)
     q = reduced_stiffness(elasticity)
     associate (c => ply%cosine, s => ply%sine)
-      along = c*c*in_plane(1) + s*s*in_plane(2) + c*s*in_plane(3)
-      across = s*s*in_plane(1) + c*c*in_plane(2) - c*s*in_plane(3)
+      along = c*c*in_plane(1) + s*s*in_plane(2) + c*s*in_plane(3) - ply%free_strain(1)
+      across = s*s*in_plane(1) + c*c*in_plane(2) - c*s*in_plane(3) - ply%free_strain(2)
       shear = 2*c*s*(in_plane(2) - in_plane(1)) + (c*c - s*s)*in_plane(3)
       stress(1) = q(1)*along + q(2)*across
       stress(2) = q(2)*along + q(3)*across

@@ -3,6 +3,8 @@ module model_building
   use kinds, only: wp
   use errors, only: error_t
   use communicators, only: communicator_t
+  use element_batches, only: lanes, lane_of, batch_of
+  use free_strains, only: free_resultants
   use plate_options, only: kinematics_linear, mass_lumped
   use inertia_forces, only: add_lumped_mass
   use load_vectors, only: add_pressure, gauss_coordinates, add_patch_weights
@@ -39,16 +41,22 @@ contains
     !> Set if the mesh can't be dealt out or an element is ill-shaped; the same on every rank
     type(error_t), allocatable, intent(out) :: error
     type(zone_t), allocatable :: zones(:)
+    integer :: ply
 
     self%scene = scene
     self%communicator = communicator
     self%plies = stacked_plies(scene%laminate, scene%materials)
+    if (scene%has_thermal) then
+      do ply = 1, size(self%plies)
+        self%plies(ply)%free_strain = scene%temperature_change*scene%materials(self%plies(ply)%material)%expansion
+      end do
+    end if
     self%thickness = sum(scene%laminate%thickness)
     self%section = section_of(self%plies, scene%laminate%shear_correction)
     zones = zones_of(scene)
     self%mesh = create_mesh(scene%plate, scene%mesh, size(self%plies), zones)
     self%membrane_idle = scene%kinematics == kinematics_linear .and. size(zones) == 0 .and. &
-                         .not. scene%has_ply_damage .and. uncoupled(self%section)
+                         .not. (scene%has_ply_damage .or. scene%has_thermal) .and. uncoupled(self%section)
     self%held = held_unknowns(self%mesh, scene%plate, self%membrane_idle, adrift(scene))
     if (allocated(scene%supports)) call hold_by_rigs(self%mesh, scene%plate, scene%supports, self%held)
     call distribute(self%mesh, communicator, self%distribution, error)
@@ -105,6 +113,7 @@ contains
       call self%elements%create(mesh%node_coordinates(:, mesh%point_node(share%points)), share%connectivity, &
                                 self%scene%mesh%shear, error)
       if (allocated(error)) return
+      if (self%scene%has_thermal) allocate (self%free(lanes, 7, self%elements%batches), source=0.0_wp)
       do element = 1, size(share%elements)
         first = mesh%element_plies(1, share%elements(element))
         last = mesh%element_plies(2, share%elements(element))
@@ -112,6 +121,8 @@ contains
         if (last - first + 1 < size(self%plies)) &
           section = section_of(self%plies(first:last), self%scene%laminate%shear_correction)
         call self%elements%set_section(element, section%stiffness, section%mass)
+        if (self%scene%has_thermal) self%free(lane_of(element), :, batch_of(element)) = &
+          free_resultants(self%plies(first:last), self%plies(first:last)%elasticity)
       end do
     end associate
     if (self%scene%mesh%mass == mass_lumped) allocate (self%lumped(3, size(self%distribution%points)), source=0.0_wp)
@@ -131,7 +142,11 @@ contains
     call self%communicator%sum(area)
     if (area > 0) weights = weights/area
     self%patch = weights(1, :)
-    if (self%scene%has_pressure) call build_pressure(self)
+    if (self%scene%has_pressure) then
+      call build_pressure(self)
+    else if (self%scene%has_static) then
+      allocate (self%pressure(5, size(self%distribution%points)), source=0.0_wp)
+    end if
     if (allocated(self%lumped)) then
       call add_lumped_mass(self%elements, self%lumped)
       call self%halo%accumulate(self%lumped)

@@ -43,6 +43,9 @@ module models
     type(section_t) :: section
     !> Thickness of the laminate
     real(wp) :: thickness = 0
+    !> Resultants of the strains that the plies' cooling would give them without stress, and their energy per area,
+    !> without damage, (lanes, 7, batches); allocated only if they are modelled
+    real(wp), allocatable :: free(:, :, :)
     !> Held unknowns of every point of the mesh, (5, points of the mesh)
     logical, allocatable :: held(:, :)
     !> Weights whose product with w is the mean deflection of the patch, (local points); ghosts zero
@@ -112,7 +115,7 @@ contains
   end function motion_of
 
   !> Internal forces at the owned points and this rank's share of the strain energy.
-  subroutine internal(self, stiffness, displacement, force, energy, law)
+  subroutine internal(self, stiffness, displacement, force, energy, law, free)
     !> The model
     class(model_t), intent(in) :: self
     !> Section stiffness left in the elements, (lanes, 21, batches)
@@ -125,14 +128,16 @@ contains
     real(wp), intent(out) :: energy
     !> Makes the stiffness follow the strains; absent: it is what it is
     class(section_law_t), intent(inout), optional :: law
+    !> Resultants of strains that go without stress, and their energy per area, (lanes, 7, batches); absent: none
+    real(wp), contiguous, intent(in), optional :: free(:, :, :)
 
     force = 0
     if (self%map%layered) then
       call add_internal_force(self%elements, stiffness, self%scene%kinematics, self%motion_of(displacement), force, &
-                              energy, law)
+                              energy, law, free)
       call self%map%to_unknowns(force)
     else
-      call add_internal_force(self%elements, stiffness, self%scene%kinematics, displacement, force, energy, law)
+      call add_internal_force(self%elements, stiffness, self%scene%kinematics, displacement, force, energy, law, free)
     end if
     call self%halo%accumulate(force)
   end subroutine internal

@@ -3,6 +3,7 @@ module scenes
   use plate_options, only: kinematics_von_karman
   use mesh_parameters, only: plate_t, mesh_t
   use support_parameters, only: support_t
+  use kinds, only: wp
   use material_parameters, only: material_t
   use laminate_parameters, only: laminate_t
   use ply_damage_parameters, only: ply_damage_t
@@ -13,7 +14,7 @@ module scenes
   private
   public :: scene_t
 
-  !> One scene, with many components because each group of physics has one.
+  !> One scene, with many components because a deck has that many groups.
   type :: scene_t
     !> kinematics_von_karman or kinematics_linear
     integer :: kinematics = kinematics_von_karman
@@ -29,13 +30,15 @@ module scenes
     type(laminate_t) :: laminate
     !> Which groups the deck has
     logical :: has_impactor = .false., has_indentation = .false., has_pressure = .false., has_static = .false., &
-               has_ply_damage = .false.
+               has_ply_damage = .false., has_thermal = .false.
     !> Impactor
     type(impactor_parameters_t) :: impactor
     !> Indentation law
     type(indentation_law_t) :: indentation
     !> Pressure
     type(pressure_t) :: pressure
+    !> Temperature less that at which the plies were joined without stress
+    real(wp) :: temperature_change = 0
     !> Damage of the plies
     type(ply_damage_t) :: ply_damage
     !> Interfaces that may delaminate, from the struck face downwards; unallocated: none

@@ -4,7 +4,7 @@ module batch_resultants
   use element_batches, only: lanes
   implicit none
   private
-  public :: in_plane_resultants, shear_resultants
+  public :: in_plane_resultants, shear_resultants, add_free_energy, take_free_resultants
 
 contains
 
@@ -46,6 +46,43 @@ contains
       end do
     end do
   end subroutine in_plane_resultants
+
+  !> Adds to the strain energy what strains that go without stress change of it.
+  pure subroutine add_free_energy(free, weight, s, energies)
+    !> Their resultants Nxx to Mxy, and their energy per area
+    real(wp), intent(in) :: free(lanes, 7)
+    !> Area of each Gauss point
+    real(wp), intent(in) :: weight(lanes, 9)
+    !> Strains (lane, point, component)
+    real(wp), intent(in) :: s(lanes, 9, 6)
+    !> Strain energy of each lane, added to
+    real(wp), intent(inout) :: energies(lanes)
+    integer :: g, i
+
+    do g = 1, 9
+      energies = energies + weight(:, g)*free(:, 7)
+      do i = 1, 6
+        energies = energies - weight(:, g)*free(:, i)*s(:, g, i)
+      end do
+    end do
+  end subroutine add_free_energy
+
+  !> Takes the resultants of strains that go without stress off those of all strains.
+  pure subroutine take_free_resultants(free, weight, s)
+    !> Their resultants Nxx to Mxy, and their energy per area
+    real(wp), intent(in) :: free(lanes, 7)
+    !> Area of each Gauss point
+    real(wp), intent(in) :: weight(lanes, 9)
+    !> Resultants times the areas (lane, point, component)
+    real(wp), intent(inout) :: s(lanes, 9, 6)
+    integer :: g, i
+
+    do i = 1, 6
+      do g = 1, 9
+        s(:, g, i) = s(:, g, i) - weight(:, g)*free(:, i)
+      end do
+    end do
+  end subroutine take_free_resultants
 
   !> Turns shear strains into shear forces times the areas of the shear points.
   pure subroutine shear_resultants(n, c, weight, s, energies)

@@ -6,7 +6,7 @@ module element_tangents
   use element_batches, only: element_batches_t, lanes
   use reference_fields, only: gather
   use batch_strains, only: in_plane_strains
-  use batch_resultants, only: in_plane_resultants
+  use batch_resultants, only: in_plane_resultants, take_free_resultants
   use slope_operators, only: slopes_and_values
   use geometric_tangents, only: add_geometric_tangent
   use shear_tangents, only: add_shear_tangent
@@ -17,7 +17,7 @@ module element_tangents
 contains
 
   !> stiffness_factor * tangent stiffness + mass_factor * consistent mass of the elements of a batch.
-  subroutine tangent(batches, b, stiffness, kinematics, u, stiffness_factor, mass_factor, k)
+  subroutine tangent(batches, b, stiffness, kinematics, u, stiffness_factor, mass_factor, k, free)
     !> The elements
     type(element_batches_t), intent(in) :: batches
     !> Number of the batch
@@ -32,6 +32,8 @@ contains
     real(wp), intent(in) :: stiffness_factor, mass_factor
     !> Matrix of each element (lane, row, column); unknown = 5 (node - 1) + component
     real(wp), intent(out) :: k(lanes, 45, 45)
+    !> Resultants of strains that go without stress, and their energy per area; absent: none
+    real(wp), intent(in), optional :: free(lanes, 7)
     real(wp) :: c(lanes, 21), x_slopes(lanes, 9, 9), y_slopes(lanes, 9, 9), values(9, 9)
     real(wp) :: r(lanes, 9, 5), strains(lanes, 9, 6), slopes(lanes, 9, 2), energies(lanes)
     integer :: row, column
@@ -46,6 +48,7 @@ contains
       call gather(batches%points(:, :, b), u, r)
       call in_plane_strains(batches%inverse_jacobian(:, :, :, b), kinematics, r, strains, slopes)
       call in_plane_resultants(c, batches%weight(:, :, b), strains, energies)
+      if (present(free)) call take_free_resultants(stiffness_factor*free, batches%weight(:, :, b), strains)
       call add_geometric_tangent(c, batches%weight(:, :, b), x_slopes, y_slopes, slopes, strains, k)
     end if
     if (abs(mass_factor) > 0.0_wp) call add_mass(mass_factor*batches%mass(:, :, b), batches%weight(:, :, b), k)

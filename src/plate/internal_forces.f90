@@ -5,7 +5,7 @@ module internal_forces
   use element_batches, only: element_batches_t, lanes
   use reference_fields, only: gather, scatter
   use batch_strains, only: in_plane_strains, add_in_plane_forces, shear_strains, add_shear_forces
-  use batch_resultants, only: in_plane_resultants, shear_resultants
+  use batch_resultants, only: in_plane_resultants, shear_resultants, add_free_energy, take_free_resultants
   use section_laws, only: section_law_t
   implicit none
   private
@@ -14,7 +14,7 @@ module internal_forces
 contains
 
   !> Adds the internal force of all elements to the forces on the points.
-  subroutine add_internal_force(batches, stiffness, kinematics, u, f, energy, law)
+  subroutine add_internal_force(batches, stiffness, kinematics, u, f, energy, law, free)
     !> The elements
     type(element_batches_t), intent(in) :: batches
     !> Section stiffness left, as in the batches (lanes, 21, batches)
@@ -29,7 +29,10 @@ contains
     real(wp), intent(out) :: energy
     !> Makes the stiffness follow the strains; absent: it is what it is
     class(section_law_t), intent(inout), optional :: law
+    !> Resultants Nxx to Mxy of strains that go without stress, and their energy per area, (lanes, 7, batches)
+    real(wp), contiguous, intent(in), optional :: free(:, :, :)
     real(wp) :: r(lanes, 9, 5), strains(lanes, 9, 6), slopes(lanes, 9, 2), c(lanes, 21), energies(lanes)
+    real(wp) :: resultants(lanes, 7)
     integer :: b
 
     energies = 0.0_wp
@@ -38,8 +41,16 @@ contains
       call in_plane_strains(batches%inverse_jacobian(:, :, :, b), kinematics, r, strains, slopes)
       if (present(law)) then
         c = stiffness(:, :, b)
-        call law%soften(b, batches%weight(:, :, b), strains, c)
-        call turn_into_forces(batches, b, c, kinematics, slopes, strains, r, energies)
+        if (present(free)) then
+          resultants = free(:, :, b)
+          call law%soften(b, batches%weight(:, :, b), strains, c, resultants)
+          call turn_into_forces(batches, b, c, kinematics, slopes, strains, r, energies, resultants)
+        else
+          call law%soften(b, batches%weight(:, :, b), strains, c)
+          call turn_into_forces(batches, b, c, kinematics, slopes, strains, r, energies)
+        end if
+      else if (present(free)) then
+        call turn_into_forces(batches, b, stiffness(:, :, b), kinematics, slopes, strains, r, energies, free(:, :, b))
       else
         call turn_into_forces(batches, b, stiffness(:, :, b), kinematics, slopes, strains, r, energies)
       end if
@@ -49,7 +60,7 @@ contains
   end subroutine add_internal_force
 
   !> Turns the unknowns of a batch, whose in-plane strains are known, into its nodal forces.
-  pure subroutine turn_into_forces(batches, b, c, kinematics, slopes, strains, r, energies)
+  pure subroutine turn_into_forces(batches, b, c, kinematics, slopes, strains, r, energies, free)
     !> The elements
     type(element_batches_t), intent(in) :: batches
     !> Number of the batch
@@ -66,10 +77,14 @@ contains
     real(wp), intent(inout) :: r(lanes, 9, 5)
     !> Strain energy of each lane, added to
     real(wp), intent(inout) :: energies(lanes)
+    !> Resultants of strains that go without stress, and their energy per area
+    real(wp), intent(in), optional :: free(lanes, 7)
     real(wp) :: shear(lanes, batches%shear_points, 2)
 
     call shear_strains(batches, b, r, shear)
+    if (present(free)) call add_free_energy(free, batches%weight(:, :, b), strains, energies)
     call in_plane_resultants(c, batches%weight(:, :, b), strains, energies)
+    if (present(free)) call take_free_resultants(free, batches%weight(:, :, b), strains)
     if (batches%shear == shear_assumed) then
       call shear_resultants(9, c, batches%weight(:, :, b), shear, energies)
     else

@@ -15,7 +15,7 @@ module section_laws
 
   abstract interface
     !> Stiffness of the sections of a batch under trial strains.
-    subroutine soften_batch(self, b, weight, strains, stiffness)
+    subroutine soften_batch(self, b, weight, strains, stiffness, free)
       import :: section_law_t, wp, lanes
       !> The law; remembers the trial
       class(section_law_t), intent(inout) :: self
@@ -27,6 +27,8 @@ module section_laws
       real(wp), intent(in) :: strains(lanes, 9, 6)
       !> Section stiffness: that of the last trial on entry, that of this one on return
       real(wp), intent(inout) :: stiffness(lanes, 21)
+      !> Resultants of strains without stress and their energy, likewise; absent: there are none
+      real(wp), intent(inout), optional :: free(lanes, 7)
     end subroutine soften_batch
   end interface
 end module section_laws

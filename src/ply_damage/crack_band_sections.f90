@@ -5,6 +5,7 @@ module crack_band_sections
   use archives, only: archive_t
   use crack_bands, only: crack_band_t, band_state_t, create_crack_band, strain_band, elasticity_left, onset_strain
   use element_batches, only: lanes, first_element
+  use free_strains, only: free_resultants
   use kinds, only: wp
   use models, only: model_t
   use plies, only: ply_t, elasticity_t
@@ -22,6 +23,8 @@ module crack_band_sections
     type(band_state_t), allocatable :: accepted(:, :), trial(:, :)
     !> Section stiffness in the trial, (lanes, 21, batches)
     real(wp), allocatable :: stiffness(:, :, :)
+    !> Resultants of strains without stress in the trial, (lanes, 7, batches); unallocated: there are none
+    real(wp), allocatable :: free(:, :, :)
     !> Plies of the laminate
     type(ply_t), allocatable, private :: plies(:)
     !> Their laws
@@ -46,6 +49,8 @@ module crack_band_sections
     procedure :: mostly_pressed
     !> Constants left in a ply of an element.
     procedure :: elasticity
+    !> Resultants of strains without stress.
+    procedure, private :: free_resultants_of
     !> Saves or loads.
     procedure :: visit
   end type crack_band_sections_t
@@ -62,7 +67,9 @@ contains
     self%plies = model%plies
     self%bands = [(create_crack_band(model%scene%materials(model%plies(i)%material), model%scene%ply_damage), &
                    i=1, size(model%plies))]
-    self%onset = minval([(onset_strain(self%bands(i)), i=1, size(self%bands))])
+    if (allocated(model%free)) self%free = model%free
+    self%onset = minval([(onset_strain(self%bands(i)), i=1, size(self%bands))]) &
+                 - maxval([(norm2(self%plies(i)%free_strain), i=1, size(self%plies))])
     allocate (self%accepted(size(model%plies), model%elements%elements))
     self%trial = self%accepted
     self%stiffness = model%elements%stiffness
@@ -77,7 +84,7 @@ contains
   end function new_crack_band_sections
 
   !> Stiffness of the sections of a batch under trial strains.
-  subroutine soften(self, b, weight, strains, stiffness)
+  subroutine soften(self, b, weight, strains, stiffness, free)
     !> The plies; remember the trial
     class(crack_band_sections_t), intent(inout) :: self
     !> Number of the batch
@@ -88,15 +95,19 @@ contains
     real(wp), intent(in) :: strains(lanes, 9, 6)
     !> Section stiffness
     real(wp), intent(inout) :: stiffness(lanes, 21)
+    !> Resultants of strains without stress
+    real(wp), intent(inout), optional :: free(lanes, 7)
     real(wp) :: bounds(lanes)
     integer :: lane, element
 
     bounds = largest_strains(self%plies, weight, strains)
     do lane = 1, min(lanes, size(self%touched) - first_element(b) + 1)
       element = first_element(b) + lane - 1
-      if (self%touched(element) .or. .not. bounds(lane) < self%onset) &
-        call soften_element(self, element, strain_moments(weight(lane, :), strains(lane, :, :)), stiffness(lane, :))
+      if (.not. self%touched(element) .and. bounds(lane) < self%onset) cycle
+      call soften_element(self, element, strain_moments(weight(lane, :), strains(lane, :, :)), stiffness(lane, :))
+      if (present(free)) free(lane, :) = self%free_resultants_of(element)
     end do
+    if (present(free)) self%free(:, :, b) = free
     self%stiffness(:, :, b) = stiffness
   end subroutine soften
 
@@ -228,6 +239,21 @@ contains
 
     elasticity = elasticity_left(self%bands(ply), self%trial(ply, element)%damage)
   end function elasticity
+
+  !> Resultants of strains without stress in the trial.
+  pure function free_resultants_of(self, element) result(resultants)
+    !> The plies
+    class(crack_band_sections_t), intent(in) :: self
+    !> Element of this rank
+    integer, intent(in) :: element
+    !> Of the section, and their energy per area
+    real(wp) :: resultants(7)
+    integer :: ply
+
+    associate (first => self%range(1, element), last => self%range(2, element))
+      resultants = free_resultants(self%plies(first:last), [(self%elasticity(ply, element), ply=first, last)])
+    end associate
+  end function free_resultants_of
 
   !> Saves or loads the accepted state.
   subroutine visit(self, archive, model)

@@ -1,5 +1,6 @@
 !> Failure of plies: the stiffness it takes from the elements, and the energy lost with it.
 module ply_failures
+  use free_strains, only: free_resultants
   use kinds, only: wp
   use archives, only: archive_t
   use crack_band_sections, only: crack_band_sections_t, new_crack_band_sections
@@ -26,6 +27,8 @@ module ply_failures
     type(crack_band_sections_t), allocatable :: bands
     !> Section stiffness left in the elements, (lanes, 21, batches)
     real(wp), allocatable :: stiffness(:, :, :)
+    !> Resultants of strains without stress that this stiffness leaves, (lanes, 7, batches); unallocated: there are none
+    real(wp), allocatable :: free(:, :, :)
     !> True if plies took stiffness away after the last step
     logical :: softened = .false.
     !> Energy dissipated in each mode by plies that soften, of the whole plate
@@ -60,6 +63,7 @@ contains
     type(ply_failure_t) :: self
 
     self%stiffness = model%elements%stiffness
+    if (allocated(model%free)) self%free = model%free
     if (model%scene%has_crack_bands()) then
       self%bands = new_crack_band_sections(model)
     else
@@ -80,10 +84,12 @@ contains
     real(wp), intent(out) :: energy
 
     if (allocated(self%bands)) then
-      call model%internal(self%stiffness, displacement, force, energy, self%bands)
+      ! Unallocated resultants count as absent.
+      call model%internal(self%stiffness, displacement, force, energy, self%bands, free=self%free)
       self%stiffness = self%bands%stiffness
+      if (allocated(self%free)) self%free = self%bands%free
     else
-      call model%internal(self%stiffness, displacement, force, energy)
+      call model%internal(self%stiffness, displacement, force, energy, free=self%free)
     end if
   end subroutine find_forces
 
@@ -210,6 +216,8 @@ contains
       self%stiffness(lane_of(element), :, batch_of(element)) = &
         section_stiffness(model%plies(range(1):range(2)), self%onset%elasticities(model, element), &
                           model%scene%laminate%shear_correction)
+      if (allocated(self%free)) self%free(lane_of(element), :, batch_of(element)) = &
+        free_resultants(model%plies(range(1):range(2)), self%elasticities(model, element))
     end associate
   end subroutine soften
 
@@ -262,7 +270,7 @@ contains
     !> Where to or where from
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
-    integer :: mode
+    integer :: mode, element
 
     call self%onset%visit(archive, model, 'ply_failure/onset/')
     if (allocated(self%bands)) then
@@ -272,5 +280,12 @@ contains
       end do
     end if
     if (model%scene%has_ply_damage) call visit_stiffness(archive, 'ply_failure/stiffness', model, self%stiffness)
+    if (.not. (archive%loading .and. allocated(self%free) .and. model%scene%has_ply_damage)) return
+    do element = 1, model%elements%elements
+      associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
+        self%free(lane_of(element), :, batch_of(element)) = &
+          free_resultants(model%plies(range(1):range(2)), self%elasticities(model, element))
+      end associate
+    end do
   end subroutine visit
 end module ply_failures

@@ -40,8 +40,13 @@ contains
     allocate (matrices(lanes, 45, 45), turned(45, 45, lanes))
     motion = model%motion_of(displacement)
     do b = 1, model%elements%batches
-      call tangent(model%elements, b, stiffness(:, :, b), model%scene%kinematics, motion, stiffness_factor, &
-                   consistent_factor, matrices)
+      if (allocated(model%free)) then
+        call tangent(model%elements, b, stiffness(:, :, b), model%scene%kinematics, motion, stiffness_factor, &
+                     consistent_factor, matrices, model%free(:, :, b))
+      else
+        call tangent(model%elements, b, stiffness(:, :, b), model%scene%kinematics, motion, stiffness_factor, &
+                     consistent_factor, matrices)
+      end if
       do column = 1, 45
         turned(:, column, :) = transpose(matrices(:, :, column))
       end do

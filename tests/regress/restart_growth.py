@@ -46,6 +46,8 @@ STEP = 10e-6
 GROWING = ["mesh%elements=10,10", "impactor%velocity=3", "delamination%G_c=200", "delamination%zone=28.3e-3,20.6e-3",
            "delamination%starter=8.9e-3"]
 AVERAGES = ["ply_damage%average=2e-3", f"ply_damage%fade={4 * STEP!r}", "delamination%account='balance'"]
+# Up to the first cracks, cooled from the cure.
+SOFTENING = ["time%end=120e-6", "thermal%delta_T=-150", "material%alpha1=-0.3e-6", "material%alpha2=28e-6"]
 # Steps of a second, with several releases each.
 RUNNING = ["mesh%elements=20,20", "impactor%velocity=3", "delamination%G_c=100", f"time%end={11 * STEP!r}",
            f"output%checkpoint_every={STEP!r}", f"output%fields_every={STEP!r}"]
@@ -79,8 +81,8 @@ def check_cohesive(implam, folder, _):
 
 
 def check_softening(implam, folder, _):
-    """From every checkpoint of a run whose plies soften, of whose steps some are tried again."""
-    check_all_checkpoints(implam, folder, "../small/crack_bands.nml", ["time%end=120e-6"], "energy_ply_damage")
+    """From every checkpoint of a run whose plies soften, with residual stress."""
+    check_all_checkpoints(implam, folder, "../small/crack_bands.nml", SOFTENING, "energy_ply_damage")
 
 
 def check_all_checkpoints(implam, folder, source, settings, grows="delaminated_area"):
