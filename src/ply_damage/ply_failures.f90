@@ -256,7 +256,7 @@ contains
       cells(i) = model%mesh%cell_area(model%mesh%place_of(model%mesh%element_cell(model%distribution%elements(i))))
     end do
     do ply = 1, size(model%plies)
-      associate (failed => self%onset%failed(ply))
+      associate (failed => self%failed(ply))
         areas(:, ply) = [(sum(cells, mask=failed(mode, :)), mode=1, failure_modes)]*model%mesh%multiplicity
       end associate
       call model%communicator%sum(areas(:, ply))

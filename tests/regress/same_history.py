@@ -58,7 +58,11 @@ def histories_of_mirror(implam, deck, folder, _, settings):
     image = write_deck(folder / "image", deck, settings)
     image.write_text(exchange_axes(plate.read_text(encoding="utf-8")), encoding="utf-8")
     history = run_deck(implam, image)
-    yield "mirror image", read_history(history), mirrored(damage_of(history))
+    rows = read_history(history)
+    for name in [name for name in rows if name.startswith("extent_x_")]:
+        other = name.replace("extent_x_", "extent_y_")
+        rows[name], rows[other] = rows[other], rows[name]
+    yield "mirror image", rows, mirrored(damage_of(history))
 
 
 def compare(kind, implam, deck, folder, tolerance, *words):
