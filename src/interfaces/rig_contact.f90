@@ -210,6 +210,12 @@ contains
         end if
       end associate
     end do
+    do i = 1, size(model%rig%line_rig)
+      associate (rig => model%rig%line_rig(i))
+        reactions(rig) = reactions(rig) + model%rig%line_stiffness &
+                         *dot_product(model%rig%line_weights(:, i), displacement(3, model%rig%line_points(:, i)))
+      end associate
+    end do
     call model%communicator%sum(reactions)
     reactions = reactions*model%mesh%multiplicity
   end function reactions

@@ -1,17 +1,24 @@
 !> Where rigs hold the plate on a mesh.
 !>
-!> The edges of a rectangular window are lines of the mesh. Those of a circular one run through the cells, and the
-!> node nearer to the circle bears on each line of nodes that it cuts: its mean radius is right, and the error falls
-!> with the first power of the cells. A clamp holds the node nearest to it.
+!> The edges of a rectangular window are lines of the mesh. The edge of a circular one runs through the cells: w is held
+!> where it crosses their sides. (Held at the nodes nearest to it the plate is almost clamped, as these lie at several
+!> radii.) The face of a frame bears the nodes over it, and a clamp holds the node nearest to it.
 module rigs
   use kinds, only: wp
   use cell_grids, only: cell_grid_t
   use mesh_parameters, only: plate_t, symmetry_point
-  use nine_node_grids, only: last_line
-  use support_parameters, only: support_t, bearing_edge, window_none, window_rectangle
+  use support_parameters, only: support_t, bearing_edge, bearing_face, window_none, window_rectangle, window_circle
   implicit none
   private
-  public :: window_lines, nodes_on_frame, clamp_nodes, clamp_share
+  public :: crossing_t, window_lines, nodes_on_frame, circle_crossings, clamp_nodes, clamp_share
+
+  !> A point where the edge of a circular window crosses a side of a cell.
+  type :: crossing_t
+    !> Which of the cell's nine nodes lie on that side
+    integer :: nodes(3) = 0
+    !> Weights by which their w gives that of the point
+    real(wp) :: weights(3) = 0
+  end type crossing_t
 
 contains
 
@@ -32,7 +39,7 @@ contains
     end do
   end function window_lines
 
-  !> Nodes that a frame bears: those over its face, or of these the ones beside its window.
+  !> Nodes that a frame bears: those over its face, or only those on the edge of a rectangular window.
   pure function nodes_on_frame(grid, support) result(borne)
     !> The grid
     class(cell_grid_t), intent(in) :: grid
@@ -40,86 +47,76 @@ contains
     type(support_t), intent(in) :: support
     !> True where the frame bears the plate, (nodes)
     logical, allocatable :: borne(:)
-    logical :: rests(grid%nodes())
-    integer :: node, nearby(4), found
-
-    allocate (borne(grid%nodes()), source=.false.)
-    if (support%shape == window_none) return
-    do node = 1, size(rests)
-      call find_neighbours(grid, node, nearby, found)
-      rests(node) = rests_there(grid, support, node, nearby(:found))
-    end do
-    borne = rests
-    if (support%bearing /= bearing_edge) return
-    do node = 1, size(rests)
-      call find_neighbours(grid, node, nearby, found)
-      borne(node) = rests(node) .and. .not. all(rests(nearby(:found)))
-    end do
-    ! A corner of a rectangular window touches nothing but the frame, yet is part of its edge.
-    if (support%shape == window_rectangle) borne = borne .or. rests .and. at_edge(grid, support)
-  end function nodes_on_frame
-
-  !> Nodes on the edge of a rectangular window.
-  pure function at_edge(grid, support)
-    !> The grid
-    class(cell_grid_t), intent(in) :: grid
-    !> The rig
-    type(support_t), intent(in) :: support
-    !> True there, (nodes)
-    logical :: at_edge(grid%nodes())
+    real(wp) :: beyond, rounding
     integer :: node
 
-    at_edge = [(abs(support%beyond(grid%node_coordinates(:, node))) <= 1.0e-9_wp*maxval(support%window), &
-                node=1, size(at_edge))]
-  end function at_edge
+    allocate (borne(grid%nodes()), source=.false.)
+    if (support%shape == window_none .or. has_crossings(support)) return
+    rounding = 1.0e-9_wp*maxval([support%window, support%radius])
+    do node = 1, size(borne)
+      beyond = support%beyond(grid%node_coordinates(:, node))
+      borne(node) = beyond >= -rounding .and. (support%bearing == bearing_face .or. beyond <= rounding)
+    end do
+  end function nodes_on_frame
 
-  !> True if a frame bears a node: it lies over the frame, and none that is nearer to the edge does so in its place; or
-  !> it is nearer to the edge than one that does.
-  pure logical function rests_there(grid, support, node, nearby) result(rests)
+  !> True if a rig holds w where the edge of its window crosses the sides of cells.
+  pure logical function has_crossings(support)
+    !> The rig
+    type(support_t), intent(in) :: support
+
+    has_crossings = support%shape == window_circle .and. support%bearing == bearing_edge
+  end function has_crossings
+
+  !> Points where the edge of a circular window crosses the sides of a cell. Each side belongs to the cell above it or to
+  !> its right, that at the border of the grid to its only one.
+  pure function circle_crossings(grid, support, cell) result(crossings)
     !> The grid
     class(cell_grid_t), intent(in) :: grid
     !> The rig
     type(support_t), intent(in) :: support
-    !> Node
-    integer, intent(in) :: node
-    !> Nodes beside it on its lines
-    integer, intent(in) :: nearby(:)
-    real(wp) :: here, there
-    integer :: i
+    !> The cell
+    integer, intent(in) :: cell
+    !> The points
+    type(crossing_t), allocatable :: crossings(:)
+    integer :: place(2), nodes(9)
 
-    here = support%beyond(grid%node_coordinates(:, node))
-    rests = here >= -1.0e-9_wp*maxval([support%window, support%radius])
-    if (rests .or. support%shape == window_rectangle) return
-    do i = 1, size(nearby)
-      there = support%beyond(grid%node_coordinates(:, nearby(i)))
-      rests = rests .or. there > 0 .and. -here < there
-    end do
-  end function rests_there
+    allocate (crossings(0))
+    if (.not. has_crossings(support)) return
+    place = grid%place_of(cell)
+    nodes = grid%cell_nodes(cell)
+    call add_crossings(grid, support%radius, nodes, [1, 4, 7], 2, crossings)
+    call add_crossings(grid, support%radius, nodes, [1, 2, 3], 1, crossings)
+    if (place(1) == grid%cells(1)) call add_crossings(grid, support%radius, nodes, [3, 6, 9], 2, crossings)
+    if (place(2) == grid%cells(2)) call add_crossings(grid, support%radius, nodes, [7, 8, 9], 1, crossings)
+  end function circle_crossings
 
-  !> Nodes beside a node on its two lines of nodes.
-  pure subroutine find_neighbours(grid, node, nearby, found)
+  !> Adds the points where a circle crosses one side of a cell.
+  pure subroutine add_crossings(grid, radius, nodes, side, along, crossings)
     !> The grid
     class(cell_grid_t), intent(in) :: grid
-    !> Node
-    integer, intent(in) :: node
-    !> The nodes beside it, (found of 4)
-    integer, intent(out) :: nearby(4)
-    !> Their number
-    integer, intent(out) :: found
-    integer :: lines(2), next(2), direction, side
+    !> Radius of the circle
+    real(wp), intent(in) :: radius
+    !> Nodes of the cell
+    integer, intent(in) :: nodes(9)
+    !> Which of them lie on the side, in ascending order of coordinates
+    integer, intent(in) :: side(3)
+    !> Direction of the side: 1 for x, 2 for y
+    integer, intent(in) :: along
+    !> Receives the points
+    type(crossing_t), allocatable, intent(inout) :: crossings(:)
+    real(wp) :: square, xi
+    integer :: sign
 
-    lines = grid%lines_of(node)
-    found = 0
-    do direction = 1, 2
-      do side = -1, 1, 2
-        next = lines
-        next(direction) = next(direction) + side
-        if (next(direction) < 0 .or. next(direction) > last_line(grid%cells(direction))) cycle
-        found = found + 1
-        nearby(found) = grid%node_at(next(1), next(2))
+    associate (first => grid%node_coordinates(:, nodes(side(1))), last => grid%node_coordinates(:, nodes(side(3))))
+      square = radius**2 - first(3 - along)**2
+      if (square <= 0) return
+      do sign = -1, 1, 2
+        xi = (2*sign*sqrt(square) - first(along) - last(along))/(last(along) - first(along))
+        if (xi < -1 .or. xi >= 1) cycle
+        crossings = [crossings, crossing_t(side, [xi*(xi - 1)/2, 1 - xi**2, xi*(xi + 1)/2])]
       end do
-    end do
-  end subroutine find_neighbours
+    end associate
+  end subroutine add_crossings
 
   !> Nodes that the clamps of a rig hold, those in parts of the plate that are not modelled by their images.
   pure function clamp_nodes(grid, plate, support) result(nodes)

@@ -118,6 +118,10 @@ contains
       call tell(settings, problems, group, '', 'holds nothing; give a window, a radius with shape = ''circle'', or '// &
                 'clamps.', place)
     end if
+    if (support%shape == window_circle .and. support%unilateral .and. support%bearing == bearing_edge .and. &
+        are_clear(settings, problems, group, 'shape unilateral bearing', place)) &
+      call tell(settings, problems, group, 'bearing', 'the edge of a circle is no line of the mesh that the plate may '// &
+                'lift off; allowed with it and unilateral: ''face''.', place)
     if (circle) call remark_idle(settings, problems, group, key_window, 'has no effect on a circle.', place)
     if (.not. circle) call remark_idle(settings, problems, group, key_window_radius, 'has no effect on a rectangle.', &
                                        place)

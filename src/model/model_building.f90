@@ -28,6 +28,10 @@ module model_building
   private
   public :: create_model
 
+  !> Stiffness of a line of a rigid frame over that of the laminate through its thickness: its part of the deflection is
+  !> far below that of rounding and tolerance, and the matrix still loses no more digits than held jumps cost it.
+  real(wp), parameter :: rigid = 1.0e3_wp
+
 contains
 
   !> Makes a scene ready.
@@ -240,6 +244,9 @@ contains
     integer :: i
 
     self%rig = new_rig_model(self%mesh, self%scene%plate, self%scene%supports, self%distribution)
+    ! As hard as the laminate's own thickness over the area of a cell, and far harder: contact's stiffness.
+    self%rig%line_stiffness = rigid*self%plies(1)%elasticity%e2/self%thickness &
+                              *product(self%scene%plate%length/self%scene%mesh%elements)/self%mesh%multiplicity
     if (.not. self%rig%unilateral) return
     associate (share => self%distribution, last => self%plies(size(self%plies)))
       allocate (areas(1, size(share%points)), source=0.0_wp)

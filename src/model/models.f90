@@ -139,6 +139,7 @@ contains
     else
       call add_internal_force(self%elements, stiffness, self%scene%kinematics, displacement, force, energy, law, free)
     end if
+    call self%rig%add_line_forces(displacement, force, energy)
     call self%halo%accumulate(force)
   end subroutine internal
 

@@ -5,7 +5,7 @@ module rig_models
   use distributions, only: distribution_t
   use layered_meshes, only: layered_mesh_t
   use mesh_parameters, only: plate_t
-  use rigs, only: nodes_on_frame, clamp_nodes, clamp_share
+  use rigs, only: crossing_t, nodes_on_frame, circle_crossings, clamp_nodes, clamp_share
   use support_parameters, only: support_t
   implicit none
   private
@@ -23,6 +23,15 @@ module rig_models
     real(wp), allocatable :: springs(:, :)
     !> The rig that they belong to; 0: none, (local points)
     integer, allocatable :: clamps(:)
+    !> Points of three nodes each, (3, lines), whose weighted w, (3, lines), a stiffness holds, and the rig, (lines)
+    integer, allocatable :: line_points(:, :), line_rig(:)
+    !> Their weights
+    real(wp), allocatable :: line_weights(:, :)
+    !> Stiffness that stands for a rigid frame there
+    real(wp) :: line_stiffness = 0
+  contains
+    !> Adds the forces that hold w on lines.
+    procedure :: add_line_forces
   end type rig_model_t
 
 contains
@@ -70,10 +79,63 @@ contains
         end if
       end do
     end do
+    call find_lines(mesh, supports, distribution, self)
     ! What is held needs no frame to bear it.
     where (self%holds > 0) self%bears = 0
     self%elastic = any(supports%clamp_stiffness > 0)
   end function new_rig_model
+
+  !> Finds where w is held on the edges of circular windows, on the sides of this rank's cells.
+  pure subroutine find_lines(mesh, supports, distribution, self)
+    !> The mesh
+    type(layered_mesh_t), intent(in) :: mesh
+    !> The rigs
+    type(support_t), intent(in) :: supports(:)
+    !> This rank's elements
+    type(distribution_t), intent(in) :: distribution
+    !> Receives the points
+    type(rig_model_t), intent(inout) :: self
+    type(crossing_t), allocatable :: crossings(:)
+    integer :: i, k, element
+
+    allocate (self%line_points(3, 0), self%line_rig(0), self%line_weights(3, 0))
+    do i = 1, size(supports)
+      if (supports(i)%unilateral) cycle
+      do element = 1, size(distribution%elements)
+        if (mesh%element_plies(1, distribution%elements(element)) /= 1) cycle
+        crossings = circle_crossings(mesh, supports(i), mesh%element_cell(distribution%elements(element)))
+        do k = 1, size(crossings)
+          self%line_rig = [self%line_rig, i]
+          self%line_points = reshape([self%line_points, distribution%connectivity(crossings(k)%nodes, element)], &
+                                     [3, size(self%line_rig)])
+          self%line_weights = reshape([self%line_weights, crossings(k)%weights], [3, size(self%line_rig)])
+        end do
+      end do
+    end do
+  end subroutine find_lines
+
+  !> Adds the forces that hold w on lines to internal forces, ghosts included, and what they store to an energy.
+  pure subroutine add_line_forces(self, displacement, force, energy)
+    !> The rigs
+    class(rig_model_t), intent(in) :: self
+    !> Unknowns, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> Internal forces, (5, points)
+    real(wp), intent(inout) :: force(:, :)
+    !> Energy of this rank
+    real(wp), intent(inout) :: energy
+    real(wp) :: w
+    integer :: k
+
+    if (.not. allocated(self%line_rig)) return
+    do k = 1, size(self%line_rig)
+      associate (points => self%line_points(:, k), weights => self%line_weights(:, k))
+        w = dot_product(weights, displacement(3, points))
+        force(3, points) = force(3, points) + self%line_stiffness*w*weights
+        energy = energy + self%line_stiffness*w**2/2
+      end associate
+    end do
+  end subroutine add_line_forces
 
   !> Stiffness that one clamp of the deck adds to the model.
   pure function springs_of(mesh, plate, support) result(springs)

@@ -60,8 +60,36 @@ contains
         call add_block(model, numbering, [point], mass_factor*nodal_mass(model%lumped(:, point)), solver, diagonal)
       end do
     end if
+    call add_lines(model, stiffness_factor, numbering, solver, diagonal)
     call model%halo%accumulate(diagonal)
   end subroutine assemble_elements
+
+  !> Adds the stiffness that holds w on the edges of circular windows.
+  subroutine add_lines(model, stiffness_factor, numbering, solver, diagonal)
+    type(model_t), intent(in) :: model
+    !> Factor of stiffness
+    real(wp), intent(in) :: stiffness_factor
+    !> Equations
+    type(numbering_t), intent(in) :: numbering
+    !> Receives the matrices
+    class(linear_solver_t), intent(inout) :: solver
+    !> Receives the diagonal, (5, points)
+    real(wp), intent(inout) :: diagonal(:, :)
+    real(wp) :: matrix(15, 15)
+    integer :: k, a, b
+
+    if (.not. allocated(model%rig%line_rig)) return
+    do k = 1, size(model%rig%line_rig)
+      matrix = 0
+      do b = 1, 3
+        do a = 1, 3
+          matrix(5*a - 2, 5*b - 2) = stiffness_factor*model%rig%line_stiffness*model%rig%line_weights(a, k) &
+                                     *model%rig%line_weights(b, k)
+        end do
+      end do
+      call add_to(numbering, model%rig%line_points(:, k), matrix, solver, diagonal)
+    end do
+  end subroutine add_lines
 
   !> Adds a matrix on the motion of some points, turned into one on their unknowns.
   subroutine add_block(model, numbering, points, matrix, solver, diagonal)

@@ -47,13 +47,16 @@ def mirrored(damage):
     return {(name, layer, y, x): value for (name, layer, x, y), value in damage.items()}
 
 
-def folded(damage):
-    """Return the damage of a whole plate as that of its quarter; nothing if the quarters differ."""
-    quarters = {}
+def folded(damage, part="quarter"):
+    """Return the damage of a whole plate as that of a part of it; nothing if the parts differ."""
+    parts = {}
     for (name, layer, x, y), value in damage.items():
-        quarters.setdefault((x > 0, y > 0), {})[name, layer, abs(x), abs(y)] = value
-    first, *others = quarters.values() or [{}]
-    same = len(others) == 3 and all(other == first for other in others)
+        left, below = x < 0 and part != "half_y", y < 0 and part in ("quarter", "half_y")
+        turned = left and part == "point"
+        place = (-x if left else x, -y if below or turned else y)
+        parts.setdefault((left, below), {})[name, layer, *place] = value
+    first, *others = parts.values() or [{}]
+    same = len(others) == (3 if part == "quarter" else 1) and all(other == first for other in others)
     return first if same else {}
 
 

@@ -1,10 +1,10 @@
 """Runs a deck in two ways that must give the same history.
 Usage: same_history.py ranks IMPLAM DECK FOLDER TOLERANCE LAUNCHER... [-- SETTING...]
-       same_history.py symmetry IMPLAM DECK FOLDER TOLERANCE [-- SETTING...]
+       same_history.py PART IMPLAM DECK FOLDER TOLERANCE [-- SETTING...]
        same_history.py mirror IMPLAM DECK FOLDER TOLERANCE [-- SETTING...]
 
-ranks: on 1, 2 and 4 ranks, LAUNCHER taking the number of ranks as its last word. symmetry: the quarter against the
-whole plate with twice the elements each way. mirror: against the plate with x and y exchanged. Where an interface
+ranks: on 1, 2 and 4 ranks, LAUNCHER taking the number of ranks as its last word. PART: a part of the plate, quarter,
+half_x, half_y or point, against the whole plate with twice the elements along the directions halved. mirror: against the plate with x and y exchanged. Where an interface
 delaminates or plies fail, it must grow, and the same cells and plies be the ones at the end."""
 
 import re
@@ -17,6 +17,7 @@ from solver_runs import exit_code_of, largest_difference, read_history, require,
 # How the solution was found and how closely, not what it is; the stress is a measure for the step only.
 COUNTS = ("iterations", "force_iterations", "contact_iterations", "total_iterations", "total_force_iterations",
           "total_contact_iterations", "refactorisations", "solves", "complementarity")
+PARTS = ("quarter", "half_x", "half_y", "point")
 
 
 def histories_of_ranks(implam, deck, folder, launcher, settings):
@@ -29,16 +30,17 @@ def histories_of_ranks(implam, deck, folder, launcher, settings):
         yield f"{ranks} ranks", read_history(history), damage_of(history)
 
 
-def histories_of_symmetry(implam, deck, folder, _, settings):
-    """Yield name and history of the quarter and of the whole plate."""
-    quarter = write_deck(folder / "quarter", deck, [*settings, "plate%symmetry='quarter'"])
-    history = run_deck(implam, quarter)
-    yield "quarter", read_history(history), damage_of(history)
-    elements = re.search(r"elements=(\d+), *(\d+)", quarter.read_text(encoding="utf-8"))
-    doubled = f"mesh%elements={2 * int(elements[1])},{2 * int(elements[2])}"
+def histories_of_part(part, implam, deck, folder, settings):
+    """Yield name and history of a part and of the whole plate."""
+    modelled = write_deck(folder / part, deck, [*settings, f"plate%symmetry='{part}'"])
+    history = run_deck(implam, modelled)
+    yield part, read_history(history), damage_of(history)
+    elements = re.search(r"elements=(\d+), *(\d+)", modelled.read_text(encoding="utf-8"))
+    factors = (1 if part == "half_y" else 2, 2 if part in ("quarter", "half_y") else 1)
+    doubled = f"mesh%elements={factors[0] * int(elements[1])},{factors[1] * int(elements[2])}"
     whole = write_deck(folder / "whole", deck, [*settings, "plate%symmetry='none'", doubled])
     history = run_deck(implam, whole)
-    yield "whole", read_history(history), folded(damage_of(history))
+    yield "whole", read_history(history), folded(damage_of(history), part)
 
 
 def exchange_axes(text):
@@ -67,11 +69,14 @@ def histories_of_mirror(implam, deck, folder, _, settings):
 
 def compare(kind, implam, deck, folder, tolerance, *words):
     """Run and compare."""
-    left_out = (*COUNTS, "stress") if kind == "symmetry" else COUNTS
+    left_out = (*COUNTS, "stress") if kind in PARTS else COUNTS
     divide = words.index("--") if "--" in words else len(words)
     launcher, settings = words[:divide], words[divide + 1:]
-    histories = {"ranks": histories_of_ranks, "symmetry": histories_of_symmetry, "mirror": histories_of_mirror}[kind]
-    runs = histories(implam, deck, Path(folder), launcher, settings)
+    if kind in PARTS:
+        runs = histories_of_part(kind, implam, deck, Path(folder), settings)
+    else:
+        histories = {"ranks": histories_of_ranks, "mirror": histories_of_mirror}[kind]
+        runs = histories(implam, deck, Path(folder), launcher, settings)
     passed = True
     _, reference, reference_damage = next(runs)
     area = reference["delaminated_area"]
