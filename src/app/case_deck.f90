@@ -9,7 +9,8 @@ module case_deck
   public :: fill_case, fill_claims, has_accuracy
 
   !> Name of the group.
-  character(len=*), parameter :: group = 'case'
+  character(len=*), parameter, public :: case_group = 'case', key_accuracy = 'accuracy'
+  character(len=*), parameter :: group = case_group
   !> Row of the group.
   character(len=group_row_length), parameter, public :: case_group_row = &
     'case | settings | The case: its name, its title and the strains used.'
@@ -52,7 +53,7 @@ contains
     !> Keys in effect
     type(settings_t), intent(in) :: settings
 
-    has_accuracy = settings%is_given(group, 'accuracy')
+    has_accuracy = settings%is_given(group, key_accuracy)
   end function has_accuracy
 
   !> What the case claims of its results.
@@ -68,7 +69,7 @@ contains
 
     units = settings%text_of(group, 'units')
     strict = settings%logical_of(group, 'strict')
-    select case (lower_case(settings%text_of(group, 'accuracy')))
+    select case (lower_case(settings%text_of(group, key_accuracy)))
     case ('draft')
       accuracy = draft_error
     case ('standard')
@@ -76,7 +77,7 @@ contains
     case ('reference')
       accuracy = reference_error
     case default
-      accuracy = settings%real_of(group, 'accuracy')
+      accuracy = settings%real_of(group, key_accuracy)
     end select
   end subroutine fill_claims
 

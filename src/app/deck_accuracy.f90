@@ -1,8 +1,9 @@
 !> Mesh, step and output clocks that a deck leaves to the accuracy it asks for. What the deck gives stands.
 module deck_accuracy
-  use case_deck, only: has_accuracy
+  use case_deck, only: case_group, key_accuracy, has_accuracy
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
+  use deck_remarks, only: remark
   use deck_settings, only: settings_t
   use kinds, only: wp
   use mesh_deck, only: mesh_group, key_elements, key_patch, key_core, key_cell, key_grading, fill_mesh
@@ -22,8 +23,8 @@ module deck_accuracy
   real(wp), parameter :: history_over_peak = 3, share = 0.5_wp
   !> Time from touch to the end of the run over that to the end of the contact.
   real(wp), parameter :: beyond_contact = 1.25_wp
-  !> Most elements along one direction.
-  integer, parameter :: most_along = 600
+  !> Most elements along one direction of the part modelled, twice that of a whole plate: more take hours.
+  integer, parameter :: most_along = 100
   !> Elements across the smaller side of the zone of an interface that may delaminate.
   integer, parameter :: zone_elements = 24
   !> Fields written in a run.
@@ -79,7 +80,7 @@ contains
     allocate (deck%reasons(0))
     scales = scales_of(deck%scene_t)
     if (has_blow(deck%scene_t) .and. scales%area_mass > 0) then
-      call choose_for_impact(deck, scales)
+      call choose_for_impact(deck, scales, problems)
     else
       call choose_for_pressure(deck, scales, problems)
     end if
@@ -87,11 +88,13 @@ contains
   end subroutine choose_by_accuracy
 
   !> Patch, end, step and mesh of an impact, by pilot calculations.
-  subroutine choose_for_impact(deck, scales)
+  subroutine choose_for_impact(deck, scales, problems)
     !> The deck
     type(deck_t), intent(inout) :: deck
     !> Scales of its scene
     type(scene_scales_t), intent(in) :: scales
+    !> Remarks are added
+    type(problems_t), intent(inout) :: problems
     type(scene_pilot_t) :: pilot
     type(pilot_t) :: first
     real(wp) :: end, step, bounds(2), error(2)
@@ -120,12 +123,15 @@ contains
       call largest_step(pilot, end, bounds, step, error)
       call choose_one(deck, time_group, key_step, step)
       step = deck%settings%real_of(time_group, key_step)
+      if (error(2) < 0) call remark(deck%settings, problems, case_group, key_accuracy, 'can''t be told for this step: '// &
+        'a pilot calculation of so long a contact on so large a plate would take too long.')
       call append(deck%reasons, 'Step '//short_text(step)//': '//to_text(ceiling(end/step))// &
-                  ' steps; half of it changes the force history of the pilot by '//short_text(100*error(2))//' %.')
+                  ' steps; by pilot calculations it changes the force history by '//short_text(100*error(2))//' %.')
     end if
     call choose_clocks(deck, step, end)
     if (deck%settings%is_given(mesh_group, key_elements)) return
-    call choose_elements(deck, largest_cell(pilot, step, min(end, beyond_contact*first%last_contact), bounds), scales)
+    call choose_elements(deck, largest_cell(pilot, step, min(end, beyond_contact*first%last_contact), bounds), scales, &
+                         problems)
   end subroutine choose_for_impact
 
   !> Mesh, and in time the step, of a plate under pressure.
@@ -138,7 +144,7 @@ contains
     type(problems_t), intent(inout) :: problems
 
     if (.not. deck%settings%is_given(mesh_group, key_elements)) &
-      call choose_elements(deck, part_of_side*minval(deck%plate%length)*deck%accuracy**0.25_wp, scales)
+      call choose_elements(deck, part_of_side*minval(deck%plate%length)*deck%accuracy**0.25_wp, scales, problems)
     if (deck%has_static) return
     if (.not. deck%settings%is_given(time_group, key_end)) then
       call problems%error(deck%settings%line_of_group(time_group), time_group, key_end, '&'//time_group//' '// &
@@ -149,13 +155,15 @@ contains
   end subroutine choose_for_pressure
 
   !> Number and sizes of elements that are nowhere longer than a side.
-  subroutine choose_elements(deck, side, scales)
+  subroutine choose_elements(deck, side, scales, problems)
     !> The deck
     type(deck_t), intent(inout) :: deck
     !> Largest side wanted
     real(wp), intent(in) :: side
     !> Scales of its scene
     type(scene_scales_t), intent(in) :: scales
+    !> Remarks are added
+    type(problems_t), intent(inout) :: problems
     real(wp) :: half(2), cell
     integer :: number(2), parts
     type(line_t), allocatable :: words(:)
@@ -165,9 +173,11 @@ contains
     cell = side
     if (deck%settings%is_known(mesh_group, key_cell)) cell = max(cell, deck%mesh%cell)
     if (size(deck%delaminations) > 0) cell = min(cell, smallest_zone(deck)/zone_elements)
-    number = min(most_along/parts, max(2, ceiling(half/cell - 0.01_wp)))
-    if (deck%mesh%patch > 0) number = max(number, 1 + max(1, ceiling((half - deck%mesh%patch/2)/cell - 0.01_wp)))
-    number = min(number, most_along/parts)*parts
+    number = max(2, ceiling(min(half/cell, 1.0e6_wp) - 0.01_wp))
+    if (deck%mesh%patch > 0) number = max(number, 1 + max(1, ceiling(min((half - deck%mesh%patch/2)/cell, 1.0e6_wp) - 0.01_wp)))
+    if (any(number > most_along)) call remark(deck%settings, problems, case_group, key_accuracy, 'asks for more than '// &
+      to_text(most_along)//' elements from the struck point to an edge, which are not chosen; expect larger errors.')
+    number = min(number, most_along)*parts
     allocate (words(0))
     call append(words, to_text(number(1)))
     call append(words, to_text(number(2)))

@@ -4,6 +4,9 @@ module simulations
   use errors, only: error_t, fail, exit_stopped
   use text, only: rounded_text, to_text
   use files, only: make_directory, remove_file
+  use errors, only: error_t, fail, exit_stopped, exit_convergence
+  use text, only: line_t, to_text
+  use files, only: make_directory
   use logger, only: log_t
   use timers, only: timer_set_t, wall_time
   use communicators, only: communicator_t
@@ -28,6 +31,8 @@ module simulations
   use queue_signals, only: catch_stop_signals, stop_signal
   use output_clocks, only: clock_t, next_event, shown_time
   use energy_watches, only: energy_watch_t
+  use output_clocks, only: clock_t, next_event
+  use model_watches, only: model_watch_t
   use result_rows, only: row_of, column_names, column_whole
   use field_results, only: write_mesh, write_fields, field_rows
   implicit none
@@ -68,6 +73,8 @@ module simulations
     logical, private :: is_ready = .false.
     !> Looks after the energy that integrators create
     type(energy_watch_t), private :: energy_watch
+    !> Looks after the model's limits
+    type(model_watch_t), private :: watch
     !> Folder and name that all results share
     character(len=:), allocatable :: base
   contains
@@ -239,6 +246,7 @@ contains
     call self%checkpoint_clock%visit(archive, 'checkpoint')
     call self%record%visit(archive)
     call self%energy_watch%visit(archive)
+    call self%watch%visit(archive)
     call archive%item('history/rows', rows)
     call archive%item('history/last_row', self%history%last_row)
   end subroutine visit
@@ -312,11 +320,13 @@ contains
     logical, intent(in) :: at_event
     !> Set if a file cannot be written
     type(error_t), allocatable, intent(out) :: error
+    type(error_t), allocatable :: row_error
     real(wp) :: closest
     logical :: row_due, fields_due, checkpoint_due
 
     call self%record%observe(self%model, self%stepper%now)
     call give_warnings(self%deck, self%stepper%now, self%record, self%energy_watch, self%log)
+    call warn(self, error)
     row_due = self%history_clock%interval <= 0 .or. self%stepper%now%time >= end_of(self)
     fields_due = .false.
     checkpoint_due = .false.
@@ -326,12 +336,37 @@ contains
       fields_due = self%fields_clock%strikes_at(self%stepper%now%time, closest)
       checkpoint_due = self%checkpoint_clock%strikes_at(self%stepper%now%time, closest)
     end if
+    if (allocated(error)) then
+      ! The row that passed the limit ends the history.
+      call self%history%write_row(row_of(self%model, self%stepper), row_error)
+      if (.not. allocated(row_error)) call self%history%flush(row_error)
+      return
+    end if
     if (row_due) call self%history%write_row(row_of(self%model, self%stepper), error)
     if (allocated(error)) return
     if (fields_due) call write_fields(self%model, self%stepper, self%deck%output, self%fields, error)
     if (allocated(error)) return
     if (checkpoint_due) call save_checkpoint(self, error)
   end subroutine write_results
+
+  !> Warns, once each, of what a user must not overlook; a strict run ends there.
+  subroutine warn(self, error)
+    !> The run
+    class(simulation_t), intent(inout) :: self
+    !> Set if the run is strict and has passed a limit of the model
+    type(error_t), allocatable, intent(out) :: error
+    type(line_t), allocatable :: told(:)
+    integer :: i
+
+    call self%watch%look(self%deck, self%model, self%stepper%now, told)
+    do i = 1, size(told)
+      if (self%deck%strict) then
+        call fail(error, exit_convergence, told(i)%text)
+      else
+        call self%log%warning(told(i)%text)
+      end if
+    end do
+  end subroutine warn
 
   !> Saves a checkpoint.
   subroutine save_checkpoint(self, error)
@@ -358,12 +393,18 @@ contains
     class(simulation_t), intent(inout) :: self
     !> Set if a file cannot be written
     type(error_t), allocatable, intent(out) :: error
+    type(line_t), allocatable :: lines(:)
+    integer :: i
 
     if (self%deck%output%fields_every <= 0) &
       call write_fields(self%model, self%stepper, self%deck%output, self%fields, error)
     if (allocated(error)) return
     call self%history%close(error)
     call self%progress%finish(self%log, summary(self%stepper))
+    call self%watch%closing(lines)
+    do i = 1, size(lines)
+      call self%log%note(lines(i)%text)
+    end do
     call log_costs(self%timers, self%stepper%operator, self%log)
     call self%log%note('Results: '//self%base//'_history.csv, '//self%base//'.xdmf, '//self%base//summary_ending// &
                        ', '//self%base//'.log')

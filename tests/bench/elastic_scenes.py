@@ -6,6 +6,7 @@ import math
 import os
 import pathlib
 import re
+import resource
 import subprocess
 import tempfile
 
@@ -28,6 +29,11 @@ DECK = """&case name='{name}' kinematics='linear' {case} /
 {time}
 {more}
 """
+
+
+def limit_time():
+    """End a run after a minute of the processor."""
+    resource.setrlimit(resource.RLIMIT_CPU, (60, 60))
 
 
 def random_scenes(count, seed):
@@ -76,6 +82,8 @@ class Run:
             with open(pathlib.Path(folder, 'said'), 'w') as said:
                 process = subprocess.Popen([program, path, '--output', folder], stdout=said, stderr=said,
                                            env=ENVIRONMENT)
+                process = subprocess.Popen([program, path, '--output', folder], stdout=said, stderr=said, env=ENVIRONMENT,
+                                           preexec_fn=limit_time)
                 _, status, usage = os.wait4(process.pid, 0)
             process.returncode = self.code = os.waitstatus_to_exitcode(status)
             self.seconds = usage.ru_utime + usage.ru_stime
@@ -144,7 +152,7 @@ def main():
         seconds.append(run.seconds)
         answered += 1
         if run.code:
-            print(f'{scene.name:9s}  exit code {run.code}: {run.said.splitlines()[-1][:90]}')
+            print(f'{scene.name:9s}  exit code {run.code}: {run.said.splitlines()[-1][:90]}', flush=True)
             continue
         good = abs(errors[0])*100 <= options.bounds[0] and errors[1]*100 <= options.bounds[1]
         within += good
