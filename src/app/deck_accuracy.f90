@@ -5,6 +5,7 @@ module deck_accuracy
   use deck_problems, only: problems_t
   use deck_remarks, only: remark
   use deck_settings, only: settings_t
+  use impactor_deck, only: impactor_group, key_integrator, fill_impactor
   use kinds, only: wp
   use mesh_deck, only: mesh_group, key_elements, key_patch, key_core, key_cell, key_grading, fill_mesh
   use mesh_parameters, only: symmetry_quarter
@@ -27,8 +28,9 @@ module deck_accuracy
   integer, parameter :: most_along = 100
   !> Elements across the smaller side of the zone of an interface that may delaminate.
   integer, parameter :: zone_elements = 24
-  !> Fields written in a run.
+  !> Fields written in a run, and the largest accuracy, %, with which they are: they cost a draft half its time.
   integer, parameter :: fields_written = 10
+  real(wp), parameter :: most_with_fields = 2
   !> Parts of the plate's shorter side that elements have without an impactor, at an error of 1 %, and of its first
   !> period that steps have. The element's error falls with the fourth power of its side, the step's with the square.
   real(wp), parameter :: part_of_side = 1.0_wp/16, part_of_period = 1.0_wp/40
@@ -123,11 +125,12 @@ contains
       call largest_step(pilot, end, bounds, step, error)
       call choose_one(deck, time_group, key_step, step)
       step = deck%settings%real_of(time_group, key_step)
-      if (error(2) < 0) call remark(deck%settings, problems, case_group, key_accuracy, 'can''t be told for this step: '// &
-        'a pilot calculation of so long a contact on so large a plate would take too long.')
+      if (error(2) < 0) call remark(deck%settings, problems, case_group, key_accuracy, 'can''t be told for this '// &
+        'step: a pilot calculation of so long a contact on so large a plate would take too long.')
       call append(deck%reasons, 'Step '//short_text(step)//': '//to_text(ceiling(end/step))// &
                   ' steps; by pilot calculations it changes the force history by '//short_text(100*error(2))//' %.')
     end if
+    call choose_integrator(deck)
     call choose_clocks(deck, step, end)
     if (deck%settings%is_given(mesh_group, key_elements)) return
     call choose_elements(deck, largest_cell(pilot, step, min(end, beyond_contact*first%last_contact), bounds), scales, &
@@ -174,9 +177,11 @@ contains
     if (deck%settings%is_known(mesh_group, key_cell)) cell = max(cell, deck%mesh%cell)
     if (size(deck%delaminations) > 0) cell = min(cell, smallest_zone(deck)/zone_elements)
     number = max(2, ceiling(min(half/cell, 1.0e6_wp) - 0.01_wp))
-    if (deck%mesh%patch > 0) number = max(number, 1 + max(1, ceiling(min((half - deck%mesh%patch/2)/cell, 1.0e6_wp) - 0.01_wp)))
-    if (any(number > most_along)) call remark(deck%settings, problems, case_group, key_accuracy, 'asks for more than '// &
-      to_text(most_along)//' elements from the struck point to an edge, which are not chosen; expect larger errors.')
+    if (deck%mesh%patch > 0) number = max(number, 1 + max(1, ceiling(min((half - deck%mesh%patch/2)/cell, 1.0e6_wp) &
+                                                                     - 0.01_wp)))
+    if (any(number > most_along)) call remark(deck%settings, problems, case_group, key_accuracy, 'asks for more '// &
+      'than '//to_text(most_along)//' elements from the struck point to an edge, which are not chosen; expect '// &
+      'larger errors.')
     number = min(number, most_along)*parts
     allocate (words(0))
     call append(words, to_text(number(1)))
@@ -199,14 +204,24 @@ contains
     side = minval([(minval(deck%delaminations(i)%zone), i=1, size(deck%delaminations))])
   end function smallest_zone
 
-  !> Fields are written at whole steps.
+  !> The impactor's integrator: that of the pilot calculations, which bears long steps. gear4 would cut them.
+  subroutine choose_integrator(deck)
+    !> The deck
+    type(deck_t), intent(inout) :: deck
+
+    if (deck%settings%is_given(impactor_group, key_integrator)) return
+    call deck%settings%choose(impactor_group, key_integrator, [line_t('trapezoidal')], quoted=.true.)
+    call fill_impactor(deck%settings, deck%impactor)
+  end subroutine choose_integrator
+
+  !> Fields are written at whole steps; a draft has only the last.
   subroutine choose_clocks(deck, step, end)
     !> The deck
     type(deck_t), intent(inout) :: deck
     !> Step and end of the run
     real(wp), intent(in) :: step, end
 
-    if (deck%settings%is_given(output_group, key_fields_every)) return
+    if (deck%settings%is_given(output_group, key_fields_every) .or. deck%accuracy > most_with_fields) return
     call deck%settings%choose(output_group, key_fields_every, &
                               [line_t(to_text(step*max(1, nint(end/step/fields_written))))])
   end subroutine choose_clocks

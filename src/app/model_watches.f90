@@ -61,8 +61,8 @@ contains
 
     allocate (told(0))
     thickness = deck%outlook%scales%thickness
-    if (now%interfaces%border_reached) call note(border, 'A delamination has reached the border of its zone at time '// &
-      to_text(now%time)//' and cannot grow on there: if it would, make the zone larger.')
+    if (now%interfaces%border_reached) call note(border, 'A delamination has reached the border of its zone '// &
+      'at time '//to_text(now%time)//' and cannot grow on there: if it would, make the zone larger.')
     if (now%indentation%alpha > thickness) call note(indentation, 'The indentation is deeper than the laminate is '// &
       'thick since time '//to_text(now%time)//': no contact law holds there; give a lighter blow or a blunter nose.')
     if (self%since(slopes) < 0) then

@@ -162,6 +162,7 @@ contains
     ! A launcher hands its ranks a terminal of its own, whose output may go to a file.
     if (launched()) self%log%interactive = .false.
     self%provenance = this_run(this_build(), deck%text, communicator%size)
+    self%provenance%units = deck%units
     self%provenance%case_name = deck%name
     call self%provenance%report(self%log)
     call log_echo(deck, self%log)

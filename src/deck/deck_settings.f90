@@ -333,11 +333,15 @@ contains
 
   !> Sets the numbers of a key that the deck leaves to the accuracy it asks for.
   pure subroutine choose(self, group, key, words)
+  !> Sets the values of a key that the deck leaves to the accuracy it asks for.
+  pure subroutine choose(self, group, key, words, quoted)
     class(settings_t), intent(inout) :: self
     !> Names of group and key
     character(len=*), intent(in) :: group, key
-    !> The numbers as they would stand in a deck
+    !> The values as they would stand in a deck, without quotes
     type(line_t), intent(in) :: words(:)
+    !> True: they are texts
+    logical, intent(in), optional :: quoted
     type(value_t), allocatable :: values(:)
     integer :: i, place
 
@@ -347,6 +351,7 @@ contains
     do i = 1, size(words)
       values(i)%text = words(i)%text
       values(i)%quoted = .false.
+      if (present(quoted)) values(i)%quoted = quoted
     end do
     call move_alloc(values, self%items(place)%values)
     self%items(place)%chosen = .true.

@@ -18,6 +18,8 @@ module impactor_deck
                                          key_mass = 'mass'
   !> Name used here more than once.
   character(len=*), parameter :: key_energy = 'energy'
+                                         key_radius = 'radius', key_gravity = 'gravity', key_mass = 'mass', &
+                                         key_integrator = 'integrator'
   !> Row of the group.
   character(len=group_row_length), parameter, public :: impactor_group_row = &
     'impactor | optional | The rigid impactor that strikes the plate, in its middle or elsewhere.'
@@ -55,7 +57,7 @@ contains
     impactor%radius = settings%real_of(impactor_group, key_radius)
     if (settings%is_known(impactor_group, key_at)) impactor%at = settings%reals_of(impactor_group, key_at)
     impactor%gravity = settings%real_of(impactor_group, key_gravity)
-    impactor%integrator = code_of(settings%text_of(impactor_group, 'integrator'), &
+    impactor%integrator = code_of(settings%text_of(impactor_group, key_integrator), &
                                   'gear4 trapezoidal central conserving', &
                                   [integrator_gear4, integrator_trapezoidal, integrator_central, integrator_conserving])
   end subroutine fill_impactor

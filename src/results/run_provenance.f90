@@ -24,6 +24,8 @@ module run_provenance
     character(len=:), allocatable :: deck
     !> Name of the case, which the deck may have left to the name of its file; empty: not told
     character(len=:), allocatable :: case_name
+    !> Units that the deck says it is in; empty: any that are consistent
+    character(len=:), allocatable :: units
     !> Date and time the run started, local time with its distance from UTC, ISO 8601
     character(len=:), allocatable :: started
     !> Number of ranks
@@ -51,6 +53,7 @@ contains
     call date_and_time(date, time, zone)
     run%deck = deck
     run%case_name = ''
+    run%units = ''
     run%build_t = build
     run%started = date(1:4)//'-'//date(5:6)//'-'//date(7:8)//'T'//time(1:2)//':'//time(3:4)//':'//time(5:6) &
       //zone(1:3)//':'//zone(4:5)

@@ -20,6 +20,9 @@ contains
 
     call write_text(file, group//'/deck', run%deck)
     call write_text(file, group//'/case_name', run%case_name)
+    if (allocated(run%units)) then
+      if (run%units /= '') call write_text(file, group//'/units', run%units)
+    end if
     call write_text(file, group//'/version', run%version)
     call write_text(file, group//'/commit', run%commit)
     call write_text(file, group//'/compiler', run%compiler)

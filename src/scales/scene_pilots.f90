@@ -42,8 +42,11 @@ module scene_pilots
 
   !> Modes are listed up to this part of the inverse of a step; beyond, a step follows none and they act by stiffness.
   real(wp), parameter :: followed = 5
-  !> Steps of the first pilot in one contact time, and of the finest one considered.
-  real(wp), parameter :: first_steps = 2, fine_steps = 64
+  !> Steps of the first pilot in one contact time. Those of the finest are this over the root of the error allowed: the
+  !> method is of second order, and a step of a tenth of the contact time is about 1 % off.
+  real(wp), parameter :: first_steps = 2, fine_steps = 4.5_wp
+  !> Steps in one contact time up to which modes are kept at hand.
+  real(wp), parameter :: most_fine = 128
   !> Most steps of a pilot, and most steps times modes: some hundredths of a second.
   integer, parameter :: most_steps = 40000
   real(wp), parameter :: most_work = 3.0e7_wp
@@ -66,7 +69,7 @@ contains
 
     pilot%scene = scene
     pilot%scales = scales
-    pilot%plate = plate_modes(scene, followed*2*fine_steps/scales%contact_time)
+    pilot%plate = plate_modes(scene, followed*most_fine/scales%contact_time)
   end function start_pilot
 
   !> A pilot calculation with some step; `complete` is false where it would take too long.
@@ -162,7 +165,7 @@ contains
 
     ! Coarse pilots could agree on what both miss, so each is held against the finest that can be had.
     finer = 0
-    do while (2**finer*least_steps*self%scales%contact_time < fine_steps*end)
+    do while (2**finer*least_steps*self%scales%contact_time < fine_steps/sqrt(bounds(1))*end)
       finer = finer + 1
     end do
     do

@@ -35,6 +35,8 @@ module scene_scales
   !> Hertz' contact of two bodies that move freely lasts 2.943 alpha_max/v, Goldsmith 1960.
   real(wp), parameter :: hertz_duration = 2.943_wp
   real(wp), parameter :: pi = acos(-1.0_wp)
+  !> A frequency that no mode has and whose square is finite.
+  real(wp), parameter :: all_modes = 1.0e100_wp
 
 contains
 
@@ -54,7 +56,7 @@ contains
     scales%bending = (section%stiffness(13) + section%stiffness(16))/2
     scales%plate_mass = section%mass(1)*product(scene%plate%length)
     plate = modal_plate_of(scene%plate%length, scene%plate%edges, section%stiffness, [1.0_wp, 0.0_wp, 0.0_wp], &
-                           loaded_side(scene), huge(1.0_wp))
+                           loaded_side(scene), all_modes)
     bent = minval(plate%frequency, mask=plate%frequency > 1.0e-6_wp*maxval(plate%frequency))
     if (section%mass(1) > 0) scales%first_period = 2*pi*sqrt(section%mass(1))/bent
     scales%compliance = sum(plate%weight/plate%frequency**2, mask=plate%frequency >= bent)

@@ -84,6 +84,7 @@ class Run:
                                            env=ENVIRONMENT)
                 process = subprocess.Popen([program, path, '--output', folder], stdout=said, stderr=said, env=ENVIRONMENT,
                                            preexec_fn=limit_time)
+                                           env=ENVIRONMENT, preexec_fn=limit_time)
                 _, status, usage = os.wait4(process.pid, 0)
             process.returncode = self.code = os.waitstatus_to_exitcode(status)
             self.seconds = usage.ru_utime + usage.ru_stime

@@ -4,6 +4,9 @@ The plate is Mindlin's with rotary inertia, the force is spread over a square pa
 is measured from the patch's mean deflection. Each mode moves exactly under a force that is linear over a step, and so does
 the ball; the force at the end of a step is the one root of a scalar equation. Modes too fast for the force to excite act
 by their stiffness alone.
+is measured from the patch's mean deflection. Each mode moves exactly under a force that is linear over a step, and so
+does the ball; the force at the end of a step is the one root of a scalar equation. Modes too fast for the force to
+excite act by their stiffness alone.
 """
 import dataclasses
 import math
@@ -51,7 +54,8 @@ def section(scene):
     z = -h/2 + scene.ply*np.arange(len(scene.angles) + 1)
     third = (z[1:]**3 - z[:-1]**3)/3
     along = np.array(scene.angles) == 0
-    bending = (sum(third*np.where(along, q11, q22)), q12*sum(third), sum(third*np.where(along, q22, q11)), g12*sum(third))
+    bending = (sum(third*np.where(along, q11, q22)), q12*sum(third), sum(third*np.where(along, q22, q11)),
+               g12*sum(third))
     shear = (5/6*scene.ply*sum(np.where(along, g13, g23)), 5/6*scene.ply*sum(np.where(along, g23, g13)))
     return bending, shear, scene.density*h, scene.density*h**3/12
 
@@ -109,7 +113,8 @@ class Contact:
             return s.k*max(alpha, 0.0)**1.5
         if alpha <= self.dent:
             return 0.0
-        return s.k*self.alpha_max**1.5*((alpha - self.dent)/(self.alpha_max - self.dent))**(1.5 if self.separated else s.q)
+        part = (alpha - self.dent)/(self.alpha_max - self.dent)
+        return s.k*self.alpha_max**1.5*part**(1.5 if self.separated else s.q)
 
     def commit(self, alpha):
         s = self.scene
@@ -194,8 +199,8 @@ def answer(scene, patch, end, fineness=100, cutoff=60):
 
 if __name__ == '__main__':
     # Sun and Chen's case: 298.87 N at 39.9 us, contacts 0 to 220.2 and 344.0 to 415.0 us, -0.5178 m/s at 1000 us.
-    case = Scene((0.2, 0.2), [0, 90, 0, 90, 0, 0, 90, 0, 90, 0], 0.269e-3, (120e9, 7.9e9, 5.5e9, 5.5e9, 5.5e9, 0.3), 1580,
-                 8.537e-3, 3, 6.35e-3, 8.112e8)
+    case = Scene((0.2, 0.2), [0, 90, 0, 90, 0, 0, 90, 0, 90, 0], 0.269e-3, (120e9, 7.9e9, 5.5e9, 5.5e9, 5.5e9, 0.3),
+                 1580, 8.537e-3, 3, 6.35e-3, 8.112e8)
     for law in ('hertz', 'tan_sun'):
         t, f, u, _ = answer(dataclasses.replace(case, law=law), 5e-3, 1e-3)
         begun = [round(1e6*t[i], 1) for i in range(1, len(t)) if (f[i] > 0) != (f[i - 1] > 0)]
