@@ -1,14 +1,17 @@
 !> The command line of the program.
 module command_lines
   use errors, only: error_t, fail, exit_usage
+  use folder_listings, only: file_by_age
   use kinds, only: wp
+  use text, only: line_t, words_of
   implicit none
   private
   public :: command_t, read_command_line
 
   !> What the program is asked to do.
   integer, parameter, public :: verb_run = 1, verb_check = 2, verb_explain = 3, verb_restart = 4, &
-                                verb_version = 5, verb_help = 6, verb_new = 7, verb_completion = 8, verb_man = 9
+                                verb_version = 5, verb_help = 6, verb_new = 7, verb_completion = 8, &
+                                verb_man = 9, verb_queue = 10
 
   !> A command line, taken apart.
   type :: command_t
@@ -20,6 +23,12 @@ module command_lines
     character(len=:), allocatable :: output
     !> Seconds on the wall that override the deck's; 0: the deck's
     real(wp) :: wall_limit = 0
+    !> slurm or pbs
+    character(len=:), allocatable :: queue
+    !> Ranks of a job, and its seconds on the wall; 0: left to the deck, and a day
+    integer :: ranks = 0, seconds = 0
+    !> True: jobs follow each other
+    logical :: chain = .false.
     !> Arguments for PETSc, in one string
     character(len=:), allocatable :: petsc_options
     !> True: explain as a Markdown table, for the manual
@@ -55,6 +64,8 @@ contains
       else if (.not. verb_given .and. verb_of(word) > 0) then
         verb_given = .true.
         command%verb = verb_of(word)
+      else if (command%verb == verb_queue .and. .not. allocated(command%queue)) then
+        command%queue = word
       else if (command%target == '') then
         command%target = word
       else if (any(command%verb == [verb_explain, verb_help]) .and. scan(command%target, '%. ') == 0) then
@@ -86,6 +97,16 @@ contains
       command%verb = verb_help
     case ('--markdown')
       command%markdown = .true.
+    case ('--chain')
+      command%chain = .true.
+    case ('--ranks')
+      i = i + 1
+      if (i <= command_argument_count()) command%ranks = whole_number(argument(i))
+      if (command%ranks < 1) call fail(error, exit_usage, '--ranks needs a whole number above 0.')
+    case ('--time')
+      i = i + 1
+      if (i <= command_argument_count()) command%seconds = clock_seconds(argument(i))
+      if (command%seconds < 60) call fail(error, exit_usage, '--time needs hours:minutes:seconds, a minute at least.')
     case ('--output')
       i = i + 1
       command%output = ''
@@ -99,6 +120,35 @@ contains
       call fail(error, exit_usage, 'Unknown option "'//word//'"; see implam help.')
     end select
   end subroutine read_option
+
+  !> Number that a word says; 0 if it is no whole number.
+  pure integer function whole_number(word) result(number)
+    !> The word
+    character(len=*), intent(in) :: word
+    integer :: status
+
+    number = 0
+    if (len(word) == 0 .or. len(word) > 6 .or. verify(word, '0123456789') > 0) return
+    read (word, *, iostat=status) number
+    if (status /= 0) number = 0
+  end function whole_number
+
+  !> Seconds of hours:minutes:seconds or hours:minutes; 0 if the word is neither.
+  pure integer function clock_seconds(word) result(seconds)
+    !> The word
+    character(len=*), intent(in) :: word
+    type(line_t), allocatable :: parts(:)
+    integer :: i
+
+    seconds = 0
+    parts = words_of(word, ':')
+    if (size(parts) < 2 .or. size(parts) > 3) return
+    if (any([(len(parts(i)%text) == 0 .or. len(parts(i)%text) > 4 .or. verify(parts(i)%text, '0123456789') > 0, &
+              i=1, size(parts))])) return
+    do i = 1, size(parts)
+      seconds = seconds + whole_number(parts(i)%text)*60**(3 - i)
+    end do
+  end function clock_seconds
 
   !> Seconds that a word says; 0 if it is no number.
   pure real(wp) function seconds_of(word) result(seconds)
@@ -115,7 +165,7 @@ contains
   !> Checks that the verbs that need a file have one.
   subroutine require_target(command, error)
     !> What is asked
-    type(command_t), intent(in) :: command
+    type(command_t), intent(inout) :: command
     !> Set (usage) if nothing is named
     type(error_t), allocatable, intent(inout) :: error
 
@@ -123,6 +173,11 @@ contains
     select case (command%verb)
     case (verb_run, verb_check)
       call fail(error, exit_usage, 'No deck given; `implam new` writes one to start from, `implam help` tells more.')
+    case (verb_queue)
+      ! The only deck of this folder, if there is one only.
+      command%target = file_by_age('.', '.nml', 0)
+      if (.not. allocated(command%queue) .or. command%target == '' .or. file_by_age('.', '.nml', 1) /= '') &
+        call fail(error, exit_usage, 'implam queue needs slurm or pbs, and a deck or the array.txt of a sweep.')
     case (verb_completion)
       call fail(error, exit_usage, 'implam completion needs the name of a shell, bash or zsh.')
     end select
@@ -148,6 +203,8 @@ contains
       verb = verb_completion
     case ('man')
       verb = verb_man
+    case ('queue')
+      verb = verb_queue
     case ('help')
       verb = verb_help
     case default

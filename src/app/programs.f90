@@ -22,9 +22,11 @@ module programs
   use files, only: is_directory
   use build_information, only: version, commit, compiler, petsc_version
   use command_lines, only: command_t, read_command_line, verb_run, verb_check, verb_explain, verb_restart, &
-                           verb_version, verb_help, verb_new, verb_completion, verb_man
+                           verb_version, verb_help, verb_new, verb_completion, verb_man, verb_queue
   use queue_signals, only: catch_stop_signals
   use result_explain, only: explain_results, is_result_topic, result_topics_sentence
+  use model_sizes, only: model_size_t, size_of_model
+  use queue_scripts, only: queue_job_t, write_queue_script
   use shell_pages, only: completion, manual_page
   use simulations, only: simulation_t
   use starter_decks, only: starter_name, write_starter
@@ -67,6 +69,8 @@ contains
         call tell_page(command, communicator, error)
       case (verb_new)
         call start_deck(command, communicator, error)
+      case (verb_queue)
+        call queue_deck(command, communicator, error)
       case (verb_check)
         call check(command, communicator, code)
       case (verb_run, verb_restart)
@@ -144,6 +148,31 @@ contains
     if (.not. allocated(error)) call print_lines(communicator, [line_t('Wrote '//path//'. To run it: implam '//path)])
   end subroutine start_deck
 
+  !> Writes the script of a job.
+  subroutine queue_deck(command, communicator, error)
+    !> What is asked
+    type(command_t), intent(in) :: command
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> Set if the deck has faults or the script is there already
+    type(error_t), allocatable, intent(inout) :: error
+    type(queue_job_t) :: job
+    type(line_t), allocatable :: lines(:)
+    integer :: length
+
+    if (.not. communicator%is_root()) return
+    job%queue = command%queue
+    job%target = command%target
+    call get_command_argument(0, length=length)
+    allocate (character(len=length) :: job%program)
+    call get_command_argument(0, job%program)
+    job%ranks = command%ranks
+    job%seconds = command%seconds
+    job%chain = command%chain
+    call write_queue_script(job, lines, error)
+    call print_lines(communicator, lines)
+  end subroutine queue_deck
+
   !> Explains a group or key of the deck, or what results hold.
   subroutine explain_topic(command, communicator, error)
     !> What is asked
@@ -182,6 +211,7 @@ contains
     integer, intent(out) :: code
     type(deck_t) :: deck
     type(problems_t) :: problems
+    type(model_size_t) :: model_size
 
     call read_deck_everywhere(command%target, communicator, deck, problems)
     code = problems%exit_code()
@@ -190,6 +220,8 @@ contains
     call print_lines(communicator, [line_t(command%target//': no errors.')])
     if (symmetry_sentence(deck) /= '') call print_lines(communicator, [line_t(symmetry_sentence(deck))])
     call print_lines(communicator, scale_lines(deck))
+    model_size = size_of_model(deck%scene_t)
+    call print_lines(communicator, [line_t(command%target//': no errors.'), line_t(model_size%sentence())])
   end subroutine check
 
   !> Reads a deck on the root rank and gives its text to all.

@@ -1,7 +1,8 @@
 !> The deck that `implam new` writes: a drop-weight test on a quasi-isotropic coupon, small enough to run at once.
 module starter_decks
-  use errors, only: error_t, fail, exit_files
-  use files, only: file_exists
+  use errors, only: error_t
+  use new_files, only: write_new_file
+  use text, only: line_t, append
   implicit none
   private
   public :: write_starter
@@ -52,19 +53,13 @@ contains
     character(len=*), intent(in) :: path
     !> Raised if there is such a file already, or it can't be written
     type(error_t), allocatable, intent(inout) :: error
-    integer :: unit, status, i
+    type(line_t), allocatable :: deck(:)
+    integer :: i
 
-    if (file_exists(path)) then
-      call fail(error, exit_files, path//' is there already and stays as it is; give another name.')
-      return
-    end if
-    open (newunit=unit, file=path, status='new', action='write', iostat=status)
-    if (status == 0) then
-      do i = 1, size(lines)
-        if (status == 0) write (unit, '(a)', iostat=status) trim(lines(i))
-      end do
-      close (unit)
-    end if
-    if (status /= 0) call fail(error, exit_files, 'Can''t write the deck '//path//'.')
+    allocate (deck(0))
+    do i = 1, size(lines)
+      call append(deck, trim(lines(i)))
+    end do
+    call write_new_file(path, deck, error)
   end subroutine write_starter
 end module starter_decks

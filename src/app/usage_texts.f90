@@ -11,7 +11,7 @@ module usage_texts
   integer, parameter :: indent = 31, width = 96
 
   !> Commands: what is typed behind `implam`, and what it does.
-  character(len=text_length), parameter, public :: command_rows(2, 9) = reshape([character(len=text_length) :: &
+  character(len=text_length), parameter, public :: command_rows(2, 10) = reshape([character(len=text_length) :: &
     '[run] DECK.nml', 'run a deck', &
     'check DECK.nml', 'read and check a deck, list every fault, run nothing', &
     'new [NAME.nml]', 'write a commented deck to start from, which runs as it is; no file is overwritten', &
@@ -20,17 +20,22 @@ module usage_texts
     'explain history|fields', 'what results hold: names, units, meaning', &
     'restart [FILE]', 'go on from a checkpoint (NAME_restart.h5), or from the newest of a folder: the one named, &
       &that of --output, or this one', &
+    'queue slurm|pbs [DECK.nml]', 'write a job script with ranks and memory from the deck; with --chain jobs '// &
+    'follow each other until the run has ended; array.txt of a sweep instead of a deck makes a job array', &
     'completion bash|zsh', 'print what lets a shell complete commands, groups and keys', &
     'man', 'print this page and all keys as a manual page of Unix: implam man | man -l -', &
-    'help [GROUP [KEY]]', 'this page, or the same as explain'], [2, 9])
+    'help [GROUP [KEY]]', 'this page, or the same as explain'], [2, 10])
   !> Options.
-  character(len=text_length), parameter, public :: option_rows(2, 6) = reshape([character(len=text_length) :: &
+  character(len=text_length), parameter, public :: option_rows(2, 9) = reshape([character(len=text_length) :: &
     '--output DIR', 'folder of the results, instead of the deck''s', &
     '--wall-limit SECONDS', 'end with a checkpoint before so many seconds have passed on the wall', &
+    '--ranks N', 'ranks of the job that queue writes, instead of what the deck''s size suggests', &
+    '--time H:MM:SS', 'its limit on the wall; a day without', &
+    '--chain', 'it comes again, from its checkpoint, until the run has ended', &
     '--markdown', 'explain as a table for the manual', &
     '--version', 'version, commit, compiler and PETSc', &
     '-h, --help', 'this page', &
-    '-mat_..., -ksp_..., -log_view', 'these and other words with one dash go to PETSc'], [2, 6])
+    '-mat_..., -ksp_..., -log_view', 'these and other words with one dash go to PETSc'], [2, 9])
   !> Exit codes.
   character(len=text_length), parameter, public :: code_rows(2, 7) = reshape([character(len=text_length) :: &
     '0', 'done', '1', 'usage', '2', 'deck', '3', 'no convergence at the smallest step', '4', 'files', '5', 'internal', &

@@ -26,7 +26,7 @@ module model_building
   use scenes, only: scene_t
   implicit none
   private
-  public :: create_model
+  public :: create_model, zones_of
 
   !> Stiffness of a line of a rigid frame over that of the laminate through its thickness: its part of the deflection is
   !> far below that of rounding and tolerance, and the matrix still loses no more digits than held jumps cost it.

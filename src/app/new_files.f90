@@ -1,0 +1,33 @@
+!> Files that the program writes for a user to keep: never over another one.
+module new_files
+  use errors, only: error_t, fail, exit_files
+  use files, only: file_exists
+  use text, only: line_t
+  implicit none
+  private
+  public :: write_new_file
+
+contains
+
+  !> Writes lines into a file that isn't there yet.
+  subroutine write_new_file(path, lines, error)
+    !> Its path
+    character(len=*), intent(in) :: path
+    !> Its lines
+    type(line_t), intent(in) :: lines(:)
+    !> Raised if there is such a file, or it can't be written
+    type(error_t), allocatable, intent(inout) :: error
+    integer :: unit, status, i
+
+    if (file_exists(path)) then
+      call fail(error, exit_files, path//' is there already and stays as it is; give another name or remove it.')
+      return
+    end if
+    open (newunit=unit, file=path, status='new', action='write', iostat=status)
+    do i = 1, size(lines)
+      if (status == 0) write (unit, '(a)', iostat=status) lines(i)%text
+    end do
+    if (status == 0) close (unit, iostat=status)
+    if (status /= 0) call fail(error, exit_files, 'Can''t write '//path//'.')
+  end subroutine write_new_file
+end module new_files

@@ -1,0 +1,289 @@
+!> Job scripts for queues: `implam queue slurm|pbs DECK`. A job ends in time with a checkpoint and exit code 75; a chain
+!> of jobs goes on from there until the run has ended; an array runs the decks of a sweep.
+module queue_scripts
+  use deck_contents, only: deck_t
+  use deck_problems, only: problems_t
+  use deck_reader, only: read_deck
+  use errors, only: error_t, fail, exit_usage, exit_files, exit_deck
+  use new_files, only: write_new_file
+  use kinds, only: wp
+  use model_sizes, only: model_size_t, size_of_model
+  use text, only: line_t, append, to_text
+  implicit none
+  private
+  public :: write_queue_script
+
+  !> Memory asked for over the estimate: plies that crack and fronts that grow keep more than the first factor.
+  real(wp), parameter :: spare_memory = 1.5_wp
+  !> Seconds on the wall that a job gets without `--time`, and most of them that are kept for the checkpoint.
+  integer, parameter :: usual_seconds = 86400, most_kept = 600
+  !> Parts of a chain, lest one that never moves on goes on for ever.
+  integer, parameter :: most_parts = 100
+
+  !> What a script is to say.
+  type, public :: queue_job_t
+    !> slurm or pbs
+    character(len=:), allocatable :: queue
+    !> Deck, or the list of commands (array.txt) of a sweep
+    character(len=:), allocatable :: target
+    !> The program as it was called
+    character(len=:), allocatable :: program
+    !> Ranks; 0: as the deck's size suggests
+    integer :: ranks = 0
+    !> Seconds on the wall; 0: a day
+    integer :: seconds = 0
+    !> True: a job that is stopped by its limit comes again until the run has ended
+    logical :: chain = .false.
+    !> Name of the job, and checkpoint of the run
+    character(len=:), allocatable, private :: name, checkpoint
+    !> Memory a rank
+    integer, private :: megabytes = 0
+    !> Lines of an array's list; 0: no array
+    integer, private :: tasks = 0
+  end type queue_job_t
+
+contains
+
+  !> Writes the script beside the caller and tells what to do with it.
+  subroutine write_queue_script(job, lines, error)
+    !> What it is to say
+    type(queue_job_t), intent(inout) :: job
+    !> What to tell the user
+    type(line_t), allocatable, intent(out) :: lines(:)
+    !> Raised if the deck or list has faults, or the script is there already
+    type(error_t), allocatable, intent(inout) :: error
+    type(line_t), allocatable :: script(:)
+    character(len=:), allocatable :: path
+
+    allocate (lines(0))
+    if (job%queue /= 'slurm' .and. job%queue /= 'pbs') then
+      call fail(error, exit_usage, 'implam queue knows slurm and pbs.')
+      return
+    end if
+    if (job%seconds == 0) job%seconds = usual_seconds
+    if (len(job%target) > 4 .and. index(job%target, '.txt', back=.true.) == len(job%target) - 3) then
+      call size_array(job, error)
+    else
+      call size_deck(job, error)
+    end if
+    if (job%chain .and. job%tasks > 0 .and. job%queue == 'pbs') call fail(error, exit_usage, &
+      'An array of PBS can''t be a chain; list what is left with implam-sweep --array and submit that.')
+    if (allocated(error)) return
+    allocate (script(0))
+    if (job%queue == 'slurm') then
+      call head_of_slurm(job, script)
+    else
+      call head_of_pbs(job, script)
+    end if
+    call append_body(job, script)
+    path = job%name//'.'//job%queue
+    call write_new_file(path, script, error)
+    if (allocated(error)) return
+    call append(lines, 'Wrote '//path//': '//to_text(job%ranks)//trim(merge(' rank ', ' ranks', job%ranks == 1))// &
+                ', '//to_text(job%megabytes)//' MB each, '//clock(job%seconds)//'.')
+    call append(lines, 'To submit it: '//trim(merge('sbatch', 'qsub  ', job%queue == 'slurm'))//' '//path)
+  end subroutine write_queue_script
+
+  !> Name, results, ranks and memory of a deck.
+  subroutine size_deck(job, error)
+    !> Receives them
+    type(queue_job_t), intent(inout) :: job
+    !> Raised if the deck has faults
+    type(error_t), allocatable, intent(inout) :: error
+    type(deck_t) :: deck
+    type(model_size_t) :: found
+
+    call read_sound_deck(job%target, deck, error)
+    if (allocated(error)) return
+    found = size_of_model(deck%scene_t)
+    job%name = deck%name
+    job%checkpoint = deck%output%directory//'/'//deck%name//'_restart.h5'
+    if (job%ranks == 0) job%ranks = found%ranks
+    job%megabytes = ceiling(spare_memory*found%megabytes_a_rank(job%ranks))
+  end subroutine size_deck
+
+  !> Number of commands of a sweep's list, and the largest of its decks, which decks.txt names beside it.
+  subroutine size_array(job, error)
+    !> Receives them
+    type(queue_job_t), intent(inout) :: job
+    !> Raised if a list can't be read, is empty, or a deck has faults
+    type(error_t), allocatable, intent(inout) :: error
+    type(deck_t) :: deck
+    type(model_size_t) :: found
+    integer :: unit, status
+    character(len=4096) :: path
+
+    job%name = 'sweep'
+    path = job%target(:index(job%target, '/', back=.true.))//'decks.txt'
+    open (newunit=unit, file=trim(path), status='old', action='read', iostat=status)
+    do while (status == 0)
+      read (unit, '(a)', iostat=status) path
+      if (status /= 0) exit
+      job%tasks = job%tasks + 1
+      call read_sound_deck(trim(path), deck, error)
+      if (allocated(error)) exit
+      found = size_of_model(deck%scene_t)
+      ! What `--program` of the sweep says decides on the ranks: one without it.
+      if (job%ranks == 0) job%ranks = 1
+      job%megabytes = max(job%megabytes, ceiling(spare_memory*found%megabytes_a_rank(job%ranks)))
+    end do
+    if (job%tasks > 0) close (unit)
+    if (job%tasks == 0) call fail(error, exit_files, 'No decks.txt of implam-sweep --array lies beside '// &
+                                  job%target//'.')
+  end subroutine size_array
+
+  !> Reads a deck that must have no faults.
+  subroutine read_sound_deck(path, deck, error)
+    !> Its path
+    character(len=*), intent(in) :: path
+    !> The deck
+    type(deck_t), intent(out) :: deck
+    !> Raised if it has faults
+    type(error_t), allocatable, intent(inout) :: error
+    type(problems_t) :: problems
+
+    call read_deck(path, deck, problems)
+    if (problems%errors() > 0) call fail(error, exit_deck, path//' has faults, which `implam check` lists.')
+  end subroutine read_sound_deck
+
+  !> What Slurm is asked for. It may send the signal up to a minute early.
+  subroutine head_of_slurm(job, script)
+    !> What the script is to say
+    type(queue_job_t), intent(in) :: job
+    !> Lines are added
+    type(line_t), allocatable, intent(inout) :: script(:)
+
+    call append(script, '#!/bin/bash')
+    call append(script, '#SBATCH --job-name='//job%name)
+    call append(script, '#SBATCH --ntasks='//to_text(job%ranks)//' --cpus-per-task=1')
+    call append(script, '#SBATCH --mem-per-cpu='//to_text(job%megabytes)//'M')
+    call append(script, '#SBATCH --time='//clock(job%seconds))
+    call append(script, '#SBATCH --signal=B:USR1@'//to_text(kept(job))//'  # to this shell, so many seconds ahead')
+    if (job%tasks > 0) then
+      call append(script, '#SBATCH --array=1-'//to_text(job%tasks)//' --output='//job%name// &
+                  '.%A_%a.txt --open-mode=append')
+    else
+      call append(script, '#SBATCH --output='//job%name//'.%j.txt --open-mode=append')
+    end if
+    call append(script, '#SBATCH '//trim(merge('--requeue   ', '--no-requeue', job%chain)))
+    call append(script, 'again() { scontrol requeue "$SLURM_JOB_ID"; }  # this shell is killed by it')
+    call append(script, 'task=${SLURM_ARRAY_TASK_ID:-} parts=${SLURM_RESTART_COUNT:-0} in_time=()')
+  end subroutine head_of_slurm
+
+  !> What PBS is asked for. It sends no signal ahead, so a clock of our own does.
+  subroutine head_of_pbs(job, script)
+    !> What the script is to say
+    type(queue_job_t), intent(in) :: job
+    !> Lines are added
+    type(line_t), allocatable, intent(inout) :: script(:)
+
+    call append(script, '#!/bin/bash')
+    call append(script, '#PBS -N '//job%name(:min(15, len(job%name))))
+    call append(script, '#PBS -l select=1:ncpus='//to_text(job%ranks)//':mpiprocs='//to_text(job%ranks)//':mem='// &
+                to_text(job%ranks*job%megabytes)//'mb')
+    call append(script, '#PBS -l walltime='//clock(job%seconds))
+    if (job%tasks > 0) call append(script, '#PBS -J 1-'//to_text(job%tasks))
+    call append(script, '#PBS -j oe')
+    call append(script, '#PBS -r n')
+    call append(script, 'if ! cd "$PBS_O_WORKDIR"; then exit 4; fi')
+    call append(script, 'again() { qsub -v IMPLAM_PARTS=$((parts + 1)) '// &
+                quoted(job%name//'.pbs')//'; }')
+    call append(script, 'task=${PBS_ARRAY_INDEX:-} parts=${IMPLAM_PARTS:-0}')
+    call append(script, 'in_time=(timeout --preserve-status --signal=USR1 '//to_text(job%seconds - kept(job))// &
+                ')  # ahead of the limit')
+  end subroutine head_of_pbs
+
+  !> What both queues run.
+  subroutine append_body(job, script)
+    !> What the script is to say
+    type(queue_job_t), intent(in) :: job
+    !> Lines are added
+    type(line_t), allocatable, intent(inout) :: script(:)
+    character(len=:), allocatable :: launcher
+
+    call append(script, '# Written by implam queue '//job%queue//' for '//job%target//'; what stands above may be '// &
+                'changed.')
+    call append(script, 'export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1')
+    if (job%tasks > 0) then
+      call append(script, 'command=(bash -c "exec $(sed -n "${task}p" '//quoted(job%target)//')")')
+    else
+      launcher = ''
+      if (job%ranks > 1) launcher = 'mpirun -n '//to_text(job%ranks)//' '
+      call append(script, 'command=('//launcher//'"${IMPLAM:-'//job%program//'}")')
+      call append(script, '# A job that comes again, or is submitted with the word restart, goes on from a checkpoint.')
+      call append(script, 'checkpoint='//quoted(job%checkpoint))
+      call append(script, 'if [[ ${1:-} == restart ]]; then parts=1; fi')
+      call append(script, 'if [[ -e $checkpoint && $parts -gt 0 ]]; then')
+      call append(script, '  command+=(restart "$checkpoint")')
+      call append(script, 'else')
+      call append(script, '  command+=('//quoted(job%target)//')')
+      call append(script, 'fi')
+    end if
+    call append(script, 'told= run=')
+    call append(script, 'stop() { told=yes; if [[ $run ]]; then kill -USR1 "$run"; fi; }')
+    call append(script, 'trap stop USR1 TERM')
+    call append(script, '"${in_time[@]}" "${command[@]}" & run=$!')
+    call append(script, 'if [[ $told ]]; then kill -USR1 "$run"; fi')
+    call append(script, 'wait "$run"; code=$?')
+    call append(script, 'while [[ $told ]]; do told=; wait "$run"; code=$?; done  # a signal ends wait, not the run')
+    call append(script, 'if ((code == 138)); then code=75; fi  # told before the program could hear it')
+    if (job%chain) then
+      call append(script, 'if ((code == 75 && parts < '//to_text(most_parts)//')); then again; fi')
+    else
+      call append(script, 'if ((code == 75)); then echo "Stopped in time, with a checkpoint. To go on: '//go_on(job)// &
+                  '"; fi')
+    end if
+    call append(script, 'exit "$code"')
+  end subroutine append_body
+
+  !> What submits a job that goes on from the checkpoint.
+  pure function go_on(job) result(words)
+    !> The job
+    type(queue_job_t), intent(in) :: job
+    !> A command
+    character(len=:), allocatable :: words
+
+    words = 'sbatch '//job%name//'.slurm restart'
+    if (job%queue == 'pbs') words = 'qsub -v IMPLAM_PARTS=1 '//job%name//'.pbs'
+    if (job%tasks > 0) words = 'the same script again'
+  end function go_on
+
+  !> Seconds before the limit that are kept for the step at hand and the checkpoint.
+  pure integer function kept(job)
+    !> The job
+    type(queue_job_t), intent(in) :: job
+
+    kept = min(most_kept, job%seconds/2)
+  end function kept
+
+  !> Seconds as hours, minutes and seconds.
+  pure function clock(seconds) result(words)
+    !> The seconds
+    integer, intent(in) :: seconds
+    !> Such as 24:00:00
+    character(len=:), allocatable :: words
+    character(len=20) :: buffer
+
+    write (buffer, '(i0,2(":",i2.2))') seconds/3600, mod(seconds, 3600)/60, mod(seconds, 60)
+    words = trim(buffer)
+  end function clock
+
+  !> A word as a shell takes it, whatever it holds.
+  pure function quoted(word) result(safe)
+    !> The word
+    character(len=*), intent(in) :: word
+    !> In quotes
+    character(len=:), allocatable :: safe
+    integer :: i
+
+    safe = ''''
+    do i = 1, len(word)
+      if (word(i:i) == '''') then
+        safe = safe//'''\'''''
+      else
+        safe = safe//word(i:i)
+      end if
+    end do
+    safe = safe//''''
+  end function quoted
+end module queue_scripts

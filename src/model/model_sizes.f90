@@ -1,0 +1,93 @@
+!> How large a model is before it is built: unknowns and memory, for `implam check` and the scripts of queues.
+module model_sizes
+  use kinds, only: wp
+  use layered_meshes, only: zone_t
+  use model_building, only: zones_of
+  use cell_grids, only: cell_edges
+  use scenes, only: scene_t
+  use text, only: to_text
+  implicit none
+  private
+  public :: model_size_t, size_of_model
+
+  !> Unknowns that one rank takes in a script; a choice, since what is best depends on the machine.
+  integer, parameter :: unknowns_a_rank = 25000
+  !> Megabytes of the libraries a process, and bytes for each pair of unknowns of a node times the doublings of the
+  !> number of nodes: nested dissection of a plane grid fills its factor so. Measured, doc/manual/queue.md.
+  real(wp), parameter :: megabytes_of_libraries = 55, bytes_whole = 56, bytes_layered = 93
+  !> What several ranks take together over what one does: MUMPS' buffers and the ghosts.
+  real(wp), parameter :: more_on_ranks = 1.7_wp
+
+  !> Size of a model.
+  type :: model_size_t
+    !> Unknowns, those that the supports hold included
+    integer :: unknowns = 0
+    !> Ranks that suit them
+    integer :: ranks = 1
+    !> Megabytes beyond those of the libraries, on one rank
+    real(wp) :: megabytes = 0
+  contains
+    procedure :: megabytes_a_rank
+    procedure :: sentence
+  end type model_size_t
+
+contains
+
+  !> Size of the model that a scene asks for.
+  pure function size_of_model(scene) result(size_found)
+    !> The scene; it has passed the deck's checks
+    type(scene_t), intent(in) :: scene
+    !> Its size
+    type(model_size_t) :: size_found
+    type(zone_t), allocatable :: zones(:)
+    integer :: cells(2), i, j
+    real(wp) :: nodes, inside, pairs
+
+    zones = zones_of(scene)
+    cells = [size(cell_edges(scene%plate, scene%mesh, 1)) - 1, size(cell_edges(scene%plate, scene%mesh, 2)) - 1]
+    nodes = product(2*real(cells, wp) + 1)
+    pairs = nodes
+    size_found%unknowns = nint(5*nodes)
+    ! A node has a layer more for each zone that it is in: (1 + sum)**2 pairs, added up over pairs of zones.
+    do i = 1, size(zones)
+      inside = nodes_in_both(zones(i), zones(i), cells)
+      size_found%unknowns = size_found%unknowns + nint(5*inside)
+      pairs = pairs + 2*inside + sum([(nodes_in_both(zones(i), zones(j), cells), j=1, size(zones))])
+    end do
+    size_found%ranks = max(1, nint(real(size_found%unknowns, wp)/unknowns_a_rank))
+    size_found%megabytes = 1.0e-6_wp*merge(bytes_layered, bytes_whole, size(zones) > 0)*25*pairs*log(nodes)/log(2.0_wp)
+  end function size_of_model
+
+  !> Number of nodes inside of two zones; the model's own border counts as inside.
+  pure real(wp) function nodes_in_both(a, b, cells) result(nodes)
+    !> The zones
+    type(zone_t), intent(in) :: a, b
+    !> Columns and rows of cells
+    integer, intent(in) :: cells(2)
+    integer :: first(2), last(2)
+
+    first = [max(a%columns(1), b%columns(1)), max(a%rows(1), b%rows(1))]
+    last = [min(a%columns(2), b%columns(2)), min(a%rows(2), b%rows(2))]
+    nodes = product(max(0.0_wp, 2*real(last - first + 1, wp) - 1 + merge(1, 0, first == 1) + &
+                        merge(1, 0, last == cells)))
+  end function nodes_in_both
+
+  !> Megabytes that a rank needs.
+  pure real(wp) function megabytes_a_rank(self, ranks) result(megabytes)
+    class(model_size_t), intent(in) :: self
+    !> Number of ranks
+    integer, intent(in) :: ranks
+
+    megabytes = megabytes_of_libraries + self%megabytes*merge(1.0_wp, more_on_ranks/ranks, ranks == 1)
+  end function megabytes_a_rank
+
+  !> What `implam check` says.
+  pure function sentence(self) result(words)
+    class(model_size_t), intent(in) :: self
+    !> One sentence
+    character(len=:), allocatable :: words
+
+    words = 'About '//to_text(self%unknowns)//' unknowns and '//to_text(nint(self%megabytes_a_rank(1)))// &
+            ' MB of memory on one rank.'
+  end function sentence
+end module model_sizes
