@@ -65,6 +65,11 @@ class Fields:
     quarter: bool
     snapshots: list[Snapshot]
 
+    @property
+    def path(self) -> Path:
+        """Path of the file."""
+        return Path(self.name)
+
     def place(self, time: float) -> int:
         """Return the place among the snapshots of the one nearest to a time."""
         stored = np.array([snapshot.time for snapshot in self.snapshots])

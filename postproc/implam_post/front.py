@@ -11,12 +11,14 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MultipleLocator
 
 from implam_post.fields import Fields, Snapshot, extents, outline
+from implam_post.look import Look
 from implam_post.plan import frame
 
 _MOST_TIMES = 8
+_PLAIN = Look()
 
 
-def front_figure(fields: Fields, times: Sequence[float] | None = None) -> Figure:
+def front_figure(fields: Fields, times: Sequence[float] | None = None, look: Look = _PLAIN) -> Figure:
     """Draw each interface at the given times, or at some of those at which its front is loaded.
 
     On the left G/G_c against the angle around the struck point, a line a time; on the right in plan, at that one of
@@ -27,13 +29,14 @@ def front_figure(fields: Fields, times: Sequence[float] | None = None) -> Figure
     for (left, right), below_ply in zip(figure.subplots(len(interfaces), 2, squeeze=False), interfaces, strict=True):
         snapshots = _chosen(fields, below_ply, times)
         left.set_title(f"below ply {below_ply}", fontsize="medium")
-        _draw_around(left, fields, below_ply, snapshots)
+        _draw_around(left, fields, below_ply, snapshots, look)
         if snapshots:
-            draw_front(right, fields, below_ply, max(snapshots, key=lambda one: np.max(one.release(below_ply)[1])))
+            draw_front(right, fields, below_ply, max(snapshots, key=lambda one: np.max(one.release(below_ply)[1])),
+                       look)
     return figure
 
 
-def draw_front(axes: Axes, fields: Fields, below_ply: int, snapshot: Snapshot) -> None:
+def draw_front(axes: Axes, fields: Fields, below_ply: int, snapshot: Snapshot, look: Look = _PLAIN) -> None:
     """Draw the outline in plan at one time, and the cells ahead of it coloured by G/G_c."""
     cells, ratio = snapshot.release(below_ply)
     cells, ratio = fields.whole(cells), np.tile(ratio, 4 if fields.quarter else 1)
@@ -42,13 +45,12 @@ def draw_front(axes: Axes, fields: Fields, below_ply: int, snapshot: Snapshot) -
     axes.add_collection(shown)
     apart = fields.whole(snapshot.delaminated_cells(below_ply))
     axes.add_collection(LineCollection(outline(apart), colors="black", linewidths=0.8))
-    axes.set_title(f"time {snapshot.time:.4g}", fontsize="medium")
-    axes.set(xlabel="x (the deck's units, as all)", ylabel="y")
-    frame(axes, *extents(np.concatenate([cells, apart])))
+    axes.set_title(f"time {look.said('time', snapshot.time)}", fontsize="medium")
+    frame(axes, *extents(np.concatenate([cells, apart])), look)
     axes.figure.colorbar(shown, ax=axes, location="bottom", shrink=0.8, label="$G/G_c$ ahead of the front")
 
 
-def _draw_around(axes: Axes, fields: Fields, below_ply: int, snapshots: Sequence[Snapshot]) -> None:
+def _draw_around(axes: Axes, fields: Fields, below_ply: int, snapshots: Sequence[Snapshot], look: Look) -> None:
     """Draw G/G_c against the angle from x to the cells ahead of the front; one quarter stands for all."""
     colours = colormaps["viridis_r"](np.linspace(0, 1, max(len(snapshots), 2)))
     for snapshot, colour in zip(snapshots, colours, strict=False):
@@ -56,7 +58,7 @@ def _draw_around(axes: Axes, fields: Fields, below_ply: int, snapshots: Sequence
         x, y = np.mean(cells, axis=1).T
         angle = np.degrees(np.arctan2(y, x))
         order = np.argsort(angle)
-        axes.plot(angle[order], ratio[order], ".-", color=colour, linewidth=1, label=f"{snapshot.time:.4g}")
+        axes.plot(angle[order], ratio[order], ".-", color=colour, linewidth=1, label=look.said("time", snapshot.time))
     axes.axhline(1, color="black", linestyle="--", linewidth=1)
     axes.set(xlabel="angle from x around the struck point (degrees)", ylabel="$G/G_c$",
              xlim=(0, 90) if fields.quarter else (-180, 180))

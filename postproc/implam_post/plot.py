@@ -1,9 +1,10 @@
-"""Plots of histories and fields (`implam-plot HISTORY.csv ...`, `implam-plot NAME.h5`), in the deck's own units."""
+"""Plots of histories and fields (`implam-plot HISTORY.csv ...`, `implam-plot NAME.h5`)."""
 
 import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
+import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -12,10 +13,19 @@ from implam_post.errors import EXIT_DONE, CommandParser, FileError, ImplamError,
 from implam_post.fields import Fields, read_fields
 from implam_post.front import front_figure
 from implam_post.history import ENERGIES, History, read_history
-from implam_post.plan import delamination_figure, draw_cracks, draw_delamination, failures_figure
+from implam_post.look import STYLES, Look, add_options, look_of
+from implam_post.plan import (
+    delamination_figure,
+    draw_cracks,
+    draw_delamination,
+    failures_figure,
+    projected_figure,
+)
 from implam_post.quantities import growth_rows
 
-_RESPONSES = {"force": "contact force", "indentation": "indentation", "deflection": "deflection of struck point"}
+_RESPONSES = {"force": ("contact force", "force"), "indentation": ("indentation", "length"),
+              "deflection": ("deflection of struck point", "length")}
+_PLAIN = Look()
 
 
 def plot_forces(histories: Sequence[History], path: Path) -> Path:
@@ -25,22 +35,23 @@ def plot_forces(histories: Sequence[History], path: Path) -> Path:
     return _save(figure, path)
 
 
-def plot_response(histories: Sequence[History], path: Path) -> Path:
-    """Draw force, indentation and deflection, each with all histories over each other."""
+def plot_response(histories: Sequence[History], path: Path, look: Look = _PLAIN,
+                  measured: History | None = None) -> Path:
+    """Draw force, indentation and deflection, each with all histories, and what was measured, over each other."""
     figure = Figure(figsize=(8, 10), layout="constrained")
     for axes, column in zip(figure.subplots(len(_RESPONSES), sharex=True), _RESPONSES, strict=True):
-        _draw(axes, histories, column)
-    return _save(figure, path)
+        _draw(axes, histories, column, look, measured)
+    return _save(figure, path, look)
 
 
-def plot_energies(history: History, path: Path) -> Path:
+def plot_energies(history: History, path: Path, look: Look = _PLAIN) -> Path:
     """Draw the energies of a history stacked, those below zero downwards, and the total at the start."""
     figure = Figure(figsize=(8, 5), layout="constrained")
-    _stack(figure.subplots(), history)
-    return _save(figure, path)
+    _stack(figure.subplots(), history, look)
+    return _save(figure, path, look)
 
 
-def plot_overview(fields: Fields, history: History, path: Path) -> Path:
+def plot_overview(fields: Fields, history: History, path: Path, look: Look = _PLAIN) -> Path:
     """Draw each interface in plan, with the cracks beside it, the force and the ledger in one picture."""
     interfaces = fields.snapshots[-1].mesh.interfaces
     if not interfaces:
@@ -48,72 +59,108 @@ def plot_overview(fields: Fields, history: History, path: Path) -> Path:
     figure = Figure(figsize=(11, 2.9 * max(len(interfaces), 2)), layout="constrained")
     left, right = figure.subfigures(1, 2)
     for axes, below_ply in zip(left.subplots(len(interfaces), squeeze=False)[:, 0], interfaces, strict=True):
-        draw_delamination(axes, fields, below_ply)
+        draw_delamination(axes, fields, below_ply, look)
         if fields.snapshots[-1].failures:
             draw_cracks(axes, fields, below_ply)
     force, ledger = right.subplots(2)
-    _draw(force, [history], "force")
-    _stack(ledger, history)
-    return _save(figure, path, dots_per_inch=80)
+    _draw(force, [history], "force", look)
+    _stack(ledger, history, look)
+    return _save(figure, path, look)
 
 
-def plot_fields(fields: Fields, base: Path, times: Sequence[float] | None = None) -> list[Path]:
+def plot_fields(fields: Fields, base: Path, times: Sequence[float] | None = None, look: Look = _PLAIN) -> list[Path]:
     """Draw what the fields hold of interfaces, of their fronts (at some times) and of plies, a picture each."""
-    drawn = []
+    figures = {}
     if fields.snapshots[-1].mesh.interfaces:
-        drawn.append(_save(delamination_figure(fields), base.with_name(f"{base.name}_delamination.png")))
+        figures["delamination"] = delamination_figure(fields, look)
+        figures["projected"] = projected_figure(fields, look)
     if any(np.any(snapshot.release_ratio > 0) for snapshot in fields.snapshots):
-        drawn.append(_save(front_figure(fields, times), base.with_name(f"{base.name}_front.png")))
+        figures["front"] = front_figure(fields, times, look)
     if fields.snapshots[-1].failures:
-        drawn.append(_save(failures_figure(fields), base.with_name(f"{base.name}_plies.png")))
-    return drawn
+        figures["matrix"] = failures_figure(fields, ("matrix cracking", "matrix crushing"), look)
+        figures["fibres"] = failures_figure(fields, ("fibre failure",), look)
+    return [_save(figure, base.with_name(f"{base.name}_{name}.{look.kind}"), look) for name, figure in figures.items()]
 
 
-def _stack(axes: Axes, history: History) -> None:
+def _stack(axes: Axes, history: History, look: Look) -> None:
     """Draw the ledger."""
     ledger = {column: history[column] for column in ENERGIES}
     shown = {column: values for column, values in ledger.items() if np.any(values)}
     colours = [f"C{ENERGIES.index(column)}" for column in shown]
+    start = sum(values[0] for values in ledger.values())
+    time = look.axis("time", "time", history.time)
+    energy = look.axis("energy", "energy", [start, *(np.max(np.abs(values)) for values in shown.values())])
     if shown:
         labels = [column.removeprefix("energy_").replace("_", " ") for column in shown]
-        axes.stackplot(history.time, [np.maximum(values, 0) for values in shown.values()], labels=labels,
-                       colors=colours, alpha=0.8)
-        axes.stackplot(history.time, [np.minimum(values, 0) for values in shown.values()], colors=colours, alpha=0.8)
-    axes.axhline(sum(values[0] for values in ledger.values()), color="black", linestyle="--", linewidth=1,
-                 label="total at the start")
-    axes.plot(history.time, history["energy_error"], color="black", linewidth=1, label="not accounted for")
-    axes.set(xlabel="time (the deck's units, as all)", ylabel="energy", title=Path(history.name).stem)
+        for parts, names in ((np.maximum, labels), (np.minimum, ())):
+            axes.stackplot(time.factor * history.time, [energy.factor * parts(values, 0) for values in shown.values()],
+                           labels=names, colors=colours, alpha=0.8)
+    axes.axhline(energy.factor * start, color="black", linestyle="--", linewidth=1, label="total at the start")
+    axes.plot(time.factor * history.time, energy.factor * history["energy_error"], color="black", linewidth=1,
+              label="not accounted for")
+    axes.set(xlabel=time.label, ylabel=energy.label, title=Path(history.name).stem.removesuffix("_history"))
     axes.locator_params(axis="x", nbins=6)
     axes.legend(loc="center left", bbox_to_anchor=(1, 0.5))
 
 
-def _draw(axes: Axes, histories: Sequence[History], column: str) -> None:
-    """Draw a column of several histories."""
+def response_of(history: History, column: str) -> np.ndarray:
+    """Return a column as it is drawn: without the indentation where there is a gap."""
+    if column == "indentation" and "force" in history.columns:
+        return np.where(history["force"] > 0, history[column], np.nan)
+    return history[column]
+
+
+def _draw(axes: Axes, histories: Sequence[History], column: str, look: Look = _PLAIN,
+          measured: History | None = None) -> None:
+    """Draw a column of several histories, each in a style of its own, and what was measured as dots."""
+    words, dimension = _RESPONSES[column]
+    drawn = [*histories, *([measured] if measured is not None and column in measured.columns else [])]
+    time = look.axis("time", "time", np.concatenate([history.time for history in drawn]))
+    value = look.axis(words, dimension, np.concatenate([response_of(history, column) for history in drawn]))
+    names = _names([history.name for history in histories])
     for position, history in enumerate(histories):
-        line, = axes.plot(history.time, history[column], label=Path(history.name).stem,
-                          linestyle="--" if position else "-")
+        style = STYLES[position % len(STYLES)]
+        axes.plot(time.factor * history.time, value.factor * response_of(history, column), label=names[position],
+                  **style)
         grown = growth_rows(history)
         if column == "force" and len(grown):
-            axes.plot(history.time[grown], history[column][grown], "o", color=line.get_color(), markersize=3,
-                      label="delamination grows")
-    axes.set(xlabel="time (the deck's units, as all)", ylabel=_RESPONSES[column])
+            axes.plot(time.factor * history.time[grown], value.factor * history[column][grown], "o", markersize=3,
+                      color=style["color"], label="delamination grows" + (f" ({names[position]})" if position else ""))
+    if drawn[-1] is measured:
+        axes.plot(time.factor * measured.time, value.factor * measured[column], "k.", markersize=4,
+                  label=f"measured ({Path(measured.name).stem})")
+    axes.set(xlabel=time.label, ylabel=value.label)
     axes.locator_params(axis="x", nbins=6)
     axes.grid(alpha=0.3)
     axes.legend()
 
 
-def _save(figure: Figure, path: Path, dots_per_inch: int = 150) -> Path:
+def _names(paths: Sequence[str]) -> list[str]:
+    """Return short names of runs: that of the case, with its folder where two have the same."""
+    stems = [Path(path).stem.removesuffix("_history") for path in paths]
+    return [stem if stems.count(stem) == 1 else f"{Path(path).parent.name}/{stem}"
+            for stem, path in zip(stems, paths, strict=True)]
+
+
+def _save(figure: Figure, path: Path, look: Look = _PLAIN) -> Path:
     """Write the figure, making the folder if it isn't there, and return the path."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        figure.savefig(path, dpi=dots_per_inch)
-    except OSError as error:
+        figure.savefig(path, dpi=look.dots_per_inch)
+    except (OSError, ValueError) as error:
         raise FileError(f"{path} cannot be written ({error}).") from None
     return path
 
 
 def _command(options: argparse.Namespace) -> int:
     """Draw and say what was drawn."""
+    look = look_of(options, options.results)
+    with matplotlib.rc_context({"font.size": look.letters}):
+        return _draw_all(options, look)
+
+
+def _draw_all(options: argparse.Namespace, look: Look) -> int:
+    """Draw what the command line asks for."""
     results = [path for path in options.results if path.suffix == ".h5"]
     histories = [path for path in options.results if path.suffix != ".h5"]
     if options.save and (len(results), len(histories)) != (1, 0):
@@ -121,31 +168,35 @@ def _command(options: argparse.Namespace) -> int:
     for path in results:
         fields, history = read_fields(path), options.history or path.with_name(f"{path.stem}_history.csv")
         if options.save:
-            print(plot_overview(fields, read_history(history), options.save))
+            print(plot_overview(fields, read_history(history), options.save, look))
             return EXIT_DONE
-        drawn = plot_fields(fields, (options.output or path.parent) / path.stem, options.times)
+        drawn = plot_fields(fields, (options.output or path.parent) / path.stem, options.times, look)
         print(*drawn or [f"{path} holds neither interfaces nor failures of plies."], sep="\n")
         if history not in histories and (options.history or history.exists()):
             histories.append(history)
-    return _plot_histories(histories, options.output) if histories else EXIT_DONE
+    return _plot_histories(histories, options, look) if histories else EXIT_DONE
 
 
-def _plot_histories(paths: Sequence[Path], output: Path | None) -> int:
+def _plot_histories(paths: Sequence[Path], options: argparse.Namespace, look: Look) -> int:
     """Draw the responses over each other and the energies of each history."""
     histories = [read_history(path) for path in paths]
-    folders = [output or path.parent for path in paths]
-    print(plot_response(histories, folders[0] / f"{paths[0].stem}_response.png"))
+    folders = [options.output or path.parent for path in paths]
+    measured = read_history(options.measured) if options.measured else None
+    if measured is not None and not set(measured.columns) & set(_RESPONSES):
+        raise FileError(f"{options.measured} has none of the columns {', '.join(_RESPONSES)} beside time.")
+    response = folders[0] / f"{paths[0].stem}_response.{look.kind}"
+    print(plot_response(histories, response, look, measured))
     for history, path, folder in zip(histories, paths, folders, strict=True):
-        print(plot_energies(history, folder / f"{path.stem}_energies.png"))
+        print(plot_energies(history, folder / f"{path.stem}_energies.{look.kind}", look))
     return EXIT_DONE
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command."""
     parser = CommandParser("implam-plot", description="Plot force, indentation, deflection and energies of histories, "
-                           "several drawn over each other, and of NAME.h5 the delamination of each interface, the "
-                           "energy release rate along its front and the failures of each ply over the whole plate, "
-                           "with the history beside it.")
+                           "several drawn over each other, and of NAME.h5 the delamination of each interface and all "
+                           "seen through the plate, the energy release rate along its front and the failures of each "
+                           "ply over the whole plate, with the history beside it.")
     parser.add_argument("results", nargs="+", type=Path, metavar="RESULT",
                         help="histories (.csv) and fields (.h5) written by implam")
     parser.add_argument("--output", type=Path, metavar="DIR", help="folder of the plots (default: beside each result)")
@@ -155,6 +206,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
                         help="times at which the front is drawn (default: up to eight of those written)")
     parser.add_argument("--save", type=Path, metavar="FILE",
                         help="one picture of delamination, force and energies of NAME.h5, instead of all")
+    parser.add_argument("--measured", type=Path, metavar="CSV", help="measured curve to draw as dots: columns time and "
+                        "force, indentation or deflection, in the units of the results")
+    add_options(parser)
     return run(_command, parser, arguments)
 
 

@@ -18,9 +18,9 @@ from solver_runs import change_deck, require, run
 SKIPPED = 77
 PARTS = 4
 DECK = HERE.parents[1] / "input/small/damage.nml"
-# Slurm looks at limits every half a minute. So that seconds of computing fill two minutes, the program is stopped most
+# Slurm looks at limits every half a minute. So that seconds of computing fill some minutes, the program is stopped most
 # of the time; what it computes is the same.
-FILLED, AWAKE = 120, 0.02  # seconds
+FILLED, AWAKE = 260, 0.02  # seconds
 
 
 def undisturbed(implam, folder):
@@ -38,7 +38,7 @@ def chain(implam, slurm, folder, expected, taken):
     slow.chmod(0o755)
     run([implam, "queue", "slurm", "deck.nml", "--chain", "--time", "0:01:00"], folder=folder)
     number = slurm.submit(folder, "deck.slurm", "--signal=B:USR1@50", IMPLAM=str(slow))
-    job = slurm.end_of(number, 600)
+    job = slurm.end_of(number, 800)
     told = (folder / f"deck.{number}.txt").read_text(encoding="utf-8")
     print(f"chain: {job['JobState']}, requeued {job['Restarts']} times")
     require(job["JobState"] == "COMPLETED", f"The chain has ended with {job['JobState']}:\n{told}")

@@ -1,0 +1,78 @@
+"""How pictures look: units of the axes, kind of file, dots per inch, size of letters, and styles of several runs."""
+
+import argparse
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+from implam_post.deck import Deck
+from implam_post.errors import ImplamError
+from implam_post.units import SYSTEMS, Axis, axis_of, system_of
+
+FORMATS = ("png", "pdf", "svg")
+# Styles of runs drawn over each other, told apart without colours too.
+STYLES = [{"color": f"C{place}", "linestyle": style} for place, style in
+          enumerate(("-", "--", "-.", ":", (0, (5, 1)), (0, (3, 1, 1, 1, 1, 1)), (0, (1, 1)), (0, (8, 3))))]
+
+
+@dataclass(frozen=True)
+class Look:
+    """What holds for all pictures of a command; `system` is that of the results, empty if it isn't known."""
+
+    system: str = ""
+    dots_per_inch: int = 150
+    letters: float = 10.0
+    kind: str = "png"
+
+    def axis(self, label: str, dimension: str, values: Iterable[float]) -> Axis:
+        """Return factor and label of an axis, in units that suit its values."""
+        return axis_of(label, dimension, np.ravel(np.asarray(values, dtype=float)), self.system)
+
+    def said(self, dimension: str, value: float) -> str:
+        """Return a value with its unit, to three digits; without one in an unknown system."""
+        axis = self.axis("", dimension, [value])
+        return f"{axis.factor * value:.3g} {axis.label.strip(' []')}" if self.system in SYSTEMS else f"{value:.3g}"
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options that say how pictures look."""
+    parser.add_argument("--units", choices=SYSTEMS, help="system of units of the results (default: told by the deck in "
+                        "NAME.h5); axes are in mm, ms, kN and J then")
+    parser.add_argument("--dpi", type=int, help="dots per inch (default: 150, with --save 80)")
+    parser.add_argument("--font-size", type=float, default=10.0, help="size of letters in points (default: 10)")
+    parser.add_argument("--format", choices=FORMATS, default="png", help="kind of file (default: png)")
+
+
+def look_of(options: argparse.Namespace, results: Iterable[Path]) -> Look:
+    """Return the look that the options ask for; the system of units is that of the first deck that tells one."""
+    dots = options.dpi or (80 if options.save else 150)
+    if not (10 <= dots <= 2400 and 3 <= options.font_size <= 60):
+        raise ImplamError("--dpi takes 10 to 2400, --font-size 3 to 60.")
+    system = options.units or next((name for path in results if (name := _system_in(path))), "")
+    return Look(system, dots, options.font_size, options.format)
+
+
+def deck_in(path: Path) -> Deck | None:
+    """Return the deck of the run whose NAME.h5 or history this is; None if it can't be told."""
+    fields = path if path.suffix == ".h5" else path.with_name(path.name.removesuffix("_history.csv") + ".h5")
+    try:
+        with h5py.File(fields, "r") as file:
+            return Deck(file["provenance/deck"][()].decode("utf-8"), fields)
+    except (OSError, KeyError, AttributeError, UnicodeDecodeError, ImplamError):
+        return None
+
+
+def _system_in(path: Path) -> str:
+    """Return the system of units of a run: as its deck says, else told by the density of its first material."""
+    deck = deck_in(path)
+    if deck is None:
+        return ""
+    try:
+        said = str(deck.value("case", "units", ""))
+        return next((name for name in SYSTEMS if name.lower() == said.lower()), "") or system_of(
+            deck.plies()[0].material.density)
+    except ImplamError:
+        return ""
