@@ -41,9 +41,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the options that say how pictures look."""
     parser.add_argument("--units", choices=SYSTEMS, help="system of units of the results (default: told by the deck in "
                         "NAME.h5); axes are in mm, ms, kN and J then")
-    parser.add_argument("--dpi", type=int, help="dots per inch (default: 150, with --save 80)")
+    parser.add_argument("--dpi", type=int, help="dots per inch (default: 150; pictures of --save and movies 80)")
     parser.add_argument("--font-size", type=float, default=10.0, help="size of letters in points (default: 10)")
-    parser.add_argument("--format", choices=FORMATS, default="png", help="kind of file (default: png)")
 
 
 def look_of(options: argparse.Namespace, results: Iterable[Path]) -> Look:

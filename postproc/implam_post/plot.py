@@ -13,7 +13,7 @@ from implam_post.errors import EXIT_DONE, CommandParser, FileError, ImplamError,
 from implam_post.fields import Fields, read_fields
 from implam_post.front import front_figure
 from implam_post.history import ENERGIES, History, read_history
-from implam_post.look import STYLES, Look, add_options, look_of
+from implam_post.look import FORMATS, STYLES, Look, add_options, look_of
 from implam_post.plan import (
     delamination_figure,
     draw_cracks,
@@ -208,6 +208,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
                         help="one picture of delamination, force and energies of NAME.h5, instead of all")
     parser.add_argument("--measured", type=Path, metavar="CSV", help="measured curve to draw as dots: columns time and "
                         "force, indentation or deflection, in the units of the results")
+    parser.add_argument("--format", choices=FORMATS, default="png", help="kind of file (default: png)")
     add_options(parser)
     return run(_command, parser, arguments)
 

@@ -10,8 +10,9 @@ import h5py
 import numpy as np
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.figure import Figure
+from PIL import Image
 
-from implam_post import plot
+from implam_post import movie, plot
 from implam_post.fields import area, read_fields
 from implam_post.history import ENERGIES, History
 from implam_post.look import Look
@@ -111,6 +112,17 @@ class PicturesTest(unittest.TestCase):
                  for segment in part.get_segments()]
         self.assertEqual(len(lines), 2)
         self.assertTrue(all(abs(segment[0, 0] - segment[1, 0]) < 1e-9 for segment in lines))
+
+    def test_movie(self) -> None:
+        """A picture for each time, each with more cells apart than the one before."""
+        self.write(history("case"), "case_history.csv")
+        with contextlib.redirect_stdout(io.StringIO()):
+            self.assertEqual(movie.main([str(self.path), "--dpi", "50"]), 0)
+        with Image.open(self.folder / "case.gif") as film:
+            self.assertEqual(film.n_frames, 3)
+        blue = [np.count_nonzero(np.all(np.asarray(picture) == [31, 119, 180], axis=2))
+                for picture in movie.frames(read_fields(self.path), None, Look("SI", 50))]
+        self.assertTrue(blue[0] < blue[1] < blue[2], blue)
 
     def test_measured_curve_and_kinds_of_files(self) -> None:
         """A measured force is a line more of the legend; PDF and SVG come out; a curve without a column is refused."""
