@@ -221,7 +221,7 @@ contains
     if (symmetry_sentence(deck) /= '') call print_lines(communicator, [line_t(symmetry_sentence(deck))])
     call print_lines(communicator, scale_lines(deck))
     model_size = size_of_model(deck%scene_t)
-    call print_lines(communicator, [line_t(command%target//': no errors.'), line_t(model_size%sentence())])
+    call print_lines(communicator, [line_t(model_size%sentence())])
   end subroutine check
 
   !> Reads a deck on the root rank and gives its text to all.

@@ -10,9 +10,11 @@ module run_records
   private
   public :: run_record_t, new_run_record
 
-  !> Kinds of warnings that a run gives: a delamination has reached the border of its zone; integrators have created
-  !> energy.
-  integer, parameter, public :: warning_border = 1, warning_energy = 2
+  !> Kinds of warnings that a run gives: a delamination has reached the border of its zone; integrators have created or
+  !> taken energy; an indentation over the thickness; slopes beyond small rotations; a clamped plate with broken fibres,
+  !> stretched far.
+  integer, parameter, public :: warning_border = 1, warning_energy = 2, warning_loss = 3, warning_indentation = 4, &
+                                warning_slopes = 5, warning_torn = 6
 
   !> Record of a run. It has many components because it is nothing but what the summary asks for.
   type :: run_record_t

@@ -1,54 +1,101 @@
-!> Warnings that a run gives once each, of what a user must not overlook.
+!> Warnings that a run gives: limits of the model that it passes. Each is given once, in the log at that time and in the
+!> summary at the end.
 module run_warnings
   use deck_contents, only: deck_t
   use delamination_parameters, only: delamination_t
   use energy_watches, only: energy_watch_t
   use kinds, only: wp
-  use logger, only: log_t
-  use run_records, only: run_record_t, warning_border, warning_energy
+  use mesh_parameters, only: edge_clamped
+  use models, only: model_t
+  use run_records, only: run_record_t, warning_border, warning_energy, warning_indentation, warning_loss, &
+                         warning_slopes, warning_torn
+  use short_numbers, only: short_text
   use states, only: state_t
   use text, only: line_t, append, rounded_text, to_text
   implicit none
   private
-  public :: give_warnings, warnings_given
+  public :: find_warnings, warnings_given
+
+  !> Share of the impact's energy that integrators may take out.
+  real(wp), parameter :: most_taken = 0.1_wp
+  !> Rotation up to which its cosine counts as 1, as von Karman's strains take it: 2 % are lost there.
+  real(wp), parameter :: steepest = 0.2_wp
+  !> Deflection over thickness beyond which membrane forces carry a clamped plate.
+  real(wp), parameter :: deepest = 3
 
 contains
 
-  !> Gives the warnings that an accepted step calls for.
-  subroutine give_warnings(deck, now, record, watch, log)
+  !> Finds the warnings that an accepted step calls for and notes them. Collective.
+  subroutine find_warnings(deck, model, now, record, watch, told)
     !> The deck
     type(deck_t), intent(in) :: deck
+    type(model_t), intent(in) :: model
     !> The state reached
     type(state_t), intent(in) :: now
-    !> Receives what was given
+    !> Receives what is told
     type(run_record_t), intent(inout) :: record
     !> Looks after the energy that integrators create
     type(energy_watch_t), intent(inout) :: watch
-    !> Where they are given
-    type(log_t), intent(inout) :: log
-    real(wp) :: amplitude
+    !> One sentence each; empty: nothing new
+    type(line_t), allocatable, intent(out) :: told(:)
+    real(wp) :: amplitude, thickness
     integer :: zone
 
+    allocate (told(0))
+    thickness = deck%outlook%scales%thickness
     do zone = 1, size(now%interfaces%border_reached)
-      if (now%interfaces%border_reached(zone) .and. .not. record%has_warned(warning_border, zone)) &
-        call give(warning_border, zone)
+      if (now%interfaces%border_reached(zone)) call tell(warning_border, zone)
     end do
+    if (now%indentation%alpha > thickness) call tell(warning_indentation, 0)
+    if (.not. record%has_warned(warning_slopes, 0)) then
+      if (is_steep(model, now)) call tell(warning_slopes, 0)
+    end if
+    if (.not. record%has_warned(warning_torn, 0) .and. abs(now%deflection) > deepest*thickness) then
+      if (is_torn(deck, model, now)) call tell(warning_torn, 0)
+    end if
     if (deck%has_static) return
     amplitude = 1
     if (.not. deck%has_impactor) amplitude = deck%pressure%amplitude(now%time)
-    if (watch%alarms(now%ledger, sum(now%interfaces%ties%deficit()), amplitude)) call give(warning_energy, 0)
+    if (watch%alarms(now%ledger, sum(now%interfaces%ties%deficit()), amplitude)) call tell(warning_energy, 0)
+    if (now%ledger%algorithmic > most_taken*now%ledger%initial .and. now%ledger%initial > 0) call tell(warning_loss, 0)
 
   contains
 
-    !> Gives one warning.
-    subroutine give(kind, zone)
+    !> Tells a limit that is passed for the first time.
+    subroutine tell(kind, zone)
       !> Its kind, and the zone that it concerns
       integer, intent(in) :: kind, zone
 
+      if (record%has_warned(kind, zone)) return
       call record%note_warning(kind, zone, now%time)
-      call log%warning(warning_text(kind, zone, now%time, deck%delaminations))
-    end subroutine give
-  end subroutine give_warnings
+      call append(told, warning_text(kind, zone, now%time, deck%delaminations))
+    end subroutine tell
+  end subroutine find_warnings
+
+  !> True: somewhere the plate's section turns beyond small rotations. Collective.
+  logical function is_steep(model, now)
+    type(model_t), intent(in) :: model
+    !> The step reached
+    type(state_t), intent(in) :: now
+
+    is_steep = model%communicator%any(maxval(abs(now%motion%displacement(4:5, :))) > steepest)
+  end function is_steep
+
+  !> True: a clamped plate has lost fibres. Collective.
+  logical function is_torn(deck, model, now)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    type(model_t), intent(in) :: model
+    !> The step reached
+    type(state_t), intent(in) :: now
+    integer, parameter :: fibres = 1
+    integer :: counts(3)
+
+    is_torn = .false.
+    if (.not. (deck%has_ply_damage .and. any(deck%plate%edges == edge_clamped))) return
+    counts = now%plies%counts(model)
+    is_torn = counts(fibres) > 0
+  end function is_torn
 
   !> What a warning says.
   pure function warning_text(kind, zone, time, delaminations) result(text)
@@ -72,6 +119,18 @@ contains
     case (warning_energy)
       text = 'The time integrators have created more than 1 % of the energy by time '//rounded_text(time)// &
              ': take smaller steps, or more damping (rho_inf) with delamination.'
+    case (warning_loss)
+      text = 'The time integrators have taken more than '//short_text(100*most_taken)// &
+             ' % of the impact''s energy by time '//rounded_text(time)//': take smaller steps, or less damping (rho_inf).'
+    case (warning_indentation)
+      text = 'The indentation is deeper than the laminate is thick since time '//rounded_text(time)// &
+             ': no contact law holds there; give a lighter blow or a blunter nose.'
+    case (warning_slopes)
+      text = 'The plate is steeper than '//to_text(steepest)//' since time '//rounded_text(time)// &
+             ': its strains are those of small rotations, so distrust what follows.'
+    case (warning_torn)
+      text = 'The clamped plate deflects by more than '//to_text(deepest)//' thicknesses with broken fibres since time '// &
+             rounded_text(time)//': membrane forces carry it, and the model tears no plies; distrust what follows.'
     end select
   end function warning_text
 

@@ -1,12 +1,9 @@
 !> A run: initialise, step until the end, finalise.
 module simulations
   use kinds, only: wp
-  use errors, only: error_t, fail, exit_stopped
-  use text, only: rounded_text, to_text
-  use files, only: make_directory, remove_file
   use errors, only: error_t, fail, exit_stopped, exit_convergence
-  use text, only: line_t, to_text
-  use files, only: make_directory
+  use text, only: line_t, rounded_text, to_text
+  use files, only: make_directory, remove_file
   use logger, only: log_t
   use timers, only: timer_set_t, wall_time
   use communicators, only: communicator_t
@@ -21,7 +18,7 @@ module simulations
   use run_progress, only: progress_t
   use run_records, only: run_record_t, new_run_record
   use run_reports, only: log_echo, log_costs, summary
-  use run_warnings, only: give_warnings
+  use run_warnings, only: find_warnings
   use run_summaries, only: summarise
   use summary_file, only: summary_ending
   use history_file, only: history_file_t
@@ -31,8 +28,6 @@ module simulations
   use queue_signals, only: catch_stop_signals, stop_signal
   use output_clocks, only: clock_t, next_event, shown_time
   use energy_watches, only: energy_watch_t
-  use output_clocks, only: clock_t, next_event
-  use model_watches, only: model_watch_t
   use result_rows, only: row_of, column_names, column_whole
   use field_results, only: write_mesh, write_fields, field_rows
   implicit none
@@ -73,8 +68,6 @@ module simulations
     logical, private :: is_ready = .false.
     !> Looks after the energy that integrators create
     type(energy_watch_t), private :: energy_watch
-    !> Looks after the model's limits
-    type(model_watch_t), private :: watch
     !> Folder and name that all results share
     character(len=:), allocatable :: base
   contains
@@ -247,7 +240,6 @@ contains
     call self%checkpoint_clock%visit(archive, 'checkpoint')
     call self%record%visit(archive)
     call self%energy_watch%visit(archive)
-    call self%watch%visit(archive)
     call archive%item('history/rows', rows)
     call archive%item('history/last_row', self%history%last_row)
   end subroutine visit
@@ -326,7 +318,6 @@ contains
     logical :: row_due, fields_due, checkpoint_due
 
     call self%record%observe(self%model, self%stepper%now)
-    call give_warnings(self%deck, self%stepper%now, self%record, self%energy_watch, self%log)
     call warn(self, error)
     row_due = self%history_clock%interval <= 0 .or. self%stepper%now%time >= end_of(self)
     fields_due = .false.
@@ -359,7 +350,7 @@ contains
     type(line_t), allocatable :: told(:)
     integer :: i
 
-    call self%watch%look(self%deck, self%model, self%stepper%now, told)
+    call find_warnings(self%deck, self%model, self%stepper%now, self%record, self%energy_watch, told)
     do i = 1, size(told)
       if (self%deck%strict) then
         call fail(error, exit_convergence, told(i)%text)
@@ -394,18 +385,12 @@ contains
     class(simulation_t), intent(inout) :: self
     !> Set if a file cannot be written
     type(error_t), allocatable, intent(out) :: error
-    type(line_t), allocatable :: lines(:)
-    integer :: i
 
     if (self%deck%output%fields_every <= 0) &
       call write_fields(self%model, self%stepper, self%deck%output, self%fields, error)
     if (allocated(error)) return
     call self%history%close(error)
     call self%progress%finish(self%log, summary(self%stepper))
-    call self%watch%closing(lines)
-    do i = 1, size(lines)
-      call self%log%note(lines(i)%text)
-    end do
     call log_costs(self%timers, self%stepper%operator, self%log)
     call self%log%note('Results: '//self%base//'_history.csv, '//self%base//'.xdmf, '//self%base//summary_ending// &
                        ', '//self%base//'.log')
@@ -423,5 +408,4 @@ contains
     if (self%is_ready) call summarise(self%deck, self%model, self%stepper, self%record, self%provenance, &
                                       wall_time() - self%begun, self%base//summary_ending, self%log, error)
   end subroutine conclude
-
 end module simulations

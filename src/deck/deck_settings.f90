@@ -331,8 +331,6 @@ contains
     call move_alloc(values, self%items(item)%values)
   end subroutine derive_numbers
 
-  !> Sets the numbers of a key that the deck leaves to the accuracy it asks for.
-  pure subroutine choose(self, group, key, words)
   !> Sets the values of a key that the deck leaves to the accuracy it asks for.
   pure subroutine choose(self, group, key, words, quoted)
     class(settings_t), intent(inout) :: self

@@ -15,11 +15,9 @@ module impactor_deck
   !> Names that checks across groups use.
   character(len=*), parameter, public :: impactor_group = 'impactor', key_velocity = 'velocity', &
                                          key_radius = 'radius', key_gravity = 'gravity', key_at = 'at', &
-                                         key_mass = 'mass'
+                                         key_mass = 'mass', key_integrator = 'integrator'
   !> Name used here more than once.
   character(len=*), parameter :: key_energy = 'energy'
-                                         key_radius = 'radius', key_gravity = 'gravity', key_mass = 'mass', &
-                                         key_integrator = 'integrator'
   !> Row of the group.
   character(len=group_row_length), parameter, public :: impactor_group_row = &
     'impactor | optional | The rigid impactor that strikes the plate, in its middle or elsewhere.'

@@ -81,9 +81,6 @@ class Run:
             path.write_text(deck)
             with open(pathlib.Path(folder, 'said'), 'w') as said:
                 process = subprocess.Popen([program, path, '--output', folder], stdout=said, stderr=said,
-                                           env=ENVIRONMENT)
-                process = subprocess.Popen([program, path, '--output', folder], stdout=said, stderr=said, env=ENVIRONMENT,
-                                           preexec_fn=limit_time)
                                            env=ENVIRONMENT, preexec_fn=limit_time)
                 _, status, usage = os.wait4(process.pid, 0)
             process.returncode = self.code = os.waitstatus_to_exitcode(status)
