@@ -176,7 +176,8 @@ contains
     case (verb_queue)
       ! The only deck of this folder, if there is one only.
       command%target = file_by_age('.', '.nml', 0)
-      if (.not. allocated(command%queue) .or. command%target == '' .or. file_by_age('.', '.nml', 1) /= '') &
+      if (file_by_age('.', '.nml', 1) /= '') command%target = ''
+      if (.not. allocated(command%queue) .or. command%target == '') &
         call fail(error, exit_usage, 'implam queue needs slurm or pbs, and a deck or the array.txt of a sweep.')
     case (verb_completion)
       call fail(error, exit_usage, 'implam completion needs the name of a shell, bash or zsh.')

@@ -5,7 +5,8 @@ module deck_accuracy
   use deck_problems, only: problems_t
   use deck_remarks, only: remark
   use deck_settings, only: settings_t
-  use impactor_deck, only: impactor_group, key_integrator, fill_impactor
+  use impact_parameters, only: integrator_trapezoidal
+  use impactor_deck, only: impactor_group, key_integrator
   use kinds, only: wp
   use mesh_deck, only: mesh_group, key_elements, key_patch, key_core, key_cell, key_grading, fill_mesh
   use mesh_parameters, only: symmetry_quarter
@@ -211,7 +212,7 @@ contains
 
     if (deck%settings%is_given(impactor_group, key_integrator)) return
     call deck%settings%choose(impactor_group, key_integrator, [line_t('trapezoidal')], quoted=.true.)
-    call fill_impactor(deck%settings, deck%impactor)
+    deck%impactor%integrator = integrator_trapezoidal
   end subroutine choose_integrator
 
   !> Fields are written at whole steps; a draft has only the last.
