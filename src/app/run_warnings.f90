@@ -129,8 +129,8 @@ contains
       text = 'The plate is steeper than '//to_text(steepest)//' since time '//rounded_text(time)// &
              ': its strains are those of small rotations, so distrust what follows.'
     case (warning_torn)
-      text = 'The clamped plate deflects by more than '//to_text(deepest)//' thicknesses with broken fibres since time '// &
-             rounded_text(time)//': membrane forces carry it, and the model tears no plies; distrust what follows.'
+      text = 'The clamped plate deflects by more than '//to_text(deepest)// &
+             ' thicknesses with broken fibres since time '//rounded_text(time)//': membrane forces carry it, and the model tears no plies; distrust what follows.'
     end select
   end function warning_text
 

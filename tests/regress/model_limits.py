@@ -43,7 +43,8 @@ def main(implam, folder):
         log = (here / "limits.log").read_text("utf-8")
         require(sentence in log, f"The log of a strict run doesn't tell that '{sentence}'.")
         last = (here / "limits_history.csv").read_text("utf-8").splitlines()[-1]
-        require(abs(float(last.split(",")[0]) - float(since[1])) <= 1e-3*float(since[1]), "The history doesn't end at the limit.")
+        require(abs(float(last.split(",")[0]) - float(since[1])) <= 1e-3*float(since[1]),
+                "The history doesn't end at the limit.")
     return EXIT_DONE
 
 
