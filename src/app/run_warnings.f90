@@ -121,7 +121,8 @@ contains
              ': take smaller steps, or more damping (rho_inf) with delamination.'
     case (warning_loss)
       text = 'The time integrators have taken more than '//short_text(100*most_taken)// &
-             ' % of the impact''s energy by time '//rounded_text(time)//': take smaller steps, or less damping (rho_inf).'
+             ' % of the impact''s energy by time '//rounded_text(time)// &
+             ': take smaller steps, or less damping (rho_inf).'
     case (warning_indentation)
       text = 'The indentation is deeper than the laminate is thick since time '//rounded_text(time)// &
              ': no contact law holds there; give a lighter blow or a blunter nose.'
@@ -130,7 +131,8 @@ contains
              ': its strains are those of small rotations, so distrust what follows.'
     case (warning_torn)
       text = 'The clamped plate deflects by more than '//to_text(deepest)// &
-             ' thicknesses with broken fibres since time '//rounded_text(time)//': membrane forces carry it, and the model tears no plies; distrust what follows.'
+             ' thicknesses with broken fibres since time '//rounded_text(time)// &
+             ': membrane forces carry it, and the model tears no plies; distrust what follows.'
     end select
   end function warning_text
 

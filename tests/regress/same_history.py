@@ -4,8 +4,9 @@ Usage: same_history.py ranks IMPLAM DECK FOLDER TOLERANCE LAUNCHER... [-- SETTIN
        same_history.py mirror IMPLAM DECK FOLDER TOLERANCE [-- SETTING...]
 
 ranks: on 1, 2 and 4 ranks, LAUNCHER taking the number of ranks as its last word. PART: a part of the plate, quarter,
-half_x, half_y or point, against the whole plate with twice the elements along the directions halved. mirror: against the plate with x and y exchanged. Where an interface
-delaminates or plies fail, it must grow, and the same cells and plies be the ones at the end."""
+half_x, half_y or point, against the whole plate with twice the elements along the directions halved. mirror: against
+the plate with x and y exchanged. Where an interface delaminates or plies fail, it must grow, and the same cells and
+plies be the ones at the end."""
 
 import re
 import sys
