@@ -57,12 +57,17 @@ class Snapshot:
         return self.mesh.corners[of_ply & (self.failures[ply] & mode > 0)]
 
 
+# Signs of x and y that put the images of a part of the plate in their places.
+IMAGES = {"whole": [(1, 1)], "quarter": [(1, 1), (-1, 1), (-1, -1), (1, -1)], "half_x": [(1, 1), (-1, 1)],
+          "half_y": [(1, 1), (1, -1)], "point": [(1, 1), (-1, -1)]}
+
+
 @dataclass(frozen=True)
 class Fields:
     """The times of a run; cells are those of the modelled part of the plate."""
 
     name: str
-    quarter: bool
+    part: str
     snapshots: list[Snapshot]
 
     @property
@@ -77,12 +82,14 @@ class Fields:
             raise ImplamError(f"time {time:g} is outside the fields, which reach from {stored[0]:g} to {stored[-1]:g}.")
         return int(np.argmin(np.abs(stored - time)))
 
+    @property
+    def quarter(self) -> bool:
+        """Whether a quarter was modelled."""
+        return self.part == "quarter"
+
     def whole(self, cells: np.ndarray) -> np.ndarray:
-        """Return the cells of the whole plate: those of a quarter mirrored on both axes."""
-        if not self.quarter:
-            return cells
-        signs = np.array([[1, 1], [-1, 1], [-1, -1], [1, -1]])
-        return np.concatenate([cells * sign for sign in signs])
+        """Return the cells of the whole plate: those of the modelled part and their images."""
+        return np.concatenate([cells * np.array(signs) for signs in IMAGES[self.part]])
 
     def times_apart(self, below_ply: int) -> tuple[np.ndarray, np.ndarray]:
         """Return the cells of the whole plate that came apart below a ply, and the first time each is seen so."""
@@ -92,7 +99,7 @@ class Fields:
                 found.setdefault(tuple(cell.ravel()), (cell, snapshot.time))
         cells = self.whole(np.array([cell for cell, _ in found.values()]).reshape(-1, 4, 2))
         times = np.array([time for _, time in found.values()])
-        return cells, np.tile(times, 4 if self.quarter else 1)
+        return cells, np.tile(times, len(IMAGES[self.part]))
 
 
 def area(cells: np.ndarray) -> float:
@@ -126,10 +133,12 @@ def read_fields(path: Path | str) -> Fields:
     with opened(path) as file:
         meshes = {number: _mesh(group) for number, group in enumerate(_in_order(file["meshes"]), start=1)}
         snapshots = [_snapshot(group, meshes) for group in _in_order(file["times"])]
-        quarter = file["part"][()] == b"quarter"
+        part = file["part"][()].decode()
     if not snapshots:
         raise FileError(f"{path} holds no time yet.")
-    return Fields(str(path), bool(quarter), snapshots)
+    if part not in IMAGES:
+        raise FileError(f"{path} holds a part of the plate that isn't known here: {part}.")
+    return Fields(str(path), part, snapshots)
 
 
 @contextmanager

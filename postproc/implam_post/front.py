@@ -12,6 +12,7 @@ from matplotlib.ticker import MultipleLocator
 
 from implam_post.fields import Fields, Snapshot, extents, outline
 from implam_post.look import Look
+from implam_post.fields import IMAGES, Fields, Snapshot, extents, outline
 from implam_post.plan import frame
 
 _MOST_TIMES = 8
@@ -39,7 +40,7 @@ def front_figure(fields: Fields, times: Sequence[float] | None = None, look: Loo
 def draw_front(axes: Axes, fields: Fields, below_ply: int, snapshot: Snapshot, look: Look = _PLAIN) -> None:
     """Draw the outline in plan at one time, and the cells ahead of it coloured by G/G_c."""
     cells, ratio = snapshot.release(below_ply)
-    cells, ratio = fields.whole(cells), np.tile(ratio, 4 if fields.quarter else 1)
+    cells, ratio = fields.whole(cells), np.tile(ratio, len(IMAGES[fields.part]))
     shown = PolyCollection(cells, array=ratio, cmap="plasma_r", norm=Normalize(0, max(1.0, np.max(ratio, initial=0))),
                            linewidths=0)
     axes.add_collection(shown)

@@ -7,7 +7,7 @@ module deck_cross_checks
   use deck_problems, only: problems_t
   use deck_symmetries, only: check_symmetry
   use deck_remarks, only: tell, remark, remark_idle, are_clear
-  use delamination_deck, only: delamination_group, key_below_ply
+  use interface_places, only: delamination_group, key_below_ply
   use delamination_parameters, only: growth_one_per_step, interface_objection
   use failure_criteria, only: needed_strengths
   use impactor_deck, only: impactor_group, key_velocity, key_radius, key_gravity, keys_of_motion
@@ -137,14 +137,16 @@ contains
     type(deck_t), intent(in) :: deck
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
-    integer :: place
+    integer :: i
 
     if (.not. allocated(deck%laminate%angle)) return
-    do place = 1, size(deck%delaminations)
-      if (.not. are_clear(deck%settings, problems, delamination_group, key_below_ply, place)) cycle
-      if (interface_objection(deck%delaminations(place), size(deck%laminate%angle)) /= '') &
-        call tell(deck%settings, problems, delamination_group, '', &
-                  interface_objection(deck%delaminations(place), size(deck%laminate%angle))//'.', place)
+    do i = 1, size(deck%delaminations)
+      associate (place => deck%delaminations(i)%group)
+        if (.not. are_clear(deck%settings, problems, delamination_group, key_below_ply, place)) cycle
+        if (interface_objection(deck%delaminations(i), size(deck%laminate%angle)) /= '') &
+          call tell(deck%settings, problems, delamination_group, '', &
+                    interface_objection(deck%delaminations(i), size(deck%laminate%angle))//'.', place)
+      end associate
     end do
   end subroutine check_interfaces
 

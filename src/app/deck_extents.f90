@@ -6,7 +6,8 @@ module deck_extents
   use deck_problems, only: problems_t
   use deck_remarks, only: tell, remark, are_clear
   use delaminated_regions, only: extent_of_cells
-  use delamination_deck, only: delamination_group, key_starter, key_zone
+  use delamination_deck, only: key_starter, key_zone
+  use interface_places, only: delamination_group
   use delamination_parameters, only: delamination_t, law_front
   use gradings, only: core_elements
   use impactor_deck, only: impactor_group, key_at
@@ -15,6 +16,8 @@ module deck_extents
   use mesh_deck, only: mesh_group, key_elements, key_patch, key_core, key_cell, most_elements
   use mesh_parameters, only: is_halved
   use plate_deck, only: plate_group, key_length, key_symmetry
+  use rigs, only: window_lines
+  use support_deck, only: support_group, key_window
   use text, only: line_t, to_text
   implicit none
   private
@@ -138,10 +141,11 @@ contains
     type(deck_t), intent(in) :: deck
     !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
-    integer :: place
+    integer :: i
 
-    do place = 1, size(deck%delaminations)
-      associate (s => deck%settings, d => deck%delaminations(place))
+    do i = 1, size(deck%delaminations)
+      if (repeats(deck, i)) cycle
+      associate (s => deck%settings, d => deck%delaminations(i), place => deck%delaminations(i)%group)
         if (any(d%zone > deck%plate%length) .and. are_clear(s, problems, plate_group, key_length) .and. &
             are_clear(s, problems, delamination_group, key_zone, place)) &
           call tell(s, problems, delamination_group, key_zone, 'the zone must not be larger than the plate.', place)
@@ -153,6 +157,17 @@ contains
     end do
   end subroutine check_zones
 
+  !> True for an interface of the same group as the one before it, whose sizes are the same.
+  pure logical function repeats(deck, i)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> The interface
+    integer, intent(in) :: i
+
+    repeats = .false.
+    if (i > 1) repeats = deck%delaminations(i)%group == deck%delaminations(i - 1)%group
+  end function repeats
+
   !> Warns of zones and starters that the mesh makes noticeably larger or smaller than the deck asks.
   subroutine check_extents(deck, problems)
     !> The deck, filled and checked
@@ -161,14 +176,17 @@ contains
     type(problems_t), intent(inout) :: problems
     real(wp), allocatable :: x_edges(:), y_edges(:)
     real(wp) :: zone(2), starter(2)
-    integer :: place
+    integer :: i
 
-    if (problems%errors() > 0 .or. size(deck%delaminations) == 0) return
+    if (problems%errors() > 0) return
+    call check_window_lines(deck, problems)
+    if (size(deck%delaminations) == 0) return
     x_edges = cell_edges(deck%plate, deck%mesh, 1) - deck%mesh%struck(1)
     y_edges = cell_edges(deck%plate, deck%mesh, 2) - deck%mesh%struck(2)
-    do place = 1, size(deck%delaminations)
-      associate (d => deck%delaminations(place))
-        call extents_of(x_edges, y_edges, deck%delaminations(place), zone, starter)
+    do i = 1, size(deck%delaminations)
+      if (repeats(deck, i)) cycle
+      associate (d => deck%delaminations(i), place => deck%delaminations(i)%group)
+        call extents_of(x_edges, y_edges, d, zone, starter)
         if (differs(zone, d%zone)) call remark(deck%settings, problems, delamination_group, key_zone, &
           'a zone is whole cells; this mesh makes it '//shown(zone)//'.', place)
         if (deck%settings%is_given(delamination_group, key_starter, place) .and. &
@@ -178,6 +196,29 @@ contains
       end associate
     end do
   end subroutine check_extents
+
+  !> Windows whose edges the mesh has no lines for, because all are taken by the patch or by other windows.
+  subroutine check_window_lines(deck, problems)
+    !> The deck, filled and checked
+    type(deck_t), intent(in) :: deck
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    real(wp), allocatable :: edges(:), lines(:)
+    logical :: missed
+    integer :: direction, line
+
+    missed = .false.
+    do direction = 1, 2
+      edges = cell_edges(deck%plate, deck%mesh, direction)
+      lines = window_lines(deck%supports, direction)
+      do line = 1, size(lines)
+        missed = missed .or. lines(line) > edges(1) .and. &
+                 minval(abs(edges - lines(line))) > 1.0e-9_wp*deck%plate%length(direction)
+      end do
+    end do
+    if (missed) call tell(deck%settings, problems, support_group, key_window, 'no line of the mesh can be moved '// &
+                          'to an edge of the window; give more elements, or keep the patch off the edge.')
+  end subroutine check_window_lines
 
   !> What zone and starter of each interface are, for the log.
   pure function extent_lines(deck) result(lines)

@@ -5,7 +5,7 @@ module deck_process_zones
   use deck_problems, only: problems_t
   use deck_remarks, only: remark
   use delaminated_regions, only: cells_within
-  use delamination_deck, only: delamination_group
+  use interface_places, only: delamination_group
   use delamination_parameters, only: delamination_t, law_cohesive, toughnesses
   use kinds, only: wp
   use laminate_parameters, only: shear_five_sixths
@@ -25,13 +25,14 @@ contains
     !> Receives the warnings
     type(problems_t), intent(inout) :: problems
     character(len=:), allocatable :: warning
-    integer :: place
+    integer :: i
 
     if (problems%errors() > 0) return
-    do place = 1, size(deck%delaminations)
-      if (deck%delaminations(place)%law /= law_cohesive) cycle
-      warning = process_zone_warning(process_zone(deck, deck%delaminations(place)), deck%delaminations(place)%below_ply)
-      if (warning /= '') call remark(deck%settings, problems, delamination_group, '', warning, place)
+    do i = 1, size(deck%delaminations)
+      if (deck%delaminations(i)%law /= law_cohesive) cycle
+      warning = process_zone_warning(process_zone(deck, deck%delaminations(i)), deck%delaminations(i)%below_ply)
+      if (warning /= '') call remark(deck%settings, problems, delamination_group, '', warning, &
+                                     deck%delaminations(i)%group)
     end do
   end subroutine check_process_zones
 

@@ -16,7 +16,8 @@ module deck_reader
   use deck_table, only: load_deck_table
   use deck_units, only: check_units
   use deck_vocabulary, only: vocabulary_t
-  use delamination_deck, only: fill_delaminations, check_delaminations, delamination_group
+  use delamination_deck, only: fill_delaminations, check_delaminations
+  use interface_places, only: interfaces_between, remark_left_out
   use element_deck, only: fill_kinematics, fill_element
   use equilibrium_deck, only: fill_equilibrium
   use errors, only: error_t
@@ -139,8 +140,21 @@ contains
     call fill_materials(deck%settings, deck%materials, problems)
     call fill_laminate(deck%settings, deck%materials, deck%laminate, problems)
     call fill_ply_damage(deck%settings, deck%ply_damage)
-    call fill_delaminations(deck%settings, deck%plate%length, ply_strengths(deck), deck%delaminations)
+    call fill_delaminations(deck%settings, deck%plate%length, ply_strengths(deck), changes_of_angle(deck), &
+                            deck%delaminations)
   end subroutine fill_bodies
+
+  !> Plies below which the angle or the material changes.
+  pure function changes_of_angle(deck) result(between)
+    !> The deck with its plies; without, the list is empty
+    type(deck_t), intent(in) :: deck
+    !> Plies, ascending
+    integer, allocatable :: between(:)
+
+    allocate (between(0))
+    if (allocated(deck%laminate%angle) .and. allocated(deck%laminate%material)) &
+      between = interfaces_between(deck%laminate%angle, deck%laminate%material)
+  end function changes_of_angle
 
   !> Strengths of the plies that their interfaces have too.
   pure function ply_strengths(deck) result(strengths)
@@ -203,6 +217,8 @@ contains
     call check_rigs(deck%settings, deck%plate, deck%supports, problems)
     call check_mesh(deck%settings, deck%mesh, problems)
     call check_delaminations(deck%settings, deck%delaminations, problems)
+    if (allocated(deck%laminate%angle)) &
+      call remark_left_out(deck%settings, size(deck%laminate%angle), changes_of_angle(deck), problems)
     if (deck%has_impactor .and. deck%has_indentation) call check_indentation(deck%settings, deck%indentation, problems)
     if (deck%has_pressure) call check_pressure(deck%settings, deck%pressure, problems)
     if (deck%has_thermal) call check_thermal(deck%settings, deck%materials, problems)

@@ -4,6 +4,9 @@ module simulations
   use errors, only: error_t, fail, exit_stopped, exit_convergence
   use text, only: line_t, rounded_text, to_text
   use files, only: make_directory, remove_file
+  use errors, only: error_t, fail, exit_stopped
+  use text, only: lower_case, to_text
+  use files, only: make_directory
   use logger, only: log_t
   use timers, only: timer_set_t, wall_time
   use communicators, only: communicator_t
@@ -28,6 +31,7 @@ module simulations
   use queue_signals, only: catch_stop_signals, stop_signal
   use output_clocks, only: clock_t, next_event, shown_time
   use energy_watches, only: energy_watch_t
+  use plate_deck, only: plate_group, key_symmetry
   use result_rows, only: row_of, column_names, column_whole
   use field_results, only: write_mesh, write_fields, field_rows
   implicit none
@@ -174,11 +178,11 @@ contains
   pure function part_of(self) result(part)
     !> The run
     class(simulation_t), intent(in) :: self
-    !> 'whole' or 'quarter'
+    !> As symmetry names it, or 'whole'
     character(len=:), allocatable :: part
 
-    part = 'whole'
-    if (self%model%mesh%multiplicity == 4) part = 'quarter'
+    part = lower_case(self%deck%settings%text_of(plate_group, key_symmetry))
+    if (part == 'none') part = 'whole'
   end function part_of
 
   !> Sets a run up from a checkpoint that has been opened for loading.

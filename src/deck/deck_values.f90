@@ -70,6 +70,7 @@ contains
   end function branch_of
 
   !> What is wrong with a number, or an empty text.
+  !> What is wrong with a number, or with a word that the key takes in its place, or an empty text.
   pure function fault_of_number(key, value) result(fault)
     !> The key as the table has it
     type(key_entry_t), intent(in) :: key
@@ -83,6 +84,7 @@ contains
     call measure_number(value%text, is_number, decade)
     fault = ''
     if (value%quoted) then
+      if (index(key%allowed, ', or '''//lower_case(value%text)//'''') > 0) return
       fault = ''''//shown(value%text)//''' is a text in quotes, not a number'
     else if (is_not_finite(value%text)) then
       fault = shown(value%text)//' is not finite'
@@ -371,7 +373,7 @@ contains
 
   !> True: all conditions are met.
   pure logical function in_range(conditions, number)
-    !> Such as `> 0, <= 1`; `any` is none
+    !> Such as `> 0, <= 1, or 'all'`; `any` is none
     character(len=*), intent(in) :: conditions
     !> The number
     real(wp), intent(in) :: number
@@ -384,6 +386,8 @@ contains
     condition = words_of(conditions, ',')
     do i = 1, size(condition)
       parts = words_of(condition(i)%text, ' ')
+      ! A word in place of a number.
+      if (parts(1)%text == 'or') cycle
       read (parts(2)%text, *) limit
       select case (parts(1)%text)
       case ('>')

@@ -32,7 +32,7 @@ module deck_vocabulary
     !> required; none: the key may be left out; = and what it is worked out from; or the value as it would stand in a
     !> deck
     character(len=:), allocatable :: default
-    !> Choices separated by blanks, or conditions separated by commas
+    !> Choices separated by blanks, or conditions separated by commas and after them words as `or 'all'`
     character(len=:), allocatable :: allowed
     !> One sentence
     character(len=:), allocatable :: meaning

@@ -11,6 +11,7 @@ module delamination_deck
                                      growth_one_per_step, tie_eliminate, &
                                      tie_penalty, contact_augmented_lagrangian, contact_continuous_penalty, &
                                      contact_none, unloading_contact, unloading_glued, account_debts, account_balance
+  use interface_places, only: delamination_group, key_below_ply, plies_above
   use kinds, only: wp
   use text, only: line_t, to_text, words_of
   implicit none
@@ -21,17 +22,19 @@ module delamination_deck
   character(len=*), parameter, public :: delamination_group = 'delamination', key_below_ply = 'below_ply', &
                                          key_zone = 'zone', key_starter = 'starter', &
                                          key_toughness = 'G_c', key_toughness_shear = 'G_IIc'
+  character(len=*), parameter, public :: key_zone = 'zone', key_starter = 'starter'
   character(len=*), parameter :: group = delamination_group
   !> Keys that have no effect on a cohesive interface.
   character(len=*), parameter :: keys_of_fronts = &
     'energy_release growth tie penalty unloading account contact_exponent'
   !> Row of the group.
   character(len=group_row_length), parameter, public :: delamination_group_row = &
-    'delamination | several | An interface that may delaminate; one group an interface.'
+    'delamination | several | Interfaces that may delaminate; one group for those that are alike.'
   !> Rows of the keys.
   character(len=key_row_length), parameter, public :: delamination_rows(*) = [character(len=key_row_length) :: &
-    'delamination | below_ply | integer | 1 | - | required | >= 1, <= 1000 | &
-      &The interface lies below this ply, counted from the struck face.', &
+    'delamination | below_ply | integer | 1 or more | - | required | >= 1, <= 1000, or ''all'', &
+      &or ''between_angles'' | Plies above the interfaces, counted from the struck face, or a word for those &
+      &where the angle changes.', &
     'delamination | G_c | real | 1 | energy/area | none | > 0 | &
       &Critical energy release rate of every mode; given instead of G_Ic and G_IIc.', &
     'delamination | G_Ic | real | 1 | energy/area | none | > 0 | &
@@ -72,21 +75,32 @@ module delamination_deck
 contains
 
   !> All interfaces, in the order of the deck.
-  subroutine fill_delaminations(settings, length, strengths, delaminations)
+  subroutine fill_delaminations(settings, length, strengths, between, delaminations)
     !> Keys in effect; gets what the deck doesn't give
     type(settings_t), intent(inout) :: settings
     !> Lengths of the plate, for the usual starter
     real(wp), intent(in) :: length(2)
     !> Strengths YT and S12 of each ply, 0 where not given, (2, plies)
     real(wp), intent(in) :: strengths(:, :)
+    !> Plies below which the angle changes; empty if they aren't known
+    integer, intent(in) :: between(:)
     !> Receives them
     type(delamination_t), allocatable, intent(out) :: delaminations(:)
-    integer :: place
+    type(delamination_t) :: next
+    integer, allocatable :: below(:)
+    integer :: place, i
 
-    allocate (delaminations(settings%groups_named(group)))
-    do place = 1, size(delaminations)
-      call fill_law(settings, place, strengths, delaminations(place))
-      call fill_delamination(settings, place, default_starter(length), delaminations(place))
+    allocate (delaminations(0))
+    do place = 1, settings%groups_named(group)
+      below = plies_above(settings, place, between)
+      do i = 1, size(below)
+        next = delamination_t()
+        next%group = place
+        next%below_ply = below(i)
+        call fill_law(settings, place, strengths, next)
+        call fill_delamination(settings, place, default_starter(length), next)
+        delaminations = [delaminations, next]
+      end do
     end do
   end subroutine fill_delaminations
 
@@ -105,7 +119,6 @@ contains
     if (.not. settings%is_given(group, key_starter, place)) &
       call settings%derive(group, key_starter, to_text(delamination%starter), .false., place)
     associate (s => settings, d => delamination)
-      d%below_ply = s%integer_of(group, key_below_ply, place)
       d%toughness = s%real_of(group, 'G_c', place)
       d%toughness_opening = s%real_of(group, 'G_Ic', place)
       d%toughness_shear = s%real_of(group, 'G_IIc', place)
@@ -129,11 +142,11 @@ contains
     !> Receives it
     type(delamination_t), intent(inout) :: delamination
     real(wp) :: weaker(2)
-    integer :: below
 
-    below = settings%integer_of(group, key_below_ply, place)
     weaker = 0
-    if (below >= 1 .and. below < size(strengths, 2)) weaker = minval(strengths(:, below:below + 1), dim=2)
+    associate (below => delamination%below_ply)
+      if (below >= 1 .and. below < size(strengths, 2)) weaker = minval(strengths(:, below:below + 1), dim=2)
+    end associate
     if (.not. settings%is_given(group, 'law', place)) call settings%derive(group, 'law', &
       trim(merge('cohesive', 'front   ', suits_cohesive(settings, place, weaker))), .true., place)
     delamination%law = code_of(settings%text_of(group, 'law', place), 'front cohesive', [law_front, law_cohesive])
@@ -219,22 +232,26 @@ contains
     type(delamination_t), intent(in) :: delaminations(:)
     !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
-    integer :: place
+    integer :: place, i
 
-    do place = 1, size(delaminations)
-      call check_toughness(settings, delaminations(place), place, problems)
-      call check_strengths(settings, delaminations(place), place, problems)
-      call remark_idle_keys(settings, delaminations(place), place, problems)
-      if (delaminations(place)%starter >= minval(delaminations(place)%zone) .and. &
+    do i = 1, size(delaminations)
+      place = delaminations(i)%group
+      if (i > 1) then
+        if (delaminations(i - 1)%group == place) cycle
+      end if
+      call check_toughness(settings, delaminations(i), place, problems)
+      call check_strengths(settings, delaminations(i), place, problems)
+      call remark_idle_keys(settings, delaminations(i), place, problems)
+      if (delaminations(i)%starter >= minval(delaminations(i)%zone) .and. &
           are_clear(settings, problems, group, key_zone//' '//key_starter, place)) &
         call tell(settings, problems, group, '', 'the starter must be smaller than the zone.', place)
     end do
-    do place = 2, size(delaminations)
-      if (delaminations(place)%below_ply <= delaminations(place - 1)%below_ply .and. &
-          are_clear(settings, problems, group, key_below_ply, place) .and. &
-          are_clear(settings, problems, group, key_below_ply, place - 1)) &
-        call tell(settings, problems, group, key_below_ply, 'is not below the interface of the group before; give '// &
-                  'each interface once, in order from the struck face.', place)
+    do i = 2, size(delaminations)
+      if (delaminations(i)%below_ply <= delaminations(i - 1)%below_ply .and. &
+          are_clear(settings, problems, group, key_below_ply, delaminations(i)%group) .and. &
+          are_clear(settings, problems, group, key_below_ply, delaminations(i - 1)%group)) &
+        call tell(settings, problems, group, key_below_ply, 'is not below the interface before it; give each '// &
+                  'interface once, in order from the struck face.', delaminations(i)%group)
     end do
   end subroutine check_delaminations
 
@@ -276,6 +293,8 @@ contains
       return
     end if
     call check_law(settings, delamination, place, problems)
+    ! Without a place there are no plies whose strengths it might have.
+    if (delamination%below_ply < 1) return
     if (.not. delamination%strength_opening > 0 .and. &
         are_clear(settings, problems, group, 'strength_opening', place)) &
       call tell(settings, problems, group, 'strength_opening', 'is missing; a cohesive law needs it, or YT of the '// &

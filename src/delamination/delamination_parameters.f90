@@ -29,6 +29,8 @@ module delamination_parameters
   type :: delamination_t
     !> The interface lies below this ply
     integer :: below_ply = 0
+    !> Group of the deck that brings it
+    integer :: group = 1
     !> Critical energy release rate of every mode, G_c; 0: the mixed-mode values below hold
     real(wp) :: toughness = 0
     !> Critical energy release rate of pure opening, G_Ic, and of pure shear, G_IIc

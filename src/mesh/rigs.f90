@@ -67,8 +67,8 @@ contains
     has_crossings = support%shape == window_circle .and. support%bearing == bearing_edge
   end function has_crossings
 
-  !> Points where the edge of a circular window crosses the sides of a cell. Each side belongs to the cell above it or to
-  !> its right, that at the border of the grid to its only one.
+  !> Points where the edge of a circular window crosses the sides of a cell. Each side belongs to the cell above it or
+  !> to its right, that at the border of the grid to its only one.
   pure function circle_crossings(grid, support, cell) result(crossings)
     !> The grid
     class(cell_grid_t), intent(in) :: grid

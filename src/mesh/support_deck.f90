@@ -120,8 +120,8 @@ contains
     end if
     if (support%shape == window_circle .and. support%unilateral .and. support%bearing == bearing_edge .and. &
         are_clear(settings, problems, group, 'shape unilateral bearing', place)) &
-      call tell(settings, problems, group, 'bearing', 'the edge of a circle is no line of the mesh that the plate may '// &
-                'lift off; allowed with it and unilateral: ''face''.', place)
+      call tell(settings, problems, group, 'bearing', 'the edge of a circle is no line of the mesh that the plate '// &
+                'may lift off; allowed with it and unilateral: ''face''.', place)
     if (circle) call remark_idle(settings, problems, group, key_window, 'has no effect on a circle.', place)
     if (.not. circle) call remark_idle(settings, problems, group, key_window_radius, 'has no effect on a rectangle.', &
                                        place)

@@ -33,7 +33,7 @@ module fields_file
     type(communicator_t) :: communicator
     !> Folder and name, without suffix
     character(len=:), allocatable :: base
-    !> Which part of the plate is modelled: whole or quarter
+    !> Which part of the plate is modelled: whole, quarter, half_x, half_y or point
     character(len=:), allocatable :: part
     !> The HDF5 file
     type(hdf5_file_t) :: file
@@ -91,7 +91,7 @@ contains
     character(len=*), intent(in) :: base
     !> The run
     type(provenance_t), intent(in) :: provenance
-    !> Which part of the plate is modelled: whole or quarter
+    !> Which part of the plate is modelled: whole, quarter, half_x, half_y or point
     character(len=*), intent(in) :: part
     !> Raised if the file can't be written
     type(error_t), allocatable, intent(inout) :: error
@@ -143,7 +143,7 @@ contains
     character(len=*), intent(in) :: base
     !> The run that goes on
     type(provenance_t), intent(in) :: provenance
-    !> Which part of the plate is modelled: whole or quarter
+    !> Which part of the plate is modelled: whole, quarter, half_x, half_y or point
     character(len=*), intent(in) :: part
     !> Time of the checkpoint
     real(wp), intent(in) :: last_time

@@ -21,11 +21,10 @@ DECK = """&case name='frame' kinematics='linear' /
 """
 WINDOW = "window=0.125,0.075"
 PANEL, WINDOW_ALONE = ("0.150,0.100", "12,16"), ("0.125,0.075", "10,14")
-# Support, plate, thin, stiffness in N/mm and how near to it: Kirchhoff's closed form; between the simple and the clamped
-# window; the panel as tested, 2380 after its indentation is taken off.
+# Support, plate, thin, stiffness in N/mm and how near to it: Kirchhoff's closed form; two as found on twice the cells,
+# between the simple and the clamped window; the panel as tested, 2380 after its indentation is taken off.
 TRIALS = {
     "kirchhoff": (WINDOW, WINDOW_ALONE, True, 2550.0, 0.01),
-    "circle": ("shape='circle' radius=0.0375", ("0.1,0.1", "10,20"), True, None, 0),
     "edge": (WINDOW, PANEL, False, 2611.0, 0.01),
     "face": (WINDOW + " bearing='face'", PANEL, False, 4262.0, 0.02),
     "tested": (WINDOW + " unilateral=.true.", PANEL, False, 2380.0, 0.02),
@@ -51,8 +50,6 @@ def try_frames(implam, folder):
     """Run all trials."""
     passed = True
     for name, (support, plate, thin, expected, tolerance) in TRIALS.items():
-        if expected is None:
-            continue
         stiffness, missing = stiffness_of(implam, Path(folder) / name, support, plate, thin)
         within = abs(stiffness / expected - 1) <= tolerance and missing <= CLOSEST
         print(f"{name}: {stiffness:.1f} N/mm, expected {expected:g}; the reaction misses {missing:.1e} of the force, "

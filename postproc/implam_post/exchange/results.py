@@ -8,7 +8,7 @@ from implam_post.deck import Deck, as_number, read_deck
 from implam_post.errors import FileError, ImplamError
 from implam_post.exchange.degradation import degradation_of
 from implam_post.exchange.panel import Cell, Panel, Stack
-from implam_post.fields import Snapshot, opened, read_fields
+from implam_post.fields import IMAGES, Snapshot, opened, read_fields
 from implam_post.laminate import Ply
 
 _STATES = {"ply_damage": "ply_1_failure", "delamination": "delaminated_above"}
@@ -29,10 +29,7 @@ def _from_results(path: Path, time: float | None) -> Panel:
     snapshot = fields.snapshots[-1 if time is None else fields.place(time)]
     with opened(path) as file:
         deck = Deck(file["provenance/deck"][()].decode(), path)
-        part = file["part"][()].decode()
         written = set(file["times"][min(file["times"])].get("cells", {}))
-    if part not in ("whole", "quarter"):
-        raise FileError(f"{path} holds a part of the plate that isn't known here: {part}.")
     for group, field in _STATES.items():
         if deck.has(group) and field not in written:
             raise FileError(f"{path} doesn't hold the state of &{group}: run again with '{group}' among the fields of "
@@ -40,8 +37,7 @@ def _from_results(path: Path, time: float | None) -> Panel:
     plies = deck.plies()
     x, y = (_lines(snapshot.mesh.corners[..., axis]) for axis in (0, 1))
     stacks = _stacks(snapshot, x, y)
-    if fields.quarter:
-        x, y, stacks = _mirrored(x, y, stacks)
+    x, y, stacks = _completed(x, y, stacks, fields.part)
     return _panel(deck, plies, x, y, stacks)
 
 
@@ -69,13 +65,22 @@ def _stacks(snapshot: Snapshot, x: np.ndarray, y: np.ndarray) -> dict[Cell, tupl
     return {cell: tuple(found) for cell, found in stacks.items()}
 
 
-def _mirrored(x: np.ndarray, y: np.ndarray, stacks: dict[Cell, tuple[Stack, ...]]
-              ) -> tuple[np.ndarray, np.ndarray, dict[Cell, tuple[Stack, ...]]]:
-    """Return lines and stacks of the whole plate from those of the quarter x >= 0, y >= 0."""
-    columns, rows = len(x) - 1, len(y) - 1
-    whole = {(column, row): found for (i, j), found in stacks.items()
-             for column in (columns + i, columns - 1 - i) for row in (rows + j, rows - 1 - j)}
-    return np.concatenate([-x[:0:-1], x]), np.concatenate([-y[:0:-1], y]), whole
+def _completed(x: np.ndarray, y: np.ndarray, stacks: dict[Cell, tuple[Stack, ...]], part: str
+               ) -> tuple[np.ndarray, np.ndarray, dict[Cell, tuple[Stack, ...]]]:
+    """Return lines and stacks of the whole plate from those of the modelled part."""
+    halved = [any(signs[axis] < 0 for signs in IMAGES[part]) and lines[0] > -1e-9 * lines[-1]
+              for axis, lines in enumerate((x, y))]
+    x, y = (np.concatenate([-lines[:0:-1], lines]) if half else lines
+            for lines, half in zip((x, y), halved, strict=True))
+    counts = (len(x) - 1, len(y) - 1)
+    whole = {}
+    for cell, found in stacks.items():
+        place = [index + count // 2 if half else index for index, count, half in zip(cell, counts, halved, strict=True)]
+        for signs in IMAGES[part]:
+            column, row = (index if sign > 0 else count - 1 - index
+                           for index, count, sign in zip(place, counts, signs, strict=True))
+            whole[column, row] = found
+    return x, y, whole
 
 
 def _from_deck(deck: Deck) -> Panel:
@@ -84,9 +89,10 @@ def _from_deck(deck: Deck) -> Panel:
     lengths, elements = deck.lengths(), deck.numbers("mesh", "elements")
     if len(elements) != 2 or min(elements) < 1 or any(count % 1 for count in elements):
         raise deck.error("mesh", "elements needs two whole numbers greater than zero.")
-    parts = 2 if deck.choice("plate", "symmetry", ("none", "quarter")) == "quarter" else 1
-    x, y = (np.linspace(-length / 2, length / 2, parts * int(count) + 1)
-            for length, count in zip(lengths, elements, strict=True))
+    part = deck.choice("plate", "symmetry", ("none", *list(IMAGES)[1:]))
+    parts = (1 if part in ("none", "half_y") else 2, 2 if part in ("quarter", "half_y") else 1)
+    x, y = (np.linspace(-length / 2, length / 2, factor * int(count) + 1)
+            for length, count, factor in zip(lengths, elements, parts, strict=True))
     starters = _starters(deck, len(plies))
     stacks = {}
     for i, column in enumerate(_in_reach(x)):
@@ -110,11 +116,16 @@ def _starters(deck: Deck, plies: int) -> list[tuple[int, float]]:
     found = []
     for group in deck.groups.get("delamination", []):
         where = f"{deck.path.name}: &delamination"
-        below_ply = as_number(group.get("below_ply", [0.0])[0], f"{where} below_ply")
-        if below_ply not in range(1, plies):
-            raise deck.error("delamination", f"below_ply needs a whole number from 1 to {plies - 1}.")
+        named = group.get("below_ply", [0.0])
+        if str(named[0]).lower() in ("all", "between_angles"):
+            angles = [ply.angle for ply in deck.plies()]
+            named = [ply for ply in range(1, plies) if (angles[ply] - angles[ply - 1]) % 180]
         side = np.sqrt(0.0005 * np.prod(deck.lengths()))
-        found.append((int(below_ply), as_number(group.get("starter", [side])[0], f"{where} starter")))
+        for value in named:
+            below_ply = as_number(value, f"{where} below_ply")
+            if below_ply not in range(1, plies):
+                raise deck.error("delamination", f"below_ply needs whole numbers from 1 to {plies - 1}.")
+            found.append((int(below_ply), as_number(group.get("starter", [side])[0], f"{where} starter")))
     return found
 
 

@@ -1,0 +1,86 @@
+!> Which interfaces a group of the deck brings: those below the plies that it lists, or those that a word stands for.
+module interface_places
+  use deck_problems, only: problems_t
+  use deck_remarks, only: remark
+  use deck_settings, only: settings_t
+  use kinds, only: wp
+  use text, only: lower_case, to_text
+  implicit none
+  private
+  public :: interfaces_between, plies_above, remark_left_out
+
+  !> Names of the group and its key.
+  character(len=*), parameter, public :: delamination_group = 'delamination', key_below_ply = 'below_ply'
+  character(len=*), parameter :: group = delamination_group
+
+contains
+
+  !> Plies below which there are interfaces: those that the next ply continues in another direction or material. Plies
+  !> of one angle and material are one: nothing parts them.
+  pure function interfaces_between(angles, materials) result(below)
+    !> Fibre angle of each ply, degrees
+    real(wp), intent(in) :: angles(:)
+    !> Material of each ply
+    integer, intent(in) :: materials(:)
+    !> Plies, ascending
+    integer, allocatable :: below(:)
+    real(wp), parameter :: same_angle = 1.0e-6_wp
+    integer :: ply
+
+    associate (n => size(angles))
+      below = pack([(ply, ply=1, n - 1)], abs(modulo(angles(2:) - angles(:n - 1) + 90, 180.0_wp) - 90) > same_angle &
+                   .or. materials(2:) /= materials(:n - 1))
+    end associate
+  end function interfaces_between
+
+  !> Plies above the interfaces of a group. One that has none keeps one without a place, which the checks refuse.
+  pure function plies_above(settings, place, between) result(below)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+    !> Which of the groups
+    integer, intent(in) :: place
+    !> Plies below which the angle changes
+    integer, intent(in) :: between(:)
+    !> Plies in the order of the deck
+    integer, allocatable :: below(:)
+
+    below = settings%integers_of(group, key_below_ply, place)
+    if (asks_for_all(settings, place)) below = between
+    if (size(below) == 0) below = [0]
+  end function plies_above
+
+  !> True if a word stands for the interfaces.
+  pure logical function asks_for_all(settings, place)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+    !> Which of the groups
+    integer, intent(in) :: place
+
+    asks_for_all = any(lower_case(settings%text_of(group, key_below_ply, place)) == &
+                       [character(len=14) :: 'all', 'between_angles'])
+  end function asks_for_all
+
+  !> Says which interfaces `all` leaves out, as plies of one angle are one.
+  subroutine remark_left_out(settings, plies, between, problems)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+    !> Number of plies
+    integer, intent(in) :: plies
+    !> Plies below which the angle changes
+    integer, intent(in) :: between(:)
+    !> Remarks are added
+    type(problems_t), intent(inout) :: problems
+    character(len=:), allocatable :: left_out
+    integer :: place, ply
+
+    do place = 1, settings%groups_named(group)
+      if (lower_case(settings%text_of(group, key_below_ply, place)) /= 'all') cycle
+      left_out = ''
+      do ply = 1, plies - 1
+        if (.not. any(between == ply)) left_out = left_out//', '//to_text(ply)
+      end do
+      if (left_out /= '') call remark(settings, problems, group, key_below_ply, 'interfaces between plies of the '// &
+        'same angle and material are left out, below ply '//left_out(3:)//'; list plies to have them.', place)
+    end do
+  end subroutine remark_left_out
+end module interface_places
