@@ -25,6 +25,8 @@ module numberings
     integer :: owned = 0
     !> Point of this rank that gives a point its motion, or itself if another rank has it; 0: none, (local points)
     integer, allocatable :: leader(:)
+    !> Points that have the same equations, itself among them, (local points)
+    integer, allocatable :: sharers(:)
     !> Pattern of this rank's rows: start of each row (from 1) and columns (from 0, ascending)
     integer, allocatable :: row_start(:), columns(:)
     !> Point and component of each row of this rank, (2, rows)
@@ -75,6 +77,10 @@ contains
     do i = 1, size(self%leader)
       if (self%leader(i) > 0) self%leader(i) = merge(distribution%local(self%leader(i)), i, &
                                                      distribution%local(self%leader(i)) > 0)
+    end do
+    allocate (self%sharers(size(self%leader)), source=1)
+    do i = 1, distribution%owned
+      if (self%leader(i) > 0) self%sharers([i, self%leader(i)]) = 2
     end do
     call find_places(self)
     call find_pattern(mesh, equation, mesh%point_node(distribution%points(self%places(1, :))), &

@@ -84,7 +84,7 @@ contains
     !> The system
     type(condensed_points_t), intent(inout) :: system
     real(wp) :: tale(told, operator%changes%kept), changed(3, size(model%zone)), all(size(tale))
-    integer :: k, i, component
+    integer :: k, i, component, shared
 
     call operator%changes%spread_out(operator%numbering, changed)
     tale = 0
@@ -92,12 +92,13 @@ contains
       if (.not. operator%numbering%owns(operator%changes%columns(k)%equation)) cycle
       call operator%numbering%place_of(operator%changes%columns(k)%equation, i, component)
       tale(1:3, k) = real([model%distribution%points(i), model%zone(i), component], wp)
-      tale(4, k) = -changed(component, i)
+      shared = operator%numbering%sharers(i)
+      tale(4, k) = -shared*changed(component, i)
       if (.not. old%cohesive(i)) cycle
-      tale(4, k) = operator%present(component, i)
+      tale(4, k) = shared*operator%present(component, i)
       tale(5:7, k) = displacement(1:3, i)
       tale(8:10, k) = correction(1:3, i)
-      tale(11, k) = model%contact_area(i)*operator%stiffness_factor
+      tale(11, k) = shared*model%contact_area(i)*operator%stiffness_factor
       tale(12:13, k) = [old%points(i)%damage, old%points(i)%dissipated]
       tale(14, k) = 1
     end do
@@ -184,11 +185,15 @@ contains
     !> The equations, the same on every rank
     integer, allocatable, intent(out) :: equations(:)
     real(wp) :: error(3, model%distribution%owned), threshold
-    integer :: room, found
+    integer :: room, found, i
 
     call old%mismatch(model, operator%stiffness_factor, operator%present, displacement, correction, error)
     call strike_columns(operator, error)
     where (operator%numbering%equation(1:3, :size(error, 2)) < 0) error = 0
+    ! Points that follow others have the equations of these.
+    do i = 1, size(error, 2)
+      if (operator%numbering%leader(i) > 0) error(:, i) = 0
+    end do
     room = most_unknowns - self%columns
     threshold = noticed
     do
