@@ -10,9 +10,8 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.ticker import MultipleLocator
 
-from implam_post.fields import Fields, Snapshot, extents, outline
-from implam_post.look import Look
 from implam_post.fields import IMAGES, Fields, Snapshot, extents, outline
+from implam_post.look import Look
 from implam_post.plan import frame
 
 _MOST_TIMES = 8

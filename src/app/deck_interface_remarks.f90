@@ -6,7 +6,8 @@ module deck_interface_remarks
   use deck_problems, only: problems_t
   use deck_remarks, only: remark
   use delaminated_regions, only: cells_within
-  use delamination_deck, only: delamination_group, key_below_ply, key_zone
+  use delamination_deck, only: key_zone
+  use interface_places, only: delamination_group, key_below_ply
   use kinds, only: wp
   use material_parameters, only: material_t
   use short_numbers, only: short_text

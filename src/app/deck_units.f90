@@ -8,7 +8,8 @@ module deck_units
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
   use deck_remarks, only: remark
-  use delamination_deck, only: delamination_group, key_toughness, key_toughness_shear
+  use delamination_deck, only: key_toughness, key_toughness_shear
+  use interface_places, only: delamination_group
   use delamination_parameters, only: toughnesses
   use hertz_contact, only: sun_stiffness
   use impactor_deck, only: impactor_group, key_mass, key_radius, key_velocity

@@ -1,5 +1,6 @@
 !> What the field file holds of a run, joined from what each folder brings.
 module field_results
+  use deck_contents, only: deck_t
   use errors, only: error_t
   use fields_file, only: fields_file_t
   use interface_fields, only: interface_field_rows, write_interface_fields
@@ -8,12 +9,14 @@ module field_results
   use motion_fields, only: motion_field_rows, write_motion_fields
   use output_clocks, only: shown_time
   use output_parameters, only: output_t
+  use plate_deck, only: plate_group, key_symmetry
   use ply_fields, only: ply_field_rows, write_ply_fields
   use result_tables, only: result_row_length
+  use text, only: lower_case
   use time_stepping, only: time_stepper_t
   implicit none
   private
-  public :: write_mesh, write_fields
+  public :: part_of, write_fields, write_mesh
 
   !> Fields that stay with the mesh.
   character(len=*), parameter :: mesh_field_rows(*) = [character(len=result_row_length) :: &
@@ -25,6 +28,17 @@ module field_results
     mesh_field_rows, motion_field_rows, interface_field_rows, ply_field_rows]
 
 contains
+
+  !> Part of the plate that the files hold.
+  pure function part_of(deck) result(part)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> As symmetry names it, or 'whole'
+    character(len=:), allocatable :: part
+
+    part = lower_case(deck%settings%text_of(plate_group, key_symmetry))
+    if (part == 'none') part = 'whole'
+  end function part_of
 
   !> Writes points at the heights of their layers, and elements.
   subroutine write_mesh(model, fields, error)

@@ -4,9 +4,6 @@ module simulations
   use errors, only: error_t, fail, exit_stopped, exit_convergence
   use text, only: line_t, rounded_text, to_text
   use files, only: make_directory, remove_file
-  use errors, only: error_t, fail, exit_stopped
-  use text, only: lower_case, to_text
-  use files, only: make_directory
   use logger, only: log_t
   use timers, only: timer_set_t, wall_time
   use communicators, only: communicator_t
@@ -31,9 +28,8 @@ module simulations
   use queue_signals, only: catch_stop_signals, stop_signal
   use output_clocks, only: clock_t, next_event, shown_time
   use energy_watches, only: energy_watch_t
-  use plate_deck, only: plate_group, key_symmetry
   use result_rows, only: row_of, column_names, column_whole
-  use field_results, only: write_mesh, write_fields, field_rows
+  use field_results, only: field_rows, part_of, write_fields, write_mesh
   implicit none
   private
   public :: simulation_t
@@ -111,7 +107,7 @@ contains
     call self%history%create(communicator, self%base//'_history.csv', column_names(deck%delaminations), &
                              column_whole(size(deck%delaminations)), error)
     if (allocated(error)) return
-    call self%fields%create(communicator, self%base, self%provenance, part_of(self), error)
+    call self%fields%create(communicator, self%base, self%provenance, part_of(self%deck), error)
     if (allocated(error)) return
     call write_mesh(self%model, self%fields, error)
     if (.not. allocated(error)) call make_ready(self)
@@ -174,17 +170,6 @@ contains
     call self%progress%start(0.0_wp)
   end subroutine prepare
 
-  !> Part of the plate that the files hold.
-  pure function part_of(self) result(part)
-    !> The run
-    class(simulation_t), intent(in) :: self
-    !> As symmetry names it, or 'whole'
-    character(len=:), allocatable :: part
-
-    part = lower_case(self%deck%settings%text_of(plate_group, key_symmetry))
-    if (part == 'none') part = 'whole'
-  end function part_of
-
   !> Sets a run up from a checkpoint that has been opened for loading.
   subroutine resume(self, deck, communicator, begun, path, error)
     !> The run
@@ -219,7 +204,7 @@ contains
     if (allocated(error)) return
     if (self%history%rows /= rows) &
       call self%log%warning('The history before the checkpoint is not there; it goes on from here.')
-    call self%fields%resume(communicator, self%base, self%provenance, part_of(self), &
+    call self%fields%resume(communicator, self%base, self%provenance, part_of(self%deck), &
                             shown_time(self%stepper%now%time), error)
     if (allocated(error)) return
     call write_mesh(self%model, self%fields, error)

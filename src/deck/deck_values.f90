@@ -69,7 +69,6 @@ contains
     if (kind == 'real') branch%allowed = key%allowed(comma + 2:)
   end function branch_of
 
-  !> What is wrong with a number, or an empty text.
   !> What is wrong with a number, or with a word that the key takes in its place, or an empty text.
   pure function fault_of_number(key, value) result(fault)
     !> The key as the table has it

@@ -19,10 +19,8 @@ module delamination_deck
   public :: fill_delaminations, check_delaminations
 
   !> Names that checks across groups use.
-  character(len=*), parameter, public :: delamination_group = 'delamination', key_below_ply = 'below_ply', &
-                                         key_zone = 'zone', key_starter = 'starter', &
-                                         key_toughness = 'G_c', key_toughness_shear = 'G_IIc'
-  character(len=*), parameter, public :: key_zone = 'zone', key_starter = 'starter'
+  character(len=*), parameter, public :: key_zone = 'zone', key_starter = 'starter', key_toughness = 'G_c', &
+                                         key_toughness_shear = 'G_IIc'
   character(len=*), parameter :: group = delamination_group
   !> Keys that have no effect on a cohesive interface.
   character(len=*), parameter :: keys_of_fronts = &
@@ -232,13 +230,13 @@ contains
     type(delamination_t), intent(in) :: delaminations(:)
     !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
-    integer :: place, i
+    integer :: place, before, i
 
+    place = 0
     do i = 1, size(delaminations)
+      before = place
       place = delaminations(i)%group
-      if (i > 1) then
-        if (delaminations(i - 1)%group == place) cycle
-      end if
+      if (place == before) cycle
       call check_toughness(settings, delaminations(i), place, problems)
       call check_strengths(settings, delaminations(i), place, problems)
       call remark_idle_keys(settings, delaminations(i), place, problems)
