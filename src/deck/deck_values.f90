@@ -44,11 +44,8 @@ contains
         fault = fault_of_number(branch_of(key, 'real'), value)
       end if
     case default
-      if (.not. value%quoted) then
-        fault = shown(value%text)//' stands without quotes'
-      else
-        fault = fault_of_text(key, value%text)
-      end if
+      fault = shown(value%text)//' stands without quotes'
+      if (value%quoted) fault = fault_of_text(key, value%text)
     end select
   end function fault_of_value
 
