@@ -4,6 +4,7 @@ module interface_figures
   use delamination_parameters, only: law_cohesive
   use interface_states, only: interface_state_t
   use kinds, only: wp
+  use mesh_parameters, only: symmetry_point
   use models, only: model_t
   implicit none
   private
@@ -38,7 +39,7 @@ contains
     !> (zones)
     type(interface_figures_t) :: figures(size(model%mesh%zones))
     real(wp) :: bounds(4, size(figures))
-    integer :: zone
+    integer :: zone, axis
 
     if (size(figures) == 0) return
     figures%stage = stages_of(model, interfaces)
@@ -47,8 +48,12 @@ contains
     bounds = bounds_of(model, interfaces)
     do zone = 1, size(figures)
       if (any(bounds(:, zone) <= nowhere)) cycle
+      do axis = 1, 2
+        associate (both => bounds(2*axis - 1:2*axis, zone))
+          if (model%mesh%mirrored(axis) .or. model%scene%plate%symmetry == symmetry_point) both = maxval(both)
+        end associate
+      end do
       figures(zone)%bounds = reshape([-bounds(1, zone), bounds(2, zone), -bounds(3, zone), bounds(4, zone)], [2, 2])
-      if (model%mesh%multiplicity == 4) figures(zone)%bounds(1, :) = -figures(zone)%bounds(2, :)
     end do
   end function figures_of
 

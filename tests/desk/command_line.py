@@ -82,7 +82,7 @@ def check_new(implam, folder):
     require((folder / "mine.nml").read_bytes() == before, "The name makes another deck.")
     answer(implam, "new", "no/such/folder.nml", cwd=folder, code=EXIT_FILES)
     told = answer(implam, "impact.nml", cwd=folder)
-    require("warning" not in told, told)
+    require("warning:" not in told, told)
     history = read_history(folder / "results" / "impact_history.csv")
     area = history["delaminated_area"]
     print(f"new: peak force {max(history['force']):.0f} N, area {area[0]:.3g} to {area[-1]:.3g} m2")
