@@ -98,14 +98,16 @@ contains
     !> Set if files cannot be written or the model cannot be set up
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: retired
+    integer :: lines
 
     call prepare(self, deck, communicator, begun, append=.false., error=error)
     if (allocated(error)) return
     call retire_checkpoint(communicator, self%base//checkpoint_ending, retired, error)
     if (allocated(error)) return
     if (retired /= '') call self%log%note('The checkpoint of an earlier run is now '//retired//'.')
-    call self%history%create(communicator, self%base//'_history.csv', column_names(deck%delaminations), &
-                             column_whole(size(deck%delaminations)), error)
+    lines = size(deck%lines)
+    call self%history%create(communicator, self%base//'_history.csv', column_names(deck%delaminations, lines), &
+                             column_whole(size(deck%delaminations), lines), error)
     if (allocated(error)) return
     call self%fields%create(communicator, self%base, self%provenance, part_of(self%deck), error)
     if (allocated(error)) return
@@ -186,7 +188,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(checkpoint_archive_t) :: archive
     real(wp), allocatable :: last_row(:)
-    integer :: rows
+    integer :: rows, lines
 
     call prepare(self, deck, communicator, begun, append=.true., error=error)
     if (allocated(error)) return
@@ -199,8 +201,9 @@ contains
     call self%fields%check_deck(communicator, self%base, deck%text, error)
     if (allocated(error)) return
     last_row = self%history%last_row
-    call self%history%resume(communicator, self%base//'_history.csv', column_names(deck%delaminations), &
-                             column_whole(size(deck%delaminations)), rows, last_row, error)
+    lines = size(deck%lines)
+    call self%history%resume(communicator, self%base//'_history.csv', column_names(deck%delaminations, lines), &
+                             column_whole(size(deck%delaminations), lines), rows, last_row, error)
     if (allocated(error)) return
     if (self%history%rows /= rows) &
       call self%log%warning('The history before the checkpoint is not there; it goes on from here.')
