@@ -2,7 +2,7 @@
 Usage: lines.py quarter|ranks|restart IMPLAM FOLDER [LAUNCHER...]
 (LAUNCHER takes the number of ranks as its last word)
 
-quarter  a strip and the quarter that stands for it: deflection and forces to 1e-9
+quarter  a strip and the quarter or half that stands for it: deflection and forces to 1e-9
 ranks    a notched strip that is taken by what it dissipates, on 1 and 2 ranks: to 1e-6
 restart  the same from a checkpoint while damage grows: bitwise"""
 
@@ -27,17 +27,22 @@ NOTCHED = ["mesh%elements=56,2", "static%steps=12", "static%dissipation=0.12", "
 
 
 def check_quarter(implam, folder, _):
-    """A line for two, and one in the middle."""
+    """A line for two, and one in the middle; of a half across the lines, all of them."""
     whole = read_history(run_deck(implam, write_deck(folder / "whole", "three_point.nml")))
-    deck = write_deck(folder / "quarter", "three_point.nml", ["plate%symmetry='quarter'", "mesh%elements=10,2"])
-    text = deck.read_text(encoding="utf-8")
-    deck.write_text("\n".join(line for line in text.splitlines() if "at=-" not in line), encoding="utf-8")
-    quarter = read_history(run_deck(implam, deck))
-    for name, other in (("deflection", "deflection"), ("work_external", "work_external"),
-                        ("line_force_2", "line_force_1"), ("line_force_3", "line_force_2"),
-                        ("line_force_5", "line_force_3")):
-        found, expected = quarter[other][-1], whole[name][-1]
-        require(abs(found - expected) <= 1e-9*abs(expected), f"{name}: {found!r} on the quarter, not {expected!r}.")
+    for part, elements in (("quarter", "10,2"), ("half_x", "10,4"), ("half_y", "20,2")):
+        deck = write_deck(folder / part, "three_point.nml", [f"plate%symmetry='{part}'", f"mesh%elements={elements}"])
+        number = {2: 2, 3: 3, 5: 5}
+        if part != "half_y":
+            text = deck.read_text(encoding="utf-8")
+            deck.write_text("\n".join(line for line in text.splitlines() if "at=-" not in line), encoding="utf-8")
+            number = {2: 1, 3: 2, 5: 3}
+        found = read_history(run_deck(implam, deck))
+        names = {"deflection": "deflection", "work_external": "work_external",
+                 **{f"line_force_{line}": f"line_force_{own}" for line, own in number.items()}}
+        for name, own in names.items():
+            value, expected = found[own][-1], whole[name][-1]
+            require(abs(value - expected) <= 1e-9*abs(expected),
+                    f"{name}: {value!r} with {part}, not {expected!r}.")
 
 
 def check_ranks(implam, folder, launcher):
