@@ -97,8 +97,8 @@ contains
       associate (edges => cell_edges(deck%plate, deck%mesh, direction), at => deck%lines(place)%at)
         taken = place_of_node(edges, node_line(edges, at))
         if (abs(taken - at) > moved_line*deck%plate%length(direction)) &
-          call remark(deck%settings, problems, line_group, line_key_at, 'a line lies on nodes; this mesh puts it at '// &
-                      to_text(rounded(taken))//'.', place)
+          call remark(deck%settings, problems, line_group, line_key_at, 'a line lies on nodes; this mesh puts it '// &
+                      'at '//to_text(rounded(taken))//'.', place)
       end associate
     end do
   end subroutine check_line_nodes

@@ -6,6 +6,7 @@ module result_rows
                                release_rows, release_values, rig_rows, rig_values
   use kinds, only: wp
   use line_columns, only: line_column_rows, line_values
+  use line_loads, only: line_load_t
   use models, only: model_t
   use operator_columns, only: operator_rows, operator_values
   use output_clocks, only: shown_time
@@ -34,7 +35,7 @@ contains
     !> Interfaces that may delaminate
     type(delamination_t), intent(in) :: delaminations(:)
     !> Lines of the deck; without, their columns are left out
-    integer, intent(in) :: lines
+    type(line_load_t), intent(in) :: lines(:)
     !> In the order of the table
     character(len=result_name_length), allocatable :: names(:)
     integer :: zone, line
@@ -43,8 +44,8 @@ contains
     do zone = 1, size(delaminations)
       names = [names, numbered(interface_rows, delaminations(zone)%below_ply)]
     end do
-    if (lines > 0) names = [names, names_of(line_column_rows(:1))]
-    do line = 1, lines
+    if (size(lines) > 0) names = [names, names_of(line_column_rows(:1))]
+    do line = 1, size(lines)
       names = [names, numbered(line_column_rows(2:), line)]
     end do
   end function column_names

@@ -98,16 +98,14 @@ contains
     !> Set if files cannot be written or the model cannot be set up
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: retired
-    integer :: lines
 
     call prepare(self, deck, communicator, begun, append=.false., error=error)
     if (allocated(error)) return
     call retire_checkpoint(communicator, self%base//checkpoint_ending, retired, error)
     if (allocated(error)) return
     if (retired /= '') call self%log%note('The checkpoint of an earlier run is now '//retired//'.')
-    lines = size(deck%lines)
-    call self%history%create(communicator, self%base//'_history.csv', column_names(deck%delaminations, lines), &
-                             column_whole(size(deck%delaminations), lines), error)
+    call self%history%create(communicator, self%base//'_history.csv', column_names(deck%delaminations, deck%lines), &
+                             column_whole(size(deck%delaminations), size(deck%lines)), error)
     if (allocated(error)) return
     call self%fields%create(communicator, self%base, self%provenance, part_of(self%deck), error)
     if (allocated(error)) return
@@ -188,7 +186,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(checkpoint_archive_t) :: archive
     real(wp), allocatable :: last_row(:)
-    integer :: rows, lines
+    integer :: rows
 
     call prepare(self, deck, communicator, begun, append=.true., error=error)
     if (allocated(error)) return
@@ -201,9 +199,8 @@ contains
     call self%fields%check_deck(communicator, self%base, deck%text, error)
     if (allocated(error)) return
     last_row = self%history%last_row
-    lines = size(deck%lines)
-    call self%history%resume(communicator, self%base//'_history.csv', column_names(deck%delaminations, lines), &
-                             column_whole(size(deck%delaminations), lines), rows, last_row, error)
+    call self%history%resume(communicator, self%base//'_history.csv', column_names(deck%delaminations, deck%lines), &
+                             column_whole(size(deck%delaminations), size(deck%lines)), rows, last_row, error)
     if (allocated(error)) return
     if (self%history%rows /= rows) &
       call self%log%warning('The history before the checkpoint is not there; it goes on from here.')
