@@ -8,19 +8,22 @@ module deck_cross_checks
   use deck_symmetries, only: check_symmetry
   use deck_remarks, only: tell, remark, remark_idle, are_clear
   use interface_places, only: delamination_group, key_below_ply
-  use delamination_parameters, only: growth_one_per_step, interface_objection
+  use delamination_parameters, only: growth_one_per_step, interface_objection, law_cohesive, law_front
   use failure_criteria, only: needed_strengths
   use impactor_deck, only: impactor_group, key_velocity, key_radius, key_gravity, keys_of_motion
   use indentation_deck, only: indentation_group, key_k
   use kinds, only: wp
+  use line_deck, only: line_group
+  use line_loads, only: line_load_t, along_x, along_y
   use material_deck, only: material_group, require_densities
   use mesh_deck, only: mesh_group, key_patch
+  use mesh_parameters, only: is_mirrored, edge_clamped, edge_free
   use output_deck, only: check_intervals, remark_idle_fields
   use plies, only: ply_t, material_objection
   use plate_deck, only: plate_group, check_edges
   use pressure_deck, only: pressure_group, key_history
   use support_deck, only: check_static_rigs
-  use static_deck, only: static_group
+  use static_deck, only: static_group, key_dissipation
   use text, only: line_t, append, joined, words_of
   use time_deck, only: time_group
   implicit none
@@ -58,15 +61,23 @@ contains
 
     if (deck%has_static .and. deck%has_impactor) then
       call tell(deck%settings, problems, static_group, '', 'an impactor needs time; leave out &static or &impactor.')
-    else if (deck%has_static .and. .not. (deck%has_pressure .or. deck%has_thermal .or. &
-                                          problems%concern(pressure_group))) then
-      call tell(deck%settings, problems, static_group, '', 'there is no load; give &pressure.')
+    else if (deck%has_static .and. .not. (deck%has_pressure .or. deck%has_thermal .or. loads(deck%lines) .or. &
+             problems%concern(pressure_group) .or. problems%concern(line_group))) then
+      call tell(deck%settings, problems, static_group, '', 'there is no load; give &pressure, or a &line with one.')
     else if (.not. (deck%has_static .or. deck%has_impactor .or. deck%has_pressure .or. deck%has_thermal .or. &
+                    loads(deck%lines) .or. problems%concern(line_group) .or. &
                     problems%concern(static_group) .or. problems%concern(impactor_group) .or. &
                     problems%concern(pressure_group))) then
-      call problems%error(0, pressure_group, '', 'nothing loads the plate; give &impactor or &pressure.')
+      call problems%error(0, pressure_group, '', 'nothing loads the plate; give &impactor, &pressure or &line.')
     end if
   end subroutine check_loads
+
+  !> True if a line moves the plate or presses on it.
+  pure logical function loads(lines)
+    !> The lines
+    type(line_load_t), intent(in) :: lines(:)
+    loads = any(abs(lines%value) > 0)
+  end function loads
 
   !> What a static analysis needs, and what has no effect on it.
   subroutine check_static(deck, problems)
@@ -75,15 +86,52 @@ contains
     !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
 
-    if (size(deck%supports) == 0) call check_edges(deck%settings, deck%plate, problems)
-    if (size(deck%supports) > 0) call check_static_rigs(deck%settings, deck%supports, problems)
+    if (size(deck%supports) > 0) then
+      call check_static_rigs(deck%settings, deck%supports, problems)
+    else if (size(deck%lines) == 0) then
+      call check_edges(deck%settings, deck%plate, problems)
+    else if (.not. problems%concern(line_group)) then
+      call check_line_supports(deck, problems)
+    end if
     if (deck%has_time) call remark(deck%settings, problems, time_group, '', 'has no effect on a static analysis.')
     call remark_idle(deck%settings, problems, pressure_group, key_history, 'has no effect on a static analysis.')
     if (.not. problems%concern(static_group)) &
       call check_intervals(deck%settings, 1.0_wp/deck%stepping%static_steps, 1.0_wp, problems)
-    if (size(deck%delaminations) > 0) call remark(deck%settings, problems, delamination_group, '', &
-                                                  'in a static analysis the starter does not grow.')
+    if (any(deck%delaminations%law == law_front)) &
+      call remark(deck%settings, problems, delamination_group, '', &
+                  'in a static analysis the starter of a front does not grow.')
+    if (deck%stepping%dissipation > 0 .and. .not. any(deck%delaminations%law == law_cohesive)) &
+      call remark(deck%settings, problems, static_group, key_dissipation, &
+                  'has no effect without a cohesive interface.')
   end subroutine check_static
+
+  !> Lines and edges that together hold the plate across itself: its deflection, and its tilt along x and along y.
+  subroutine check_line_supports(deck, problems)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    type(line_load_t), allocatable :: held(:)
+    logical, allocatable :: across(:)
+    logical :: tilts(2), edges(4)
+    integer :: along, n
+
+    if (any(deck%plate%edges == edge_clamped)) return
+    held = pack(deck%lines, deck%lines%prescribed)
+    edges = deck%plate%edges /= edge_free
+    do along = 1, 2
+      ! Two lines or edges across this direction stop the tilt, or one that runs along it.
+      across = held%component == 3 .and. held%direction == merge(along_y, along_x, along == 1)
+      n = count(edges(2*along - 1:2*along))
+      if (any(across)) n = n + merge(2, 1, minval(held%at, mask=across) < maxval(held%at, mask=across))
+      tilts(along) = n > 1 .or. any(edges(5 - 2*along:6 - 2*along)) .or. any(held%component == 3 + along) .or. &
+                     any(held%component == 3 .and. .not. across)
+    end do
+    tilts = tilts .or. is_mirrored(deck%plate%symmetry)
+    if (all(tilts) .and. (any(held%component == 3) .or. any(edges))) return
+    call tell(deck%settings, problems, line_group, '', 'lines and edges leave the plate free to move or to tilt '// &
+              'in a static analysis; support another line.', 1)
+  end subroutine check_line_supports
 
   !> What a run in time needs, and what has no effect on it.
   subroutine check_transient(deck, problems)

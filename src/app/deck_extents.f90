@@ -12,9 +12,12 @@ module deck_extents
   use gradings, only: core_elements
   use impactor_deck, only: impactor_group, key_at
   use kinds, only: wp
+  use line_deck, only: line_group, line_key_at => key_at
+  use line_loads, only: along_x
+  use placed_lines, only: node_line, place_of_node
   use laminate_deck, only: laminate_group, key_thicknesses
   use mesh_deck, only: mesh_group, key_elements, key_patch, key_core, key_cell, most_elements
-  use mesh_parameters, only: is_halved
+  use mesh_parameters, only: is_halved, is_mirrored
   use plate_deck, only: plate_group, key_length, key_symmetry
   use rigs, only: window_lines
   use support_deck, only: support_group, key_window
@@ -31,6 +34,8 @@ module deck_extents
   real(wp), parameter :: least_starter = 1.5_wp
   !> Difference from the size asked for, relative to it, that a user is warned of.
   real(wp), parameter :: noticeable = 0.05_wp
+  !> Distance from its place at which a line counts as moved, and as off the plate, relative to the plate's length.
+  real(wp), parameter :: moved_line = 1.0e-3_wp, off_plate = 1.0e-9_wp
 
 contains
 
@@ -47,7 +52,56 @@ contains
       call check_core(deck, problems)
     end if
     call check_zones(deck, problems)
+    if (are_clear(deck%settings, problems, plate_group, key_length//' '//key_symmetry)) &
+      call check_line_places(deck, problems)
   end subroutine check_sizes
+
+  !> Lines that lie on the plate, and on the part of it that is modelled.
+  subroutine check_line_places(deck, problems)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    real(wp) :: half
+    integer :: place, direction
+    logical :: mirrored(2)
+
+    mirrored = is_mirrored(deck%plate%symmetry)
+    do place = 1, size(deck%lines)
+      if (.not. are_clear(deck%settings, problems, line_group, line_key_at, place)) cycle
+      associate (line => deck%lines(place))
+        direction = merge(2, 1, line%direction == along_x)
+        half = deck%plate%length(direction)/2
+        if (abs(line%at) > half*(1 + off_plate)) then
+          call tell(deck%settings, problems, line_group, line_key_at, 'the line passes beside the plate; allowed: '// &
+                    to_text(-half)//' to '//to_text(half)//'.', place)
+        else if (mirrored(direction) .and. line%at < 0) then
+          call tell(deck%settings, problems, line_group, line_key_at, 'one side stands for the plate, and a line '// &
+                    'for that on the other side too; allowed: 0 or more.', place)
+        end if
+      end associate
+    end do
+  end subroutine check_line_places
+
+  !> Warns of lines that the mesh moves, as they lie on its nodes.
+  subroutine check_line_nodes(deck, problems)
+    !> The deck, filled and checked
+    type(deck_t), intent(in) :: deck
+    !> Receives the warnings
+    type(problems_t), intent(inout) :: problems
+    real(wp) :: taken
+    integer :: place, direction
+
+    do place = 1, size(deck%lines)
+      direction = merge(2, 1, deck%lines(place)%direction == along_x)
+      associate (edges => cell_edges(deck%plate, deck%mesh, direction), at => deck%lines(place)%at)
+        taken = place_of_node(edges, node_line(edges, at))
+        if (abs(taken - at) > moved_line*deck%plate%length(direction)) &
+          call remark(deck%settings, problems, line_group, line_key_at, 'a line lies on nodes; this mesh puts it '// &
+                      'at '//to_text(rounded(taken))//'.', place)
+      end associate
+    end do
+  end subroutine check_line_nodes
 
   !> Thickness of the laminate against the plate.
   subroutine check_thickness(deck, problems)
@@ -168,7 +222,7 @@ contains
     if (i > 1) repeats = deck%delaminations(i)%group == deck%delaminations(i - 1)%group
   end function repeats
 
-  !> Warns of zones and starters that the mesh makes noticeably larger or smaller than the deck asks.
+  !> Warns of lines, zones and starters that the mesh makes noticeably larger or smaller than the deck asks.
   subroutine check_extents(deck, problems)
     !> The deck, filled and checked
     type(deck_t), intent(in) :: deck
@@ -180,6 +234,7 @@ contains
 
     if (problems%errors() > 0) return
     call check_window_lines(deck, problems)
+    call check_line_nodes(deck, problems)
     if (size(deck%delaminations) == 0) return
     x_edges = cell_edges(deck%plate, deck%mesh, 1) - deck%mesh%struck(1)
     y_edges = cell_edges(deck%plate, deck%mesh, 2) - deck%mesh%struck(2)

@@ -45,21 +45,28 @@ contains
     !> Modulus and thickness of the thinner layer, toughness, strengths and cells
     type(process_zone_t) :: zone
     type(ply_t), allocatable :: plies(:), layer(:)
-    real(wp) :: toughness(2)
+    real(wp) :: toughness(2), bending(2), cells(2)
 
     plies = stacked_plies(deck%laminate, deck%materials)
     layer = plies(:delamination%below_ply)
     zone%thickness = thickness_of(layer)
     if (thickness_of(plies(delamination%below_ply + 1:)) < zone%thickness) layer = plies(delamination%below_ply + 1:)
     zone%thickness = thickness_of(layer)
-    zone%modulus = bending_modulus(layer)
+    bending = bending_moduli(layer)
+    cells = [longest_cell(cell_edges(deck%plate, deck%mesh, 1) - deck%mesh%struck(1), delamination%zone(1)), &
+             longest_cell(cell_edges(deck%plate, deck%mesh, 2) - deck%mesh%struck(2), delamination%zone(2))]
+    zone%modulus = minval(bending)
+    zone%cell = maxval(cells)
+    ! The front of a strip runs along y and moves along x.
+    if (delamination%starter_strip(1) < delamination%starter_strip(2)) then
+      zone%modulus = bending(1)
+      zone%cell = cells(1)
+    end if
     toughness = toughnesses(delamination)
     zone%toughness_opening = toughness(1)
     zone%toughness_shear = toughness(2)
     zone%strength_opening = delamination%strength_opening
     zone%strength_shear = delamination%strength_shear
-    zone%cell = max(longest_cell(cell_edges(deck%plate, deck%mesh, 1) - deck%mesh%struck(1), delamination%zone(1)), &
-                    longest_cell(cell_edges(deck%plate, deck%mesh, 2) - deck%mesh%struck(2), delamination%zone(2)))
   end function process_zone
 
   !> Thickness of some plies.
@@ -70,17 +77,19 @@ contains
     thickness_of = layer(size(layer))%z_bottom - layer(1)%z_top
   end function thickness_of
 
-  !> Smaller bending modulus of some plies about their own middle, the lesser of 12 D_11/h**3 and 12 D_22/h**3.
-  pure real(wp) function bending_modulus(layer) result(modulus)
+  !> Bending moduli of some plies about their own middle, 12 D_11/h**3 and 12 D_22/h**3.
+  pure function bending_moduli(layer) result(moduli)
     !> The plies, from the struck face
     type(ply_t), intent(in) :: layer(:)
-    real(wp) :: stiffness(21), middle, bending(2)
+    !> Along x and along y
+    real(wp) :: moduli(2)
+    real(wp) :: stiffness(21), middle
 
     stiffness = section_stiffness(layer, layer%elasticity, shear_five_sixths)
     middle = (layer(1)%z_top + layer(size(layer))%z_bottom)/2
-    bending = stiffness([13, 16]) - 2*middle*stiffness([7, 10]) + middle**2*stiffness([1, 4])
-    modulus = 12*minval(bending)/thickness_of(layer)**3
-  end function bending_modulus
+    moduli = stiffness([13, 16]) - 2*middle*stiffness([7, 10]) + middle**2*stiffness([1, 4])
+    moduli = 12*moduli/thickness_of(layer)**3
+  end function bending_moduli
 
   !> Longest side of the cells within an extent.
   pure real(wp) function longest_cell(edges, extent) result(longest)

@@ -26,6 +26,7 @@ module deck_reader
   use indentation_deck, only: fill_indentation, check_indentation, indentation_group
   use kinds, only: wp
   use laminate_deck, only: fill_laminate
+  use line_deck, only: fill_lines, check_lines
   use linear_solver_deck, only: check_petsc_options, fill_linear_solver
   use material_deck, only: fill_materials, normal_compliance
   use mesh_deck, only: fill_mesh, check_mesh
@@ -192,7 +193,9 @@ contains
     if (deck%has_time) call fill_time(deck%settings, size(deck%delaminations) > 0, deck%stepping%time)
     call fill_pressure(deck%settings, deck%stepping%time%end, deck%pressure)
     if (deck%has_thermal) call fill_thermal(deck%settings, deck%temperature_change)
-    if (deck%has_static) call fill_static(deck%settings, deck%stepping%static_steps)
+    call fill_lines(deck%settings, deck%lines)
+    if (deck%has_time) deck%ramp_time = deck%stepping%time%end
+    if (deck%has_static) call fill_static(deck%settings, deck%stepping%static_steps, deck%stepping%dissipation)
   end subroutine fill_loads
 
   !> How steps are taken and written.
@@ -222,6 +225,7 @@ contains
     if (deck%has_impactor .and. deck%has_indentation) call check_indentation(deck%settings, deck%indentation, problems)
     if (deck%has_pressure) call check_pressure(deck%settings, deck%pressure, problems)
     if (deck%has_thermal) call check_thermal(deck%settings, deck%materials, problems)
+    call check_lines(deck%settings, deck%lines, problems)
     if (deck%has_time) call check_time(deck%settings, deck%stepping%time, problems)
     call check_petsc_options(deck%settings, deck%linear_solver, problems)
   end subroutine check_groups

@@ -7,6 +7,7 @@ module deck_symmetries
   use delamination_parameters, only: law_front
   use impactor_deck, only: impactor_group, key_at
   use kinds, only: wp
+  use line_deck, only: line_group
   use laminate_parameters, only: shear_five_sixths
   use mesh_parameters, only: is_halved, is_mirrored, symmetry_half_x, symmetry_half_y, symmetry_none, symmetry_point, &
                              symmetry_quarter
@@ -49,6 +50,9 @@ contains
                   '; list all of the whole plate, or use ''none''.')
       if (symmetry == symmetry_point .and. any_front(deck)) call tell(s, problems, plate_group, key_symmetry, &
         'fronts are not followed across the line that a turned plate is cut at; use ''none'', or law = ''cohesive''.')
+      if (symmetry == symmetry_point .and. size(deck%lines) > 0 .and. .not. problems%concern(line_group)) &
+        call tell(s, problems, plate_group, key_symmetry, 'a line is no line any more where a turned plate is cut; '// &
+                  'use ''none''.')
     end associate
   end subroutine check_symmetry
 
@@ -85,7 +89,9 @@ contains
     logical :: alike(2)
 
     alike = deck%plate%edges([1, 3]) == deck%plate%edges([2, 4])
-    suits = all(alike .or. .not. is_halved(symmetry)) .and. (symmetry /= symmetry_point .or. all(alike)) .and. &
+    ! Lines and strips are where the deck puts them, whether or not an image faces them.
+    suits = size(deck%lines) == 0 .and. .not. any_strip(deck) .and. &
+            all(alike .or. .not. is_halved(symmetry)) .and. (symmetry /= symmetry_point .or. all(alike)) .and. &
             .not. struck_aside(deck, symmetry) .and. rigs_alike(deck, symmetry)
     if (.not. suits) return
     if (symmetry == symmetry_point) then
@@ -102,6 +108,16 @@ contains
 
     any_front = any(deck%delaminations%law == law_front)
   end function any_front
+
+  !> True if the starter of some interface is a strip.
+  pure logical function any_strip(deck)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    integer :: i
+
+    any_strip = any([(deck%delaminations(i)%starter_strip(1) < deck%delaminations(i)%starter_strip(2), &
+                      i=1, size(deck%delaminations))])
+  end function any_strip
 
   !> True if the impactor strikes off the centre in a direction that matters.
   pure logical function struck_aside(deck, symmetry)

@@ -1,10 +1,12 @@
 !> The columns of the history, joined from the rows that each folder brings, and the values of an accepted step. The
-!> last rows come again for each interface that may delaminate.
+!> rows behind them come again for each interface that may delaminate, the last for each line.
 module result_rows
   use delamination_parameters, only: delamination_t
   use interface_columns, only: area_rows, area_values, border_rows, border_values, interface_rows, interface_values, &
                                release_rows, release_values, rig_rows, rig_values
   use kinds, only: wp
+  use line_columns, only: line_column_rows, line_values
+  use line_loads, only: line_load_t
   use models, only: model_t
   use operator_columns, only: operator_rows, operator_values
   use output_clocks, only: shown_time
@@ -12,6 +14,7 @@ module result_rows
   use result_tables, only: cell, column_name, column_type, name_with_number, result_name_length, result_row_length
   use step_columns, only: iteration_rows, iteration_values, ledger_rows, ledger_values, motion_rows, motion_values, &
                           step_rows, step_values
+  use states, only: state_t
   use time_stepping, only: time_stepper_t
   implicit none
   private
@@ -23,47 +26,99 @@ module result_rows
     border_rows, rig_rows]
   !> The table of columns in their order.
   character(len=*), parameter, public :: column_rows(*) = [character(len=result_row_length) :: &
-    plate_rows, interface_rows]
+    plate_rows, interface_rows, line_column_rows]
 
 contains
 
   !> Names of the columns.
-  pure function column_names(delaminations) result(names)
+  pure function column_names(delaminations, lines) result(names)
     !> Interfaces that may delaminate
     type(delamination_t), intent(in) :: delaminations(:)
+    !> Lines of the deck; without, their columns are left out
+    type(line_load_t), intent(in) :: lines(:)
     !> In the order of the table
-    character(len=result_name_length) :: names(size(plate_rows) + size(delaminations)*size(interface_rows))
-    integer :: i, zone, place
+    character(len=result_name_length), allocatable :: names(:)
+    integer :: zone, line
 
-    do i = 1, size(plate_rows)
-      names(i) = cell(plate_rows(i), column_name)
-    end do
-    place = size(plate_rows)
+    names = names_of(plate_rows)
     do zone = 1, size(delaminations)
-      do i = 1, size(interface_rows)
-        place = place + 1
-        names(place) = name_with_number(cell(interface_rows(i), column_name), delaminations(zone)%below_ply)
-      end do
+      names = [names, numbered(interface_rows, delaminations(zone)%below_ply)]
+    end do
+    if (size(lines) > 0) names = [names, names_of(line_column_rows(:1))]
+    do line = 1, size(lines)
+      names = [names, numbered(line_column_rows(2:), line)]
     end do
   end function column_names
 
-  !> Which columns hold whole numbers.
-  pure function column_whole(interfaces) result(whole)
-    !> Number of interfaces that may delaminate
-    integer, intent(in) :: interfaces
-    !> In the order of the table
-    logical :: whole(size(plate_rows) + interfaces*size(interface_rows))
-    logical :: of_interface(size(interface_rows))
-    integer :: i, zone
+  !> Names of some rows.
+  pure function names_of(rows) result(names)
+    !> Rows of the table
+    character(len=*), intent(in) :: rows(:)
+    !> As they stand there
+    character(len=result_name_length) :: names(size(rows))
+    integer :: i
 
-    do i = 1, size(plate_rows)
-      whole(i) = cell(plate_rows(i), column_type) /= 'real'
+    do i = 1, size(rows)
+      names(i) = cell(rows(i), column_name)
     end do
-    do i = 1, size(interface_rows)
-      of_interface(i) = cell(interface_rows(i), column_type) /= 'real'
+  end function names_of
+
+  !> Names of some rows with a number for their N.
+  pure function numbered(rows, number) result(names)
+    !> Rows of the table
+    character(len=*), intent(in) :: rows(:)
+    !> The number
+    integer, intent(in) :: number
+    !> One a row
+    character(len=result_name_length) :: names(size(rows))
+    integer :: i
+
+    do i = 1, size(rows)
+      names(i) = name_with_number(cell(rows(i), column_name), number)
     end do
-    whole(size(plate_rows) + 1:) = [(of_interface, zone=1, interfaces)]
+  end function numbered
+
+  !> Which of some rows hold whole numbers.
+  pure function are_whole(rows) result(whole)
+    !> Rows of the table
+    character(len=*), intent(in) :: rows(:)
+    !> One a row
+    logical :: whole(size(rows))
+    integer :: i
+
+    do i = 1, size(rows)
+      whole(i) = cell(rows(i), column_type) /= 'real'
+    end do
+  end function are_whole
+
+  !> Which columns hold whole numbers.
+  pure function column_whole(interfaces, lines) result(whole)
+    !> Number of interfaces that may delaminate, and of lines
+    integer, intent(in) :: interfaces, lines
+    !> In the order of the table
+    logical, allocatable :: whole(:)
+    integer :: i
+
+    whole = [are_whole(plate_rows), (are_whole(interface_rows), i=1, interfaces)]
+    if (lines > 0) whole = [whole, are_whole(line_column_rows(:1)), (are_whole(line_column_rows(2:)), i=1, lines)]
   end function column_whole
+
+  !> Forces of pressure and lines at the owned points.
+  pure function loads_on(model, now) result(loads)
+    type(model_t), intent(in) :: model
+    !> The state reached
+    type(state_t), intent(in) :: now
+    !> Forces on the unknowns, (5, points)
+    real(wp), allocatable :: loads(:, :)
+
+    allocate (loads, mold=now%motion%displacement)
+    if (model%scene%has_static) then
+      call model%static_loads(now%motion%displacement, now%load_factor, loads)
+    else
+      call model%line_forces(now%motion%displacement, now%load_factor, loads)
+      if (allocated(model%pressure)) loads = loads + model%scene%pressure%amplitude(now%time)*model%pressure
+    end if
+  end function loads_on
 
   !> Row of the state reached. Collective.
   function row_of(model, stepper) result(row)
@@ -72,16 +127,16 @@ contains
     type(time_stepper_t), intent(in) :: stepper
     !> Values in the order of the columns
     real(wp), allocatable :: row(:)
-    real(wp) :: load
+    real(wp), allocatable :: loads(:, :)
 
     associate (now => stepper%now)
-      load = now%time
-      if (.not. model%scene%has_static) load = model%scene%pressure%amplitude(now%time)
+      loads = loads_on(model, now)
       row = [motion_values(now), area_values(model, now%interfaces), ledger_values(now%ledger), &
              step_values(now, stepper%controller%last), &
              release_values(model, now%interfaces, now%motion%displacement), iteration_values(now, stepper%rejected), &
              operator_values(stepper%operator), ply_values(model, now%plies), border_values(model, now%interfaces), &
-             rig_values(model, now%interfaces, now%motion, load), interface_values(model, now%interfaces)]
+             rig_values(model, now%interfaces, now%motion, loads), interface_values(model, now%interfaces), &
+             line_values(model, now)]
     end associate
     row(1) = shown_time(row(1))
   end function row_of

@@ -104,8 +104,8 @@ contains
     call retire_checkpoint(communicator, self%base//checkpoint_ending, retired, error)
     if (allocated(error)) return
     if (retired /= '') call self%log%note('The checkpoint of an earlier run is now '//retired//'.')
-    call self%history%create(communicator, self%base//'_history.csv', column_names(deck%delaminations), &
-                             column_whole(size(deck%delaminations)), error)
+    call self%history%create(communicator, self%base//'_history.csv', column_names(deck%delaminations, deck%lines), &
+                             column_whole(size(deck%delaminations), size(deck%lines)), error)
     if (allocated(error)) return
     call self%fields%create(communicator, self%base, self%provenance, part_of(self%deck), error)
     if (allocated(error)) return
@@ -199,8 +199,8 @@ contains
     call self%fields%check_deck(communicator, self%base, deck%text, error)
     if (allocated(error)) return
     last_row = self%history%last_row
-    call self%history%resume(communicator, self%base//'_history.csv', column_names(deck%delaminations), &
-                             column_whole(size(deck%delaminations)), rows, last_row, error)
+    call self%history%resume(communicator, self%base//'_history.csv', column_names(deck%delaminations, deck%lines), &
+                             column_whole(size(deck%delaminations), size(deck%lines)), rows, last_row, error)
     if (allocated(error)) return
     if (self%history%rows /= rows) &
       call self%log%warning('The history before the checkpoint is not there; it goes on from here.')

@@ -3,7 +3,7 @@
 module cohesive_faces
   use cohesive_laws, only: cohesive_law_t, stiffness_of
   use cohesive_points, only: cohesive_point_t, cohesive_reach, cohesive_traction, grown_damage, stored_energy
-  use cohesive_tangents, only: cohesive_tangent, operator_stiffness
+  use cohesive_tangents, only: cohesive_tangent, operator_stiffness, traction_slopes
   use kinds, only: wp
   implicit none
   private
@@ -20,7 +20,8 @@ module cohesive_faces
     procedure :: traction
     !> Energy per area that the jumps store.
     procedure :: stored
-    !> Derivative of the traction.
+    !> Derivative of the traction, whole and made symmetric.
+    procedure :: slopes
     procedure :: tangent
     !> Slopes of a line through the origin and the traction: never below those of the tangent.
     procedure :: secant
@@ -59,6 +60,21 @@ contains
     stored = stored_energy(self%law, jumps, point)
     if (pressed(self, jumps)) stored = stored + self%law%stiffness_opening*jumps(3)**2/2
   end function stored
+
+  !> Derivative of the traction.
+  pure function slopes(self, jumps, old)
+    !> The faces
+    class(cohesive_faces_t), intent(in) :: self
+    !> Two shears and opening
+    real(wp), intent(in) :: jumps(3)
+    !> The point in the last accepted state
+    type(cohesive_point_t), intent(in) :: old
+    !> Derivatives of each traction (row) by each jump (column)
+    real(wp) :: slopes(3, 3)
+
+    slopes = traction_slopes(self%law, jumps, cohesive_reach(self%law, jumps, 0.0_wp), old)
+    if (pressed(self, jumps)) slopes(3, 3) = self%law%stiffness_opening
+  end function slopes
 
   !> Derivative of the traction, its symmetric part.
   pure function tangent(self, jumps, old)

@@ -3,11 +3,11 @@
 module cohesive_tangents
   use cohesive_laws, only: cohesive_law_t, stiffness_of
   use cohesive_points, only: cohesive_point_t, cohesive_reach_t, cohesive_reach, grown_damage, point_class, &
-                             point_growing, point_failed
+                             share_growth, point_growing, point_failed
   use kinds, only: wp
   implicit none
   private
-  public :: cohesive_tangent, operator_stiffness, traction_slopes, toughness_slopes
+  public :: cohesive_tangent, operator_stiffness, traction_slopes, toughness_slopes, dissipation_slopes
 
 contains
 
@@ -53,13 +53,50 @@ contains
     end do
     if (jumps(3) < 0) slopes(3, 3) = 0
     if (point_class(old, new) /= point_growing) return
-    ! With the jumps over their size nothing here over- or underflows.
-    growth = stiffness*reach%unit/reach%unit_energy - toughness_slopes(law, reach)/reach%toughness
-    growth = growth*law%failure_ratio/(2*(law%failure_ratio - 1)*reach%ratio)
+    growth = damage_slopes(law, reach)
     do i = 1, 3
       slopes(:, i) = slopes(:, i) - stiffness*reach%unit*growth(i)
     end do
   end function traction_slopes
+
+  !> Derivative of growing damage by the jumps over their size: with these nothing over- or underflows.
+  pure function damage_slopes(law, reach) result(slopes)
+    !> The law
+    type(cohesive_law_t), intent(in) :: law
+    !> Place of the jumps on the curve
+    type(cohesive_reach_t), intent(in) :: reach
+    !> Damage per jump over its size
+    real(wp) :: slopes(3)
+
+    slopes = stiffness_of(law)*reach%unit/reach%unit_energy - toughness_slopes(law, reach)/reach%toughness
+    slopes = slopes*law%failure_ratio/(2*(law%failure_ratio - 1)*reach%ratio)
+  end function damage_slopes
+
+  !> Derivative of the energy dissipated, G_c (phi(d) - phi(d_old)): nothing unless damage grows.
+  pure function dissipation_slopes(law, jumps, pressure, old) result(slopes)
+    !> The law
+    type(cohesive_law_t), intent(in) :: law
+    !> Two shears and opening
+    real(wp), intent(in) :: jumps(3)
+    !> Contact pressure of the last accepted state
+    real(wp), intent(in) :: pressure
+    !> The point in the last accepted state
+    type(cohesive_point_t), intent(in) :: old
+    !> Energy per area by jump
+    real(wp) :: slopes(3)
+    type(cohesive_reach_t) :: reach
+    type(cohesive_point_t) :: new
+    real(wp) :: remainder
+
+    slopes = 0
+    reach = cohesive_reach(law, jumps, pressure)
+    new%damage = grown_damage(law, reach, old)
+    if (point_class(old, new) /= point_growing) return
+    remainder = law%failure_ratio*(1 - new%damage) + new%damage
+    slopes = toughness_slopes(law, reach)*share_growth(law, old%damage, new%damage) + &
+             reach%toughness*law%failure_ratio/remainder**2*damage_slopes(law, reach)
+    slopes = slopes/reach%size
+  end function dissipation_slopes
 
   !> Derivative of the toughness by the jumps over their size: eta (G_II - G_I) B**eta (dS/S - dY/Y) with S the energy
   !> of shear, 0 where there is none.

@@ -31,13 +31,15 @@ contains
 
   !> The region of a zone with the starter as its only delamination. The starter takes the cells whose
   !> middle lies in its square; a starter smaller than a cell takes those that touch the struck point.
-  pure function create_region(mesh, zone, starter) result(self)
+  pure function create_region(mesh, zone, starter, strip) result(self)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Index of the zone
     integer, intent(in) :: zone
     !> Side of the starter, of the whole plate; 0: none
     real(wp), intent(in) :: starter
+    !> First and last x of a starter across the zone's width; none unless the first is smaller
+    real(wp), intent(in), optional :: strip(2)
     !> The region
     type(delaminated_region_t) :: self
     integer :: columns(2), rows(2)
@@ -46,6 +48,7 @@ contains
     self%columns = mesh%zones(zone)%columns
     self%rows = mesh%zones(zone)%rows
     allocate (self%delaminated(self%columns(1):self%columns(2), self%rows(1):self%rows(2)), source=.false.)
+    if (present(strip)) call delaminate_strip(self, mesh%x_edges - mesh%struck(1), strip)
     if (.not. starter > 0) return
     columns = cells_within(mesh%x_edges - mesh%struck(1), starter)
     rows = cells_within(mesh%y_edges - mesh%struck(2), starter)
@@ -53,6 +56,23 @@ contains
     rows = [max(rows(1), self%rows(1)), min(rows(2), self%rows(2))]
     self%delaminated(columns(1):columns(2), rows(1):rows(2)) = .true.
   end function create_region
+
+  !> Delaminates the cells of a zone whose middle lies in a strip across it.
+  pure subroutine delaminate_strip(self, x_edges, strip)
+    !> The region
+    type(delaminated_region_t), intent(inout) :: self
+    !> Edges of all columns of cells, the struck point at 0
+    real(wp), intent(in) :: x_edges(:)
+    !> First and last x
+    real(wp), intent(in) :: strip(2)
+    integer :: column
+
+    do column = self%columns(1), self%columns(2)
+      associate (middle => (x_edges(column) + x_edges(column + 1))/2)
+        if (middle > strip(1) .and. middle < strip(2)) self%delaminated(column, :) = .true.
+      end associate
+    end do
+  end subroutine delaminate_strip
 
   !> First and last of the cells whose middle lies within an extent centred on the struck point;
   !> at least those that touch the struck point.

@@ -20,7 +20,7 @@ module delamination_deck
 
   !> Names that checks across groups use.
   character(len=*), parameter, public :: key_zone = 'zone', key_starter = 'starter', key_toughness = 'G_c', &
-                                         key_toughness_shear = 'G_IIc'
+                                         key_toughness_shear = 'G_IIc', key_strip = 'starter_strip'
   character(len=*), parameter :: group = delamination_group
   !> Keys that have no effect on a cohesive interface.
   character(len=*), parameter :: keys_of_fronts = &
@@ -45,6 +45,8 @@ module delamination_deck
       &Full extents of the layered rectangle along x and y, centred on the struck point.', &
     'delamination | starter | real | 1 | length | = 0.05 % of the plate, with law = cohesive none | > 0 | &
       &Side of the square starter delamination, centred on the struck point.', &
+    'delamination | starter_strip | real | 2 | length | none | any | &
+      &First and last x of a starter across the whole width of the zone, from the struck point; instead of starter.', &
     'delamination | law | choice | 1 | - | = cohesive; front with a starter or without strengths | front cohesive | &
       &Ties that a front releases by its energy release rate, or tractions against the jumps of the faces.', &
     'delamination | strength_opening | real | 1 | pressure | = YT of the weaker ply beside it | > 0 | &
@@ -113,7 +115,8 @@ contains
     !> Receives it; its law is known
     type(delamination_t), intent(inout) :: delamination
 
-    delamination%starter = merge(starter, 0.0_wp, delamination%law == law_front)
+    delamination%starter = merge(starter, 0.0_wp, delamination%law == law_front .and. &
+                                 .not. settings%is_given(group, key_strip, place))
     if (.not. settings%is_given(group, key_starter, place)) &
       call settings%derive(group, key_starter, to_text(delamination%starter), .false., place)
     associate (s => settings, d => delamination)
@@ -123,6 +126,7 @@ contains
       d%mixing_exponent = s%real_of(group, 'eta', place)
       if (s%is_known(group, key_zone, place)) d%zone = s%reals_of(group, key_zone, place)
       if (s%is_given(group, key_starter, place)) d%starter = s%real_of(group, key_starter, place)
+      if (s%is_given(group, key_strip, place)) d%starter_strip = s%reals_of(group, key_strip, place)
       d%penalty_stiffness = s%real_of(group, 'penalty', place)
       d%contact_exponent = s%real_of(group, 'contact_exponent', place)
     end associate
@@ -240,6 +244,7 @@ contains
       call check_toughness(settings, delaminations(i), place, problems)
       call check_strengths(settings, delaminations(i), place, problems)
       call remark_idle_keys(settings, delaminations(i), place, problems)
+      call check_strip(settings, delaminations(i), place, problems)
       if (delaminations(i)%starter >= minval(delaminations(i)%zone) .and. &
           are_clear(settings, problems, group, key_zone//' '//key_starter, place)) &
         call tell(settings, problems, group, '', 'the starter must be smaller than the zone.', place)
@@ -252,6 +257,26 @@ contains
                   'interface once, in order from the struck face.', delaminations(i)%group)
     end do
   end subroutine check_delaminations
+
+  !> A strip from a smaller x to a larger one, and no square beside it.
+  subroutine check_strip(settings, delamination, place, problems)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+    !> The interface
+    type(delamination_t), intent(in) :: delamination
+    !> Which of the groups
+    integer, intent(in) :: place
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+
+    if (.not. settings%is_given(group, key_strip, place)) return
+    if (.not. are_clear(settings, problems, group, key_strip//' '//key_starter, place)) return
+    if (settings%is_given(group, key_starter, place)) then
+      call tell(settings, problems, group, key_strip, 'a starter is a square or a strip; leave one of them out.', place)
+    else if (.not. delamination%starter_strip(1) < delamination%starter_strip(2)) then
+      call tell(settings, problems, group, key_strip, 'the first x must be smaller than the second.', place)
+    end if
+  end subroutine check_strip
 
   !> Toughnesses that go together, and that the energy release rate can be held against.
   subroutine check_toughness(settings, delamination, place, problems)

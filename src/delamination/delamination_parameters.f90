@@ -41,6 +41,8 @@ module delamination_parameters
     real(wp) :: zone(2) = 0
     !> Side of the square starter, centred on the struck point
     real(wp) :: starter = 0
+    !> First and last x of a starter across the whole width of the zone, if the first is smaller
+    real(wp) :: starter_strip(2) = 0
     !> law_front or law_cohesive
     integer :: law = law_front
     !> Strengths of the cohesive law in opening and shear

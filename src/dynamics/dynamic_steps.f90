@@ -79,6 +79,7 @@ contains
     type(state_t), intent(inout) :: new
 
     new%time = old%time + self%step
+    new%load_factor = new%time/model%scene%ramp_time
     call new%interfaces%ties%fade(model, self%step)
     if (model%scene%has_impactor) self%coupling = begin_coupling(model, self%integrator, old, self%step)
     if (allocated(self%guess)) then
@@ -110,6 +111,7 @@ contains
     real(wp), intent(inout) :: residual(:, :)
     !> Strain energy of this rank's elements
     real(wp), intent(out) :: energy
+    real(wp), allocatable :: lines(:, :), lines_before(:, :)
     real(wp) :: amplitude
 
     call new%find_internal(model, old, energy)
@@ -118,6 +120,12 @@ contains
       residual = -(1 - m)*new%motion%inertia - m*old%motion%inertia - (1 - f)*new%motion%internal &
                  - f*old%motion%internal
       residual(3, :) = residual(3, :) + self%coupling%load()/model%mesh%multiplicity*model%patch
+      if (size(model%lines) > 0) then
+        allocate (lines, lines_before, mold=residual)
+        call model%line_forces(new%motion%displacement, new%load_factor, lines)
+        call model%line_forces(old%motion%displacement, old%load_factor, lines_before)
+        residual = residual + (1 - f)*lines + f*lines_before
+      end if
       if (.not. allocated(model%pressure)) return
       amplitude = (1 - f)*model%scene%pressure%amplitude(new%time) + f*model%scene%pressure%amplitude(old%time)
       residual(3, :) = residual(3, :) + amplitude*model%pressure(3, :)

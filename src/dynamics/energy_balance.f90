@@ -22,6 +22,8 @@ module energy_balance
     real(wp) :: jerk_new = 0, jerk_old = 0, jerk_change = 0
     !> Work of the forces between faces
     real(wp) :: faces = 0
+    !> Change of displacement times mean force and change of force of the lines
+    real(wp) :: lines = 0, lines_change = 0
   end type products_t
 
 contains
@@ -49,7 +51,7 @@ contains
     new%ledger%kinetic = products%kinetic/2
     new%ledger%strain = products%strain
     new%ledger%contact = old%ledger%contact - products%faces
-    new%ledger%external_work = old%ledger%external_work + sum(amplitudes)/2*products%pressure
+    new%ledger%external_work = old%ledger%external_work + sum(amplitudes)/2*products%pressure + products%lines
     gain = integrator_gain(integrator, step, products, amplitudes(2) - amplitudes(1)) &
            + (products%strain - old%ledger%strain - products%mean_internal)
     new%ledger%algorithmic = old%ledger%algorithmic - gain
@@ -88,7 +90,7 @@ contains
     real(wp), intent(in) :: pressure_change
 
     associate (m => integrator%alpha_m, f => integrator%alpha_f, beta => integrator%beta, gamma => integrator%gamma)
-      gain = (0.5_wp - f)*(pressure_change*products%pressure - products%internal_change) &
+      gain = (0.5_wp - f)*(pressure_change*products%pressure + products%lines_change - products%internal_change) &
              + (gamma - 1 + m)*products%inertia_change &
              - step**2*(beta - gamma/2)*((products%jerk_new - products%jerk_old)/2 &
                                          + (gamma - 0.5_wp)*products%jerk_change)
@@ -107,7 +109,7 @@ contains
     !> The products
     type(products_t) :: products
     real(wp), allocatable :: momentum(:, :)
-    real(wp) :: sums(10)
+    real(wp) :: sums(12)
 
     allocate (momentum, mold=old%motion%displacement)
     call model%inertia(new%motion%velocity, momentum)
@@ -118,12 +120,31 @@ contains
       sums(9) = model%product(new%motion%displacement - old%motion%displacement, model%pressure)
     if (model%has_bonds) sums(10) = new%interfaces%contact_work(model, new%motion%displacement, &
                                                                 new%motion%displacement - old%motion%displacement)
+    if (size(model%lines) > 0) sums(11:12) = line_products(model, old, new)
     call model%communicator%sum(sums)
     sums = sums*model%mesh%multiplicity
     products = products_t(kinetic=sums(1), mean_internal=sums(2)/2, internal_change=sums(3), inertia_change=sums(4), &
                           jerk_new=sums(5), jerk_old=sums(6), jerk_change=sums(7), strain=sums(8), pressure=sums(9), &
-                          faces=sums(10))
+                          faces=sums(10), lines=sums(11), lines_change=sums(12))
   end function step_products
+
+  !> Change of displacement times mean force and times change of force of the lines, of this rank's points.
+  pure function line_products(model, old, new) result(sums)
+    type(model_t), intent(in) :: model
+    !> State at the start
+    type(state_t), intent(in) :: old
+    !> State at the end
+    type(state_t), intent(in) :: new
+    !> The products
+    real(wp) :: sums(2)
+    real(wp), allocatable :: before(:, :), after(:, :), change(:, :)
+
+    allocate (before, after, mold=old%motion%displacement)
+    call model%line_forces(old%motion%displacement, old%load_factor, before)
+    call model%line_forces(new%motion%displacement, new%load_factor, after)
+    change = new%motion%displacement - old%motion%displacement
+    sums = [model%product(change, before + after)/2, model%product(change, after - before)]
+  end function line_products
 
   !> Products of fields over this rank's points, in one pass over them: v.Mv at the end; change of displacement times
   !> sum and change of internal force and times change of inertia force; a.Ma at the end and at the start; change of a

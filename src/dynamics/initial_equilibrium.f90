@@ -44,6 +44,7 @@ contains
     do iteration = 0, most_iterations
       call state%find_internal(model, before, energy)
       residual = -state%motion%internal
+      call model%add_holding_lines(state%motion%displacement, residual)
       call state%interfaces%act(model, state%motion%displacement, residual)
       if (iteration == 0) suppressing = state%motion%internal
       if (relative_residual(model%communicator, operator%numbering, residual, suppressing, suppressing, force_square, &

@@ -6,6 +6,7 @@ module states
   use impactors, only: impactor_t, new_impactor, impactor_energy
   use tan_sun_indentation, only: indentation_t
   use energy_ledgers, only: ledger_t
+  use load_paths, only: load_path_t
   use motions, only: motion_t
   use models, only: model_t
   use ply_failures, only: ply_failure_t, new_ply_failure
@@ -21,6 +22,10 @@ module states
     real(wp) :: time = 0
     !> Accepted steps
     integer :: step = 0
+    !> Ramps of lines over their full values; in a static analysis all loads
+    real(wp) :: load_factor = 0
+    !> How a static analysis got here
+    type(load_path_t) :: path
     !> Motion of the plate
     type(motion_t) :: motion
     !> The impactor
@@ -114,6 +119,8 @@ contains
 
     call archive%item('time', self%time)
     call archive%item('step', self%step)
+    call archive%item('load_factor', self%load_factor)
+    call self%path%visit(archive, model)
     call visit_motion(self%motion, archive, model)
     call self%impactor%visit(archive)
     call self%indentation%visit(archive)

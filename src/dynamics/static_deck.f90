@@ -1,30 +1,36 @@
 !> Load steps of a static analysis in the deck: rows of its table and their filling.
 module static_deck
   use deck_settings, only: settings_t
+  use kinds, only: wp
   use deck_vocabulary, only: group_row_length, key_row_length
   implicit none
   private
   public :: fill_static
 
   !> Name that checks across groups use.
-  character(len=*), parameter, public :: static_group = 'static'
+  character(len=*), parameter, public :: static_group = 'static', key_dissipation = 'dissipation'
   !> Row of the group.
   character(len=group_row_length), parameter, public :: static_group_row = &
-    'static | optional | Load steps in equilibrium instead of time; takes the pressure as load.'
+    'static | optional | Load steps in equilibrium instead of time; takes pressure and lines as load.'
   !> Rows of the keys.
   character(len=key_row_length), parameter, public :: static_rows(*) = [character(len=key_row_length) :: &
     'static | steps | integer | 1 | - | 1 | >= 1, <= 100000 | &
-      &Equal steps in which the load is put on.']
+      &Equal steps in which the load is put on.', &
+    'static | dissipation | real | 1 | energy | none | > 0 | &
+      &Energy dissipated by cohesive interfaces at which the run ends; given: steps are taken by it as damage grows.']
 
 contains
 
   !> Load steps.
-  subroutine fill_static(settings, steps)
+  subroutine fill_static(settings, steps, dissipation)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> Their number
     integer, intent(out) :: steps
+    !> Energy dissipated at the end; 0: not given
+    real(wp), intent(out) :: dissipation
 
     steps = settings%integer_of(static_group, 'steps')
+    dissipation = settings%real_of(static_group, key_dissipation)
   end subroutine fill_static
 end module static_deck

@@ -4,22 +4,28 @@ module static_steps
   use kinds, only: wp
   use errors, only: error_t
   use plate_options, only: kinematics_linear
-  use delamination_parameters, only: contact_none
+  use delamination_parameters, only: contact_none, law_cohesive
   use stepping_parameters, only: equilibrium_t
   use models, only: model_t
   use states, only: state_t
   use step_problems, only: step_problem_t
   use residual_norms, only: relative_residual
+  use skew_corrections, only: follow_skew
   use tangent_operators, only: tangent_operator_t
   implicit none
   private
-  public :: static_step_t, new_static_step
+  public :: static_step_t, new_static_step, part_taken
 
   !> Distance of pressures and gaps from contact (complementarity) at which they have settled.
   real(wp), parameter :: contact_tolerance = 5.0e-10_wp
 
+  !> Iterations in which a step with the consistent tangent converges unless it goes round.
+  integer, parameter :: usual_iterations = 8
+
   !> A load step.
   type, extends(step_problem_t) :: static_step_t
+    !> Time at the end of the step: how far the run has come
+    real(wp) :: time = 0
     !> Load over the full load
     real(wp) :: load_factor = 0
   contains
@@ -36,8 +42,10 @@ module static_steps
 contains
 
   !> The step to a load.
-  pure function new_static_step(model, load_factor) result(self)
+  pure function new_static_step(model, time, load_factor) result(self)
     type(model_t), intent(in) :: model
+    !> Time at the end of the step
+    real(wp), intent(in) :: time
     !> Load over the full load
     real(wp), intent(in) :: load_factor
     !> The problem
@@ -45,6 +53,7 @@ contains
 
     self%contact_tolerance = contact_tolerance
     self%curable = model%scene%kinematics /= kinematics_linear
+    self%time = time
     self%load_factor = load_factor
   end function new_static_step
 
@@ -60,7 +69,8 @@ contains
     !> State at this load
     type(state_t), intent(inout) :: new
 
-    new%time = self%load_factor
+    new%time = self%time
+    new%load_factor = self%load_factor
     new%iterations = 0
     new%contact_iterations = 0
   end subroutine begin
@@ -80,7 +90,8 @@ contains
     real(wp), intent(out) :: energy
 
     call new%find_internal(model, old, energy)
-    residual = self%load_factor*model%pressure - new%motion%internal
+    call model%static_loads(new%motion%displacement, new%load_factor, residual)
+    residual = residual - new%motion%internal
   end subroutine find_residual
 
   !> Residual relative to internal forces and load.
@@ -96,9 +107,12 @@ contains
     real(wp), intent(in) :: residual(:, :)
     !> State at this load; remembers its largest forces
     type(state_t), intent(inout) :: new
+    real(wp), allocatable :: loads(:, :)
 
+    allocate (loads, mold=residual)
+    call model%static_loads(new%motion%displacement, new%load_factor, loads)
     residual_norm = relative_residual(model%communicator, operator%numbering, residual, new%motion%internal, &
-                                      self%load_factor*model%pressure, 0.0_wp, &
+                                      loads, 0.0_wp, &
                                       operator%diagonal*new%motion%displacement, equilibrium%tolerance, &
                                       model%thickness, new%largest_forces)
   end function residual_norm
@@ -140,6 +154,7 @@ contains
     integer, intent(in) :: iterations
 
     changes = model%scene%kinematics /= kinematics_linear .or. model%rig%unilateral
+    if (model%map%layered) changes = changes .or. any(model%scene%delaminations%law == law_cohesive)
     ! Plies may have failed since the step before; later only contacts change.
     if (.not. changes) changes = iterations == 0 .and. (model%scene%has_ply_damage .or. model%map%layered)
     changes = changes .or. model%scene%has_crack_bands()
@@ -147,7 +162,7 @@ contains
     changes = any(model%scene%delaminations%contact /= contact_none)
   end function changes
 
-  !> Keeps held jumps as they are.
+  !> Keeps held jumps as they are, and minds that tangents are unsymmetric.
   subroutine improve(self, model, operator, old, new, correction, error)
     !> The problem
     class(static_step_t), intent(inout) :: self
@@ -160,11 +175,23 @@ contains
     type(state_t), intent(inout) :: new
     !> Correction of the displacement, (5, points)
     real(wp), intent(inout) :: correction(:, :)
-    !> Never set
+    !> Set if a solve fails
     type(error_t), allocatable, intent(inout) :: error
 
+    call follow_skew(operator, model, new%interfaces%cohesive, correction, error)
     call new%interfaces%faces%hold(model, correction)
+    correction = part_taken(new%iterations)*correction
   end subroutine improve
+
+  !> Part of a correction that is taken. Newton's iteration may go round between two sets of points whose damage grows;
+  !> halving every other correction, once there have been more than it takes to converge, ends that.
+  elemental real(wp) function part_taken(iterations) result(part)
+    !> Iterations of the step so far
+    integer, intent(in) :: iterations
+
+    part = 1
+    if (iterations >= usual_iterations .and. modulo(iterations, 2) == 0) part = 0.5_wp
+  end function part_taken
 
   !> Nothing moves.
   subroutine complete(self, old, new)
@@ -188,12 +215,15 @@ contains
     !> State at this load
     type(state_t), intent(inout) :: new
     real(wp) :: sums(5), faces, fracture, damage
-    real(wp), allocatable :: change(:, :)
+    real(wp), allocatable :: change(:, :), loads(:, :), loads_before(:, :)
 
+    allocate (loads, loads_before, mold=old%motion%internal)
+    call model%static_loads(new%motion%displacement, new%load_factor, loads)
+    call model%static_loads(old%motion%displacement, old%load_factor, loads_before)
     change = new%motion%displacement - old%motion%displacement
     sums(1) = energy
     sums(2) = model%product(change, new%motion%internal + old%motion%internal)/2
-    sums(3) = (new%time + old%time)/2*model%product(change, model%pressure)
+    sums(3) = model%product(change, loads + loads_before)/2
     sums(4:5) = 0
     if (model%has_bonds) then
       faces = old%interfaces%contact_work(model, old%motion%displacement, change)
@@ -201,7 +231,7 @@ contains
       sums(5) = faces/2
     end if
     ! Plies that failed left the state before out of equilibrium. What that sets free would go into motion.
-    sums(5) = sums(5) + model%product(change, old%time*model%pressure - old%motion%internal)/2
+    sums(5) = sums(5) + model%product(change, loads_before - old%motion%internal)/2
     if (.not. model%scene%has_ply_damage) sums(5) = 0
     call model%communicator%sum(sums)
     sums = sums*model%mesh%multiplicity

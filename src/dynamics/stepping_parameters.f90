@@ -57,6 +57,8 @@ module stepping_parameters
     type(time_t) :: time
     !> Load steps of a static analysis
     integer :: static_steps = 1
+    !> Energy dissipated at which a static analysis ends; 0: it is taken by load alone
+    real(wp) :: dissipation = 0
     !> Adaptivity
     type(adapt_t) :: adapt
     !> Convergence of equilibrium

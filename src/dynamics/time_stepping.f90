@@ -16,6 +16,7 @@ module time_stepping
   use step_problems, only: solve_step
   use dynamic_steps, only: dynamic_step_t, new_dynamic_step
   use static_steps, only: static_step_t, new_static_step
+  use dissipation_steps, only: dissipation_step_t, new_dissipation_step
   use struck_stresses, only: struck_stress
   use front_growth, only: find_release_ratio
   use growth_in_steps, only: grow_in_step, grows_by_steps
@@ -23,6 +24,9 @@ module time_stepping
   implicit none
   private
   public :: time_stepper_t
+
+  !> Largest energy that a step dissipates, over that of the step before: from it the first guess is made.
+  real(wp), parameter :: most_growth = 4
 
   !> All that evolves during a run.
   type :: time_stepper_t
@@ -49,6 +53,10 @@ module time_stepping
     procedure :: advance
     !> Smallest step worth trying.
     procedure :: smallest_step
+    !> Energy to be dissipated per time.
+    procedure, private :: energy_rate
+    !> Time of a step by dissipation over that of one by load.
+    procedure, private :: step_scale
     !> Saves or loads all that evolves.
     procedure :: visit
   end type time_stepper_t
@@ -71,6 +79,7 @@ contains
     allocate (self%now, source=new_state(model))
     allocate (self%trial, source=self%now)
     self%controller%wanted = 1.0_wp/self%stepping%static_steps
+    if (self%stepping%dissipation > 0) allocate (self%now%path%change, source=self%now%motion%displacement)
     call self%operator%create(model, linear_solver%factorization, error)
     if (.not. allocated(error) .and. model%scene%has_thermal) &
       call find_initial_equilibrium(model, self%operator, self%now, error)
@@ -78,23 +87,30 @@ contains
     self%integrator = plate_integrator(self%stepping%time)
     self%operator%condenses = allocated(self%now%interfaces%cohesive%cohesive)
     self%controller%wanted = self%stepping%time%step
-    if (allocated(model%pressure)) call start_acceleration(self, model, error)
+    if (allocated(model%pressure) .or. size(model%lines) > 0) call start_acceleration(self, model, error)
   end subroutine start
 
-  !> Acceleration of the plate under a pressure that is there from the start.
+  !> Acceleration of the plate under a pressure or lines that are there from the start.
   subroutine start_acceleration(self, model, error)
     !> The time stepper
     class(time_stepper_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Set if the mass matrix is singular
     type(error_t), allocatable, intent(out) :: error
+    real(wp), allocatable :: loads(:, :), held(:, :)
 
+    allocate (loads, held, mold=self%now%motion%displacement)
+    call model%line_forces(self%now%motion%displacement, 0.0_wp, loads)
+    ! Those that hold the plate are already in equilibrium with its residual stresses.
+    held = 0
+    if (model%scene%has_thermal) call model%add_holding_lines(self%now%motion%displacement, held)
+    loads = loads - held
+    if (allocated(model%pressure)) loads = loads + model%scene%pressure%amplitude(0.0_wp)*model%pressure
     associate (motion => self%now%motion)
       call self%operator%renew(model, self%now%plies%stiffness, self%now%interfaces, motion%displacement, &
                                0.0_wp, 1.0_wp, error)
       if (allocated(error)) return
-      call self%operator%correct(model, model%scene%pressure%amplitude(0.0_wp)*model%pressure, &
-                                 motion%acceleration, error)
+      call self%operator%correct(model, loads, motion%acceleration, error)
       call model%inertia(motion%acceleration, motion%inertia)
     end associate
     self%operator%ready = .false.
@@ -124,7 +140,8 @@ contains
       self%rejected = self%rejected + 1
       call self%controller%reject(step)
       self%operator%ready = .false.
-      if (step <= self%smallest_step(model)*(1 + 1.0e-9_wp)) then
+      if (self%stepping%dissipation > 0) self%now%path%by_dissipation = self%now%path%dissipated > 0
+      if (step <= self%smallest_step(model)*self%step_scale()*(1 + 1.0e-9_wp)) then
         call fail(error, exit_convergence, 'No equilibrium from time '//rounded_text(self%now%time)// &
                   ' on with the smallest step, '//rounded_text(step)//'.')
         return
@@ -146,7 +163,7 @@ contains
     logical :: converged
 
     do while (self%now%plies%softened)
-      problem = new_static_step(model, self%now%time)
+      problem = new_static_step(model, self%now%time, self%now%load_factor)
       call solve_step(problem, model, self%stepping%equilibrium, self%operator, self%now, self%trial, converged, error)
       if (.not. (allocated(error) .or. converged)) &
         call fail(error, exit_convergence, 'No equilibrium at '//rounded_text(self%now%time)// &
@@ -234,12 +251,60 @@ contains
     logical, intent(out) :: converged
     !> Set if the solver fails for good
     type(error_t), allocatable, intent(out) :: error
-    type(static_step_t) :: problem
+    type(static_step_t) :: by_load
+    type(dissipation_step_t) :: by_dissipation
+    real(wp) :: wanted
 
-    step = self%controller%propose(event - self%now%time, huge(step))
-    problem = new_static_step(model, self%now%time + step)
-    call solve_step(problem, model, self%stepping%equilibrium, self%operator, self%now, self%trial, converged, error)
+    step = self%controller%propose((event - self%now%time)/self%step_scale(), huge(step))*self%step_scale()
+    associate (now => self%now)
+      if (now%path%by_dissipation) then
+        wanted = self%energy_rate()*step
+        if (wanted > most_growth*now%path%dissipated) step = step*most_growth*now%path%dissipated/wanted
+        by_dissipation = new_dissipation_step(model, now%time + step, self%energy_rate()*step)
+        call solve_step(by_dissipation, model, self%stepping%equilibrium, self%operator, now, self%trial, converged, &
+                        error)
+        ! Farther away there are other branches of equilibrium, which no path leads to.
+        if (converged) converged = abs(self%trial%load_factor - now%load_factor) <= 1.0_wp/self%stepping%static_steps
+      else
+        by_load = new_static_step(model, now%time + step, now%load_factor + step)
+        call solve_step(by_load, model, self%stepping%equilibrium, self%operator, now, self%trial, converged, error)
+      end if
+    end associate
   end subroutine try_load
+
+  !> Energy that is to be dissipated per time from now on, so that at the end it is what the deck asks for.
+  pure real(wp) function energy_rate(self)
+    !> The stepper
+    class(time_stepper_t), intent(in) :: self
+
+    energy_rate = max(0.0_wp, self%stepping%dissipation - self%now%ledger%delamination)/(1 - self%now%time)
+  end function energy_rate
+
+  !> Time of a step that dissipates its part of the energy asked for, over that of a step taken by load; 1 for these.
+  pure real(wp) function step_scale(self)
+    !> The stepper
+    class(time_stepper_t), intent(in) :: self
+
+    step_scale = 1
+    if (self%now%path%by_dissipation) step_scale = self%stepping%dissipation/self%energy_rate()
+  end function step_scale
+
+  !> Notes how a load step went, and by what the next is taken: the load or the energy dissipated, whichever went on
+  !> by a larger part of all that the deck asks for.
+  subroutine note_path(self, step)
+    !> The time stepper
+    class(time_stepper_t), intent(inout) :: self
+    !> Step taken
+    real(wp), intent(in) :: step
+
+    if (.not. (self%stepping%dissipation > 0 .and. step > 0)) return
+    associate (now => self%now, trial => self%trial)
+      trial%path%change = trial%motion%displacement - now%motion%displacement
+      trial%path%factor_change = trial%load_factor - now%load_factor
+      trial%path%dissipated = trial%ledger%delamination - now%ledger%delamination
+      trial%path%by_dissipation = trial%path%dissipated > self%stepping%dissipation*trial%path%factor_change
+    end associate
+  end subroutine note_path
 
   !> Makes the state tried the state reached.
   subroutine accept(self, model, step)
@@ -253,6 +318,7 @@ contains
     real(wp) :: change
     logical :: extended
 
+    call note_path(self, step)
     self%trial%stress = struck_stress(model, self%trial%motion%displacement)
     self%trial%largest_stress = max(self%now%largest_stress, self%trial%stress)
     change = 0

@@ -10,6 +10,7 @@ module cohesive_interfaces
   use cohesive_laws, only: stiffness_of
   use cohesive_faces, only: cohesive_faces_t
   use cohesive_points, only: cohesive_point_t, dissipated_share, mode_mixity
+  use cohesive_tangents, only: dissipation_slopes
   use models, only: model_t
   implicit none
   private
@@ -23,11 +24,15 @@ module cohesive_interfaces
     type(cohesive_point_t), allocatable :: points(:)
     !> Stiffness of the jumps for the factored operator, (3, local points)
     real(wp), allocatable :: stiffness(:, :)
+    !> Consistent tangents, which a static analysis takes instead, unsymmetric, (3, 3, local points)
+    real(wp), allocatable :: tangents(:, :, :)
   contains
     !> Adds the forces of the tractions on the jumps.
     procedure :: add_forces
     !> Energy dissipated since an earlier state.
     procedure :: dissipation
+    !> Derivative of that energy.
+    procedure :: add_dissipation_slopes
     !> Area and energy dissipated.
     procedure :: area
     procedure :: energy => dissipated_energy
@@ -62,6 +67,7 @@ contains
     allocate (self%cohesive(size(model%zone)), source=.false.)
     allocate (self%points(size(model%zone)))
     allocate (self%stiffness(3, size(model%zone)), source=0.0_wp)
+    if (model%scene%has_static) allocate (self%tangents(3, 3, size(model%zone)), source=0.0_wp)
     do i = 1, size(model%zone)
       if (model%zone(i) == 0) cycle
       self%cohesive(i) = model%scene%delaminations(model%zone(i))%law == law_cohesive
@@ -97,10 +103,45 @@ contains
         call faces%traction(jumps, old%points(i), traction, self%points(i))
         self%stiffness(:, i) = area*faces%diagonal(jumps, old%points(i))
         energy = energy + area*faces%stored(jumps, self%points(i))
+        if (allocated(self%tangents)) call take_tangent(self, i, area*faces%slopes(jumps, old%points(i)))
         force(1:3, i) = force(1:3, i) + area*traction
       end associate
     end do
   end subroutine add_forces
+
+  !> Takes a consistent tangent for the operator.
+  pure subroutine take_tangent(self, i, tangent)
+    !> The interfaces
+    class(cohesive_interfaces_t), intent(inout) :: self
+    !> Point of this rank
+    integer, intent(in) :: i
+    !> Force per jump
+    real(wp), intent(in) :: tangent(3, 3)
+    integer :: k
+
+    self%tangents(:, :, i) = tangent
+    self%stiffness(:, i) = [(tangent(k, k), k=1, 3)]
+  end subroutine take_tangent
+
+  !> Adds the derivative of the energy that this rank's points dissipate, by the unknowns.
+  pure subroutine add_dissipation_slopes(self, model, old, displacement, slopes)
+    !> The interfaces
+    class(cohesive_interfaces_t), intent(in) :: self
+    type(model_t), intent(in) :: model
+    !> The interfaces in the last accepted state
+    type(cohesive_interfaces_t), intent(in) :: old
+    !> Unknowns, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> Energy by unknowns of the owned points, (5, points)
+    real(wp), intent(inout) :: slopes(:, :)
+    integer :: i
+
+    if (.not. allocated(self%cohesive)) return
+    do i = 1, model%distribution%owned
+      if (self%cohesive(i)) slopes(1:3, i) = slopes(1:3, i) + model%contact_area(i) &
+        *dissipation_slopes(model%cohesive_laws(model%zone(i)), displacement(1:3, i), 0.0_wp, old%points(i))
+    end do
+  end subroutine add_dissipation_slopes
 
   !> Energy dissipated since an earlier state, of the whole plate, the same on every rank.
   real(wp) function dissipation(self, model, old) result(energy)

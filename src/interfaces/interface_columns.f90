@@ -90,18 +90,18 @@ contains
   end function border_values
 
   !> Forces of the rigs. Collective.
-  function rig_values(model, interfaces, motion, load) result(values)
+  function rig_values(model, interfaces, motion, loads) result(values)
     type(model_t), intent(in) :: model
     !> The interfaces
     type(interface_state_t), intent(in) :: interfaces
     !> The motion
     type(motion_t), intent(in) :: motion
-    !> Part of the deck's pressure that acts
-    real(wp), intent(in) :: load
+    !> Forces of pressure and lines at the owned points, (5, points)
+    real(wp), intent(in) :: loads(:, :)
     !> A value a column
     real(wp) :: values(size(rig_rows))
 
-    values = interfaces%rig%reactions(model, motion%displacement, motion%internal, motion%inertia, load)
+    values = interfaces%rig%reactions(model, motion%displacement, motion%internal, motion%inertia, loads)
   end function rig_values
 
   !> Figures of each interface, one interface after the other. Collective.

@@ -51,7 +51,8 @@ contains
     allocate (self%regions(size(model%mesh%zones)))
     allocate (self%fracture(size(model%mesh%zones)), source=0.0_wp)
     do zone = 1, size(self%regions)
-      self%regions(zone) = create_region(model%mesh, zone, model%scene%delaminations(zone)%starter)
+      self%regions(zone) = create_region(model%mesh, zone, model%scene%delaminations(zone)%starter, &
+                                           model%scene%delaminations(zone)%starter_strip)
     end do
     if (.not. model%map%layered) return
     allocate (self%free(size(model%zone)), source=.false.)

@@ -185,14 +185,14 @@ contains
 
   !> Forces of each rig on the whole plate, positive against the impact: what the equations of motion leave at the
   !> w that it holds, the pressure on its frame, and the springs of its clamps. The same on every rank.
-  function reactions(self, model, displacement, internal, inertia, load)
+  function reactions(self, model, displacement, internal, inertia, loads)
     !> The state
     class(rig_contact_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> Unknowns, internal forces and forces of inertia at the owned points, (5, points)
     real(wp), intent(in) :: displacement(:, :), internal(:, :), inertia(:, :)
-    !> Part of the deck's pressure that acts
-    real(wp), intent(in) :: load
+    !> Forces of pressure and lines at the owned points, (5, points)
+    real(wp), intent(in) :: loads(:, :)
     !> A force a rig, 0 for those that the deck does not have
     real(wp) :: reactions(most_supports)
     integer :: i
@@ -202,8 +202,7 @@ contains
     do i = 1, model%distribution%owned
       associate (holds => model%rig%holds(i), bears => model%rig%bears(i), clamps => model%rig%clamps(i))
         if (holds > 0) then
-          reactions(holds) = reactions(holds) - internal(3, i) - inertia(3, i)
-          if (allocated(model%pressure)) reactions(holds) = reactions(holds) + load*model%pressure(3, i)
+          reactions(holds) = reactions(holds) + loads(3, i) - internal(3, i) - inertia(3, i)
         else
           if (bears > 0) reactions(bears) = reactions(bears) + model%rig_area(i)*self%pressure(i)
           if (clamps > 0) reactions(clamps) = reactions(clamps) + model%rig%springs(3, i)*displacement(3, i)

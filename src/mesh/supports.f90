@@ -12,15 +12,15 @@ module supports
 contains
 
   !> Table of the unknowns held at zero by supports and symmetry, and of the whole membrane when it is idle.
-  pure function held_unknowns(mesh, plate, membrane_idle, adrift) result(held)
+  pure function held_unknowns(mesh, plate, membrane_idle, pin_plane) result(held)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Supports and symmetry
     type(plate_t), intent(in) :: plate
     !> True: nothing ever moves u and v, so they need no equations
     logical, intent(in) :: membrane_idle
-    !> True: hold rigid motion in the plane, which no support does
-    logical, intent(in) :: adrift
+    !> Rigid motions in the plane that no support holds: along x, along y, turning
+    logical, intent(in) :: pin_plane(3)
     !> (5, points): u, v, w, theta_x, theta_y
     logical, allocatable :: held(:, :)
     integer :: point
@@ -31,7 +31,7 @@ contains
       if (mesh%turned_node(mesh%point_node(point)) == mesh%point_node(point)) held([1, 2, 4, 5], point) = .true.
       if (membrane_idle) held(1:2, point) = .true.
     end do
-    if (adrift) call pin(mesh, held)
+    call pin(mesh, pin_plane, held)
   end function held_unknowns
 
   !> Unknowns held at a node by the borders it lies on.
@@ -79,18 +79,23 @@ contains
     if (in_plane_fixed) held(1:2) = .true.
   end function held_by_edge
 
-  !> Holds what symmetry leaves of the three rigid motions in the plane: at the struck node, and the turn at the node
-  !> beside it along x.
-  pure subroutine pin(mesh, held)
+  !> Holds what symmetry leaves of rigid motions in the plane: at the struck node, and the turn at the node beside it
+  !> along x.
+  pure subroutine pin(mesh, motions, held)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
+    !> Those to be held: along x, along y, turning
+    logical, intent(in) :: motions(3)
     !> Table of held unknowns
     logical, intent(inout) :: held(:, :)
     integer :: node
+    logical :: left(3)
 
+    left = motions .and. .not. [mesh%mirrored, any(mesh%mirrored)]
     node = mesh%struck_node
-    if (.not. mesh%mirrored(1)) held(1, mesh%first_point(node)) = .true.
-    if (.not. mesh%mirrored(2)) held(2, mesh%first_point(node)) = .true.
-    if (.not. any(mesh%mirrored)) held(2, mesh%first_point(node + 1)) = .true.
+    associate (here => mesh%first_point(node), beside => mesh%first_point(node + 1))
+      held(1:2, here) = held(1:2, here) .or. left(1:2)
+      held(2, beside) = held(2, beside) .or. left(3)
+    end associate
   end subroutine pin
 end module supports

@@ -21,7 +21,9 @@ module model_building
   use neighbourhoods, only: neighbourhood_of
   use supports, only: held_unknowns
   use rig_models, only: new_rig_model, hold_by_rigs
+  use line_loads, only: along_y
   use pressure_loads, only: distribution_sine
+  use placed_lines, only: place_line
   use models, only: model_t
   use scenes, only: scene_t
   implicit none
@@ -60,7 +62,8 @@ contains
     zones = zones_of(scene)
     self%mesh = create_mesh(scene%plate, scene%mesh, size(self%plies), zones)
     self%membrane_idle = scene%kinematics == kinematics_linear .and. size(zones) == 0 .and. &
-                         .not. (scene%has_ply_damage .or. scene%has_thermal) .and. uncoupled(self%section)
+                         .not. (scene%has_ply_damage .or. scene%has_thermal) .and. uncoupled(self%section) .and. &
+                         .not. any(lines_in_plane(scene))
     self%held = held_unknowns(self%mesh, scene%plate, self%membrane_idle, adrift(scene))
     if (allocated(scene%supports)) call hold_by_rigs(self%mesh, scene%plate, scene%supports, self%held)
     call distribute(self%mesh, communicator, self%distribution, error)
@@ -72,6 +75,7 @@ contains
     if (allocated(error)) return
     call build_loads(self)
     call build_interfaces(self)
+    call build_lines(self)
     if (allocated(scene%supports)) call build_rigs(self)
     self%has_bonds = self%map%layered .or. self%rig%unilateral .or. self%rig%elastic
     call find_struck_point(self)
@@ -90,19 +94,40 @@ contains
                 abs(section%mass(2)) <= 1.0e-12_wp*sqrt(section%mass(1)*section%mass(3))
   end function uncoupled
 
-  !> True if nothing holds a static plate in its own plane.
-  pure logical function adrift(scene)
+  !> Which rigid motions of a static plate in its own plane nothing holds: along x, along y, turning.
+  pure function adrift(scene)
     !> The scene
     type(scene_t), intent(in) :: scene
+    !> True: it has to be held unless symmetry does
+    logical :: adrift(3)
     integer :: i
 
     adrift = scene%has_static .and. scene%plate%symmetry /= symmetry_quarter .and. &
              (.not. scene%plate%in_plane_fixed .or. all(scene%plate%edges == edge_free))
-    if (.not. allocated(scene%supports)) return
-    do i = 1, size(scene%supports)
-      if (allocated(scene%supports(i)%clamps)) adrift = adrift .and. .not. scene%plate%in_plane_fixed
-    end do
+    if (allocated(scene%supports)) then
+      do i = 1, size(scene%supports)
+        if (allocated(scene%supports(i)%clamps)) adrift = adrift .and. .not. scene%plate%in_plane_fixed
+      end do
+    end if
+    if (.not. allocated(scene%lines)) return
+    associate (in_plane => lines_in_plane(scene), lines => scene%lines)
+      adrift(1) = adrift(1) .and. .not. any(in_plane .and. lines%component == 1)
+      adrift(2) = adrift(2) .and. .not. any(in_plane .and. lines%component == 2)
+      ! A line held across itself cannot turn.
+      adrift(3) = adrift(3) .and. .not. any(in_plane .and. (lines%component == 1 .eqv. lines%direction == along_y))
+    end associate
   end function adrift
+
+  !> Lines that hold or move the plate in its own plane.
+  pure function lines_in_plane(scene) result(in_plane)
+    !> The scene
+    type(scene_t), intent(in) :: scene
+    !> True for each such line
+    logical, allocatable :: in_plane(:)
+
+    allocate (in_plane(0))
+    if (allocated(scene%lines)) in_plane = scene%lines%prescribed .and. scene%lines%component <= 2
+  end function lines_in_plane
 
   !> Batches of this rank's elements, with their sections.
   subroutine build_elements(self, error)
@@ -193,6 +218,18 @@ contains
     call add_pressure(self%elements, pressure, self%pressure)
     call self%halo%accumulate(self%pressure)
   end subroutine build_pressure
+
+  !> Lines on this rank's points.
+  subroutine build_lines(self)
+    !> The model, with its map of layers
+    type(model_t), intent(inout) :: self
+    integer :: i
+
+    allocate (self%lines(0))
+    if (.not. allocated(self%scene%lines)) return
+    self%lines = [(place_line(self%scene%lines(i), self%mesh, self%distribution, self%map, self%plies, self%section, &
+                              self%scene%plate%symmetry), i=1, size(self%scene%lines))]
+  end subroutine build_lines
 
   !> Finds the struck node's first point if this rank owns it, and the elements around it.
   subroutine find_struck_point(self)

@@ -16,6 +16,7 @@ module models
   use cohesive_laws, only: cohesive_law_t
   use distributions, only: distribution_t
   use neighbourhoods, only: neighbourhood_t
+  use placed_lines, only: placed_line_t
   use rig_models, only: rig_model_t
   use scenes, only: scene_t
   implicit none
@@ -52,6 +53,8 @@ module models
     real(wp), allocatable :: patch(:)
     !> Nodal forces of the deck's pressure, (5, local points); ghosts zero. Allocated only with a pressure
     real(wp), allocatable :: pressure(:, :)
+    !> Lines that hold, move or press; empty: none
+    type(placed_line_t), allocatable :: lines(:)
     !> Nodal I0, I1, I2 of a lumped mass, (3, local points); allocated only if asked for
     real(wp), allocatable :: lumped(:, :)
     !> Motion of stacked layers from their unknowns
@@ -89,6 +92,11 @@ module models
     procedure :: motion_of
     !> Internal forces and strain energy of a displacement field.
     procedure :: internal
+    !> Forces of the lines, loads of a static analysis, and their change with the load factor.
+    procedure :: line_forces
+    procedure :: add_holding_lines
+    procedure :: static_loads
+    procedure :: load_slopes
     !> Mass times a field.
     procedure :: inertia
     !> Mean deflection of the patch.
@@ -142,6 +150,69 @@ contains
     call self%rig%add_line_forces(displacement, force, energy)
     call self%halo%accumulate(force)
   end subroutine internal
+
+  !> Nodal forces of the lines at the owned points.
+  pure subroutine line_forces(self, displacement, load_factor, forces)
+    !> The model
+    class(model_t), intent(in) :: self
+    !> Displacement, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> Ramps over their full values
+    real(wp), intent(in) :: load_factor
+    !> Forces on the unknowns, (5, points); ghosts zero
+    real(wp), intent(out) :: forces(:, :)
+    integer :: i
+
+    forces = 0
+    do i = 1, size(self%lines)
+      call self%lines(i)%add_forces(displacement, load_factor, forces)
+    end do
+  end subroutine line_forces
+
+  !> Adds the nodal forces of the lines that hold the plate before anything loads it.
+  pure subroutine add_holding_lines(self, displacement, forces)
+    !> The model
+    class(model_t), intent(in) :: self
+    !> Displacement, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> Forces on the unknowns of the owned points, (5, points)
+    real(wp), intent(inout) :: forces(:, :)
+    integer :: i
+
+    do i = 1, size(self%lines)
+      if (self%lines(i)%load%prescribed) call self%lines(i)%add_forces(displacement, 0.0_wp, forces)
+    end do
+  end subroutine add_holding_lines
+
+  !> Nodal loads of a static analysis: pressure and lines, at the owned points.
+  pure subroutine static_loads(self, displacement, load_factor, loads)
+    !> The model
+    class(model_t), intent(in) :: self
+    !> Displacement, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> Ramps over their full values
+    real(wp), intent(in) :: load_factor
+    !> Forces on the unknowns, (5, points); ghosts zero
+    real(wp), intent(out) :: loads(:, :)
+
+    call self%line_forces(displacement, load_factor, loads)
+    if (allocated(self%pressure)) loads = loads + load_factor*self%pressure
+  end subroutine static_loads
+
+  !> Change of these loads with the load factor.
+  pure subroutine load_slopes(self, loads)
+    !> The model
+    class(model_t), intent(in) :: self
+    !> Forces on the unknowns, (5, points); ghosts zero
+    real(wp), intent(out) :: loads(:, :)
+    integer :: i
+
+    loads = 0
+    if (allocated(self%pressure)) loads = self%pressure
+    do i = 1, size(self%lines)
+      call self%lines(i)%add_slopes(loads)
+    end do
+  end subroutine load_slopes
 
   !> Mass times a field, at the owned points.
   subroutine inertia(self, field, force)

@@ -9,6 +9,7 @@ module scenes
   use ply_damage_parameters, only: ply_damage_t
   use delamination_parameters, only: delamination_t
   use impact_parameters, only: impactor_parameters_t, indentation_law_t
+  use line_loads, only: line_load_t
   use pressure_loads, only: pressure_t
   implicit none
   private
@@ -39,6 +40,10 @@ module scenes
     type(pressure_t) :: pressure
     !> Temperature less that at which the plies were joined without stress
     real(wp) :: temperature_change = 0
+    !> Lines across the plate; unallocated: none
+    type(line_load_t), allocatable :: lines(:)
+    !> Time in which the ramps of lines reach their full value; a static analysis does not use it
+    real(wp) :: ramp_time = 1
     !> Damage of the plies
     type(ply_damage_t) :: ply_damage
     !> Interfaces that may delaminate, from the struck face downwards; unallocated: none

@@ -6,13 +6,25 @@ module operator_assembly
   use element_batches, only: lanes, first_element
   use element_tangents, only: tangent
   use linear_solvers, only: linear_solver_t
+  use plate_options, only: kinematics_linear
+  use delamination_parameters, only: law_cohesive
   use numberings, only: numbering_t, turned
   use models, only: model_t
   implicit none
   private
-  public :: assemble_elements, assemble_diagonal
+  public :: assemble_elements, assemble_diagonal, assemble_tangents, stays_positive
 
 contains
+
+  !> True if no operator of a model has a negative pivot: in time, with the secants of its laws, or without buckling
+  !> and softening.
+  pure logical function stays_positive(model) result(positive)
+    type(model_t), intent(in) :: model
+
+    positive = .not. model%scene%has_static .or. model%scene%kinematics == kinematics_linear
+    if (model%scene%has_static .and. model%map%layered) &
+      positive = positive .and. .not. any(model%scene%delaminations%law == law_cohesive)
+  end function stays_positive
 
   !> Adds the elements' matrices and a lumped mass to a cleared solver; ghosts' diagonals go to their owners.
   subroutine assemble_elements(model, stiffness, numbering, displacement, stiffness_factor, mass_factor, solver, &
@@ -60,12 +72,13 @@ contains
         call add_block(model, numbering, [point], mass_factor*nodal_mass(model%lumped(:, point)), solver, diagonal)
       end do
     end if
-    call add_lines(model, stiffness_factor, numbering, solver, diagonal)
+    call add_window_lines(model, stiffness_factor, numbering, solver, diagonal)
+    call add_lines(model, numbering, stiffness_factor, solver, diagonal)
     call model%halo%accumulate(diagonal)
   end subroutine assemble_elements
 
   !> Adds the stiffness that holds w on the edges of circular windows.
-  subroutine add_lines(model, stiffness_factor, numbering, solver, diagonal)
+  subroutine add_window_lines(model, stiffness_factor, numbering, solver, diagonal)
     type(model_t), intent(in) :: model
     !> Factor of stiffness
     real(wp), intent(in) :: stiffness_factor
@@ -88,6 +101,37 @@ contains
         end do
       end do
       call add_to(numbering, model%rig%line_points(:, k), matrix, solver, diagonal)
+    end do
+  end subroutine add_window_lines
+
+  !> Adds the springs of lines whose displacement is prescribed.
+  subroutine add_lines(model, numbering, stiffness_factor, solver, diagonal)
+    type(model_t), intent(in) :: model
+    !> Equations
+    type(numbering_t), intent(in) :: numbering
+    !> Factor of stiffness
+    real(wp), intent(in) :: stiffness_factor
+    !> Receives the matrices
+    class(linear_solver_t), intent(inout) :: solver
+    !> Receives their diagonal
+    real(wp), intent(inout) :: diagonal(:, :)
+    real(wp), allocatable :: of_node(:)
+    real(wp) :: spring
+    integer :: i, node, column
+
+    do i = 1, size(model%lines)
+      associate (line => model%lines(i))
+        if (.not. line%load%prescribed) cycle
+        do node = 1, size(line%weight)
+          associate (first => line%first(node), last => line%first(node + 1) - 1)
+            of_node = reshape(line%coefficient(:, first:last), [5*(last - first + 1)])
+            spring = stiffness_factor*line%share*line%stiffness*line%weight(node)
+            call add_to(numbering, line%point(first:last), spring*reshape( &
+                        [(of_node(column)*of_node, column=1, size(of_node))], [size(of_node), size(of_node)]), &
+                        solver, diagonal)
+          end associate
+        end do
+      end associate
     end do
   end subroutine add_lines
 
@@ -166,6 +210,30 @@ contains
       end do
     end do
   end subroutine assemble_diagonal
+
+  !> Adds what couples the jumps of a point in the consistent tangents of cohesive laws, made symmetric; their diagonals
+  !> are added with those of the other interfaces.
+  subroutine assemble_tangents(model, numbering, tangents, solver)
+    type(model_t), intent(in) :: model
+    !> Equations
+    type(numbering_t), intent(in) :: numbering
+    !> Force per jump, (3, 3, points)
+    real(wp), intent(in) :: tangents(:, :, :)
+    !> Receives them
+    class(linear_solver_t), intent(inout) :: solver
+    real(wp) :: coupling(3, 3)
+    integer :: i, k
+
+    do i = 1, model%distribution%owned
+      if (model%zone(i) == 0) cycle
+      coupling = (tangents(:, :, i) + transpose(tangents(:, :, i)))/2
+      do k = 1, 3
+        coupling(k, k) = 0
+      end do
+      if (numbering%leader(i) > 0) coupling = coupling*spread(turned(:3), 1, 3)*spread(turned(:3), 2, 3)
+      call solver%add(numbering%equation(1:3, i), coupling)
+    end do
+  end subroutine assemble_tangents
 
   !> Mass matrix of one point from its nodal I0, I1, I2.
   pure function nodal_mass(lumped) result(mass)

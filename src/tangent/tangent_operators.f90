@@ -8,14 +8,13 @@ module tangent_operators
   use timers, only: timer_set_t
   use linear_solvers, only: linear_solver_t
   use petsc_solvers, only: petsc_solver_t
-  use plate_options, only: kinematics_linear
   use linear_solver_parameters, only: factorization_cholmod
   use numberings, only: numbering_t, number_equations
   use models, only: model_t
   use section_stiffnesses, only: visit_stiffness
   use interface_states, only: interface_state_t
   use anderson_acceleration, only: anderson_t
-  use operator_assembly, only: assemble_elements, assemble_diagonal
+  use operator_assembly, only: assemble_elements, assemble_diagonal, assemble_tangents, stays_positive
   use woodbury_updates, only: woodbury_updates_t, list_changes, gather_changes
   implicit none
   private
@@ -107,8 +106,7 @@ contains
     if (factorization == factorization_cholmod) solver%package = 'cholmod'
     allocate (self%solver, source=solver)
     call self%solver%define(model%communicator, self%numbering%first_row, self%numbering%total, &
-                            self%numbering%row_start, self%numbering%columns, .not. model%scene%has_static .or. &
-                            model%scene%kinematics == kinematics_linear, error)
+                            self%numbering%row_start, self%numbering%columns, stays_positive(model), error)
     ! The solver has its own copy of this large list.
     deallocate (self%numbering%columns)
   end subroutine create
@@ -138,6 +136,8 @@ contains
     call self%solver%clear()
     call assemble_elements(model, stiffness, self%numbering, displacement, stiffness_factor, mass_factor, self%solver, &
                            self%diagonal)
+    if (allocated(interfaces%cohesive%tangents)) &
+      call assemble_tangents(model, self%numbering, interfaces%cohesive%tangents, self%solver)
     call interfaces%added_stiffness(model, self%diagonal, stiffness_factor, self%added)
     self%present = self%added
     call self%timers%stop('assembly')

@@ -1,0 +1,145 @@
+!> A load step that is taken by the energy which it dissipates: the load factor is an unknown, and what damage takes in
+!> the step is given. So a path is followed where neither load nor displacement grows, through softening and snap-back
+!> (M. A. Gutierrez, Communications in Numerical Methods in Engineering 20 (2004) 19-29; C. V. Verhoosel, J. J. C.
+!> Remmers, M. A. Gutierrez, International Journal for Numerical Methods in Engineering 77 (2009) 1290-1321).
+!>
+!> They take the energy dissipated from loads and displacements, for a plate whose geometry stays linear and whose
+!> damage unloads to the origin. Here it is what the points of the interfaces have dissipated, so neither contact nor
+!> large deflections spoil it.
+module dissipation_steps
+  use kinds, only: wp
+  use errors, only: error_t
+  use stepping_parameters, only: equilibrium_t
+  use models, only: model_t
+  use states, only: state_t
+  use static_steps, only: static_step_t, new_static_step, part_taken
+  use skew_corrections, only: follow_skew
+  use tangent_operators, only: tangent_operator_t
+  implicit none
+  private
+  public :: dissipation_step_t, new_dissipation_step
+
+  !> Part of the energy asked for by which a step may miss it. It sets how far a step goes, not its equilibrium.
+  real(wp), parameter :: missed = 1.0e-2_wp
+
+  !> A step that dissipates a given energy.
+  type, extends(static_step_t) :: dissipation_step_t
+    !> Energy that the step is to dissipate
+    real(wp) :: wanted = 0
+  contains
+    procedure :: begin
+    procedure :: find_residual
+    procedure :: residual_norm
+    procedure :: improve
+  end type dissipation_step_t
+
+contains
+
+  !> The step to a time that dissipates an energy.
+  pure function new_dissipation_step(model, time, wanted) result(self)
+    type(model_t), intent(in) :: model
+    !> Time at its end
+    real(wp), intent(in) :: time
+    !> Energy to dissipate, of the whole plate
+    real(wp), intent(in) :: wanted
+    !> The problem
+    type(dissipation_step_t) :: self
+
+    self%static_step_t = new_static_step(model, time, 0.0_wp)
+    self%curable = .true.
+    self%wanted = wanted
+  end function new_dissipation_step
+
+  !> First guess: on along the last step, as far as the energies compare.
+  subroutine begin(self, model, operator, old, new)
+    !> The problem
+    class(dissipation_step_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> The factored operator
+    type(tangent_operator_t), intent(inout) :: operator
+    !> State at the start
+    type(state_t), intent(in) :: old
+    !> State at the end
+    type(state_t), intent(inout) :: new
+    real(wp) :: part
+
+    part = min(1.0_wp, self%wanted/old%path%dissipated)
+    self%load_factor = old%load_factor + part*old%path%factor_change
+    call self%static_step_t%begin(model, operator, old, new)
+    new%motion%displacement = old%motion%displacement + part*old%path%change
+  end subroutine begin
+
+  !> Load less internal forces, and the energy dissipated.
+  subroutine find_residual(self, model, old, new, residual, energy)
+    !> The problem
+    class(dissipation_step_t), intent(in) :: self
+    type(model_t), intent(in) :: model
+    !> State at the start
+    type(state_t), intent(in) :: old
+    !> State at the end; receives its internal forces
+    type(state_t), intent(inout) :: new
+    !> Residual at the owned points, (5, points)
+    real(wp), intent(inout) :: residual(:, :)
+    !> Strain energy of this rank's elements
+    real(wp), intent(out) :: energy
+
+    call self%static_step_t%find_residual(model, old, new, residual, energy)
+    new%path%dissipated = new%interfaces%cohesive%dissipation(model, old%interfaces%cohesive)
+  end subroutine find_residual
+
+  !> Residual relative to internal forces and load, or what is missed of the energy, scaled to be judged alike.
+  real(wp) function residual_norm(self, model, equilibrium, operator, residual, new)
+    !> The problem
+    class(dissipation_step_t), intent(in) :: self
+    type(model_t), intent(in) :: model
+    !> Convergence asked for
+    type(equilibrium_t), intent(in) :: equilibrium
+    !> The factored operator
+    type(tangent_operator_t), intent(in) :: operator
+    !> Residual at the owned points, (5, points)
+    real(wp), intent(in) :: residual(:, :)
+    !> State at the end; remembers its largest forces
+    type(state_t), intent(inout) :: new
+
+    residual_norm = self%static_step_t%residual_norm(model, equilibrium, operator, residual, new)
+    residual_norm = max(residual_norm, &
+                        abs(new%path%dissipated/self%wanted - 1)/missed*equilibrium%tolerance)
+  end function residual_norm
+
+  !> Turns the correction at a fixed load into one with the change of the load that brings the energy wanted.
+  subroutine improve(self, model, operator, old, new, correction, error)
+    !> The problem
+    class(dissipation_step_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> The factored operator
+    type(tangent_operator_t), intent(inout) :: operator
+    !> State at the start
+    type(state_t), intent(in) :: old
+    !> State at the end, before the correction
+    type(state_t), intent(inout) :: new
+    !> Correction of the displacement, (5, points)
+    real(wp), intent(inout) :: correction(:, :)
+    !> Set if the solver fails
+    type(error_t), allocatable, intent(inout) :: error
+    real(wp), allocatable :: loads(:, :), answer(:, :), slopes(:, :)
+    real(wp) :: sums(2), change
+
+    allocate (loads, answer, slopes, mold=correction)
+    answer = 0
+    slopes = 0
+    call model%load_slopes(loads)
+    call operator%correct(model, loads, answer, error)
+    if (.not. allocated(error)) call follow_skew(operator, model, new%interfaces%cohesive, answer, error)
+    if (.not. allocated(error)) call follow_skew(operator, model, new%interfaces%cohesive, correction, error)
+    if (allocated(error)) return
+    call new%interfaces%cohesive%add_dissipation_slopes(model, old%interfaces%cohesive, new%motion%displacement, slopes)
+    sums = [model%product(slopes, correction), model%product(slopes, answer)]
+    call model%communicator%sum(sums)
+    sums = sums*model%mesh%multiplicity
+    change = 0
+    if (abs(sums(2)) > 0) change = (self%wanted - new%path%dissipated - sums(1))/sums(2)
+    new%load_factor = new%load_factor + part_taken(new%iterations)*change
+    correction = part_taken(new%iterations)*(correction + change*answer)
+    call new%interfaces%faces%hold(model, correction)
+  end subroutine improve
+end module dissipation_steps

@@ -1,0 +1,43 @@
+!> How a static analysis has come along its path of loads: what the next step, taken by load or by the energy that it
+!> dissipates, begins with.
+module load_paths
+  use kinds, only: wp
+  use archives, only: archive_t
+  use models, only: model_t
+  implicit none
+  private
+  public :: load_path_t
+
+  !> The last step of a path.
+  type :: load_path_t
+    !> True: the next step is taken by the energy that it dissipates
+    logical :: by_dissipation = .false.
+    !> Change of the load factor in the last step, and energy that it dissipated
+    real(wp) :: factor_change = 0, dissipated = 0
+    !> Change of the unknowns in the last step, (5, points); unallocated: no step is taken by dissipation
+    real(wp), allocatable :: change(:, :)
+  contains
+    !> Saves or loads.
+    procedure :: visit
+  end type load_path_t
+
+contains
+
+  !> Saves or loads.
+  subroutine visit(self, archive, model)
+    !> The path
+    class(load_path_t), intent(inout) :: self
+    !> Where to or where from
+    class(archive_t), intent(inout) :: archive
+    type(model_t), intent(in) :: model
+
+    call archive%item('path/by_dissipation', self%by_dissipation)
+    call archive%item('path/factor_change', self%factor_change)
+    call archive%item('path/dissipated', self%dissipated)
+    if (.not. allocated(self%change)) return
+    associate (share => model%distribution)
+      call archive%field('path/change', share%points(:share%owned), model%mesh%points(), self%change)
+    end associate
+    if (archive%loading) call model%halo%update(self%change)
+  end subroutine visit
+end module load_paths

@@ -1,0 +1,328 @@
+!> Lines of the deck on the mesh: what of the unknowns moves with a line, and the forces that it puts on them.
+!>
+!> A line is the nodes on one line of the mesh, each with its part of the line's length (Simpson's weights, exact for
+!> the element's parabolas). A displacement is prescribed by stiff springs: a line on a lower layer moves with the jumps
+!> of all interfaces above it, so that no single unknown could be held instead.
+module placed_lines
+  use kinds, only: wp
+  use mesh_parameters, only: is_mirrored
+  use plies, only: ply_t
+  use stacking, only: section_t
+  use layered_meshes, only: layered_mesh_t
+  use layer_maps, only: layer_map_t
+  use distributions, only: distribution_t
+  use line_loads, only: line_load_t, along_x, all_layers
+  implicit none
+  private
+  public :: placed_line_t, place_line, node_line, place_of_node
+
+  !> Stiffness of a line's springs together over that of the section. Against the plate, mostly softer than its section,
+  !> the line gives way by 1e-5 at most; what rounding leaves of its force is the smaller the softer it is.
+  real(wp), parameter :: hardness = 1.0e5_wp
+
+  !> A line on this rank's points.
+  type :: placed_line_t
+    !> The line as the deck gives it
+    type(line_load_t) :: load
+    !> Part of the whole plate's line that lies in the model
+    real(wp) :: share = 1
+    !> Stiffness of its springs together, of the whole line
+    real(wp) :: stiffness = 0
+    !> Each node's part of the modelled line, all ranks together 1, (nodes of this rank)
+    real(wp), allocatable :: weight(:)
+    !> Where the unknowns that move a node begin in the next two, (nodes of this rank + 1)
+    integer, allocatable :: first(:)
+    !> Points whose unknowns move a node
+    integer, allocatable :: point(:)
+    !> What the motion of the node takes of their unknowns, (5, points)
+    real(wp), allocatable :: coefficient(:, :)
+  contains
+    !> Motion of a node of the line.
+    procedure :: motion_at
+    !> Force of the whole line, were it all on one node.
+    procedure :: force_at
+    !> Adds the nodal forces of the line.
+    procedure :: add_forces
+    !> Adds the change of the nodal forces with the load factor.
+    procedure :: add_slopes
+    !> Mean motion and force of the line, of this rank's nodes.
+    procedure :: totals
+  end type placed_line_t
+
+contains
+
+  !> Puts a line on the mesh.
+  pure function place_line(load, mesh, distribution, map, plies, section, symmetry) result(self)
+    !> The line
+    type(line_load_t), intent(in) :: load
+    !> The mesh
+    type(layered_mesh_t), intent(in) :: mesh
+    !> This rank's points
+    type(distribution_t), intent(in) :: distribution
+    !> Motion from unknowns
+    type(layer_map_t), intent(in) :: map
+    !> Plies of the laminate
+    type(ply_t), intent(in) :: plies(:)
+    !> Section of the laminate
+    type(section_t), intent(in) :: section
+    !> Part that is modelled
+    integer, intent(in) :: symmetry
+    !> The line on this rank
+    type(placed_line_t) :: self
+    integer :: across, along, crossing, i
+    logical :: mirrored(2)
+
+    along = merge(1, 2, load%direction == along_x)
+    across = 3 - along
+    self%load = load
+    self%stiffness = hardness*section_scale(section, load%component)
+    crossing = node_line(edges_of(mesh, across), load%at)
+    mirrored = is_mirrored(symmetry)
+    if (mirrored(along)) self%share = self%share/2
+    if (mirrored(across) .and. crossing == 0) self%share = self%share/2
+    allocate (self%weight(0), self%first(1), self%point(0), self%coefficient(5, 0))
+    self%first(1) = 1
+    do i = 1, distribution%owned
+      if (mesh%point_zone(distribution%points(i)) /= 0) cycle
+      associate (lines => mesh%lines_of(mesh%point_node(distribution%points(i))))
+        if (lines(across) /= crossing) cycle
+        call add_layers(self, mesh, map, plies, distribution%points(i), i, &
+                        simpson_weight(edges_of(mesh, along), lines(along)))
+      end associate
+    end do
+  end function place_line
+
+  !> Stiffness of a section that a component of the motion is measured by.
+  pure real(wp) function section_scale(section, component) result(scale)
+    !> Section of the laminate
+    type(section_t), intent(in) :: section
+    !> 1 to 5
+    integer, intent(in) :: component
+
+    select case (component)
+    case (1, 2)
+      scale = maxval(abs(section%stiffness(1:6)))
+    case (3)
+      scale = maxval(abs(section%stiffness(19:21)))
+    case default
+      scale = maxval(abs(section%stiffness(13:18)))
+    end select
+  end function section_scale
+
+  !> Edges of the cells along x or y.
+  pure function edges_of(mesh, direction) result(edges)
+    !> The mesh
+    type(layered_mesh_t), intent(in) :: mesh
+    !> 1 for x, 2 for y
+    integer, intent(in) :: direction
+    !> Ascending
+    real(wp), allocatable :: edges(:)
+
+    if (direction == 1) then
+      edges = mesh%x_edges
+    else
+      edges = mesh%y_edges
+    end if
+  end function edges_of
+
+  !> Line of nodes next to a coordinate, from 0.
+  pure integer function node_line(edges, at) result(line)
+    !> Edges of the cells
+    real(wp), intent(in) :: edges(:)
+    !> The coordinate
+    real(wp), intent(in) :: at
+    integer :: k
+
+    line = minloc([(abs(place_of_node(edges, k) - at), k=0, 2*size(edges) - 2)], dim=1) - 1
+  end function node_line
+
+  !> Coordinate of a line of nodes.
+  pure real(wp) function place_of_node(edges, line) result(place)
+    !> Edges of the cells
+    real(wp), intent(in) :: edges(:)
+    !> Which line, from 0
+    integer, intent(in) :: line
+
+    place = (edges(line/2 + 1) + edges((line + 1)/2 + 1))/2
+  end function place_of_node
+
+  !> Part of a line of nodes that belongs to one of them.
+  pure real(wp) function simpson_weight(edges, line) result(weight)
+    !> Edges of the cells along it
+    real(wp), intent(in) :: edges(:)
+    !> Which node, from 0
+    integer, intent(in) :: line
+    integer :: cell, cells
+
+    cells = size(edges) - 1
+    cell = line/2
+    weight = 0
+    if (modulo(line, 2) == 1) then
+      weight = 4*(edges(cell + 2) - edges(cell + 1))
+    else
+      if (cell > 0) weight = edges(cell + 1) - edges(cell)
+      if (cell < cells) weight = weight + edges(cell + 2) - edges(cell + 1)
+    end if
+    weight = weight/(6*(edges(cells + 1) - edges(1)))
+  end function simpson_weight
+
+  !> Adds a node with the layers of it that the line acts on, each with its part of the thickness.
+  pure subroutine add_layers(self, mesh, map, plies, first_point, local, weight)
+    !> The line
+    type(placed_line_t), intent(inout) :: self
+    !> The mesh
+    type(layered_mesh_t), intent(in) :: mesh
+    !> Motion from unknowns
+    type(layer_map_t), intent(in) :: map
+    !> Plies of the laminate
+    type(ply_t), intent(in) :: plies(:)
+    !> First point of the node, and where it is among this rank's
+    integer, intent(in) :: first_point, local
+    !> The node's part of the line
+    real(wp), intent(in) :: weight
+    real(wp) :: top, bottom, total
+    integer :: point, last, chosen
+
+    total = plies(size(plies))%z_bottom - plies(1)%z_top
+    last = mesh%first_point(mesh%point_node(first_point) + 1) - 1
+    chosen = first_point
+    do point = first_point, last
+      if (mesh%point_zone(point) < self%load%layer) chosen = point
+    end do
+    do point = first_point, last
+      if (self%load%layer /= all_layers .and. point /= chosen) cycle
+      top = plies(1)%z_top
+      if (point > first_point) top = plies(mesh%zones(mesh%point_zone(point))%below_ply)%z_bottom
+      bottom = plies(size(plies))%z_bottom
+      if (point < last) bottom = plies(mesh%zones(mesh%point_zone(point + 1))%below_ply)%z_bottom
+      self%weight = [self%weight, weight*merge((bottom - top)/total, 1.0_wp, self%load%layer == all_layers)]
+      call add_unknowns(self, map, local + point - first_point, (top + bottom)/2)
+      self%first = [self%first, size(self%point) + 1]
+    end do
+  end subroutine add_layers
+
+  !> Adds the unknowns that move one layer at a node: its own and those of the points above it.
+  pure subroutine add_unknowns(self, map, lowest, height)
+    !> The line
+    type(placed_line_t), intent(inout) :: self
+    !> Motion from unknowns
+    type(layer_map_t), intent(in) :: map
+    !> Point of the layer among this rank's
+    integer, intent(in) :: lowest
+    !> Height z of the layer's middle
+    real(wp), intent(in) :: height
+    real(wp) :: of_motion(5), own(5)
+    integer :: p
+
+    of_motion = 0
+    of_motion(self%load%component) = 1
+    if (self%load%component <= 2) of_motion(3 + self%load%component) = height
+    p = lowest
+    do
+      own = of_motion
+      if (map%above(p) > 0) own(4:5) = own(4:5) - map%height(p)*own(1:2)
+      self%point = [self%point, p]
+      self%coefficient = reshape([self%coefficient, own], [5, size(self%point)])
+      if (map%above(p) == 0) exit
+      of_motion(4:5) = map%height(p)*of_motion(1:2)
+      p = map%above(p)
+    end do
+  end subroutine add_unknowns
+
+  !> Motion of a node of the line.
+  pure real(wp) function motion_at(self, node, displacement) result(motion)
+    !> The line
+    class(placed_line_t), intent(in) :: self
+    !> Which of this rank's nodes
+    integer, intent(in) :: node
+    !> Unknowns, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    integer :: k
+
+    motion = 0
+    do k = self%first(node), self%first(node + 1) - 1
+      motion = motion + dot_product(self%coefficient(:, k), displacement(:, self%point(k)))
+    end do
+  end function motion_at
+
+  !> Force of the whole line, were it all on one node.
+  pure real(wp) function force_at(self, node, displacement, load_factor) result(force)
+    !> The line
+    class(placed_line_t), intent(in) :: self
+    !> Which of this rank's nodes
+    integer, intent(in) :: node
+    !> Unknowns, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> Ramps over their full values
+    real(wp), intent(in) :: load_factor
+
+    force = self%load%at_factor(load_factor)
+    if (self%load%prescribed) force = self%stiffness*(force - self%motion_at(node, displacement))
+  end function force_at
+
+  !> Adds the nodal forces of the line.
+  pure subroutine add_forces(self, displacement, load_factor, forces)
+    !> The line
+    class(placed_line_t), intent(in) :: self
+    !> Unknowns, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> Ramps over their full values
+    real(wp), intent(in) :: load_factor
+    !> Forces on the unknowns of the owned points, (5, points)
+    real(wp), intent(inout) :: forces(:, :)
+    integer :: node
+
+    do node = 1, size(self%weight)
+      call spread(self, node, self%force_at(node, displacement, load_factor), forces)
+    end do
+  end subroutine add_forces
+
+  !> Adds the change of the nodal forces with the load factor.
+  pure subroutine add_slopes(self, forces)
+    !> The line
+    class(placed_line_t), intent(in) :: self
+    !> Forces on the unknowns of the owned points, (5, points)
+    real(wp), intent(inout) :: forces(:, :)
+    integer :: node
+
+    do node = 1, size(self%weight)
+      call spread(self, node, self%load%slope()*merge(self%stiffness, 1.0_wp, self%load%prescribed), forces)
+    end do
+  end subroutine add_slopes
+
+  !> Adds a node's part of a force of the whole line.
+  pure subroutine spread(self, node, force, forces)
+    !> The line
+    type(placed_line_t), intent(in) :: self
+    !> Which of this rank's nodes
+    integer, intent(in) :: node
+    !> Force of the whole line
+    real(wp), intent(in) :: force
+    !> Forces on the unknowns, (5, points)
+    real(wp), intent(inout) :: forces(:, :)
+    integer :: k
+
+    do k = self%first(node), self%first(node + 1) - 1
+      forces(:, self%point(k)) = forces(:, self%point(k)) + self%share*self%weight(node)*force*self%coefficient(:, k)
+    end do
+  end subroutine spread
+
+  !> Force and mean motion of the line, of this rank's nodes.
+  pure function totals(self, displacement, load_factor)
+    !> The line
+    class(placed_line_t), intent(in) :: self
+    !> Unknowns, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> Ramps over their full values
+    real(wp), intent(in) :: load_factor
+    !> Force of the whole plate's line, mean motion
+    real(wp) :: totals(2)
+    integer :: node
+
+    totals = 0
+    do node = 1, size(self%weight)
+      totals = totals + self%weight(node)*[self%force_at(node, displacement, load_factor), &
+                                           self%motion_at(node, displacement)]
+    end do
+  end function totals
+end module placed_lines
