@@ -40,8 +40,8 @@ module interface_columns
     'area_below_N | real | area | Delaminated area of the interface below ply N, its starter included; with a cohesive &
       &law the area dissipated.', &
     'energy_below_N | real | energy | Fracture energy taken by the interface below ply N.', &
-    'extent_x_below_N | real | length | Length along x of what has come apart below ply N, starter included: cells, or &
-      &nodes where a cohesive law has failed.', &
+    'extent_x_below_N | real | length | Length along x of what has delaminated below ply N, starter included: cells, &
+      &or nodes where a cohesive law has failed.', &
     'extent_y_below_N | real | length | The same along y.']
   !> Forces of the rigs.
   character(len=result_row_length), parameter, public :: rig_rows(*) = [character(len=result_row_length) :: &

@@ -11,7 +11,7 @@ module interface_figures
   public :: interface_figures_t, figures_of, stages_of
 
   !> How far the failure of an interface has gone beyond its starter: not at all; a point of a cohesive law has begun to
-  !> soften; a point or cell has come apart.
+  !> soften; a point has failed or a cell delaminated.
   integer, parameter, public :: stage_intact = 0, stage_damaged = 1, stage_grown = 2
 
   !> Bounds of nothing: largest of no numbers.
@@ -25,7 +25,7 @@ module interface_figures
     real(wp) :: area = 0
     !> Energy that fracture has taken
     real(wp) :: energy = 0
-    !> Least and greatest x, then y, of what has come apart, from the struck point; all 0 if nothing has
+    !> Least and greatest x, then y, of what has delaminated, from the struck point; all 0 if nothing has
     real(wp) :: bounds(2, 2) = 0
   end type interface_figures_t
 
@@ -70,7 +70,7 @@ contains
     furthest = merge(stage_grown, stage_intact, interfaces%faces%fracture > 0)
     if (allocated(interfaces%cohesive%cohesive)) then
       do i = 1, model%distribution%owned
-        ! Starters have come apart before the run.
+        ! Starters have delaminated before the run.
         if (.not. interfaces%cohesive%cohesive(i) .or. interfaces%faces%free(i)) cycle
         furthest(model%zone(i)) = max(furthest(model%zone(i)), real(stage_of(interfaces%cohesive%points(i)), wp))
       end do
@@ -89,13 +89,13 @@ contains
     if (point%damage >= 1) stage = stage_grown
   end function stage_of
 
-  !> Greatest -x, x, -y and y of what has come apart in the modelled part: nodes where a cohesive law has failed, whole
+  !> Greatest -x, x, -y and y of what has delaminated in the modelled part: nodes where a cohesive law has failed, whole
   !> cells where fronts release ties. Collective.
   function bounds_of(model, interfaces) result(bounds)
     type(model_t), intent(in) :: model
     !> The interfaces
     type(interface_state_t), intent(in) :: interfaces
-    !> (4, zones); `nowhere` if nothing has come apart
+    !> (4, zones); `nowhere` if nothing has delaminated
     real(wp) :: bounds(4, size(model%mesh%zones))
     real(wp) :: all_bounds(size(bounds))
     integer :: i, zone

@@ -46,7 +46,7 @@ module pilot_impacts
   !> Part of the largest force that counts as contact.
   real(wp), parameter :: contact_part = 0.01_wp
   !> A contact that ended is taken to be the last if none follows for as long as it took up to then.
-  real(wp), parameter :: patience = 2
+  real(wp), parameter :: waiting = 2
   !> Halvings and Newton steps for the force; Newton needs five.
   integer, parameter :: most_iterations = 60
 
@@ -98,7 +98,7 @@ contains
       pilot%peak = max(pilot%peak, now)
       if (now > 0 .and. .not. before > 0) pilot%contacts = pilot%contacts + 1
       if (now > contact_part*pilot%peak) active = i
-      if (i > patience*active .and. active > 0 .and. .not. to_the_end) exit
+      if (i > waiting*active .and. active > 0 .and. .not. to_the_end) exit
     end do
     pilot%complete = i <= most_steps
     pilot%force = force(:min(i, most_steps))
