@@ -52,11 +52,13 @@ contains
     character(len=:), allocatable :: digits
     character(len=40) :: buffer
     character(len=12) :: form
+    real(wp), parameter :: near_largest = 1.0e308_wp
     real(wp) :: again
     integer :: places, status
 
-    ! What fewer digits give ends in zeros here, so that only these have to be tried.
-    do places = 14, 16
+    ! What fewer digits give ends in zeros here, so that only these have to be tried. Near the largest number fewer
+    ! could round to one that is too large to read.
+    do places = merge(16, 14, abs(value) > near_largest), 16
       ! Without a width of its own an exponent of three digits would lose its letter.
       write (form, '(a,i0,a)') '(es40.', places, 'e3)'
       write (buffer, form) value

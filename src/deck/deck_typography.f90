@@ -89,7 +89,9 @@ contains
     !> Which it is
     integer, intent(in) :: kind
 
-    counts = .not. place%comment .and. (place%quote == ' ' .or. (place%curly .and. plain(kind) == place%quote))
+    counts = .false.
+    if (kind == 0 .or. place%comment) return
+    counts = place%quote == ' ' .or. (place%curly .and. plain(kind) == place%quote)
   end function counts
 
   !> What a plain character changes: lines end, texts and comments begin and end.
