@@ -56,6 +56,9 @@ contains
     real(wp) :: again
     integer :: places, status
 
+    ! Many columns of a history hold nothing.
+    digits = '0'
+    if (value >= 0 .and. value <= 0 .and. sign(1.0_wp, value) > 0) return
     ! What fewer digits give ends in zeros here, so that only these have to be tried. Near the largest number fewer
     ! could round to one that is too large to read.
     do places = merge(16, 14, abs(value) > near_largest), 16

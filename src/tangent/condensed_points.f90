@@ -31,6 +31,8 @@ module condensed_points
     real(wp) :: area = 0
     !> Jumps before the correction, and the change of those that are no unknowns here
     real(wp) :: jumps(3) = 0, drift(3) = 0
+    !> Traction before the correction
+    real(wp) :: traction(3) = 0
     !> Unknown of each jump; 0: none
     integer :: place(3) = 0
   end type condensed_point_t
@@ -204,16 +206,16 @@ contains
     !> Change of the force from outside, and its slope
     real(wp), intent(out) :: load, slope
     type(cohesive_point_t) :: new
-    real(wp) :: before(3), after(3)
+    real(wp) :: after(3)
     integer :: i, k
 
     force = -self%held*change
     do i = 1, size(self%points)
       associate (point => self%points(i))
-        call point%faces%traction(point%jumps, point%old, before, new)
         call point%faces%traction(jumps_of(point, change), point%old, after, new)
         do k = 1, 3
-          if (point%place(k) > 0) force(point%place(k)) = force(point%place(k)) + point%area*(after(k) - before(k))
+          if (point%place(k) > 0) force(point%place(k)) = force(point%place(k)) &
+                                                        + point%area*(after(k) - point%traction(k))
         end do
       end associate
     end do
