@@ -29,6 +29,8 @@ module dynamic_steps
     real(wp) :: step = 0
     !> Iterations after which the operator is renewed
     integer :: renewal = huge(1)
+    !> True: plies that soften do so after the step, by the strains at its end
+    logical :: lagging = .false.
     !> Integrator of the plate
     type(plate_integrator_t) :: integrator
     !> Displacement to start from, (5, points); unallocated: the motion goes on as it was
@@ -91,6 +93,7 @@ contains
       call new%interfaces%keep_touching(model, new%motion%displacement)
     end if
     call self%complete(old, new)
+    new%plies%lagging = self%lagging
     new%iterations = 0
     new%force_iterations = 0
     new%contact_iterations = 0

@@ -57,17 +57,17 @@ contains
     new%ledger%algorithmic = old%ledger%algorithmic - gain
     call new%plies%book(model, damage)
     new%ledger%ply_damage = new%ledger%ply_damage + damage
-    new%ledger%algorithmic = new%ledger%algorithmic - damage
-    call new%plies%judge(damage, products%strain - old%ledger%strain - products%mean_internal + damage, &
+    fracture = new%interfaces%cohesive%dissipation(model, old%interfaces%cohesive)
+    new%ledger%delamination = new%ledger%delamination + fracture
+    new%ledger%algorithmic = new%ledger%algorithmic - damage - fracture
+    call new%plies%judge(damage + fracture, &
+                         products%strain - old%ledger%strain - products%mean_internal + damage + fracture, &
                          max(new%ledger%initial + new%ledger%external_work, products%strain))
     if (model%map%layered) then
       ! What fracture takes has been booked, and taken off here, when the ties were released.
       call new%interfaces%ties%book(model, old%interfaces%ties, &
                                     new%motion%displacement - old%motion%displacement, taken)
       new%ledger%algorithmic = new%ledger%algorithmic + taken
-      fracture = new%interfaces%cohesive%dissipation(model, old%interfaces%cohesive)
-      new%ledger%delamination = new%ledger%delamination + fracture
-      new%ledger%algorithmic = new%ledger%algorithmic - fracture
     end if
     if (.not. model%scene%has_impactor) return
     impactor = impactor_energy(model%scene%impactor, new%impactor)

@@ -216,6 +216,11 @@ contains
     self%factorizations_begun = self%operator%factorizations
     problem = new_dynamic_step(self%integrator, step, self%stepping%adapt%iterations)
     call solve_step(problem, model, self%stepping%equilibrium, self%operator, self%now, self%trial, converged, error)
+    if (.not. (converged .or. allocated(error)) .and. model%scene%has_crack_bands()) then
+      ! Cracks run on by themselves: they go one element further a step, so that there is equilibrium nearby.
+      problem%lagging = .true.
+      call solve_step(problem, model, self%stepping%equilibrium, self%operator, self%now, self%trial, converged, error)
+    end if
     if (converged .and. model%map%layered) &
       call grow_in_step(problem, model, self%stepping%equilibrium, self%operator, self%now, self%trial, converged, &
                         error)
@@ -348,19 +353,27 @@ contains
     end if
   end subroutine accept
 
-  !> Books the strain energy that failed plies have lost, and finds the forces that are left.
+  !> Books the strain energy that failed plies have lost, and finds the forces that are left. What plies that soften lose
+  !> beyond their fracture energy, as they follow a step late, is the integrator's.
   subroutine book_failures(model, now, trial)
     type(model_t), intent(in) :: model
     !> The state before the step
     type(state_t), intent(in) :: now
     !> The state after it
     type(state_t), intent(inout) :: trial
-    real(wp) :: energy
+    real(wp) :: energy, lost, dissipated
 
     call trial%find_internal(model, now, energy)
     call model%communicator%sum(energy)
     energy = energy*model%mesh%multiplicity
-    trial%ledger%ply_damage = trial%ledger%ply_damage + trial%ledger%strain - energy
+    lost = trial%ledger%strain - energy
+    dissipated = lost
+    if (allocated(trial%plies%bands)) then
+      call trial%plies%book(model, dissipated)
+      call trial%plies%bands%commit()
+    end if
+    trial%ledger%ply_damage = trial%ledger%ply_damage + dissipated
+    trial%ledger%algorithmic = trial%ledger%algorithmic + lost - dissipated
     trial%ledger%strain = energy
   end subroutine book_failures
 

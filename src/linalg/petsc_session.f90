@@ -10,6 +10,10 @@ module petsc_session
   public :: start_petsc, finish_petsc, report_petsc
 
   interface
+    !> Lets OpenBLAS choose its kernels by the processor's instructions where it does not know its name.
+    subroutine choose_blas_kernels() bind(c, name='implam_choose_blas_kernels')
+    end subroutine choose_blas_kernels
+
     !> Starts PETSc. This is the C entry, as the Fortran one reads the command line in any case.
     integer(c_int) function initialize() bind(c, name='PetscInitializeNoArguments')
       import :: c_int
@@ -82,6 +86,7 @@ contains
     call PetscInitialized(running, ierr)
     if (running) return
     call use_one_thread()
+    call choose_blas_kernels()
     ! Options such as -log_view must be there when PETSc starts, and it looks for them in the environment.
     call get_environment_variable('PETSC_OPTIONS', length=length)
     allocate (character(len=length) :: all_options)

@@ -16,7 +16,7 @@ module ply_failures
   private
   public :: ply_failure_t, new_ply_failure
 
-  !> Energy that a step may create or lose, as a part of what plies dissipate in it, and of all energy.
+  !> Energy that a step may create or lose, as a part of what is dissipated in it, and of all energy.
   real(wp), parameter :: path_tolerance = 0.1_wp, noticed = 1.0e-4_wp
 
   !> Failures of the plies of this rank's elements.
@@ -35,6 +35,8 @@ module ply_failures
     real(wp) :: dissipated(energy_modes) = 0
     !> True if the last step was too long to follow plies that soften
     logical :: leapt = .false.
+    !> True while plies that soften keep their stiffness until the step is done
+    logical :: lagging = .false.
   contains
     !> Internal forces of the plate, with the stiffness that softening leaves under this displacement.
     procedure :: find_forces
@@ -83,7 +85,7 @@ contains
     !> Strain energy of this rank's elements
     real(wp), intent(out) :: energy
 
-    if (allocated(self%bands)) then
+    if (allocated(self%bands) .and. .not. self%lagging) then
       ! Unallocated resultants count as absent.
       call model%internal(self%stiffness, displacement, force, energy, self%bands, free=self%free)
       self%stiffness = self%bands%stiffness
@@ -111,19 +113,20 @@ contains
     energy = sum(energies)
   end subroutine book
 
-  !> Judges whether a step has followed how plies soften: the work on the plate is then what it stores and they
-  !> dissipate. A step over a jump would find the state behind it without the work that leads there.
+  !> Judges whether a step has followed how plies soften: the work on the plate is then what it stores and what plies
+  !> and cohesive interfaces dissipate. A step over a jump would find the state behind it without the work that leads
+  !> there.
   pure subroutine judge(self, dissipated, created, energy)
     !> The failures
     class(ply_failure_t), intent(inout) :: self
-    !> Energy dissipated in the step
+    !> Energy that plies and cohesive interfaces dissipate in the step
     real(wp), intent(in) :: dissipated
     !> Energy stored and dissipated in the step beyond the work
     real(wp), intent(in) :: created
     !> Energy of the whole run so far
     real(wp), intent(in) :: energy
 
-    self%leapt = allocated(self%bands) .and. abs(created) > max(path_tolerance*dissipated, noticed*energy)
+    self%leapt = allocated(self%bands) .and. .not. self%lagging .and. abs(created) > max(path_tolerance*dissipated, noticed*energy)
   end subroutine judge
 
   !> Modes that have occurred in a ply; one that softens has failed where it bears nothing any more.
@@ -192,7 +195,11 @@ contains
     logical, allocatable :: changing(:)
     integer :: element
 
-    if (allocated(self%bands)) call self%bands%commit()
+    if (allocated(self%bands)) then
+      self%softened = self%lagging
+      self%lagging = .false.
+      call self%bands%commit()
+    end if
     if (.not. model%scene%has_ply_damage .or. allocated(self%bands)) return
     changing = self%onset%fading()
     call self%onset%find(model, self%stiffness, times, before, after, changing)

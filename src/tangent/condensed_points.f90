@@ -7,7 +7,7 @@
 module condensed_points
   use cohesive_faces, only: cohesive_faces_t
   use cohesive_points, only: cohesive_point_t
-  use dense_systems, only: positive_factor_t
+  use dense_systems, only: dense_factor_t, positive_factor_t
   use kinds, only: wp
   implicit none
   private
@@ -67,8 +67,11 @@ module condensed_points
     real(wp), allocatable :: stiffness(:, :)
     !> What the points hold beyond what the operator takes for it, less the force from outside, (unknowns)
     real(wp), allocatable :: forces(:)
-    !> Tangent of the latest iteration, factored
+    !> Symmetric part of the latest iteration's tangent, factored, and all of it
     type(positive_factor_t), private :: factor
+    type(dense_factor_t), private :: whole
+    !> True: modes of different toughness grow, and the tangent is not symmetric
+    logical, private :: skew = .false.
   contains
     !> Change of the jumps at equilibrium.
     procedure :: solve
@@ -98,7 +101,11 @@ contains
       call factorize(self, change, slope)
       if (all(abs(force) <= settled*max(scale, abs(load)))) exit
       direction = -force
-      call self%factor%solve(direction)
+      if (self%skew) then
+        call self%whole%solve(direction)
+      else
+        call self%factor%solve(direction)
+      end if
       along = matmul(self%stiffness, direction)
       call descend(self, change, direction, elastic, along, dot_product(force, direction), outside, share)
       change = change + share*direction
@@ -132,8 +139,8 @@ contains
     end do
   end subroutine descend
 
-  !> Factors the tangent at a change of the jumps: the true one if it is positive, else one without its falling part,
-  !> else the secant, which always is.
+  !> Factors the tangent at a change of the jumps: the true one if its symmetric part is positive, which makes Newton's
+  !> direction descend, else one without its falling part, else the secant, which always is positive.
   subroutine factorize(self, change, slope)
     !> The system
     type(condensed_points_t), intent(inout) :: self
@@ -141,16 +148,21 @@ contains
     real(wp), intent(in) :: change(:)
     !> Slope of the force from outside
     real(wp), intent(in) :: slope
-    real(wp), allocatable :: matrix(:, :)
+    real(wp), allocatable :: matrix(:, :), mirrored(:, :)
     integer :: kind, last
 
     do kind = 1, 3
       matrix = tangent(self, change, kind)
       last = size(matrix, 1)
       matrix(last, last) = matrix(last, last) - slope
-      call self%factor%factorize(matrix)
-      if (self%factor%positive) return
+      mirrored = transpose(matrix)
+      call self%factor%factorize((matrix + mirrored)/2)
+      if (self%factor%positive) exit
     end do
+    self%skew = any(abs(matrix - mirrored) > epsilon(slope)*maxval(abs(matrix)))
+    if (.not. self%skew) return
+    call self%whole%factorize(matrix)
+    self%skew = .not. self%whole%singular
   end subroutine factorize
 
   !> Tangent of the system.
@@ -174,7 +186,7 @@ contains
       associate (point => self%points(i))
         jumps = jumps_of(point, change)
         slopes = 0
-        if (kind == 1) slopes = point%faces%tangent(jumps, point%old)
+        if (kind == 1) slopes = point%faces%slopes(jumps, point%old)
         if (kind > 1) then
           diagonal = point%faces%diagonal(jumps, point%old)
           if (kind == 3) diagonal = point%faces%secant(jumps, point%old)
