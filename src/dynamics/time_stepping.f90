@@ -27,6 +27,9 @@ module time_stepping
 
   !> Largest energy that a step dissipates, over that of the step before: from it the first guess is made.
   real(wp), parameter :: most_growth = 4
+  !> Answers to unit forces on cohesive points with which the operator goes into a step: more make each iteration dearer
+  !> than a factorization, into which those go that have failed.
+  integer, parameter :: most_answers = 400
 
   !> All that evolves during a run.
   type :: time_stepper_t
@@ -203,7 +206,7 @@ contains
 
     step = self%controller%propose(event - self%now%time, impactor_limit(self, model))
     mass_factor = self%integrator%mass_factor(step)
-    due = .not. self%operator%ready
+    due = .not. self%operator%ready .or. self%operator%changes%kept > most_answers .and. self%operator%condenses
     if (.not. due) due = self%controller%renewal_due(self%stepping%adapt, &
       model%scene%kinematics == kinematics_von_karman, mass_factor/self%operator%mass_factor, &
                                                      self%now%deflection - self%operator%deflection, model%thickness)

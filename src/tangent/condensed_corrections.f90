@@ -14,8 +14,9 @@ module condensed_corrections
   !> Force left at a point over that at its strength from which it becomes an unknown. With 1e-3, 1e-4, 1e-5
   !> crossply_cohesive_2mm.nml takes 118, 97, 96 iterations and dissipates the same area to 4e-9.
   real(wp), parameter :: noticed = 1.0e-4_wp
-  !> Unknowns at most.
-  integer, parameter :: most_unknowns = 500
+  !> Unknowns at most, and numbers in the operator's answers to forces on them.
+  integer, parameter :: most_unknowns = 2000
+  real(wp), parameter :: most_numbers = 2.0e8_wp
   !> Numbers that tell of an unknown.
   integer, parameter :: told = 14
 
@@ -197,7 +198,7 @@ contains
     do i = 1, size(error, 2)
       if (operator%numbering%leader(i) > 0) error(:, i) = 0
     end do
-    room = most_unknowns - self%columns
+    room = min(most_unknowns, int(most_numbers/operator%numbering%total)) - self%columns
     threshold = noticed
     do
       call model%communicator%allgather(pack(operator%numbering%equation(1:3, :size(error, 2)), error > threshold), &
