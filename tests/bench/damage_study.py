@@ -1,0 +1,102 @@
+"""What mesh, step, numerical keys and material figures make of input/peanut.nml: one row of a table each."""
+
+import argparse
+import csv
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT/'tests/regress'))
+from solver_runs import change_deck  # noqa: E402
+
+SIDES = (40, 16)  # mm, core and zone of the deck
+# Elements of the deck outside its core, along x and y; a finer mesh has as many.
+OUTSIDE = (6, 7)
+MATERIAL = ('E1', 'E2', 'G12', 'G13', 'G23', 'YT', 'S12', 'G_Ic', 'G_IIc')
+
+
+def meshes(text):
+    """Settings of each mesh: cells of 1.6, .8 and .4 mm on the same patch, core and zone."""
+    del text
+    for cell in (1.6, 0.8, 0.4):
+        counts = [round(side/2/cell) + rest for side, rest in zip(SIDES, OUTSIDE, strict=True)]
+        yield f'cells of {cell} mm', [f'mesh%cell={cell}e-3', 'mesh%elements={}, {}'.format(*counts)]
+
+
+def steps(text):
+    """Settings of each step."""
+    del text
+    for step in (16, 8, 4):
+        yield f'steps of {step} us', [f'time%step={step}e-6']
+
+
+def numbers(text):
+    """Numerical keys changed by half."""
+    yield 'as it is', []
+    del text
+    yield 'zone 59.2, 24 mm', ['mesh%core=59.2e-3, 24e-3', 'delamination%zone=59.2e-3, 24e-3', 'mesh%elements=43, 22']
+    yield 'solver tolerance 1e-7', ['solver%tolerance=1e-7']
+    yield 'rho_inf .5 and not .8', ['time%rho_inf=.5']
+    yield 'stiffness of the interface times 1.5', ['delamination%stiffness=1.06e14']
+    yield 'patch 3.2 mm (of the scene)', ['mesh%patch=3.2e-3']
+
+
+def materials(text):
+    """Each figure of the material 10 % larger."""
+    yield 'as it is', []
+    for key in MATERIAL:
+        group = 'delamination' if key.startswith('G_') else 'material'
+        value = float(re.search(rf'\b{key}=([\d.e+-]+)', text)[1])
+        yield f'{key} +10 %', [f'{group}%{key}={1.1*value:g}']
+
+
+STUDIES = {'meshes': meshes, 'steps': steps, 'numbers': numbers, 'materials': materials}
+
+
+def run(program, text, name):
+    """Run a deck and print its row."""
+    with tempfile.TemporaryDirectory() as folder:
+        deck = pathlib.Path(folder, 'deck.nml')
+        deck.write_text(text, encoding='utf-8')
+        process = subprocess.Popen([program, 'run', deck, '--output', folder], stdout=subprocess.DEVNULL,
+                                   env=dict(os.environ, OMP_NUM_THREADS='1'))
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        if process.returncode:
+            print(f'| {name} | ended with code {process.returncode} |', flush=True)
+            return
+        summary = json.loads(next(pathlib.Path(folder).glob('*_summary.json')).read_text(encoding='utf-8'))
+        with next(pathlib.Path(folder).glob('*_history.csv')).open(encoding='utf-8') as lines:
+            last = list(csv.DictReader(line.replace(' ', '') for line in lines))[-1]
+    place = summary['interfaces'][0]
+    growth = place['first_growth']['force'] if place['first_growth'] else float('nan')
+    energy = summary['energy_impact']
+    print(f'| {name} | {growth:.0f} | {summary["peak_force"]:.0f} | {1e6*summary["delaminated_area"]:.1f} | '
+          f'{1e3*(place["x"][1] - place["x"][0]):.1f} x {1e3*(place["y"][1] - place["y"][0]):.1f} | '
+          f'{100*summary["energy_delamination"]/energy:.2f}, {100*summary["energy_ply_damage"]/energy:.2f}, '
+          f'{100*summary["energy_algorithmic"]/energy:.2f} | {last["step"]}, {last["refactorisations"]} | '
+          f'{usage.ru_utime + usage.ru_stime:.0f} |', flush=True)
+
+
+def main():
+    """Run the studies asked for."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument('program', help='path of implam')
+    parser.add_argument('study', nargs='+', choices=sorted(STUDIES))
+    arguments = parser.parse_args()
+    program = os.path.abspath(arguments.program)
+    text = (ROOT/'input/peanut.nml').read_text(encoding='utf-8')
+    for study in arguments.study:
+        print('| set | first growth, N | peak force, N | area, mm^2 | along x across, mm | delamination, plies, '
+              'integrators, % of the impact | steps, factorizations | processor, s |\n|---|---|---|---|---|---|---|---|')
+        for name, settings in STUDIES[study](text):
+            run(program, change_deck(text, settings), name)
+
+
+if __name__ == '__main__':
+    main()
