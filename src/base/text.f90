@@ -1,6 +1,7 @@
 !> Small helpers for text: lines, numbers as text, and the nearest of several names.
 module text
-  use kinds, only: wp
+  use kinds, only: long, wp
+  use shortest_digits, only: find_shortest
   implicit none
   private
   public :: line_t, lower_case, to_text, rounded_text, joined, words_of, append, edit_distance, nearest_name
@@ -13,7 +14,7 @@ module text
 
   !> Shortest usual text of a number.
   interface to_text
-    module procedure integer_to_text, real_to_text
+    module procedure integer_to_text, long_to_text, real_to_text
   end interface to_text
 
 contains
@@ -38,11 +39,31 @@ contains
     integer, intent(in) :: value
     !> Without blanks
     character(len=:), allocatable :: digits
-    character(len=12) :: buffer
 
-    write (buffer, '(i0)') value
-    digits = trim(buffer)
+    digits = long_to_text(int(value, long))
   end function integer_to_text
+
+  !> Digits of a long integer.
+  pure function long_to_text(value) result(digits)
+    !> The number
+    integer(long), intent(in) :: value
+    !> Without blanks
+    character(len=:), allocatable :: digits
+    character(len=20) :: figures
+    integer(long) :: left
+    integer :: first
+
+    ! Counted below zero, where the largest number has its counterpart.
+    left = value
+    if (value > 0) left = -value
+    do first = len(figures), 1, -1
+      figures(first:first) = achar(iachar('0') - int(mod(left, 10_long)))
+      left = left/10
+      if (left == 0) exit
+    end do
+    digits = figures(first:)
+    if (value < 0) digits = '-'//digits
+  end function long_to_text
 
   !> Shortest of the usual forms that reads back as the same number.
   pure function real_to_text(value) result(digits)
@@ -50,15 +71,34 @@ contains
     real(wp), intent(in) :: value
     !> Such as 0.25, 1500 or 2.5e-06
     character(len=:), allocatable :: digits
+    integer(long) :: number
+    integer :: exponent
+    logical :: known
+
+    ! Many columns of a history hold nothing.
+    digits = '0'
+    if (value >= 0 .and. value <= 0 .and. sign(1.0_wp, value) > 0) return
+    call find_shortest(abs(value), number, exponent, known)
+    if (known) then
+      digits = long_to_text(number)
+      digits = plain_text(value < 0, digits, exponent + len(digits) - 1)
+    else
+      digits = tried_text(value)
+    end if
+  end function real_to_text
+
+  !> The same by writing and reading, for numbers near the ends of the range and those between two texts.
+  pure function tried_text(value) result(digits)
+    !> The number
+    real(wp), intent(in) :: value
+    !> Its text
+    character(len=:), allocatable :: digits
     character(len=40) :: buffer
     character(len=12) :: form
     real(wp), parameter :: near_largest = 1.0e308_wp
     real(wp) :: again
     integer :: places, status
 
-    ! Many columns of a history hold nothing.
-    digits = '0'
-    if (value >= 0 .and. value <= 0 .and. sign(1.0_wp, value) > 0) return
     ! What fewer digits give ends in zeros here, so that only these have to be tried. Near the largest number fewer
     ! could round to one that is too large to read.
     do places = merge(16, 14, abs(value) > near_largest), 16
@@ -69,7 +109,7 @@ contains
       if (status /= 0 .or. again == value) exit
     end do
     digits = plain_decimal(trim(adjustl(buffer)))
-  end function real_to_text
+  end function tried_text
 
   !> A number rounded for reading.
   pure function rounded_text(value, significant) result(digits)
@@ -90,35 +130,52 @@ contains
     digits = plain_decimal(trim(adjustl(buffer)))
   end function rounded_text
 
-  !> A number in scientific form without trailing zeros, and without its exponent where that is easier to read.
+  !> A number in scientific form as plain text.
   pure function plain_decimal(scientific) result(plain)
     !> Such as -2.50E-01
     character(len=*), intent(in) :: scientific
-    !> Such as -0.25; exponents outside -4 to 6 stay
+    !> Such as -0.25
     character(len=:), allocatable :: plain
-    character(len=:), allocatable :: digits, sign
-    integer :: mark, exponent
+    integer :: mark, exponent, first
 
-    plain = lower_case(scientific)
-    mark = index(plain, 'e')
-    if (mark == 0) return
-    read (plain(mark + 1:), *) exponent
+    mark = scan(scientific, 'Ee')
+    if (mark == 0) then
+      plain = lower_case(scientific)
+      return
+    end if
+    read (scientific(mark + 1:), *) exponent
+    first = merge(2, 1, scientific(1:1) == '-')
+    plain = plain_text(first == 2, scientific(first:first)//scientific(first + 2:mark - 1), exponent)
+  end function plain_decimal
+
+  !> A number without trailing zeros, and without an exponent where that is easier to read.
+  pure function plain_text(negative, figures, exponent) result(plain)
+    !> Whether it has a sign
+    logical, intent(in) :: negative
+    !> Its digits, the first of them before the point
+    character(len=*), intent(in) :: figures
+    !> Its exponent; outside -4 to 6 it stays
+    integer, intent(in) :: exponent
+    !> Such as -0.25
+    character(len=:), allocatable :: plain
+    character(len=:), allocatable :: sign
+    integer :: last
+
     sign = ''
-    if (plain(1:1) == '-') sign = '-'
-    digits = plain(len(sign) + 1:len(sign) + 1)//plain(len(sign) + 3:mark - 1)
-    digits = digits(:max(1, verify(digits, '0', back=.true.)))
+    if (negative) sign = '-'
+    last = max(1, verify(figures, '0', back=.true.))
     if (exponent < -4 .or. exponent > 6) then
-      plain = sign//digits(1:1)
-      if (len(digits) > 1) plain = plain//'.'//digits(2:)
+      plain = sign//figures(1:1)
+      if (last > 1) plain = plain//'.'//figures(2:last)
       plain = plain//'e'//integer_to_text(exponent)
     else if (exponent < 0) then
-      plain = sign//'0.'//repeat('0', -exponent - 1)//digits
-    else if (len(digits) <= exponent + 1) then
-      plain = sign//digits//repeat('0', exponent + 1 - len(digits))
+      plain = sign//'0.'//repeat('0', -exponent - 1)//figures(:last)
+    else if (last <= exponent + 1) then
+      plain = sign//figures(:last)//repeat('0', exponent + 1 - last)
     else
-      plain = sign//digits(:exponent + 1)//'.'//digits(exponent + 2:)
+      plain = sign//figures(:exponent + 1)//'.'//figures(exponent + 2:last)
     end if
-  end function plain_decimal
+  end function plain_text
 
   !> All lines in one text.
   pure function joined(lines, separator) result(all_lines)

@@ -35,6 +35,8 @@ module dynamic_steps
     type(plate_integrator_t) :: integrator
     !> Displacement to start from, (5, points); unallocated: the motion goes on as it was
     real(wp), allocatable :: guess(:, :)
+    !> Square of the patch's shares, of this rank's points
+    real(wp) :: patch_square = 0
     !> The impactor's side of the step
     type(impact_coupling_t) :: coupling
   contains
@@ -83,6 +85,7 @@ contains
     new%time = old%time + self%step
     new%load_factor = new%time/model%scene%ramp_time
     call new%interfaces%ties%fade(model, self%step)
+    self%patch_square = sum((model%patch/model%mesh%multiplicity)**2)
     if (model%scene%has_impactor) self%coupling = begin_coupling(model, self%integrator, old, self%step)
     if (allocated(self%guess)) then
       new%motion%displacement = self%guess
@@ -120,8 +123,8 @@ contains
     call new%find_internal(model, old, energy)
     call model%inertia(new%motion%acceleration, new%motion%inertia)
     associate (m => self%integrator%alpha_m, f => self%integrator%alpha_f)
-      residual = -(1 - m)*new%motion%inertia - m*old%motion%inertia - (1 - f)*new%motion%internal &
-                 - f*old%motion%internal
+      call weigh(size(residual), [1 - m, m, 1 - f, f], new%motion%inertia, old%motion%inertia, new%motion%internal, &
+                 old%motion%internal, residual)
       residual(3, :) = residual(3, :) + self%coupling%load()/model%mesh%multiplicity*model%patch
       if (size(model%lines) > 0) then
         allocate (lines, lines_before, mold=residual)
@@ -134,6 +137,24 @@ contains
       residual(3, :) = residual(3, :) + amplitude*model%pressure(3, :)
     end associate
   end subroutine find_residual
+
+  !> Forces against the motion, all unknowns in one row, which the compiler takes several at a time.
+  pure subroutine weigh(number, weights, new_inertia, old_inertia, new_internal, old_internal, residual)
+    !> Number of unknowns
+    integer, intent(in) :: number
+    !> Weights of the four forces
+    real(wp), intent(in) :: weights(4)
+    !> The forces at the end and at the start of the step
+    real(wp), intent(in) :: new_inertia(number), old_inertia(number), new_internal(number), old_internal(number)
+    !> Their sum with the sign turned
+    real(wp), intent(inout) :: residual(number)
+    integer :: i
+
+    do i = 1, number
+      residual(i) = -weights(1)*new_inertia(i) - weights(2)*old_inertia(i) - weights(3)*new_internal(i) &
+                    - weights(4)*old_internal(i)
+    end do
+  end subroutine weigh
 
   !> Residual relative to internal, inertia and impact forces.
   real(wp) function residual_norm(self, model, equilibrium, operator, residual, new)
@@ -148,11 +169,9 @@ contains
     real(wp), intent(in) :: residual(:, :)
     !> State at the end; remembers its largest forces
     type(state_t), intent(inout) :: new
-    real(wp) :: patch_square
 
-    patch_square = sum((model%patch/model%mesh%multiplicity)**2)
     residual_norm = relative_residual(model%communicator, operator%numbering, residual, new%motion%internal, &
-                                      new%motion%inertia, patch_square*self%coupling%load()**2, &
+                                      new%motion%inertia, self%patch_square*self%coupling%load()**2, &
                                       operator%diagonal*new%motion%displacement, equilibrium%tolerance, &
                                       model%thickness, new%largest_forces)
   end function residual_norm

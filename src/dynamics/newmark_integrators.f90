@@ -54,22 +54,43 @@ contains
     !> Motion at the start
     type(motion_t), intent(in) :: old
     !> Displacement at the end, (5, points)
-    real(wp), intent(in) :: displacement(:, :)
+    real(wp), intent(in), contiguous :: displacement(:, :)
     !> Velocity and acceleration at the end, (5, points)
-    real(wp), intent(inout) :: velocity(:, :), acceleration(:, :)
-    real(wp) :: per_square, per_step, kept
-    integer :: point
+    real(wp), intent(inout), contiguous :: velocity(:, :), acceleration(:, :)
+
+    call complete_all(self, step, size(displacement), old%displacement, old%velocity, old%acceleration, displacement, &
+                      velocity, acceleration)
+  end subroutine complete
+
+  !> The same with all unknowns in one row, which the compiler takes several at a time.
+  pure subroutine complete_all(self, step, number, displacement, velocity, acceleration, new_displacement, &
+                               new_velocity, new_acceleration)
+    !> Coefficients
+    class(plate_integrator_t), intent(in) :: self
+    !> Time step
+    real(wp), intent(in) :: step
+    !> Number of unknowns
+    integer, intent(in) :: number
+    !> Motion at the start
+    real(wp), intent(in) :: displacement(number), velocity(number), acceleration(number)
+    !> Displacement at the end
+    real(wp), intent(in) :: new_displacement(number)
+    !> Velocity and acceleration at the end
+    real(wp), intent(inout) :: new_velocity(number), new_acceleration(number)
+    real(wp) :: per_square, per_step, kept, gamma, rest
+    integer :: i
 
     per_square = 1/(self%beta*step**2)
     per_step = 1/(self%beta*step)
     kept = 0.5_wp/self%beta - 1
-    do point = 1, size(displacement, 2)
-      acceleration(:, point) = per_square*(displacement(:, point) - old%displacement(:, point)) &
-                               - per_step*old%velocity(:, point) - kept*old%acceleration(:, point)
-      velocity(:, point) = old%velocity(:, point) + step*((1 - self%gamma)*old%acceleration(:, point) &
-                                                          + self%gamma*acceleration(:, point))
+    gamma = self%gamma
+    rest = 1 - gamma
+    do i = 1, number
+      new_acceleration(i) = per_square*(new_displacement(i) - displacement(i)) - per_step*velocity(i) &
+                            - kept*acceleration(i)
+      new_velocity(i) = velocity(i) + step*(rest*acceleration(i) + gamma*new_acceleration(i))
     end do
-  end subroutine complete
+  end subroutine complete_all
 
   !> Factor of the mass in the effective operator, 1/time**2.
   elemental real(wp) function mass_factor(self, step) result(factor)

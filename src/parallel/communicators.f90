@@ -38,17 +38,22 @@ contains
     logical :: running
 
     call MPI_Initialized(running)
-    if (.not. running) call avoid_shared_pointers()
+    if (.not. running) call settle_open_mpi()
     if (.not. running) call MPI_Init()
     communicator = communicator_from_handle(MPI_COMM_WORLD%mpi_val)
   end subroutine start_mpi
 
-  !> Keeps Open MPI's parallel files off what shared file pointers take, which nothing here uses: named semaphores (sm),
+  !> Settles two things with Open MPI. A choice of the user's own is left alone, and other MPI libraries ignore these
+  !> variables.
+  !>
+  !> Its parallel files are kept off what shared file pointers take, which nothing here uses: named semaphores (sm),
   !> which outlive a killed run and make every later run that opens a file of the same name wait for ever, and files
   !> of locks, which outlive it too and whose names have no more room than 256 letters (lockedfile). What is left needs
-  !> two files, gone when the file is closed. A choice of the user's own is left alone. Other MPI libraries ignore the
-  !> variable.
-  subroutine avoid_shared_pointers()
+  !> two files, gone when the file is closed.
+  !>
+  !> A run without mpirun starts no daemon beside it, which is there to start further processes: that took longer than
+  !> the rest of MPI's start.
+  subroutine settle_open_mpi()
     use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char
     interface
       !> C library: sets a variable of the environment.
@@ -63,7 +68,8 @@ contains
     integer(c_int) :: status
 
     status = setenv('OMPI_MCA_sharedfp'//c_null_char, '^sm,lockedfile'//c_null_char, 0_c_int)
-  end subroutine avoid_shared_pointers
+    status = setenv('OMPI_MCA_ess_singleton_isolated'//c_null_char, '1'//c_null_char, 0_c_int)
+  end subroutine settle_open_mpi
 
   !> Ends MPI if it was started; nothing may be said between ranks afterwards.
   subroutine finish_mpi()

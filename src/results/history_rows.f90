@@ -50,19 +50,22 @@ contains
     !> The line
     character(len=:), allocatable :: line
     character(len=:), allocatable :: number
-    character(len=20) :: digits
-    integer :: i
+    integer :: i, first, last
 
-    line = ''
+    allocate (character(len=sum(max(widths, longest_real)) + size(widths)) :: line)
+    last = 0
     do i = 1, size(values)
       if (whole(i)) then
-        write (digits, '(i0)') nint(values(i), long)
-        number = trim(digits)
+        number = to_text(nint(values(i), long))
       else
         number = to_text(values(i))
       end if
-      if (i > 1) line = line//','
-      line = line//repeat(' ', widths(i) - len(number))//number
+      first = last + merge(2, 1, i > 1)
+      if (i > 1) line(first - 1:first - 1) = ','
+      last = first - 1 + max(widths(i), len(number))
+      line(first:last - len(number)) = ''
+      line(last - len(number) + 1:last) = number
     end do
+    line = line(:last)
   end function row
 end module history_rows

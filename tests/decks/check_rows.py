@@ -117,7 +117,7 @@ def main():
         sys.exit("`implam explain` lists no keys.")
     found = breaches(sources, groups, keys)
     # The check itself must be able to fail.
-    path = "app/deck_reader.f90"
+    path = "case/deck_reader.f90"
     for spoilt in ("x = 'density'\n", "x = \"Below_Ply\" ! 'it''s'\n", "x = 'E1, &\n  &E2'\n",
                    "'plate | edges |a|b|c|d|e|f'"):
         if len(breaches(dict(sources, **{path: sources[path] + spoilt}), groups, keys)) <= len(found):

@@ -102,13 +102,13 @@ class Workplace:
 
 
 def explain_keys(work, layers, patch):
-    """Has the unchanged table of `app` explain the keys that the patch adds."""
+    """Has the unchanged table of `case` explain the keys that the patch adds."""
     added = re.findall(r"^\+ +'(\w+) \| (\w+) \|", patch, re.MULTILINE)
     if not added:
         sys.exit("the patch adds no key")
     with open(os.path.join(work.folder, "explain_group.f90"), "w", encoding="utf-8") as source:
         source.write(EXPLAIN.format(group=added[0][0]))
-    sources = [os.path.join(ROOT, "src", "app", "deck_table.f90"), "explain_group.f90"]
+    sources = [os.path.join(ROOT, "src", "case", "deck_table.f90"), "explain_group.f90"]
     told = run(work.link("explain", work.compile(sources, layers)))
     for _, key in added:
         if not re.search(rf"^  {key} ", told, re.MULTILINE):

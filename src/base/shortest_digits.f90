@@ -1,0 +1,61 @@
+!> The fewest decimal digits that tell a double from all others, in a twentieth of the time that writing and reading it
+!> takes. Where double the precision can't decide, it says so.
+module shortest_digits
+  use, intrinsic :: iso_fortran_env, only: real128
+  use kinds, only: long, wp
+  implicit none
+  private
+  public :: find_shortest
+
+  !> Decimal exponents of the numbers it knows; those beyond need powers of ten beyond the range of doubles.
+  integer, parameter :: most = 280
+  !> Relative distance from a bound within which nothing is decided; the products are good to 1e-15 of a last digit.
+  real(wp), parameter :: doubt = 1.0e-12_wp
+
+contains
+
+  !> The nearest number of 15 digits if it reads back as the same double, else that of 16, else that of 17.
+  pure subroutine find_shortest(value, digits, exponent, known)
+    !> The number, > 0
+    real(wp), intent(in) :: value
+    !> Its digits as an integer
+    integer(long), intent(out) :: digits
+    !> Power of ten that they count
+    integer, intent(out) :: exponent
+    !> False: it is not decided
+    logical, intent(out) :: known
+    integer :: power
+    ! Exact up to 10**48, and to 34 digits beyond.
+    real(real128), parameter :: ten(-most:most + 20) = [(10.0_real128**power, power=-most, most + 20)]
+    real(real128) :: scaled
+    real(wp) :: bound(2), part, off
+    integer(long) :: whole, unit
+    integer :: dropped
+
+    digits = 0
+    exponent = 0
+    known = value > 10.0_wp**(1 - most) .and. value < 10.0_wp**(most - 1)
+    if (.not. known) return
+    ! 17 digits before the point
+    exponent = floor(log10(value)) - 16
+    if (value*ten(-exponent) >= ten(17)) exponent = exponent + 1
+    if (value*ten(-exponent) < ten(16)) exponent = exponent - 1
+    scaled = value*ten(-exponent)
+    whole = int(scaled, long)
+    ! What is nearer than half the distance to the next double reads back. Below a power of two they are denser.
+    bound(2) = real(spacing(value)*ten(-exponent), wp)/2
+    bound(1) = bound(2)
+    if (.not. abs(fraction(value)) > 0.5_wp) bound(1) = bound(2)/2
+    do dropped = 2, 0, -1
+      unit = 10_long**dropped
+      part = real(mod(whole, unit), wp) + real(scaled - whole, wp)
+      digits = whole/unit
+      if (2*part > unit) digits = digits + 1
+      off = min(part, unit - part)
+      if (dropped > 0 .and. off > bound(2)*(1 + doubt)) cycle
+      known = abs(2*part - unit) > doubt*unit .and. (dropped == 0 .or. off < bound(1)*(1 - doubt))
+      exit
+    end do
+    exponent = exponent + dropped
+  end subroutine find_shortest
+end module shortest_digits
