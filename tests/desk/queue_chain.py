@@ -84,7 +84,8 @@ def array(implam, slurm, folder):
     ended = [slurm.end_of(f"{number}_{task}", 300) for task in (1, 2, 3, 4)]
     states, again = [job["JobState"] for job in ended], [int(job["Restarts"]) for job in ended]
     print(f"array: {', '.join(states)}, requeued {again} times")
-    require(states == ["COMPLETED"] * 4 and again[0] == 1 and not any(again[1:]), "The tasks haven't ended so.")
+    # scancel sends once more where Slurm asks it to, so that the task may be stopped twice.
+    require(states == ["COMPLETED"] * 4 and again[0] >= 1 and not any(again[1:]), "The tasks haven't ended so.")
     run([*sweep, "--output", "queued", "--table"], folder=folder)
     require(table_of(folder / "queued") == table_of(folder / "plain"), "The table isn't that without a queue.")
 
