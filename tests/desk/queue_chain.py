@@ -86,7 +86,7 @@ def array(implam, slurm, folder):
     print(f"array: {', '.join(states)}, requeued {again} times")
     # scancel sends once more where Slurm asks it to, so that the task may be stopped twice.
     require(states == ["COMPLETED"] * 4 and again[0] >= 1 and not any(again[1:]), "The tasks haven't ended so.")
-    run([*sweep, "--output", "queued", "--table"], folder=folder)
+    run([*sweep, "--output", "queued", "--program", implam, "--table"], folder=folder)
     require(table_of(folder / "queued") == table_of(folder / "plain"), "The table isn't that without a queue.")
 
 
