@@ -17,7 +17,7 @@ from solver_runs import run as run_program
 
 DECKS = sorted(path.relative_to(ROOT / "input") for path in (ROOT / "input").rglob("*.nml"))
 # Cells of the large decks; a deck that is large and not named here takes its time.
-COARSE = {"t700_m21": ["mesh%elements=8,8", "mesh%cell=10e-3", "mesh%patch=10e-3"],
+COARSE = {"t700_m21": ["mesh%elements=16,18", "mesh%cell=5e-3", "mesh%patch=5e-3"],
           "crossply_1.25mm": ["mesh%elements=16,16", "mesh%patch=6.25e-3"]}
 STEPS = 3
 
