@@ -17,7 +17,7 @@ import time
 from pathlib import Path
 
 from released_cells import damage_of
-from restart import PATIENCE, ranks_of, require_close, require_same, wait_until
+from restart import ranks_of, require_close, require_same, wait_until
 from restart_growth import GROWING, SOFTENING
 from solver_runs import EXIT_DONE, EXIT_STOPPED, exit_code_of, history_of, require, run, run_deck, write_deck
 
@@ -30,6 +30,7 @@ SCENES = {"fronts": ("../small/damage.nml", [*GROWING, "time%end=400e-6", "outpu
           "cohesive": ("../small/cohesive.nml", ["output%checkpoint_every=10e-6", "output%fields_every=50e-6"]),
           "softening": ("../small/crack_bands.nml", [*SOFTENING, "output%checkpoint_every=5e-6",
                                                      "output%fields_every=30e-6"])}
+PATIENCE = 1800  # seconds, on a machine that others keep busy
 MPIRUN_STOPPED = 1  # what Open MPI's launcher ends with after TERM and INT
 
 
@@ -112,7 +113,7 @@ def wait_for_writing(deck, process, times):
     for _ in range(times):
         for wanted in (False, True):
             while any(path.exists() for path in aside) != wanted and process.poll() is None:
-                time.sleep(0.0002)
+                time.sleep(0.0005)
 
 
 def kill_once(scene, deck, moments, writing):
@@ -155,6 +156,8 @@ def check_kills(implam, folder, count, launcher):
                 kills, writing, mine = kills + hit, writing + (hit and written), mine + hit
             scene.check_end(deck, f"{scene.name}, {ranks} rank(s), {mine} kills")
             chains += 1
+            print(f"{scene.name}, {ranks} rank(s): {mine} kills, {kills} so far, {writing} of them within a checkpoint",
+                  flush=True)
         print(f"{ranks} rank(s): {kills} kills, {writing} while a checkpoint was being written, in {chains} chains: "
               f"{'to 1e-9' if launched else 'the same to the last bit'}, no file left over", flush=True)
 
