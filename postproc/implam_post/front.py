@@ -10,9 +10,9 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.ticker import MultipleLocator
 
-from implam_post.fields import IMAGES, Fields, Snapshot, extents, outline
+from implam_post.fields import IMAGES, Fields, Snapshot, outline
 from implam_post.look import Look
-from implam_post.plan import frame
+from implam_post.plan import frame, reach_of, struck_point
 
 _MOST_TIMES = 8
 _PLAIN = Look()
@@ -46,7 +46,7 @@ def draw_front(axes: Axes, fields: Fields, below_ply: int, snapshot: Snapshot, l
     apart = fields.whole(snapshot.delaminated_cells(below_ply))
     axes.add_collection(LineCollection(outline(apart), colors="black", linewidths=0.8))
     axes.set_title(f"time {look.said('time', snapshot.time)}", fontsize="medium")
-    frame(axes, *extents(np.concatenate([cells, apart])), look)
+    frame(axes, fields, reach_of(np.concatenate([cells, apart]), fields), look)
     axes.figure.colorbar(shown, ax=axes, location="bottom", shrink=0.8, label="$G/G_c$ ahead of the front")
 
 
@@ -55,7 +55,7 @@ def _draw_around(axes: Axes, fields: Fields, below_ply: int, snapshots: Sequence
     colours = colormaps["viridis_r"](np.linspace(0, 1, max(len(snapshots), 2)))
     for snapshot, colour in zip(snapshots, colours, strict=False):
         cells, ratio = snapshot.release(below_ply)
-        x, y = np.mean(cells, axis=1).T
+        x, y = (np.mean(cells, axis=1) - struck_point(fields)).T
         angle = np.degrees(np.arctan2(y, x))
         order = np.argsort(angle)
         axes.plot(angle[order], ratio[order], ".-", color=colour, linewidth=1, label=look.said("time", snapshot.time))

@@ -26,6 +26,7 @@ class Look:
     dots_per_inch: int = 150
     letters: float = 10.0
     kind: str = "png"
+    projected: str = "depth"
 
     def axis(self, label: str, dimension: str, values: Iterable[float]) -> Axis:
         """Return factor and label of an axis, in units that suit its values."""
@@ -51,7 +52,7 @@ def look_of(options: argparse.Namespace, results: Iterable[Path]) -> Look:
     if not (10 <= dots <= 2400 and 3 <= options.font_size <= 60):
         raise ImplamError("--dpi takes 10 to 2400, --font-size 3 to 60.")
     system = options.units or next((name for path in results if (name := _system_in(path))), "")
-    return Look(system, dots, options.font_size, options.format)
+    return Look(system, dots, options.font_size, options.format, getattr(options, "projected", "depth"))
 
 
 def deck_in(path: Path) -> Deck | None:

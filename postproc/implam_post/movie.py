@@ -13,10 +13,10 @@ from matplotlib.patches import Patch
 from PIL import Image
 
 from implam_post.errors import EXIT_DONE, CommandParser, FileError, run
-from implam_post.fields import Fields, extents, read_fields
+from implam_post.fields import Fields, read_fields
 from implam_post.history import History, read_history
 from implam_post.look import Look, add_options, look_of
-from implam_post.plan import frame
+from implam_post.plan import frame, reach_of
 
 
 def frames(fields: Fields, history: History | None, look: Look) -> list[Image.Image]:
@@ -38,7 +38,7 @@ def _picture(fields: Fields, history: History | None, look: Look, time: float) -
     plan.legend(handles=[Patch(color=f"C{place % 10}", label=f"below ply {below_ply}")
                          for place, below_ply in enumerate(interfaces)], loc="upper right", fontsize="small")
     plan.set_title(f"time {look.said('time', time)}")
-    frame(plan, *extents(np.concatenate([cells for cells, _ in found])), look)
+    frame(plan, fields, reach_of(np.concatenate([cells for cells, _ in found]), fields), look)
     if history is not None:
         clock = look.axis("time", "time", history.time)
         force = look.axis("contact force", "force", history["force"])

@@ -208,6 +208,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
                         help="one picture of delamination, force and energies of NAME.h5, instead of all")
     parser.add_argument("--measured", type=Path, metavar="CSV", help="measured curve to draw as dots: columns time and "
                         "force, indentation or deflection, in the units of the results")
+    parser.add_argument("--projected", choices=("depth", "time"), default="depth", help="colour of NAME_projected: the "
+                        "first interface apart, or when the first one came apart (default: depth)")
     parser.add_argument("--format", choices=FORMATS, default="png", help="kind of file (default: png)")
     add_options(parser)
     return run(_command, parser, arguments)

@@ -16,7 +16,7 @@ from implam_post import movie, plot
 from implam_post.fields import area, read_fields
 from implam_post.history import ENERGIES, History
 from implam_post.look import Look
-from implam_post.plan import along_fibres, failures_figure, projected_figure
+from implam_post.plan import along_fibres, delamination_figure, failures_figure, projected_figure
 from tests.test_fields import write_fields
 
 DECK = """&case units='SI' /
@@ -112,6 +112,19 @@ class PicturesTest(unittest.TestCase):
                  for segment in part.get_segments()]
         self.assertEqual(len(lines), 2)
         self.assertTrue(all(abs(segment[0, 0] - segment[1, 0]) < 1e-9 for segment in lines))
+
+    def test_struck_aside(self) -> None:
+        """The picture is about the struck point, which the deck tells, and holds all that came apart."""
+        with h5py.File(self.path, "a") as file:
+            del file["provenance/deck"]
+            file["provenance/deck"] = np.bytes_(DECK.replace("radius=1e-2", "radius=1e-2 at=2, 1"))
+        fields = read_fields(self.path)
+        cells = fields.times_apart(2)[0]
+        for figure in (projected_figure(fields, Look("SI")), delamination_figure(fields, Look("SI"))):
+            axes = figure.axes[0]
+            low, high = np.transpose([axes.get_xlim(), axes.get_ylim()])
+            self.assertTrue(np.all(cells > low) and np.all(cells < high), (low, high))
+            np.testing.assert_allclose((low + high) / 2, (2, 1))
 
     def test_movie(self) -> None:
         """A picture for each time, each with more cells apart than the one before."""

@@ -23,7 +23,7 @@ module programs
   use build_information, only: version, commit, compiler, petsc_version
   use command_lines, only: command_t, read_command_line, verb_run, verb_check, verb_explain, verb_restart, &
                            verb_version, verb_help, verb_new, verb_completion, verb_man, verb_queue
-  use queue_signals, only: catch_stop_signals
+  use queue_signals, only: release_stop_signals
   use result_explain, only: explain_results, is_result_topic, result_topics_sentence
   use model_sizes, only: model_size_t, size_of_model
   use queue_scripts, only: queue_job_t, write_queue_script
@@ -53,6 +53,7 @@ contains
     if (command_argument_count() == 0) call tell_usage(communicator)
     call read_command_line(command, error)
     if (.not. allocated(error)) then
+      if (all(command%verb /= [verb_run, verb_restart])) call release_stop_signals()
       select case (command%verb)
       case (verb_version)
         call print_lines(communicator, &
@@ -280,7 +281,6 @@ contains
     call start_mpi(communicator)
     call start_petsc(communicator, deck%linear_solver%petsc_options//command%petsc_options, error)
     if (allocated(error)) return
-    call catch_stop_signals()
     allocate (simulation)
     if (command%verb == verb_restart) then
       call simulation%resume(deck, communicator, begun, checkpoint, error)

@@ -1,17 +1,17 @@
-!> Signals by which a queue announces that the time is up.
+!> Signals by which a queue announces that the time is up: TERM, INT, USR1, USR2 and XCPU. The program holds them back
+!> from its start on (held_signals.c), so that they wait until they are asked for.
 module queue_signals
   use, intrinsic :: iso_c_binding, only: c_int
   implicit none
   private
-  public :: catch_stop_signals, stop_signal
+  public :: release_stop_signals, stop_signal
 
   interface
-    !> From now on TERM, INT, USR1, USR2 and XCPU are remembered instead of ending the program, whatever libraries
-    !> have made of them.
-    subroutine catch_stop_signals() bind(c, name='implam_catch_stop_signals')
-    end subroutine catch_stop_signals
+    !> From now on they end the program, as they do others; for what computes nothing.
+    subroutine release_stop_signals() bind(c, name='implam_release_stop_signals')
+    end subroutine release_stop_signals
 
-    !> Number of the last such signal; 0: none came.
+    !> Number of such a signal that has come; 0: none.
     integer(c_int) function stop_signal() bind(c, name='implam_stop_signal')
       import :: c_int
     end function stop_signal

@@ -25,7 +25,7 @@ module simulations
   use fields_file, only: fields_file_t
   use checkpoints, only: checkpoint_archive_t, checkpoint_ending, retire_checkpoint
   use wall_limits, only: wall_limit_t
-  use queue_signals, only: catch_stop_signals, stop_signal
+  use queue_signals, only: stop_signal
   use output_clocks, only: clock_t, next_event, shown_time
   use energy_watches, only: energy_watch_t
   use result_rows, only: row_of, column_names, column_whole
@@ -251,7 +251,6 @@ contains
     real(wp) :: event, closest, step_begun
 
     call self%timers%stop('set-up')
-    call catch_stop_signals()
     closest = self%stepper%smallest_step(self%model)
     do while (self%stepper%now%time < end_of(self))
       event = next_event([self%history_clock, self%fields_clock, self%checkpoint_clock], end_of(self), closest)
@@ -281,8 +280,6 @@ contains
     character(len=:), allocatable :: cause
     logical :: signalled, late
 
-    ! METIS, at work for the partition and within the solver, takes a signal and may give it back for one time only.
-    call catch_stop_signals()
     signalled = self%communicator%any(stop_signal() /= 0)
     late = self%communicator%any(self%wall_limit%is_up(wall_time())) .and. self%stepper%now%time < end_of(self)
     if (.not. (signalled .or. late)) return

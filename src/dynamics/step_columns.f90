@@ -3,6 +3,7 @@
 module step_columns
   use kinds, only: wp
   use energy_ledgers, only: ledger_t
+  use output_clocks, only: shown_time
   use result_tables, only: result_row_length
   use states, only: state_t
   implicit none
@@ -90,7 +91,7 @@ contains
     !> A value a column
     real(wp) :: values(size(step_rows))
 
-    values = [now%patch_mean, now%ledger%external_work, length, now%stress]
+    values = [now%patch_mean, now%ledger%external_work, shown_time(length), now%stress]
   end function step_values
 
   !> Iterations.

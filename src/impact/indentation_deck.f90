@@ -7,7 +7,7 @@ module indentation_deck
   use deck_vocabulary, only: group_row_length, key_row_length
   use impact_parameters, only: indentation_law_t, law_tan_sun, law_hertz, dent_tan_sun, dent_yang_sun
   use kinds, only: wp
-  use hertz_contact, only: sun_stiffness, hertz_exponent
+  use hertz_contact, only: sun_stiffness
   use text, only: line_t, append, to_text
   implicit none
   private
@@ -28,9 +28,9 @@ module indentation_deck
       &Young''s modulus of the impactor in Sun''s formula for k.', &
     'indentation | impactor_nu | real | 1 | - | 0.3 | > -1, < 0.5 | &
       &Poisson''s ratio of the impactor in Sun''s formula for k.', &
-    'indentation | q | real | 1 | - | 2.5 | >= 1, <= 10 | &
+    'indentation | q | real | 1 | - | 2.5 | >= 1.5, <= 10 | &
       &Exponent of unloading.', &
-    'indentation | reload | real | 1 | - | 1.5 | >= 1, <= 10 | &
+    'indentation | reload | real | 1 | - | 1.5 | >= 1.5, <= 10 | &
       &Exponent of reloading after separation.', &
     'indentation | beta | real | 1 | - | 0.094 | >= 0, < 1 | &
       &Slope of Tan and Sun''s dent.', &
@@ -123,8 +123,8 @@ contains
     end subroutine idle
   end subroutine check_indentation
 
-  !> Exponents of a law that makes no energy: 1.5 <= reload <= q. Unloading then gives back no more than loading took,
-  !> and reloading takes no less than unloading gave.
+  !> Exponents of a law that makes no energy: 1.5 <= reload <= q, of which the rows have the lower bound. Unloading then
+  !> gives back no more than loading took, and reloading takes no less than unloading gave.
   subroutine check_exponents(settings, law, problems)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
@@ -134,15 +134,8 @@ contains
     type(problems_t), intent(inout) :: problems
 
     if (.not. are_clear(settings, problems, indentation_group, 'q reload')) return
-    if (law%q < hertz_exponent) then
-      call tell(settings, problems, indentation_group, 'q', 'unloading would give back more energy than loading '// &
-                'took; allowed: >= '//to_text(max(hertz_exponent, law%reload))//', <= 10.')
-    else if (law%reload > law%q) then
+    if (law%reload > law%q) &
       call tell(settings, problems, indentation_group, 'reload', 'reloading would take less energy than unloading '// &
-                'gave back; allowed: >= '//to_text(hertz_exponent)//', <= q = '//to_text(law%q)//'.')
-    end if
-    if (law%reload < hertz_exponent) &
-      call tell(settings, problems, indentation_group, 'reload', 'reloading would be stiffer than first loading; '// &
-                'allowed: >= '//to_text(hertz_exponent)//', <= q.')
+                'gave back; allowed: >= 1.5, <= q = '//to_text(law%q)//'.')
   end subroutine check_exponents
 end module indentation_deck

@@ -2,9 +2,13 @@
 Usage: command_line.py IMPLAM FOLDER"""
 
 import os
+import pty
+import select
 import shutil
+import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
@@ -71,6 +75,39 @@ def check_pages(implam, folder):
     print("pages: done")
 
 
+def check_zsh(implam, folder):
+    """In a zsh as it is started by hand, with the file where zsh looks for completions, the first key completes."""
+    if not shutil.which("zsh"):
+        print("zsh: not installed, left out")
+        return
+    (folder / "_implam").write_text(answer(implam, "completion", "zsh"), encoding="utf-8")
+    for typed, expected in (("implam expl", "implam explain "), ("implam explain plate.len", "plate.length "),
+                            ("implam check pl", "check plate.nml ")):
+        number, terminal = pty.fork()
+        if number == 0:
+            os.chdir(folder)
+            os.environ |= {"TERM": "dumb", "ZDOTDIR": str(folder)}
+            os.execvp("zsh", ["zsh", "-f", "-i"])
+        os.write(terminal, b"PS1='> '; fpath=($PWD $fpath); autoload -Uz compinit; compinit -u -D; echo re''ady\n")
+        said = read_until(terminal, "ready\r")
+        os.write(terminal, typed.encode() + b"\t")
+        said = read_until(terminal, expected)
+        require(expected in said, f"zsh completes '{typed}' to {said!r}.")
+        os.kill(number, signal.SIGKILL)
+        os.waitpid(number, 0)
+        os.close(terminal)
+    print("zsh: done")
+
+
+def read_until(terminal, words):
+    """Return what a terminal shows up to some words; all of half a minute if they don't come."""
+    said, latest = "", time.monotonic() + 30
+    while words not in said and time.monotonic() < latest:
+        if select.select([terminal], [], [], 0.1)[0]:
+            said += os.read(terminal, 65536).decode(errors="replace")
+    return said
+
+
 def check_new(implam, folder):
     """The deck to start from runs without a warning, grows a delamination, and overwrites nothing."""
     answer(implam, "new", cwd=folder)
@@ -97,6 +134,7 @@ def main():
     check_help(implam)
     check_explain(implam)
     check_pages(implam, folder)
+    check_zsh(implam, folder)
     check_new(implam, folder)
 
 

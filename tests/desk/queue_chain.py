@@ -1,7 +1,9 @@
-"""Jobs of a real Slurm, started here on one node: a chain that is stopped by its limit again and again ends with the
+"""Jobs of a real Slurm, started here on one node: an array of a sweep, of which a task is told to stop and comes again,
+gives the table of the same sweep without a queue; a chain that is stopped by its limit again and again ends with the
 history of an undisturbed run, bit for bit.
 Usage: queue_chain.py IMPLAM FOLDER     (exit code 77: skipped, with the reason)"""
 
+import csv
 import os
 import shutil
 import signal
@@ -50,6 +52,44 @@ exec {HERE}/slow.sh {AWAKE} {asleep} {implam} "$@"
     require(history == expected, "The history of the chain isn't that of the undisturbed run.")
 
 
+SWEEP = """deck = "swept.nml"
+[grid]
+"impactor.velocity" = [1.5, 2.0, 2.5, 3.0]
+"time.end" = [2e-3]
+"""
+
+
+def table_of(folder):
+    """Return the rows of a sweep's table but for what each run has taken."""
+    with (folder / "table.csv").open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    for row in rows:
+        require(float(row.pop("cpu_time")) > 0, "A case has taken no time.")
+    return rows
+
+
+def array(implam, slurm, folder):
+    """An array over a sweep, one task of which is told to stop."""
+    folder.mkdir()
+    shutil.copy(DECK, folder / "swept.nml")
+    (folder / "sweep.toml").write_text(SWEEP, encoding="utf-8")
+    sweep = [sys.executable, "-m", "implam_post.sweep", "sweep.toml"]
+    run([*sweep, "--output", "plain", "--program", implam], folder=folder)
+    run([*sweep, "--output", "queued", "--program", f"{HERE}/slow.sh 0.05 0.1 {implam}", "--array"], folder=folder)
+    run([implam, "queue", "slurm", "queued/array.txt", "--chain", "--time", "0:10:00"], folder=folder)
+    number = slurm.submit(folder, "sweep.slurm")
+    slurm.wait(lambda: slurm.job(f"{number}_1").get("JobState") == "RUNNING", "the first task", 60)
+    slurm.wait(lambda: list(folder.glob("queued/cases/*/damage_history.csv")), "its history", 60)
+    slurm.ask("scancel", "--batch", "--signal=USR1", f"{number}_1")
+    ended = [slurm.end_of(f"{number}_{task}", 300) for task in (1, 2, 3, 4)]
+    states, again = [job["JobState"] for job in ended], [int(job["Restarts"]) for job in ended]
+    print(f"array: {', '.join(states)}, requeued {again} times")
+    # scancel sends once more where Slurm asks it to, so that the task may be stopped twice.
+    require(states == ["COMPLETED"] * 4 and again[0] >= 1 and not any(again[1:]), "The tasks haven't ended so.")
+    run([*sweep, "--output", "queued", "--program", implam, "--table"], folder=folder)
+    require(table_of(folder / "queued") == table_of(folder / "plain"), "The table isn't that without a queue.")
+
+
 def main():
     """Start Slurm, run the jobs, end it."""
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # by way of the end of Slurm's daemons
@@ -63,6 +103,7 @@ def main():
     place = tempfile.mkdtemp(prefix="slurm")  # paths of sockets have to be short
     try:
         with Slurm(place) as slurm:
+            array(implam, slurm, folder / "array")
             chain(implam, slurm, folder, expected, taken)
     except MissingError as reason:
         print(f"skipped: {reason}")

@@ -80,10 +80,10 @@ class Slurm:
         at = self.folder
         self._start("munged", "--foreground", "--force", f"--key-file={at}/munge.key", f"--socket={at}/munge.socket",
                     f"--pid-file={at}/munge.pid", f"--log-file={at}/munge.log", f"--seed-file={at}/munge.seed")
-        self._wait(lambda: (at / "munge.socket").exists(), "munge")
+        self.wait(lambda: (at / "munge.socket").exists(), "munge")
         self._start("slurmctld", "-D", "-c")
         self._start("slurmd", "-D")
-        self._wait(lambda: "idle" in self.ask("sinfo", "-h", "-o", "%T"), "the node")
+        self.wait(lambda: "idle" in self.ask("sinfo", "-h", "-o", "%T"), "the node")
         return self
 
     def __exit__(self, *_):
@@ -123,7 +123,7 @@ class Slurm:
     def end_of(self, number, seconds):
         """Wait for the end of a job; return what is known of it then."""
         ends = ("COMPLETED", "FAILED", "TIMEOUT", "CANCELLED", "NODE_FAIL")
-        self._wait(lambda: self.job(number).get("JobState") in ends, f"job {number}", seconds)
+        self.wait(lambda: self.job(number).get("JobState") in ends, f"job {number}", seconds)
         return self.job(number)
 
     def _start(self, name, *words):
@@ -132,7 +132,7 @@ class Slurm:
             self._daemons.append(subprocess.Popen([shutil.which(name), *words], env=self.environment, stdout=output,
                                                   stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL))
 
-    def _wait(self, holds, what, seconds=40):
+    def wait(self, holds, what, seconds=40):
         """Wait until something holds."""
         for _ in range(int(2 * seconds)):
             if holds():

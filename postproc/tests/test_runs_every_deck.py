@@ -1,0 +1,68 @@
+"""Every command that draws runs on every deck in input/, after a run of few steps on coarse cells."""
+
+import re
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import h5py
+
+from implam_post import movie, paraview, plot, report
+from tests.program import ROOT, implam, run_quietly
+
+sys.path.insert(0, str(ROOT / "tests" / "regress"))
+from solver_runs import change_deck
+from solver_runs import run as run_program
+
+DECKS = sorted(path.relative_to(ROOT / "input") for path in (ROOT / "input").rglob("*.nml"))
+# Cells of the large decks; a deck that is large and not named here takes its time.
+COARSE = {"t700_m21": ["mesh%elements=16,18", "mesh%cell=5e-3", "mesh%patch=5e-3"],
+          "crossply_1.25mm": ["mesh%elements=16,16", "mesh%patch=6.25e-3"]}
+STEPS = 3
+
+
+def short(deck: Path) -> str:
+    """Return a deck with coarse cells that ends after few steps and writes each of them."""
+    text = deck.read_text(encoding="utf-8")
+    settings = next((coarse for name, coarse in COARSE.items() if deck.name.startswith(name)), [])
+    step = re.search(r"^&time\b[^/]*?\bstep\s*=\s*([0-9.e+-]+)", text, re.MULTILINE)
+    if step:
+        settings = [*settings, f"time%end={STEPS * float(step[1])!r}", f"output%fields_every={float(step[1])!r}",
+                    "output%checkpoint_every=0"]
+    return change_deck(text, settings)
+
+
+class EveryDeckTest(unittest.TestCase):
+    """A deck at a time."""
+
+    def test_every_deck(self) -> None:
+        """Pictures, one picture of all, movie, page and scene; a command that has nothing to draw says so."""
+        self.assertGreater(len(DECKS), 40)
+        for name in DECKS:
+            with self.subTest(str(name)), tempfile.TemporaryDirectory() as folder:
+                deck = Path(folder) / "deck.nml"
+                deck.write_text(short(ROOT / "input" / name), encoding="utf-8")
+                run_program([implam(), deck, "--output", folder])
+                self.draw(next(path for path in Path(folder).glob("*.h5") if "_restart" not in path.name))
+
+    def draw(self, fields: Path) -> None:
+        """Run the commands on a run's fields."""
+        with h5py.File(fields) as file:
+            mesh = file["meshes/00000001/cells"]
+            layered = mesh["first_ply"][()].max() > 1
+        history = fields.with_name(f"{fields.stem}_history.csv")
+        for command, arguments, needs in ((plot.main, [fields], True),
+                                          (plot.main, [fields, "--projected", "time"], True),
+                                          (plot.main, [fields, "--save", fields.with_suffix(".png")], layered),
+                                          (plot.main, [history], True), (movie.main, [fields], layered),
+                                          (report.main, [fields.with_name(f"{fields.stem}_summary.json")], True),
+                                          (paraview.main, [fields], True)):
+            code, told = run_quietly(command, *arguments)
+            self.assertEqual(code, 0 if needs else 4, f"{command.__module__} {arguments}: {told}")
+            if not needs:
+                self.assertIn("no interface", told)
+
+
+if __name__ == "__main__":
+    unittest.main()

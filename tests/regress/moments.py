@@ -1,0 +1,238 @@
+"""Runs that are killed or told to stop at any moment, again and again, must end as the run that was left alone.
+Usage: moments.py TRIAL IMPLAM FOLDER COUNT LAUNCHER...     (LAUNCHER takes the number of ranks as its last word)
+
+kills    SIGKILL COUNT times on one rank and COUNT times on two, every other one while a checkpoint is being written:
+         histories and damage are those of the run left alone, bitwise on one rank and to 1e-9 on two; no file is left
+signals  TERM, INT and USR1, once and twice, to the program, to one rank, to both and to mpirun, COUNT times each: a
+         checkpoint, or nothing written yet, and the code of the manual; what goes on from there ends likewise
+early    before main has begun, and while METIS has TERM's handler in its hands: the same"""
+
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+from released_cells import damage_of
+from restart import ranks_of, require_close, require_same, wait_until
+from restart_growth import GROWING, SOFTENING
+from solver_runs import EXIT_DONE, EXIT_STOPPED, exit_code_of, history_of, require, run, run_deck, write_deck
+
+HERE = Path(__file__).resolve().parent
+os.environ |= {"OMPI_MCA_mpi_yield_when_idle": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1",
+               "OMPI_MCA_hwloc_base_binding_policy": "none"}
+# Fronts that grow while plies fail, a cohesive interface, and plies that soften; in each step a checkpoint.
+SCENES = {"fronts": ("../small/damage.nml", [*GROWING, "time%end=400e-6", "output%checkpoint_every=10e-6",
+                                             "output%fields_every=50e-6"]),
+          "cohesive": ("../small/cohesive.nml", ["output%checkpoint_every=10e-6", "output%fields_every=50e-6"]),
+          "softening": ("../small/crack_bands.nml", [*SOFTENING, "output%checkpoint_every=5e-6",
+                                                     "output%fields_every=30e-6"])}
+PATIENCE = 1800  # seconds, on a machine that others keep busy
+MPIRUN_STOPPED = 1  # what Open MPI's launcher ends with after TERM and INT
+
+
+class Scene:
+    """A deck, its run that was left alone, and others that are not."""
+
+    def __init__(self, implam, folder, name, launcher=()):
+        """Run it once."""
+        self.implam, self.folder, self.name, self.launcher = implam, folder / name, name, launcher
+        source, settings = SCENES[name]
+        self.settings = source, [*settings, "solver%tolerance=1e-9"]
+        begun = time.monotonic()
+        self.reference = run_deck(implam, write_deck(self.folder / "alone", *self.settings), launcher)
+        self.seconds = time.monotonic() - begun
+        self.damage = damage_of(self.reference)
+
+    def fresh(self):
+        """Return the path of the deck in a folder with nothing else in it."""
+        return write_deck(self.folder / "disturbed", *self.settings)
+
+    def start(self, deck, **variables):
+        """Start the run, or go on if there is a checkpoint; return the launcher's process, or the program's."""
+        words = ["restart", deck.parent] if list(deck.parent.glob("*_restart.h5")) else [deck, "--output", deck.parent]
+        return subprocess.Popen([str(word) for word in (*self.launcher, self.implam, *words)], start_new_session=True,
+                                stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                                env=os.environ | variables)
+
+    def ranks(self, process):
+        """Return the numbers of the program's processes."""
+        return ranks_of(process, self.implam) if self.launcher else [process.pid]
+
+    def check_end(self, deck, what):
+        """The disturbed run has ended as the other one, and has left the same files."""
+        history = history_of(deck.parent)
+        if self.launcher:
+            require_close(history, self.reference, what)
+        else:
+            require_same(history, self.reference, what)
+        require(damage_of(history) == self.damage, f"{what}: other cells have come apart or other plies failed.")
+        left = {path.name for path in deck.parent.iterdir()} - {path.name for path in self.reference.parent.iterdir()}
+        require(not left, f"{what}: {sorted(left)} are left over.")
+
+
+def session_of(process):
+    """Return the processes of a launcher's session that still run."""
+    found = []
+    for status in Path("/proc").glob("[0-9]*/stat"):
+        try:
+            state, _, _, session = status.read_text(encoding="utf-8").rsplit(")", 1)[1].split()[:4]
+        except OSError:  # ended meanwhile
+            continue
+        if int(session) == process.pid and state != "Z":
+            found.append(int(status.parent.name))
+    return found
+
+
+def send(numbers, stop):
+    """Send a signal to processes, of which some may have ended."""
+    for number in numbers:
+        try:
+            os.kill(number, stop)
+        except ProcessLookupError:
+            continue
+
+
+def end_of(process):
+    """Wait for the end of a session and return the exit code."""
+    code = process.wait(PATIENCE)
+    latest = time.monotonic() + PATIENCE
+    while session_of(process):
+        require(time.monotonic() < latest, "Ranks go on without their launcher.")
+        time.sleep(0.02)
+    return code
+
+
+def wait_for_writing(deck, process, times):
+    """Wait until a checkpoint is being written, so many times; the end of the run ends it too."""
+    aside = [deck.parent / name for name in ("damage", "cohesive", "crack_bands")]
+    aside = [path.with_name(path.name + "_restart.h5.tmp") for path in aside]
+    for _ in range(times):
+        for wanted in (False, True):
+            while any(path.exists() for path in aside) != wanted and process.poll() is None:
+                time.sleep(0.0005)
+
+
+def kill_once(scene, deck, moments, writing):
+    """Kill a run at a random moment; return whether it ran still, whether a checkpoint was being written, and whether
+    the run has ended all the same."""
+    process = scene.start(deck)
+    if writing:
+        wait_for_writing(deck, process, moments.randrange(1, 6))
+        time.sleep(moments.uniform(0, 0.004))
+    else:
+        time.sleep(moments.uniform(0, 1.2 * scene.seconds))
+    running = session_of(process)
+    victims = moments.choice([running, [process.pid], scene.ranks(process)[:1]])
+    send(running, signal.SIGSTOP)  # so that what is seen is what is left
+    written = bool(list(deck.parent.glob("*_restart.h5.tmp")))
+    hit = process.poll() is None
+    send(victims, signal.SIGKILL)
+    send(running, signal.SIGCONT)
+    code = end_of(process)
+    require(code != EXIT_DONE or not hit or not victims, "A run that was killed ends with 0.")
+    return hit and bool(victims), written, code == EXIT_DONE
+
+
+def check_kills(implam, folder, count, launcher):
+    """On one rank, then on two."""
+    for ranks, launched in ((1, ()), (2, (*launcher, "2"))):
+        moments = random.Random(ranks)
+        scenes = [Scene(implam, folder / str(ranks), name, launched) for name in SCENES]
+        kills, writing, chains = 0, 0, 0
+        while kills < count:
+            scene = scenes[chains % len(scenes)]
+            deck, ended, mine = scene.fresh(), False, 0
+            # The last kill of all is followed by an undisturbed end.
+            while not ended:
+                if kills >= count or mine >= 12:
+                    ended = end_of(scene.start(deck)) == EXIT_DONE
+                    require(ended, "The run doesn't end when it is left alone.")
+                    break
+                hit, written, ended = kill_once(scene, deck, moments, kills % 2 == 1)
+                kills, writing, mine = kills + hit, writing + (hit and written), mine + hit
+            scene.check_end(deck, f"{scene.name}, {ranks} rank(s), {mine} kills")
+            chains += 1
+            print(f"{scene.name}, {ranks} rank(s): {mine} kills, {kills} so far, {writing} of them within a checkpoint",
+                  flush=True)
+        print(f"{ranks} rank(s): {kills} kills, {writing} while a checkpoint was being written, in {chains} chains: "
+              f"{'to 1e-9' if launched else 'the same to the last bit'}, no file left over", flush=True)
+
+
+def told(scene, deck, target, stop, times, delay):
+    """Tell a run to stop; return the exit code."""
+    process = scene.start(deck)
+    wait_until(lambda: list(deck.parent.glob("*.log")), process)
+    time.sleep(delay)
+    chosen = {"mpirun": [process.pid], "one rank": scene.ranks(process)[:1]}.get(target) or scene.ranks(process)
+    for _ in range(times):
+        send(chosen, stop)
+        time.sleep(0.002)
+    return end_of(process)
+
+
+def check_signals(implam, folder, count, launcher):
+    """Every signal to every target; the run then goes on undisturbed."""
+    moments = random.Random(3)
+    alone = Scene(implam, folder / "1", "fronts")
+    both = Scene(implam, folder / "2", "fronts", (*launcher, "2"))
+    for scene, target in ((alone, "the program"), (both, "one rank"), (both, "both ranks"), (both, "mpirun")):
+        for stop in (signal.SIGTERM, signal.SIGINT, signal.SIGUSR1):
+            for times in (1, 2):
+                checkpoints = 0
+                for _ in range(count):
+                    deck = scene.fresh()
+                    code = told(scene, deck, target, stop, times, moments.uniform(0, 0.3 * scene.seconds))
+                    saved = bool(list(deck.parent.glob("*_restart.h5")))
+                    what = f"{stop.name} {'twice' if times == 2 else 'once'} to {target}"
+                    if target == "mpirun" and stop != signal.SIGUSR1:
+                        require(code == MPIRUN_STOPPED, f"{what}: code {code}, not {MPIRUN_STOPPED}.")
+                    else:
+                        require(code == EXIT_STOPPED and saved, f"{what}: code {code}, checkpoint: {saved}.")
+                    checkpoints += saved
+                    require(end_of(scene.start(deck)) == EXIT_DONE, f"{what}: it doesn't go on.")
+                    scene.check_end(deck, what)
+                print(f"{what}: code {code}, a checkpoint {checkpoints} of {count} times", flush=True)
+
+
+def check_early(implam, folder, _, launcher):
+    """At moments that no clock would meet; a first step is taken and saved."""
+    library = folder / "early.so"
+    folder.mkdir(parents=True)
+    run(["cc", "-shared", "-fPIC", "-o", library, HERE.parent / "support/early_signals.c", "-ldl"])
+    scenes = {1: Scene(implam, folder / "1", "fronts"), 2: Scene(implam, folder / "2", "fronts", (*launcher, "2"))}
+    cases = [("load", stop, 1) for stop in (signal.SIGTERM, signal.SIGINT, signal.SIGUSR1)]
+    for moment, stop, ranks in (*cases, ("metis", signal.SIGTERM, 2)):
+        scene, mark = scenes[ranks], folder / "mark"
+        deck = scene.fresh()
+        # The launcher and its shells must not be told too.
+        words = {"EARLY_MOMENT": moment, "EARLY_SIGNAL": str(int(stop)), "EARLY_MARK": str(mark)}
+        wrapper = folder / Path(implam).name
+        wrapper.write_text(f'#!/bin/sh\nLD_PRELOAD={library} exec {implam} "$@"\n', encoding="utf-8")
+        wrapper.chmod(0o755)
+        scene.implam = wrapper
+        code = end_of(scene.start(deck, **words))
+        scene.implam = implam
+        require(mark.exists(), f"{stop.name} was never sent at the moment {moment}.")
+        mark.unlink()
+        saved = bool(list(deck.parent.glob("*_restart.h5")))
+        require(code == EXIT_STOPPED and saved, f"{stop.name} ({moment}): code {code}, checkpoint: {saved}.")
+        require(end_of(scene.start(deck)) == EXIT_DONE, f"{stop.name} ({moment}): it doesn't go on.")
+        scene.check_end(deck, f"{stop.name} ({moment})")
+        print(f"{stop.name} ({moment}): code {code}, with a checkpoint")
+
+
+TRIALS = {"kills": check_kills, "signals": check_signals, "early": check_early}
+
+
+def main(trial, implam, folder, count, *launcher):
+    """Run one of the trials; the exit code is 1 if it fails."""
+    shutil.rmtree(folder, ignore_errors=True)
+    return exit_code_of(TRIALS[trial], os.path.abspath(implam), Path(folder).resolve(), int(count), launcher)
+
+
+if __name__ == "__main__":
+    raise SystemExit(main(*sys.argv[1:]))
