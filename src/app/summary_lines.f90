@@ -108,7 +108,8 @@ contains
     call tell(lines, 'of it', 'motion '//rounded_text(ledger%kinetic)//', strain '//rounded_text(ledger%strain)// &
               ', indentation '//rounded_text(ledger%indentation)//', delamination '// &
               rounded_text(ledger%delamination)//', ply damage '//rounded_text(ledger%ply_damage))
-    call tell(lines, '', 'contact of faces '//rounded_text(ledger%contact)//', integrators '// &
+    call tell(lines, '', 'contact of faces '//rounded_text(ledger%contact)//', friction '// &
+              rounded_text(ledger%friction)//', integrators '// &
               rounded_text(ledger%algorithmic)//', not accounted for '//rounded_text(ledger%error(), 2))
   end subroutine tell_energies
 

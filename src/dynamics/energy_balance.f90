@@ -44,7 +44,7 @@ contains
     !> State at the end; receives its ledger
     type(state_t), intent(inout) :: new
     type(products_t) :: products
-    real(wp) :: amplitudes(2), gain, impactor, taken, fracture, damage
+    real(wp) :: amplitudes(2), gain, impactor, taken, fracture, heat, damage
 
     products = step_products(model, old, energy, new)
     amplitudes = model%scene%pressure%amplitude([old%time, new%time])
@@ -67,7 +67,9 @@ contains
       new%ledger%algorithmic = new%ledger%algorithmic + taken
       fracture = new%interfaces%cohesive%dissipation(model, old%interfaces%cohesive)
       new%ledger%delamination = new%ledger%delamination + fracture
-      new%ledger%algorithmic = new%ledger%algorithmic - fracture
+      heat = new%interfaces%friction_heat(model, old%interfaces)
+      new%ledger%friction = new%ledger%friction + heat
+      new%ledger%algorithmic = new%ledger%algorithmic - fracture - heat
     end if
     if (.not. model%scene%has_impactor) return
     impactor = impactor_energy(model%scene%impactor, new%impactor)

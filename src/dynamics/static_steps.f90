@@ -214,7 +214,7 @@ contains
     real(wp), intent(in) :: energy
     !> State at this load
     type(state_t), intent(inout) :: new
-    real(wp) :: sums(5), faces, fracture, damage
+    real(wp) :: sums(5), faces, fracture, heat, damage
     real(wp), allocatable :: change(:, :), loads(:, :), loads_before(:, :)
 
     allocate (loads, loads_before, mold=old%motion%internal)
@@ -242,10 +242,12 @@ contains
     new%ledger%external_work = old%ledger%external_work + sums(3)
     new%ledger%contact = old%ledger%contact - sums(4)
     fracture = new%interfaces%cohesive%dissipation(model, old%interfaces%cohesive)
+    heat = new%interfaces%friction_heat(model, old%interfaces)
+    new%ledger%friction = old%ledger%friction + heat
     call new%plies%book(model, damage)
     new%ledger%ply_damage = old%ledger%ply_damage + damage
     new%ledger%delamination = old%ledger%delamination + fracture
     new%ledger%algorithmic = old%ledger%algorithmic - (sums(1) - old%ledger%strain - sums(2)) + sums(5) - fracture &
-                             - damage
+                             - heat - damage
   end subroutine finish
 end module static_steps
