@@ -32,14 +32,15 @@ SMALL = ["delamination%friction=0.6"]
 
 def rows_of(history):
     """Turn columns into rows."""
-    return [dict(zip(history, values)) for values in zip(*history.values())]
+    return [{name: history[name][i] for name in history} for i in range(len(history["time"]))]
 
 
 def check_block(implam, folder, _):
     """Pull and pressure in each step, and heat with two lengths of a step."""
     missed = []
     for steps in (10, 20):
-        history = read_history(run_deck(implam, write_deck(folder / str(steps), "block.nml", [f"static%steps={steps}"])))
+        deck = write_deck(folder / str(steps), "block.nml", [f"static%steps={steps}"])
+        history = read_history(run_deck(implam, deck))
         for row in rows_of(history):
             pressing = 5e5*0.1*0.02*row["time"] + row["line_force_4"] + row["line_force_5"]
             require(abs(row["line_force_10"]/(0.4*pressing) - 1) < 1e-5,
@@ -57,8 +58,7 @@ def check_notched(implam, folder, _):
     paths = []
     for coefficient in (0.0, COEFFICIENT):
         deck = write_deck(folder / str(coefficient), "enf.nml",
-                          [f"delamination%friction={coefficient}",
-                           "static%dissipation=0.12", "static%steps=24"])
+                          [f"delamination%friction={coefficient}", "static%dissipation=0.12", "static%steps=24"])
         paths.append(path_of(implam, deck, deck.parent))
     require(paths[1][-1]["energy_friction"] > 0.005 and paths[0][-1]["energy_friction"] == 0, "Friction takes nothing.")
     worst = 0
