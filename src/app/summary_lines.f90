@@ -34,9 +34,9 @@ contains
     at = ' at time '
     if (deck%has_static) at = ' at load factor '
     call append(lines, 'Summary, in the units of the deck:')
-    if (deck%has_impactor) call tell_impact(lines, now, record)
+    if (deck%has_impactor .and. .not. deck%has_static) call tell_impact(lines, now, record)
     call tell(lines, 'largest deflection', rounded_text(record%deflection)//at//rounded_text(record%deflection_time))
-    call tell_energies(lines, now%ledger, deck%has_impactor)
+    call tell_energies(lines, now%ledger, deck%has_impactor .and. .not. deck%has_static)
     if (size(figures%interfaces) > 0) call tell_interfaces(lines, deck, record, figures, at)
     if (deck%has_ply_damage) call tell(lines, 'failed plies', 'fibres '//to_text(figures%failures(1))// &
       ', matrix cracked '//to_text(figures%failures(2))//', crushed '//to_text(figures%failures(3))// &
