@@ -9,7 +9,9 @@ import numpy as np
 from implam_post.errors import FileError
 
 KEPT_ENERGIES = ("energy_impactor", "energy_kinetic", "energy_strain", "energy_indentation")
+# Those of every history, and one that histories of before it lack.
 ENERGIES = (*KEPT_ENERGIES, "energy_delamination", "energy_ply_damage", "energy_contact", "energy_algorithmic")
+ALL_ENERGIES = (*ENERGIES, "energy_friction")
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from implam_post.errors import EXIT_DONE, CommandParser, FileError, ImplamError, run
 from implam_post.fields import Fields, read_fields
 from implam_post.front import front_figure
-from implam_post.history import ENERGIES, History, read_history
+from implam_post.history import ALL_ENERGIES, History, read_history
 from implam_post.look import FORMATS, STYLES, Look, add_options, look_of
 from implam_post.plan import (
     delamination_figure,
@@ -84,9 +84,9 @@ def plot_fields(fields: Fields, base: Path, times: Sequence[float] | None = None
 
 def _stack(axes: Axes, history: History, look: Look) -> None:
     """Draw the ledger."""
-    ledger = {column: history[column] for column in ENERGIES}
+    ledger = {column: history[column] for column in ALL_ENERGIES if column in history.columns}
     shown = {column: values for column, values in ledger.items() if np.any(values)}
-    colours = [f"C{ENERGIES.index(column)}" for column in shown]
+    colours = [f"C{ALL_ENERGIES.index(column)}" for column in shown]
     start = sum(values[0] for values in ledger.values())
     time = look.axis("time", "time", history.time)
     energy = look.axis("energy", "energy", [start, *(np.max(np.abs(values)) for values in shown.values())])

@@ -50,6 +50,7 @@ _LEDGER = (
     ("delamination", "energy_delamination"),
     ("ply damage", "energy_ply_damage"),
     ("contact of faces", "energy_contact"),
+    ("friction", "energy_friction"),
     ("integrators", "energy_algorithmic"),
     ("not accounted for", "energy_error"),
 )

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from implam_post.fields import Fields
-from implam_post.history import ENERGIES, History
+from implam_post.history import ALL_ENERGIES, History
 from implam_post.plan import delamination_figure, failures_figure
 from implam_post.quantities import growth_rows
 
@@ -86,7 +86,7 @@ def history_pictures(history: History) -> Iterator[tuple[str, Figure]]:
     if areas:
         yield "delaminated area against time", _curves(
             history, {name.replace("area_below_", "below ply "): name for name in areas}, "delaminated area")
-    energies = [name for name in ENERGIES if np.any(history[name])]
+    energies = [name for name in ALL_ENERGIES if name in history.columns and np.any(history[name])]
     yield "energies against time", _curves(
         history, {name.removeprefix("energy_").replace("_", " "): name for name in energies}, "energy")
 

@@ -34,9 +34,9 @@ contains
     at = ' at time '
     if (deck%has_static) at = ' at load factor '
     call append(lines, 'Summary, in the units of the deck:')
-    if (deck%has_impactor) call tell_impact(lines, now, record)
+    if (deck%has_impactor .and. .not. deck%has_static) call tell_impact(lines, now, record)
     call tell(lines, 'largest deflection', rounded_text(record%deflection)//at//rounded_text(record%deflection_time))
-    call tell_energies(lines, now%ledger, deck%has_impactor)
+    call tell_energies(lines, now%ledger, deck%has_impactor .and. .not. deck%has_static)
     if (size(figures%interfaces) > 0) call tell_interfaces(lines, deck, record, figures, at)
     if (deck%has_ply_damage) call tell(lines, 'failed plies', 'fibres '//to_text(figures%failures(1))// &
       ', matrix cracked '//to_text(figures%failures(2))//', crushed '//to_text(figures%failures(3))// &
@@ -108,7 +108,8 @@ contains
     call tell(lines, 'of it', 'motion '//rounded_text(ledger%kinetic)//', strain '//rounded_text(ledger%strain)// &
               ', indentation '//rounded_text(ledger%indentation)//', delamination '// &
               rounded_text(ledger%delamination)//', ply damage '//rounded_text(ledger%ply_damage))
-    call tell(lines, '', 'contact of faces '//rounded_text(ledger%contact)//', integrators '// &
+    call tell(lines, '', 'contact of faces '//rounded_text(ledger%contact)//', friction '// &
+              rounded_text(ledger%friction)//', integrators '// &
               rounded_text(ledger%algorithmic)//', not accounted for '//rounded_text(ledger%error(), 2))
   end subroutine tell_energies
 

@@ -10,7 +10,8 @@ module deck_cross_checks
   use interface_places, only: delamination_group, key_below_ply
   use delamination_parameters, only: growth_one_per_step, interface_objection, law_cohesive, law_front
   use failure_criteria, only: needed_strengths
-  use impactor_deck, only: impactor_group, key_velocity, key_radius, key_gravity, keys_of_motion
+  use impactor_deck, only: impactor_group, key_velocity, key_radius, key_gravity, key_integrator, key_mass, &
+                           key_travel, keys_of_motion
   use indentation_deck, only: indentation_group, key_k
   use kinds, only: wp
   use line_deck, only: line_group
@@ -60,7 +61,10 @@ contains
     type(problems_t), intent(inout) :: problems
 
     if (deck%has_static .and. deck%has_impactor) then
-      call tell(deck%settings, problems, static_group, '', 'an impactor needs time; leave out &static or &impactor.')
+      call check_travel(deck, problems)
+    else if (deck%has_impactor .and. deck%settings%is_given(impactor_group, key_travel)) then
+      call tell(deck%settings, problems, impactor_group, key_travel, 'only load steps take it; give &static, '// &
+                'or the velocity instead.')
     else if (deck%has_static .and. .not. (deck%has_pressure .or. deck%has_thermal .or. loads(deck%lines) .or. &
              problems%concern(pressure_group) .or. problems%concern(line_group))) then
       call tell(deck%settings, problems, static_group, '', 'there is no load; give &pressure, or a &line with one.')
@@ -71,6 +75,25 @@ contains
       call problems%error(0, pressure_group, '', 'nothing loads the plate; give &impactor, &pressure or &line.')
     end if
   end subroutine check_loads
+
+  !> An impactor that moves slowly goes a way, and is the only load.
+  subroutine check_travel(deck, problems)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Faults and remarks are added
+    type(problems_t), intent(inout) :: problems
+
+    if (.not. deck%settings%is_given(impactor_group, key_travel)) then
+      if (.not. problems%concern(impactor_group, key_travel)) &
+        call tell(deck%settings, problems, static_group, '', 'an impactor needs time, or a way to go; give '// &
+                  '&impactor travel, or leave out &static or &impactor.')
+    else if (deck%has_pressure .or. loads(deck%lines)) then
+      call tell(deck%settings, problems, impactor_group, key_travel, 'beside it a static analysis takes no other '// &
+                'load; leave out &pressure, and lines that move or press.')
+    end if
+    call remark_idle(deck%settings, problems, impactor_group, key_mass//' '//key_gravity//' '//key_integrator//' '// &
+                     keys_of_motion(deck%settings), 'has no effect on a static analysis.')
+  end subroutine check_travel
 
   !> True if a line moves the plate or presses on it.
   pure logical function loads(lines)
@@ -171,6 +194,7 @@ contains
           are_clear(s, problems, indentation_group, key_k) .and. are_clear(s, problems, impactor_group, key_radius)) &
         call tell(s, problems, impactor_group, key_radius, &
                   'is missing; give it, or the contact stiffness &indentation k.')
+      if (deck%has_static) return
       if (deck%impactor%velocity <= 0 .and. deck%impactor%gravity <= 0 .and. .not. deck%has_pressure .and. &
           .not. problems%concern(pressure_group) .and. &
           are_clear(s, problems, impactor_group, keys_of_motion(s)//' '//key_gravity)) &

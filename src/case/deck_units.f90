@@ -73,7 +73,7 @@ contains
       call tell_unit(deck, problems, list(i), system, 'is odd', fits)
     end do
     if (deck%has_time .and. .not. deck%has_static) call check_times(deck, system, problems)
-    if (deck%has_impactor) call check_ball(deck, system, problems)
+    if (deck%has_impactor .and. .not. deck%has_static) call check_ball(deck, system, problems)
   end subroutine check_units
 
   !> Adds a warning.
@@ -123,8 +123,10 @@ contains
       end if
     end do
     if (.not. deck%has_impactor) return
-    call add(of_mass, deck%impactor%mass, impactor_group, key_mass, 1)
-    call add(of_velocity, deck%impactor%velocity, impactor_group, key_velocity, 1)
+    if (.not. deck%has_static) then
+      call add(of_mass, deck%impactor%mass, impactor_group, key_mass, 1)
+      call add(of_velocity, deck%impactor%velocity, impactor_group, key_velocity, 1)
+    end if
     call add(of_radius, deck%impactor%radius, impactor_group, key_radius, 1)
 
   contains

@@ -1,9 +1,10 @@
 !> Two faces at a point of a cohesive interface: the law while they part, the stiffness of the undamaged interface while
-!> they are pressed together.
+!> they are pressed together, and friction between the damaged parts of faces that press on each other.
 module cohesive_faces
   use cohesive_laws, only: cohesive_law_t, stiffness_of
   use cohesive_points, only: cohesive_point_t, cohesive_reach, cohesive_traction, grown_damage, stored_energy
   use cohesive_tangents, only: cohesive_tangent, operator_stiffness, traction_slopes
+  use face_friction, only: friction_energy, friction_slopes, friction_traction
   use kinds, only: wp
   implicit none
   private
@@ -15,6 +16,8 @@ module cohesive_faces
     type(cohesive_law_t) :: law
     !> True: they do not pass through each other
     logical :: closing = .true.
+    !> Coulomb's coefficient of friction; 0: they slide freely
+    real(wp) :: friction = 0
   contains
     !> Traction of trial jumps.
     procedure :: traction
@@ -27,6 +30,8 @@ module cohesive_faces
     procedure :: secant
     !> Diagonal for a factored operator.
     procedure :: diagonal
+    !> Most that friction bears.
+    procedure :: friction_limit
   end type cohesive_faces_t
 
 contains
@@ -43,9 +48,13 @@ contains
     real(wp), intent(out) :: force(3)
     !> The point with these jumps
     type(cohesive_point_t), intent(out) :: new
+    real(wp) :: friction(2)
 
     call cohesive_traction(self%law, jumps, 0.0_wp, old, force, new)
     if (pressed(self, jumps)) force(3) = self%law%stiffness_opening*jumps(3)
+    if (.not. self%friction > 0) return
+    call friction_traction(self%law%stiffness_shear, jumps(:2), old%sliding, friction, new%sliding)
+    force(:2) = force(:2) + friction
   end subroutine traction
 
   !> Energy per area that the jumps store.
@@ -59,6 +68,7 @@ contains
 
     stored = stored_energy(self%law, jumps, point)
     if (pressed(self, jumps)) stored = stored + self%law%stiffness_opening*jumps(3)**2/2
+    if (self%friction > 0) stored = stored + friction_energy(self%law%stiffness_shear, jumps(:2), point%sliding)
   end function stored
 
   !> Derivative of the traction.
@@ -74,6 +84,7 @@ contains
 
     slopes = traction_slopes(self%law, jumps, cohesive_reach(self%law, jumps, 0.0_wp), old)
     if (pressed(self, jumps)) slopes(3, 3) = self%law%stiffness_opening
+    if (self%friction > 0) slopes(:2, :2) = slopes(:2, :2) + sticking(self, jumps, old)
   end function slopes
 
   !> Derivative of the traction, its symmetric part.
@@ -89,6 +100,7 @@ contains
 
     tangent = cohesive_tangent(self%law, jumps, 0.0_wp, old)
     if (pressed(self, jumps)) tangent(3, 3) = self%law%stiffness_opening
+    if (self%friction > 0) tangent(:2, :2) = tangent(:2, :2) + sticking(self, jumps, old)
   end function tangent
 
   !> Slopes of a line through the origin and the traction. As the law softens its energy lies below that of these
@@ -105,6 +117,7 @@ contains
 
     secant = (1 - grown_damage(self%law, cohesive_reach(self%law, jumps, 0.0_wp), old))*stiffness_of(self%law)
     if (pressed(self, jumps)) secant(3) = self%law%stiffness_opening
+    if (self%friction > 0) secant(:2) = secant(:2) + self%law%stiffness_shear
   end function secant
 
   !> Diagonal for a factored operator, one value a class of point.
@@ -117,10 +130,42 @@ contains
     type(cohesive_point_t), intent(in) :: old
     !> Pressure per jump
     real(wp) :: diagonal(3)
+    real(wp) :: slopes(2, 2)
 
     diagonal = operator_stiffness(self%law, jumps, 0.0_wp, old)
     if (pressed(self, jumps)) diagonal(3) = self%law%stiffness_opening
+    if (.not. self%friction > 0) return
+    slopes = sticking(self, jumps, old)
+    diagonal(:2) = diagonal(:2) + [slopes(1, 1), slopes(2, 2)]
   end function diagonal
+
+  !> Most that friction bears once a step is accepted: Coulomb's part of the pressure, on the part of the point that is
+  !> damaged (G. Alfano, E. Sacco 2006).
+  pure real(wp) function friction_limit(self, jumps, point) result(limit)
+    !> The faces
+    class(cohesive_faces_t), intent(in) :: self
+    !> Two shears and opening
+    real(wp), intent(in) :: jumps(3)
+    !> The point with these jumps
+    type(cohesive_point_t), intent(in) :: point
+
+    limit = 0
+    if (pressed(self, jumps)) limit = -self%friction*point%damage*self%law%stiffness_opening*jumps(3)
+  end function friction_limit
+
+  !> Slopes of friction.
+  pure function sticking(self, jumps, old) result(slopes)
+    !> The faces
+    type(cohesive_faces_t), intent(in) :: self
+    !> Two shears and opening
+    real(wp), intent(in) :: jumps(3)
+    !> The point in the last accepted state
+    type(cohesive_point_t), intent(in) :: old
+    !> Pressure per jump along the faces
+    real(wp) :: slopes(2, 2)
+
+    slopes = friction_slopes(self%law%stiffness_shear, jumps(:2), old%sliding)
+  end function sticking
 
   !> True where the faces press on each other.
   pure logical function pressed(self, jumps)

@@ -4,6 +4,7 @@
 !> left to contact: a negative opening counts as none. Jumps of any finite size are met without overflow.
 module cohesive_points
   use cohesive_laws, only: cohesive_law_t, stiffness_of
+  use face_friction, only: sliding_t
   use kinds, only: wp
   implicit none
   private
@@ -19,6 +20,8 @@ module cohesive_points
     real(wp) :: damage = 0
     !> Energy dissipated per area, e
     real(wp) :: dissipated = 0
+    !> Friction of its faces
+    type(sliding_t) :: sliding
   end type cohesive_point_t
 
   !> How far jumps reach along the curve.

@@ -55,6 +55,8 @@ module delamination_deck
       &Strength of the cohesive law in pure shear.', &
     'delamination | stiffness | real | 1 | pressure/length | = 5 E2/h of the thinner layer | > 0 | &
       &Stiffness of the undamaged cohesive law in opening.', &
+    'delamination | friction | real | 1 | - | 0 | >= 0, <= 10 | &
+      &Coulomb''s coefficient of friction between separated faces, and the damaged part of others.', &
     'delamination | energy_release | choice | 1 | - | ''vcct'' | two_state vcct | &
       &Energy release rate: Eq. 11 with its sign put right, or virtual crack closure.', &
     'delamination | growth | choice | 1 | - | ''equilibrium'' | equilibrium one_per_step | &
@@ -124,6 +126,7 @@ contains
       d%toughness_opening = s%real_of(group, 'G_Ic', place)
       d%toughness_shear = s%real_of(group, 'G_IIc', place)
       d%mixing_exponent = s%real_of(group, 'eta', place)
+      d%friction = s%real_of(group, 'friction', place)
       if (s%is_known(group, key_zone, place)) d%zone = s%reals_of(group, key_zone, place)
       if (s%is_given(group, key_starter, place)) d%starter = s%real_of(group, key_starter, place)
       if (s%is_given(group, key_strip, place)) d%starter_strip = s%reals_of(group, key_strip, place)
@@ -365,8 +368,9 @@ contains
       if (d%law == law_cohesive) then
         call idle(keys_of_fronts, 'with law = ''cohesive''')
       else
-        call idle('strength_opening strength_shear stiffness', 'without law = ''cohesive''')
+        call idle('strength_opening strength_shear stiffness friction', 'without law = ''cohesive''')
       end if
+      if (d%contact == contact_none) call idle('friction', 'as faces pass through each other')
       if (d%toughness > 0) call idle('eta', 'as G_c is given')
       if (d%law == law_cohesive) return
       if (d%tie /= tie_penalty) call idle('penalty', 'without tie = ''penalty''')

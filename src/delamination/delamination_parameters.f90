@@ -49,6 +49,8 @@ module delamination_parameters
     real(wp) :: strength_opening = 0, strength_shear = 0
     !> Stiffness K_n of the cohesive law, pressure per jump; 0: from E2 of the plies
     real(wp) :: stiffness = 0
+    !> Coulomb's coefficient of friction between separated faces
+    real(wp) :: friction = 0
     !> Growth of the cohesive law's shear strength with pressure, mu
     real(wp) :: pressure_strengthening = 0
     !> release_two_state or release_vcct

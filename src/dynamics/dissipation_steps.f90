@@ -14,6 +14,7 @@ module dissipation_steps
   use states, only: state_t
   use static_steps, only: static_step_t, new_static_step, part_taken
   use skew_corrections, only: follow_skew
+  use slow_impactors, only: push_plate, travel_for
   use tangent_operators, only: tangent_operator_t
   implicit none
   private
@@ -67,6 +68,7 @@ contains
     self%load_factor = old%load_factor + part*old%path%factor_change
     call self%static_step_t%begin(model, operator, old, new)
     new%motion%displacement = old%motion%displacement + part*old%path%change
+    new%force = old%force + part*old%path%force_change
   end subroutine begin
 
   !> Load less internal forces, and the energy dissipated.
@@ -101,6 +103,14 @@ contains
     !> State at the end; remembers its largest forces
     type(state_t), intent(inout) :: new
 
+    if (model%scene%has_impactor) then
+      ! The impactor goes to where its force asks for.
+      if (new%force < 0) then
+        residual_norm = huge(residual_norm)
+        return
+      end if
+      new%load_factor = travel_for(model, new)/model%scene%impactor%travel
+    end if
     residual_norm = self%static_step_t%residual_norm(model, equilibrium, operator, residual, new)
     residual_norm = max(residual_norm, &
                         abs(new%path%dissipated/self%wanted - 1)/missed*equilibrium%tolerance)
@@ -127,7 +137,12 @@ contains
     allocate (loads, answer, slopes, mold=correction)
     answer = 0
     slopes = 0
-    call model%load_slopes(loads)
+    loads = 0
+    if (model%scene%has_impactor) then
+      call push_plate(model, 1.0_wp, loads)
+    else
+      call model%load_slopes(loads)
+    end if
     call operator%correct(model, loads, answer, error)
     if (.not. allocated(error)) call follow_skew(operator, model, new%interfaces%cohesive, answer, error)
     if (.not. allocated(error)) call follow_skew(operator, model, new%interfaces%cohesive, correction, error)
@@ -138,7 +153,11 @@ contains
     sums = sums*model%mesh%multiplicity
     change = 0
     if (abs(sums(2)) > 0) change = (self%wanted - new%path%dissipated - sums(1))/sums(2)
-    new%load_factor = new%load_factor + part_taken(new%iterations)*change
+    if (model%scene%has_impactor) then
+      new%force = new%force + part_taken(new%iterations)*change
+    else
+      new%load_factor = new%load_factor + part_taken(new%iterations)*change
+    end if
     correction = part_taken(new%iterations)*(correction + change*answer)
     call new%interfaces%faces%hold(model, correction)
   end subroutine improve

@@ -44,7 +44,7 @@ contains
     !> State at the end; receives its ledger
     type(state_t), intent(inout) :: new
     type(products_t) :: products
-    real(wp) :: amplitudes(2), gain, impactor, taken, fracture, damage
+    real(wp) :: amplitudes(2), gain, impactor, taken, fracture, heat, damage
 
     products = step_products(model, old, energy, new)
     amplitudes = model%scene%pressure%amplitude([old%time, new%time])
@@ -59,9 +59,11 @@ contains
     new%ledger%ply_damage = new%ledger%ply_damage + damage
     fracture = new%interfaces%cohesive%dissipation(model, old%interfaces%cohesive)
     new%ledger%delamination = new%ledger%delamination + fracture
-    new%ledger%algorithmic = new%ledger%algorithmic - damage - fracture
-    call new%plies%judge(damage + fracture, &
-                         products%strain - old%ledger%strain - products%mean_internal + damage + fracture, &
+    heat = new%interfaces%friction_heat(model, old%interfaces)
+    new%ledger%friction = new%ledger%friction + heat
+    lost = damage + fracture + heat
+    new%ledger%algorithmic = new%ledger%algorithmic - lost
+    call new%plies%judge(lost, products%strain - old%ledger%strain - products%mean_internal + lost, &
                          max(new%ledger%initial + new%ledger%external_work, products%strain))
     if (model%map%layered) then
       ! What fracture takes has been booked, and taken off here, when the ties were released.

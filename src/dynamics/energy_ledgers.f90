@@ -16,8 +16,8 @@ module energy_ledgers
     real(wp) :: indentation = 0
     !> Energy that new delaminated faces have taken, and that plies lost by damage
     real(wp) :: delamination = 0, ply_damage = 0
-    !> Energy lost where faces meet, and held by penalty ties
-    real(wp) :: contact = 0
+    !> Energy lost where faces meet, and held by penalty ties; energy that friction has turned into heat
+    real(wp) :: contact = 0, friction = 0
     !> Energy that the time integrators have taken out of the motion
     real(wp) :: algorithmic = 0
     !> Work of the pressure
@@ -39,7 +39,7 @@ contains
     class(ledger_t), intent(in) :: self
 
     error = self%impactor + self%kinetic + self%strain + self%indentation + self%delamination &
-            + self%ply_damage + self%contact + self%algorithmic &
+            + self%ply_damage + self%contact + self%friction + self%algorithmic &
             - self%external_work - self%initial
   end function error
 
@@ -57,6 +57,7 @@ contains
     call archive%item('ledger/delamination', self%delamination)
     call archive%item('ledger/ply_damage', self%ply_damage)
     call archive%item('ledger/contact', self%contact)
+    call archive%item('ledger/friction', self%friction)
     call archive%item('ledger/algorithmic', self%algorithmic)
     call archive%item('ledger/external_work', self%external_work)
     call archive%item('ledger/initial', self%initial)

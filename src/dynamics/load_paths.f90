@@ -14,6 +14,8 @@ module load_paths
     logical :: by_dissipation = .false.
     !> Change of the load factor in the last step, and energy that it dissipated
     real(wp) :: factor_change = 0, dissipated = 0
+    !> Change of the impactor's force in the last step
+    real(wp) :: force_change = 0
     !> Change of the unknowns in the last step, (5, points); unallocated: no step is taken by dissipation
     real(wp), allocatable :: change(:, :)
   contains
@@ -34,6 +36,7 @@ contains
     call archive%item('path/by_dissipation', self%by_dissipation)
     call archive%item('path/factor_change', self%factor_change)
     call archive%item('path/dissipated', self%dissipated)
+    call archive%item('path/force_change', self%force_change)
     if (.not. allocated(self%change)) return
     associate (share => model%distribution)
       call archive%field('path/change', share%points(:share%owned), model%mesh%points(), self%change)

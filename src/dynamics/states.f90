@@ -74,7 +74,7 @@ contains
               self%motion%inertia(5, points), source=0.0_wp)
     self%plies = new_ply_failure(model)
     self%interfaces = new_interface_state(model)
-    if (.not. model%scene%has_impactor) return
+    if (.not. model%scene%has_impactor .or. model%scene%has_static) return
     self%impactor = new_impactor(model%scene%impactor)
     self%ledger%impactor = impactor_energy(model%scene%impactor, self%impactor)
     self%ledger%initial = self%ledger%impactor

@@ -10,6 +10,7 @@ module static_steps
   use states, only: state_t
   use step_problems, only: step_problem_t
   use residual_norms, only: relative_residual
+  use slow_impactors, only: push_plate, find_push, push_unmet, follow_impactor
   use skew_corrections, only: follow_skew
   use tangent_operators, only: tangent_operator_t
   implicit none
@@ -91,6 +92,7 @@ contains
 
     call new%find_internal(model, old, energy)
     call model%static_loads(new%motion%displacement, new%load_factor, residual)
+    call push_plate(model, new%force, residual)
     residual = residual - new%motion%internal
   end subroutine find_residual
 
@@ -111,10 +113,12 @@ contains
 
     allocate (loads, mold=residual)
     call model%static_loads(new%motion%displacement, new%load_factor, loads)
+    call push_plate(model, new%force, loads)
     residual_norm = relative_residual(model%communicator, operator%numbering, residual, new%motion%internal, &
                                       loads, 0.0_wp, &
                                       operator%diagonal*new%motion%displacement, equilibrium%tolerance, &
                                       model%thickness, new%largest_forces)
+    if (model%scene%has_impactor) residual_norm = max(residual_norm, push_unmet(model, new))
   end function residual_norm
 
   !> New pressures may be too little a change for the tolerance; only a correction can make them fit the gaps.
@@ -179,6 +183,8 @@ contains
     type(error_t), allocatable, intent(inout) :: error
 
     call follow_skew(operator, model, new%interfaces%cohesive, correction, error)
+    if (model%scene%has_impactor .and. .not. allocated(error)) &
+      call find_push(model, operator, part_taken(new%iterations), new, correction, error)
     call new%interfaces%faces%hold(model, correction)
     correction = part_taken(new%iterations)*correction
   end subroutine improve
@@ -214,7 +220,7 @@ contains
     real(wp), intent(in) :: energy
     !> State at this load
     type(state_t), intent(inout) :: new
-    real(wp) :: sums(5), faces, fracture, damage
+    real(wp) :: sums(5), faces, fracture, heat, damage
     real(wp), allocatable :: change(:, :), loads(:, :), loads_before(:, :)
 
     allocate (loads, loads_before, mold=old%motion%internal)
@@ -242,10 +248,13 @@ contains
     new%ledger%external_work = old%ledger%external_work + sums(3)
     new%ledger%contact = old%ledger%contact - sums(4)
     fracture = new%interfaces%cohesive%dissipation(model, old%interfaces%cohesive)
+    heat = new%interfaces%friction_heat(model, old%interfaces)
+    new%ledger%friction = old%ledger%friction + heat
+    if (model%scene%has_impactor) call follow_impactor(model, old, new)
     call new%plies%book(model, damage)
     new%ledger%ply_damage = old%ledger%ply_damage + damage
     new%ledger%delamination = old%ledger%delamination + fracture
     new%ledger%algorithmic = old%ledger%algorithmic - (sums(1) - old%ledger%strain - sums(2)) + sums(5) - fracture &
-                             - damage
+                             - heat - damage
   end subroutine finish
 end module static_steps

@@ -8,7 +8,7 @@ module step_columns
   use states, only: state_t
   implicit none
   private
-  public :: motion_values, ledger_values, step_values, iteration_values
+  public :: motion_values, ledger_values, step_values, iteration_values, heat_values
 
   !> Motion of impactor and plate. These columns and their order are the public interface.
   character(len=result_row_length), parameter, public :: motion_rows(*) = [character(len=result_row_length) :: &
@@ -34,8 +34,8 @@ module step_columns
     'energy_contact | real | energy | Work done against contact of separated faces and against penalty ties.', &
     'energy_algorithmic | real | energy | Energy that integrators and fading ties took out of the motion, less &
       &energy_delamination.', &
-    'energy_error | real | energy | What the ledger fails to account for: the sum of the eight energies before less &
-      &work_external and the energy at the start.']
+    'energy_error | real | energy | What the ledger fails to account for: the sum of the eight energies before and &
+      &energy_friction, less work_external and the energy at the start.']
 
   !> The rest of the state and the length of the step.
   character(len=result_row_length), parameter, public :: step_rows(*) = [character(len=result_row_length) :: &
@@ -57,6 +57,10 @@ module step_columns
     'total_force_iterations | integer | - | Sum of force_iterations over the accepted steps.', &
     'total_contact_iterations | integer | - | Sum of contact_iterations over the accepted steps.', &
     'rejected | integer | - | Steps tried in vain so far; each was tried again with half its length.']
+
+  !> What joined the ledger later.
+  character(len=result_row_length), parameter, public :: heat_rows(*) = [character(len=result_row_length) :: &
+    'energy_friction | real | energy | Energy that friction between faces has turned into heat.']
 
 contains
 
@@ -81,6 +85,16 @@ contains
     values = [ledger%impactor, ledger%kinetic, ledger%strain, ledger%indentation, ledger%delamination, &
               ledger%ply_damage, ledger%contact, ledger%algorithmic, ledger%error()]
   end function ledger_values
+
+  !> What joined the ledger later.
+  pure function heat_values(ledger) result(values)
+    !> The ledger
+    type(ledger_t), intent(in) :: ledger
+    !> A value a column
+    real(wp) :: values(size(heat_rows))
+
+    values = [ledger%friction]
+  end function heat_values
 
   !> The rest of the state and the length of the step.
   pure function step_values(now, length) result(values)

@@ -309,6 +309,7 @@ contains
     associate (now => self%now, trial => self%trial)
       trial%path%change = trial%motion%displacement - now%motion%displacement
       trial%path%factor_change = trial%load_factor - now%load_factor
+      trial%path%force_change = trial%force - now%force
       trial%path%dissipated = trial%ledger%delamination - now%ledger%delamination
       trial%path%by_dissipation = trial%path%dissipated > self%stepping%dissipation*trial%path%factor_change
     end associate
@@ -339,7 +340,8 @@ contains
     damaged = self%trial%interfaces%cohesive%border_reached(model)
     self%trial%interfaces%border_reached = self%trial%interfaces%border_reached .or. damaged
     self%trial%interfaces%faces%glued = self%trial%interfaces%faces%glued .or. model%scene%has_impactor .and. &
-                                  self%trial%impactor%velocity <= 0 .and. self%trial%force < self%now%force
+                                        .not. model%scene%has_static .and. &
+                                        self%trial%impactor%velocity <= 0 .and. self%trial%force < self%now%force
     extended = self%trial%ledger%delamination > self%now%ledger%delamination
     call move_alloc(self%now, before)
     call move_alloc(self%trial, self%now)

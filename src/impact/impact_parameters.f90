@@ -19,6 +19,8 @@ module impact_parameters
     real(wp) :: mass = 0
     !> Velocity at first touch, positive towards the plate
     real(wp) :: velocity = 0
+    !> Travel from first touch in a static analysis
+    real(wp) :: travel = 0
     !> Radius of the nose; only Sun's formula for k uses it
     real(wp) :: radius = 0
     !> Acceleration of gravity along the impact direction; 0: none

@@ -15,7 +15,8 @@ module impactor_deck
   !> Names that checks across groups use.
   character(len=*), parameter, public :: impactor_group = 'impactor', key_velocity = 'velocity', &
                                          key_radius = 'radius', key_gravity = 'gravity', key_at = 'at', &
-                                         key_mass = 'mass', key_integrator = 'integrator'
+                                         key_mass = 'mass', key_integrator = 'integrator', &
+                                         key_travel = 'travel'
   !> Name used here more than once.
   character(len=*), parameter :: key_energy = 'energy'
   !> Row of the group.
@@ -23,14 +24,16 @@ module impactor_deck
     'impactor | optional | The rigid impactor that strikes the plate, in its middle or elsewhere.'
   !> Rows of the keys.
   character(len=key_row_length), parameter, public :: impactor_rows(*) = [character(len=key_row_length) :: &
-    'impactor | mass | real | 1 | mass | required | > 0 | &
-      &Mass of the whole impactor, also under symmetry.', &
+    'impactor | mass | real | 1 | mass | none | > 0 | &
+      &Mass of the whole impactor, also under symmetry; needed unless travel is given.', &
     'impactor | velocity | real | 1 | length/time | = sqrt(2 energy/mass) | >= 0 | &
       &Speed towards the plate at first touch.', &
     'impactor | at | real | 2 | length | none | any | &
       &The struck point from the plate''s centre, its default; patch, core, zones and starters go with it.', &
     'impactor | energy | real | 1 | energy | none | >= 0 | &
       &Kinetic energy of the whole impactor at first touch, instead of velocity.', &
+    'impactor | travel | real | 1 | length | none | > 0 | &
+      &Travel from first touch on at the end of a static analysis, which moves the impactor slowly.', &
     'impactor | radius | real | 1 | length | none | > 0 | &
       &Radius of the nose; needed if the contact stiffness k isn''t given.', &
     'impactor | gravity | real | 1 | length/time^2 | 0 | any | &
@@ -49,7 +52,9 @@ contains
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
 
+    call require_mass(settings, problems)
     call settle_energy(settings, problems)
+    impactor%travel = settings%real_of(impactor_group, key_travel)
     impactor%mass = settings%real_of(impactor_group, key_mass)
     impactor%velocity = settings%real_of(impactor_group, key_velocity)
     impactor%radius = settings%real_of(impactor_group, key_radius)
@@ -69,6 +74,7 @@ contains
     real(wp) :: mass, energy
 
     if (.not. settings%has_group(impactor_group)) return
+    if (settings%is_given(impactor_group, key_travel)) return
     if (.not. settings%is_given(impactor_group, key_energy)) then
       if (.not. settings%is_given(impactor_group, key_velocity) .and. &
           are_clear(settings, problems, impactor_group, key_velocity//' '//key_energy)) &
@@ -81,6 +87,18 @@ contains
       call settings%derive_numbers(impactor_group, key_velocity, [sqrt(2*energy/mass)])
     end if
   end subroutine settle_energy
+
+  !> Tells if the mass is missing; an impactor that travels slowly needs none.
+  subroutine require_mass(settings, problems)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+
+    if (.not. settings%has_group(impactor_group) .or. settings%is_given(impactor_group, key_travel)) return
+    if (.not. settings%is_given(impactor_group, key_mass) .and. are_clear(settings, problems, impactor_group, key_mass)) &
+      call tell(settings, problems, impactor_group, key_mass, 'is missing; allowed: 1 real value > 0.')
+  end subroutine require_mass
 
   !> Names of the keys that say how fast the impactor is, parted by blanks.
   pure function keys_of_motion(settings) result(keys)

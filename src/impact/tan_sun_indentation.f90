@@ -14,7 +14,7 @@ module tan_sun_indentation
   use kinds, only: wp
   implicit none
   private
-  public :: indentation_t, touch_indentation, indentation_force, indentation_stiffness, mean_indentation_force, &
+  public :: indentation_t, touch_indentation, indentation_of, indentation_force, indentation_stiffness, mean_indentation_force, &
             indentation_work, stiffening, commit_indentation
 
   !> What the contact remembers; changes only when a step is accepted.
@@ -86,6 +86,26 @@ contains
       force = hertz_force(law%k, alpha)
     end if
   end function indentation_force
+
+  !> Indentation at which the contact force has a value.
+  pure real(wp) function indentation_of(law, state, force) result(alpha)
+    !> The law
+    type(indentation_law_t), intent(in) :: law
+    !> Committed state
+    type(indentation_t), intent(in) :: state
+    !> The force; the touch for none
+    real(wp), intent(in) :: force
+    type(branch_t) :: branch
+
+    branch = current_branch(law, state)
+    alpha = branch%start
+    if (.not. force > 0) return
+    if (force < branch%force) then
+      alpha = branch%start + (branch%finish - branch%start)*(force/branch%force)**(1/branch%exponent)
+    else
+      alpha = (force/law%k)**(1/hertz_exponent)
+    end if
+  end function indentation_of
 
   !> Derivative of the contact force; at the largest indentation that of the branch below it.
   pure function indentation_stiffness(law, state, alpha) result(stiffness)

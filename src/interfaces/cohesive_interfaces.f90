@@ -92,6 +92,7 @@ contains
     !> Energy of this rank; what the points store is added
     real(wp), intent(inout) :: energy
     type(cohesive_faces_t) :: faces
+    type(cohesive_point_t) :: start
     real(wp) :: traction(3)
     integer :: i
 
@@ -100,10 +101,12 @@ contains
       if (.not. self%cohesive(i)) cycle
       faces = self%faces_of(model, model%zone(i))
       associate (jumps => displacement(1:3, i), area => model%contact_area(i))
-        call faces%traction(jumps, old%points(i), traction, self%points(i))
-        self%stiffness(:, i) = area*faces%diagonal(jumps, old%points(i))
+        start = old%points(i)
+        start%sliding%limit = self%points(i)%sliding%limit
+        call faces%traction(jumps, start, traction, self%points(i))
+        self%stiffness(:, i) = area*faces%diagonal(jumps, start)
         energy = energy + area*faces%stored(jumps, self%points(i))
-        if (allocated(self%tangents)) call take_tangent(self, i, area*faces%slopes(jumps, old%points(i)))
+        if (allocated(self%tangents)) call take_tangent(self, i, area*faces%slopes(jumps, start))
         force(1:3, i) = force(1:3, i) + area*traction
       end associate
     end do
@@ -305,6 +308,7 @@ contains
 
     faces%law = model%cohesive_laws(zone)
     faces%closing = holds_closed(model, zone)
+    faces%friction = model%scene%delaminations(zone)%friction
   end function faces_of
 
   !> How wrong the operator is about the change of the forces with a correction of the displacement: the error of each

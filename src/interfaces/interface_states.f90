@@ -6,6 +6,7 @@ module interface_states
   use models, only: model_t
   use contact_and_ties, only: contact_and_ties_t, new_contact_and_ties
   use cohesive_interfaces, only: cohesive_interfaces_t, new_cohesive_interfaces
+  use cohesive_sliding, only: heat_since, settle_friction, visit_friction
   use tie_release, only: tie_release_t, new_tie_release
   use rig_contact, only: rig_contact_t, new_rig_contact
   implicit none
@@ -41,6 +42,8 @@ module interface_states
     procedure :: contact_work
     !> Stiffness that ties, contact and cohesive laws add to the diagonal.
     procedure :: added_stiffness
+    !> Energy that friction has turned into heat since an earlier state.
+    procedure :: friction_heat
     !> Saves or loads the state.
     procedure :: visit
   end type interface_state_t
@@ -96,6 +99,7 @@ contains
     call self%rig%settle(model, displacement, tolerance, rig_rounds, rig_settled)
     settled = settled .and. rig_settled
     rounds = max(rounds, rig_rounds)
+    if (settled) call settle_friction(self%cohesive, model, displacement, rounds, settled)
   end subroutine settle
 
   !> Keeps touching faces together and what rests on a frame there, in a first guess.
@@ -121,6 +125,17 @@ contains
     work = self%rig%work(model, change)
     if (model%map%layered) work = work + self%faces%work(model, displacement, change)
   end function contact_work
+
+  !> Energy that friction has turned into heat since an earlier state, of the whole plate, the same on every rank.
+  real(wp) function friction_heat(self, model, old) result(heat)
+    !> The state
+    class(interface_state_t), intent(in) :: self
+    type(model_t), intent(in) :: model
+    !> The earlier state
+    class(interface_state_t), intent(in) :: old
+
+    heat = heat_since(model, old%cohesive, self%cohesive)
+  end function friction_heat
 
   !> Area in which at least one interface has delaminated, of the whole plate: nodal areas times the largest part
   !> delaminated above each other. A node where ties are released has delaminated as a whole, a cohesive one by the part
@@ -202,6 +217,7 @@ contains
     call self%faces%visit(archive, model)
     call self%ties%visit(archive, model)
     call self%cohesive%visit(archive, model)
+    call visit_friction(self%cohesive, archive, model)
     call self%rig%visit(archive, model)
   end subroutine visit
 end module interface_states

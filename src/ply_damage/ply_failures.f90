@@ -119,7 +119,7 @@ contains
   pure subroutine judge(self, dissipated, created, energy)
     !> The failures
     class(ply_failure_t), intent(inout) :: self
-    !> Energy that plies and cohesive interfaces dissipate in the step
+    !> Energy that plies, cohesive interfaces and friction dissipate in the step
     real(wp), intent(in) :: dissipated
     !> Energy stored and dissipated in the step beyond the work
     real(wp), intent(in) :: created

@@ -4,6 +4,7 @@ module condensed_corrections
   use cohesive_interfaces, only: cohesive_interfaces_t
   use cohesive_points, only: cohesive_point_t
   use condensed_points, only: condensed_points_t, outside_force_t
+  use face_friction, only: sliding_t
   use kinds, only: wp
   use models, only: model_t
   use tangent_operators, only: tangent_operator_t
@@ -18,7 +19,7 @@ module condensed_corrections
   integer, parameter :: most_unknowns = 2000
   real(wp), parameter :: most_numbers = 2.0e8_wp
   !> Numbers that tell of an unknown.
-  integer, parameter :: told = 14
+  integer, parameter :: told = 17
 
   !> A correction in the making.
   type :: condensed_correction_t
@@ -103,6 +104,7 @@ contains
       tale(11, k) = shared*model%contact_area(i)*operator%stiffness_factor
       tale(12:13, k) = [old%points(i)%damage, old%points(i)%dissipated]
       tale(14, k) = 1
+      tale(15:17, k) = [old%points(i)%sliding%slip, old%points(i)%sliding%limit]
     end do
     all = reshape(tale, [size(tale)])
     call model%communicator%sum(all)
@@ -140,6 +142,7 @@ contains
         point%faces = old%faces_of(model, nint(tale(2, k)))
         point%area = tale(11, k)
         point%old = cohesive_point_t(damage=tale(12, k), dissipated=tale(13, k))
+        point%old%sliding = sliding_t(slip=tale(15:16, k), limit=tale(17, k))
         point%jumps = tale(5:7, k)
         point%drift = tale(8:10, k)
         point%place(nint(tale(3, k))) = k

@@ -221,7 +221,8 @@ def check_columns(implam, folder):
     history = {name: np.array(values) for name, values in read_history(history_path).items()}
     deck = read_deck(deck_path)
     energies = sum(history[f"energy_{name}"] for name in (
-        "impactor", "kinetic", "strain", "indentation", "delamination", "ply_damage", "contact", "algorithmic"))
+        "impactor", "kinetic", "strain", "indentation", "delamination", "ply_damage", "contact", "friction",
+        "algorithmic"))
     mass, velocity = deck.number("impactor", "mass"), deck.number("impactor", "velocity")
     error = energies - history["work_external"] - mass * velocity**2 / 2
     require(np.max(np.abs(error - history["energy_error"])) < 1e-15, "The energies don't add up to their error.")

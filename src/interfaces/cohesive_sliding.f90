@@ -1,0 +1,102 @@
+!> Friction between the faces of cohesive interfaces: the most that it bears at their points, and its heat.
+module cohesive_sliding
+  use kinds, only: wp
+  use archives, only: archive_t
+  use cohesive_faces, only: cohesive_faces_t
+  use cohesive_interfaces, only: cohesive_interfaces_t
+  use models, only: model_t
+  implicit none
+  private
+  public :: heat_since, settle_friction, visit_friction
+
+  !> Change of a limit over the largest one at which load steps take limits for settled.
+  real(wp), parameter :: settled_change = 1.0e-6_wp
+
+contains
+
+  !> Makes the most that friction bears go with pressures and damage. A step in time goes on with it in the next; a load
+  !> step is solved again until it stays what it was.
+  subroutine settle_friction(interfaces, model, displacement, rounds, settled)
+    !> The interfaces
+    type(cohesive_interfaces_t), intent(inout) :: interfaces
+    type(model_t), intent(in) :: model
+    !> Unknowns, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> Counts the times that there was something to settle
+    integer, intent(inout) :: rounds
+    !> False on return if it has not settled
+    logical, intent(inout) :: settled
+    type(cohesive_faces_t) :: faces
+    real(wp) :: limit, largest(2)
+    integer :: i
+
+    if (.not. present_in(interfaces, model)) return
+    largest = 0
+    do i = 1, model%distribution%owned
+      if (.not. interfaces%cohesive(i)) cycle
+      faces = interfaces%faces_of(model, model%zone(i))
+      limit = faces%friction_limit(displacement(1:3, i), interfaces%points(i))
+      associate (before => interfaces%points(i)%sliding%limit)
+        largest = max(largest, [limit, abs(limit - before)])
+        before = limit
+      end associate
+    end do
+    if (.not. model%scene%has_static) return
+    call model%communicator%maximum(largest)
+    settled = settled .and. largest(2) <= settled_change*largest(1)
+    rounds = rounds + merge(1, 0, largest(2) > 0)
+  end subroutine settle_friction
+
+  !> True if faces rub on each other somewhere.
+  pure logical function present_in(interfaces, model)
+    !> The interfaces
+    type(cohesive_interfaces_t), intent(in) :: interfaces
+    type(model_t), intent(in) :: model
+
+    present_in = allocated(interfaces%cohesive)
+    if (present_in) present_in = any(model%scene%delaminations%friction > 0)
+  end function present_in
+
+  !> Energy that friction has turned into heat between two states, of the whole plate, the same on every rank.
+  real(wp) function heat_since(model, old, new) result(heat)
+    type(model_t), intent(in) :: model
+    !> The interfaces in both states
+    type(cohesive_interfaces_t), intent(in) :: old, new
+
+    heat = 0
+    if (.not. present_in(new, model)) return
+    associate (owned => model%distribution%owned)
+      heat = sum(model%contact_area(:owned)*(new%points(:owned)%sliding%heat - old%points(:owned)%sliding%heat))
+    end associate
+    call model%communicator%sum(heat)
+    heat = heat*model%mesh%multiplicity
+  end function heat_since
+
+  !> Saves or loads.
+  subroutine visit_friction(interfaces, archive, model)
+    !> The interfaces
+    type(cohesive_interfaces_t), intent(inout) :: interfaces
+    !> Where to or where from
+    class(archive_t), intent(inout) :: archive
+    type(model_t), intent(in) :: model
+    real(wp), allocatable :: fields(:, :)
+    integer :: i
+
+    if (.not. present_in(interfaces, model)) return
+    allocate (fields(4, size(interfaces%points)))
+    do i = 1, size(fields, 2)
+      associate (sliding => interfaces%points(i)%sliding)
+        fields(:, i) = [sliding%slip, sliding%limit, sliding%heat]
+      end associate
+    end do
+    associate (share => model%distribution)
+      call archive%field('cohesive/sliding', share%points(:share%owned), model%mesh%points(), fields)
+    end associate
+    if (.not. archive%loading) return
+    interfaces%points%sliding%limit = fields(3, :)
+    interfaces%points%sliding%heat = fields(4, :)
+    do i = 1, size(fields, 2)
+      interfaces%points(i)%sliding%slip = fields(1:2, i)
+    end do
+  end subroutine visit_friction
+end module cohesive_sliding
