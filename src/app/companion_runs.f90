@@ -15,7 +15,6 @@ module companion_runs
   private
   public :: companion_t, run_companion
 
-  !> An error of a step falls with its third power, what all together do with its square.
   integer, parameter :: coarser = 2
 
   !> What a companion has come to.
@@ -40,6 +39,7 @@ contains
     type(companion_t), intent(out) :: companion
     type(deck_t) :: coarse
     type(model_t) :: model
+    type(interface_figures_t), allocatable :: figures(:)
     type(time_stepper_t) :: stepper
     type(error_t), allocatable :: error
 
@@ -56,17 +56,10 @@ contains
     end do
     companion%done = .not. (stepper%now%time < coarse%stepping%time%end)
     companion%velocity = stepper%now%impactor%velocity
-    if (size(coarse%delaminations) > 0) companion%area = total_area(figures_of(model, stepper%now%interfaces))
+    figures = figures_of(model, stepper%now%interfaces)
+    companion%area = sum(figures%area)
     call stepper%operator%solver%release()
   end subroutine run_companion
-
-  !> Area of all interfaces.
-  pure real(wp) function total_area(figures) result(area)
-    !> Each interface
-    type(interface_figures_t), intent(in) :: figures(:)
-
-    area = sum(figures%area)
-  end function total_area
 
   !> The deck of a companion.
   pure function coarser_deck(deck) result(coarse)

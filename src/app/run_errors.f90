@@ -24,8 +24,7 @@ module run_errors
     real(wp) :: area = -1
   end type run_errors_t
 
-  !> Part of the largest force by which run and pilot may differ and still be of one scene: the pilot's plate is linear,
-  !> undamaged and, but for its first frequency, simply supported.
+  !> Part of the largest force by which run and pilot, linear and undamaged, may differ and still be of one scene.
   real(wp), parameter :: same_scene = 0.1_wp
 
 contains
