@@ -1,10 +1,12 @@
 !> The end of a run in words and figures: found once, told in the log and written to NAME_summary.json.
 module run_summaries
+  use companion_runs, only: companion_t, run_companion
   use deck_contents, only: deck_t
   use errors, only: error_t
   use kinds, only: wp
   use logger, only: log_t
   use models, only: model_t
+  use run_errors, only: run_errors_t, errors_by_companion, errors_by_pilot
   use run_figures, only: run_figures_t, ending_of, find_figures
   use run_provenance, only: provenance_t
   use run_records, only: run_record_t
@@ -18,7 +20,8 @@ module run_summaries
 
 contains
 
-  !> Says what a run has come to, also one that has been stopped or has failed. Collective.
+  !> Says what a run has come to, also one that has been stopped or has failed. A companion runs first if the deck asks
+  !> for one; the run's own factor has been released by then. Collective.
   subroutine summarise(deck, model, stepper, record, provenance, seconds, path, log, error)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -38,18 +41,25 @@ contains
     !> What ended the run before its time; set, if nothing did, if the summary cannot be written
     type(error_t), allocatable, intent(inout) :: error
     type(run_figures_t) :: figures
+    type(run_errors_t) :: errors
+    type(companion_t) :: companion
     type(error_t), allocatable :: fault
     type(line_t), allocatable :: lines(:)
     integer :: i
 
     call find_figures(model, stepper%now, figures)
-    lines = lines_of_summary(deck, stepper%now, record, figures)
+    if (.not. allocated(error)) errors = errors_by_pilot(deck, record)
+    if (deck%error_estimate .and. .not. (allocated(error) .or. deck%has_static)) &
+      call run_companion(deck, model%communicator, companion)
+    if (companion%done) errors = errors_by_companion(errors, record, stepper%now%impactor%velocity, &
+      sum(figures%interfaces%area), companion, deck%stepping%time%step)
+    lines = lines_of_summary(deck, stepper%now, record, figures, errors)
     do i = 1, size(lines)
       call log%note(lines(i)%text)
     end do
     if (model%communicator%is_root()) &
-      call write_summary(path, summary_text(deck, stepper, record, figures, ending_of(error), provenance, seconds), &
-                         fault)
+      call write_summary(path, summary_text(deck, stepper, record, figures, errors, ending_of(error), provenance, &
+                                            seconds), fault)
     call model%communicator%agree(fault)
     if (allocated(fault) .and. .not. allocated(error)) error = fault
   end subroutine summarise

@@ -8,6 +8,7 @@ module summary_file
   use json_text, only: json_t
   use kinds, only: wp
   use output_streams, only: output_stream_t
+  use run_errors, only: run_errors_t
   use run_figures, only: ending_t, run_figures_t
   use run_provenance, only: provenance_t
   use run_records, only: run_record_t
@@ -25,7 +26,7 @@ module summary_file
 contains
 
   !> The summary as JSON.
-  function summary_text(deck, stepper, record, figures, ending, provenance, seconds) result(content)
+  function summary_text(deck, stepper, record, figures, errors, ending, provenance, seconds) result(content)
     !> The deck
     type(deck_t), intent(in) :: deck
     !> What the run has stepped with
@@ -34,6 +35,8 @@ contains
     type(run_record_t), intent(in) :: record
     !> Figures of the state reached
     type(run_figures_t), intent(in) :: figures
+    !> How far they may be off
+    type(run_errors_t), intent(in) :: errors
     !> How it ended
     type(ending_t), intent(in) :: ending
     !> Version, deck and machine
@@ -57,6 +60,7 @@ contains
     if (deck%has_impactor .and. .not. deck%has_static) call put_impact(json, stepper%now, record)
     call json%put('largest_deflection', record%deflection)
     call json%put('largest_deflection_at', record%deflection_time)
+    call put_errors(json, errors)
     call put_energies(json, stepper%now%ledger, deck%has_impactor .and. .not. deck%has_static)
     if (size(figures%interfaces) > 0) call put_interfaces(json, deck, stepper%now, record, figures)
     if (deck%has_ply_damage) call put_failures(json, figures)
@@ -90,6 +94,40 @@ contains
       call json%put('rebound_velocity', -now%impactor%velocity)
     end if
   end subroutine put_impact
+
+  !> How far the figures may be off by step and mesh.
+  subroutine put_errors(json, errors)
+    !> The summary
+    type(json_t), intent(inout) :: json
+    !> The errors
+    type(run_errors_t), intent(in) :: errors
+
+    call json%open_object('error_estimate')
+    call json%put('source', trim(errors%source))
+    call put_known('peak_force', errors%peak_force)
+    call put_known('peak_force_at', errors%peak_time)
+    call put_known('contact_duration', errors%contact_duration)
+    call put_known('largest_deflection', errors%deflection)
+    call put_known('impactor_velocity', errors%velocity)
+    call put_known('delaminated_area', errors%area)
+    call json%close()
+
+  contains
+
+    !> Puts an error, or null.
+    subroutine put_known(name, error)
+      !> What it is of
+      character(len=*), intent(in) :: name
+      !> The error; negative: not known
+      real(wp), intent(in) :: error
+
+      if (error >= 0) then
+        call json%put(name, error)
+      else
+        call json%put_null(name)
+      end if
+    end subroutine put_known
+  end subroutine put_errors
 
   !> The ledger at the end.
   subroutine put_energies(json, ledger, impact)

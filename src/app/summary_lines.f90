@@ -3,6 +3,7 @@ module summary_lines
   use deck_contents, only: deck_t
   use energy_ledgers, only: ledger_t
   use kinds, only: wp
+  use run_errors, only: run_errors_t
   use run_figures, only: run_figures_t
   use run_records, only: run_record_t
   use run_warnings, only: warnings_given
@@ -18,7 +19,7 @@ module summary_lines
 contains
 
   !> The summary as lines of the log.
-  function lines_of_summary(deck, now, record, figures) result(lines)
+  function lines_of_summary(deck, now, record, figures, errors) result(lines)
     !> The deck
     type(deck_t), intent(in) :: deck
     !> The state reached
@@ -27,6 +28,8 @@ contains
     type(run_record_t), intent(in) :: record
     !> Figures of the state
     type(run_figures_t), intent(in) :: figures
+    !> How far they may be off
+    type(run_errors_t), intent(in) :: errors
     !> The lines
     type(line_t), allocatable :: lines(:)
     character(len=:), allocatable :: at
@@ -34,10 +37,11 @@ contains
     at = ' at time '
     if (deck%has_static) at = ' at load factor '
     call append(lines, 'Summary, in the units of the deck:')
-    if (deck%has_impactor .and. .not. deck%has_static) call tell_impact(lines, now, record)
-    call tell(lines, 'largest deflection', rounded_text(record%deflection)//at//rounded_text(record%deflection_time))
+    if (deck%has_impactor .and. .not. deck%has_static) call tell_impact(lines, now, record, errors)
+    call tell(lines, 'largest deflection', rounded_text(record%deflection)//at// &
+              rounded_text(record%deflection_time)//within(errors%deflection, record%deflection))
     call tell_energies(lines, now%ledger, deck%has_impactor .and. .not. deck%has_static)
-    if (size(figures%interfaces) > 0) call tell_interfaces(lines, deck, record, figures, at)
+    if (size(figures%interfaces) > 0) call tell_interfaces(lines, deck, record, figures, errors, at)
     if (deck%has_ply_damage) call tell(lines, 'failed plies', 'fibres '//to_text(figures%failures(1))// &
       ', matrix cracked '//to_text(figures%failures(2))//', crushed '//to_text(figures%failures(3))// &
       ' (counted in each element)')
@@ -57,28 +61,48 @@ contains
   end subroutine tell
 
   !> Force, contact and rebound.
-  subroutine tell_impact(lines, now, record)
+  subroutine tell_impact(lines, now, record, errors)
     !> The lines
     type(line_t), allocatable, intent(inout) :: lines(:)
     !> The state reached
     type(state_t), intent(in) :: now
     !> What the run remembers
     type(run_record_t), intent(in) :: record
+    !> How far the figures may be off
+    type(run_errors_t), intent(in) :: errors
 
-    call tell(lines, 'peak force', rounded_text(record%peak_force)//' at time '//rounded_text(record%peak_time))
+    call tell(lines, 'peak force', rounded_text(record%peak_force)//' at time '//rounded_text(record%peak_time)// &
+              within(errors%peak_force, record%peak_force)//within(errors%peak_time))
     if (now%force > 0) then
       call tell(lines, 'time in contact', rounded_text(record%contact_duration)//repeated(record%contacts)// &
-                ', and still at the end')
+                ', and still at the end'//within(errors%contact_duration))
     else
       call tell(lines, 'time in contact', rounded_text(record%contact_duration)//repeated(record%contacts)// &
-                ', until '//rounded_text(record%contact_end))
+                ', until '//rounded_text(record%contact_end)//within(errors%contact_duration))
     end if
     if (now%force > 0) then
-      call tell(lines, 'velocity at the end', rounded_text(now%impactor%velocity))
+      call tell(lines, 'velocity at the end', rounded_text(now%impactor%velocity)//within(errors%velocity))
     else if (now%impactor%velocity < 0) then
-      call tell(lines, 'rebound velocity', rounded_text(-now%impactor%velocity))
+      call tell(lines, 'rebound velocity', rounded_text(-now%impactor%velocity)//within(errors%velocity))
     end if
   end subroutine tell_impact
+
+  !> How far a figure may be off.
+  pure function within(error, figure) result(clause)
+    !> Its error; negative: not known
+    real(wp), intent(in) :: error
+    !> The figure that it is told as a part of; left out: it is told in its unit
+    real(wp), intent(in), optional :: figure
+    !> Such as (+-0.4 %); empty if it isn't known
+    character(len=:), allocatable :: clause
+
+    clause = ''
+    if (error < 0) return
+    clause = ' (+-'//rounded_text(error, 2)//')'
+    if (.not. present(figure)) return
+    clause = ''
+    if (abs(figure) > 0) clause = ' (+-'//rounded_text(100*error/abs(figure), 2)//' %)'
+  end function within
 
   !> In how many contacts.
   pure function repeated(contacts) result(clause)
@@ -114,7 +138,7 @@ contains
   end subroutine tell_energies
 
   !> What has delaminated.
-  subroutine tell_interfaces(lines, deck, record, figures, at)
+  subroutine tell_interfaces(lines, deck, record, figures, errors, at)
     !> The lines
     type(line_t), allocatable, intent(inout) :: lines(:)
     !> The deck
@@ -123,12 +147,14 @@ contains
     type(run_record_t), intent(in) :: record
     !> Figures of the state reached
     type(run_figures_t), intent(in) :: figures
+    !> How far they may be off
+    type(run_errors_t), intent(in) :: errors
     !> Words before a time
     character(len=*), intent(in) :: at
     integer :: zone
 
     call tell(lines, 'delaminated area', rounded_text(sum(figures%interfaces%area))// &
-              ' of all interfaces, projected '//rounded_text(figures%projected_area))
+              ' of all interfaces, projected '//rounded_text(figures%projected_area)//within(errors%area))
     do zone = 1, size(figures%interfaces)
       associate (figure => figures%interfaces(zone))
         call tell(lines, '  below ply '//to_text(deck%delaminations(zone)%below_ply), 'area '// &

@@ -25,7 +25,9 @@ module case_deck
     'case | units | choice | 1 | - | none | SI mm-t-s mm-kg-ms | &
       &Units that the deck is in: the check holds its values against them, and results name them.', &
     'case | strict | logical | 1 | - | .false. | .true. .false. | &
-      &Whether a run ends with exit code 3 where it passes the model''s limits, instead of a warning.']
+      &Whether a run ends with exit code 3 where it passes the model''s limits, instead of a warning.', &
+    'case | error_estimate | logical | 1 | - | .false. | .true. .false. | &
+      &Whether a coarser companion run, about an eighth of the work, tells the errors of the results at the end.']
 
   !> Errors of the peak force that the names of `accuracy` stand for, %.
   real(wp), parameter :: draft_error = 5, standard_error = 1, reference_error = 0.2_wp
@@ -57,7 +59,7 @@ contains
   end function has_accuracy
 
   !> What the case claims of its results.
-  pure subroutine fill_claims(settings, accuracy, units, strict)
+  pure subroutine fill_claims(settings, accuracy, units, strict, error_estimate)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> Error of the peak force allowed, %; 0: mesh and steps are the deck's
@@ -66,9 +68,12 @@ contains
     character(len=:), allocatable, intent(out) :: units
     !> True: a run ends where it passes the model's limits
     logical, intent(out) :: strict
+    !> True: a companion run tells the errors of the results
+    logical, intent(out) :: error_estimate
 
     units = settings%text_of(group, 'units')
     strict = settings%logical_of(group, 'strict')
+    error_estimate = settings%logical_of(group, 'error_estimate')
     select case (lower_case(settings%text_of(group, key_accuracy)))
     case ('draft')
       accuracy = draft_error

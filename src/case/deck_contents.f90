@@ -29,6 +29,8 @@ module deck_contents
     character(len=:), allocatable :: units
     !> True: the run ends where it passes the model's limits
     logical :: strict = .false.
+    !> True: a companion run tells the errors of the summary's figures
+    logical :: error_estimate = .false.
     !> What was chosen for the accuracy and why
     type(line_t), allocatable :: reasons(:)
     !> Scales of the scene, and what the run is to show

@@ -36,6 +36,7 @@ module deck_reader
   use pressure_deck, only: fill_pressure, check_pressure, pressure_group
   use static_deck, only: fill_static, static_group
   use rigs, only: window_lines
+  use stepping_parameters, only: follows_error
   use support_deck, only: fill_supports, check_rigs
   use thermal_deck, only: fill_thermal, check_thermal, thermal_group
   use time_deck, only: fill_time, check_time, time_group
@@ -130,7 +131,7 @@ contains
     type(problems_t), intent(inout) :: problems
 
     call fill_case(deck%settings, deck%source, deck%name, deck%title)
-    call fill_claims(deck%settings, deck%accuracy, deck%units, deck%strict)
+    call fill_claims(deck%settings, deck%accuracy, deck%units, deck%strict, deck%error_estimate)
     call fill_kinematics(deck%settings, deck%kinematics)
     call fill_plate(deck%settings, deck%plate)
     call fill_supports(deck%settings, deck%supports)
@@ -190,7 +191,9 @@ contains
       call fill_indentation(deck%settings, deck%impactor%radius, compliance, deck%indentation)
     end if
     if (deck%accuracy > 0) call choose_by_accuracy(deck, problems)
-    if (deck%has_time) call fill_time(deck%settings, size(deck%delaminations) > 0, deck%stepping%time)
+    call fill_adapt(deck%settings, deck%stepping%adapt)
+    if (deck%has_time) call fill_time(deck%settings, size(deck%delaminations) > 0, &
+                                      follows_error(deck%stepping%adapt), deck%stepping%time)
     call fill_pressure(deck%settings, deck%stepping%time%end, deck%pressure)
     if (deck%has_thermal) call fill_thermal(deck%settings, deck%temperature_change)
     call fill_lines(deck%settings, deck%lines)
@@ -203,7 +206,6 @@ contains
     !> Receives it
     type(deck_t), intent(inout) :: deck
 
-    call fill_adapt(deck%settings, deck%stepping%adapt)
     call fill_equilibrium(deck%settings, deck%stepping%equilibrium)
     call fill_linear_solver(deck%settings, deck%linear_solver)
     call fill_output(deck%settings, deck%output)

@@ -9,6 +9,7 @@ module deck_scales
   use scene_pilots, only: outlook_of
   use scene_scales, only: scene_scales_t, scales_of, has_blow
   use short_numbers, only: short_text
+  use stepping_parameters, only: outlook_t
   use text, only: line_t, append
   use time_deck, only: time_group, key_step
   implicit none
@@ -35,6 +36,9 @@ contains
     if (has_blow(deck%scene_t) .and. .not. deck%has_static) then
       deck%outlook = outlook_of(deck%scene_t, scales, deck%stepping%time%step, deck%stepping%time%end, &
                                 edge_near(deck, scales%wave_length))
+      associate (o => deck%outlook)
+        deck%stepping%outlook = outlook_t(scales%contact_time, o%force, o%deflection, o%last_contact)
+      end associate
       call check_resolution(deck, problems)
     end if
     deck%outlook%scales = scales

@@ -3,7 +3,7 @@ module adapt_deck
   use deck_choices, only: code_of
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
-  use stepping_parameters, only: adapt_t, refactor_deflection, refactor_iterations
+  use stepping_parameters, only: adapt_t, refactor_deflection, refactor_iterations, rule_local_error, rule_stress_rate
   implicit none
   private
   public :: fill_adapt
@@ -16,13 +16,17 @@ module adapt_deck
   !> Rows of the keys.
   character(len=key_row_length), parameter, public :: adapt_rows(*) = [character(len=key_row_length) :: &
     'adapt | on | logical | 1 | - | .true. | .true. .false. | &
-      &Whether the time step follows the stress rate at the struck point; left-out group: .false.', &
+      &Whether the time step adapts; left-out group: .false.', &
+    'adapt | rule | choice | 1 | - | = ''local_error'', with stress_change ''stress_rate'' | stress_rate local_error | &
+      &What the step follows: the stress rate at the struck point, or the error of each step.', &
+    'adapt | tolerance | real | 1 | - | 0.001 | > 0, <= 1 | &
+      &Error wanted of a step, as a fraction of the largest force and deflection (local_error).', &
     'adapt | refactor | choice | 1 | - | ''iterations'' | deflection iterations | &
       &What renews the factored stiffness: the deflection''s growth, or slow convergence.', &
     'adapt | stiffness_update | real | 1 | - | 0.003 | > 0, <= 10 | &
       &Growth of the struck point''s deflection that renews it, as a fraction of the thickness.', &
     'adapt | stress_change | real | 1 | - | 0.05 | > 0, <= 1 | &
-      &Change of the struck point''s stress wanted in a step, as a fraction of its largest so far.', &
+      &Change of the struck point''s stress wanted in a step, as a fraction of its largest so far (stress_rate).', &
     'adapt | iterations | integer | 1 | - | 16 | >= 1, <= 1000 | &
       &Iterations lost to an old factored stiffness that pay for a new one.', &
     'adapt | growth_step | real | 1 | - | 0.25 | > 0, <= 1 | &
@@ -39,6 +43,11 @@ contains
 
     if (.not. settings%has_group(adapt_group)) call settings%derive(adapt_group, 'on', '.false.', .false.)
     adapt%on = settings%logical_of(adapt_group, 'on')
+    if (.not. settings%is_given(adapt_group, 'rule')) call settings%derive(adapt_group, 'rule', &
+      trim(merge('stress_rate', 'local_error', settings%is_given(adapt_group, 'stress_change'))), .true.)
+    adapt%rule = code_of(settings%text_of(adapt_group, 'rule'), 'stress_rate local_error', &
+                         [rule_stress_rate, rule_local_error])
+    adapt%tolerance = settings%real_of(adapt_group, 'tolerance')
     adapt%refactor = code_of(settings%text_of(adapt_group, 'refactor'), 'deflection iterations', &
                              [refactor_deflection, refactor_iterations])
     adapt%stiffness_update = settings%real_of(adapt_group, 'stiffness_update')

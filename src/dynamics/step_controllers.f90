@@ -3,7 +3,7 @@ module step_controllers
   use kinds, only: wp
   use archives, only: archive_t
   use gear_integrator, only: largest_growth_ratio
-  use stepping_parameters, only: stepping_t, adapt_t, refactor_deflection
+  use stepping_parameters, only: stepping_t, adapt_t, follows_error, refactor_deflection
   implicit none
   private
   public :: step_controller_t
@@ -13,16 +13,46 @@ module step_controllers
   !> Ratios of the mass factor between which a lagged operator still serves well.
   real(wp), parameter :: lag_low = 0.3_wp, lag_high = 1.7_wp
 
+  !> Errors over the tolerance from which the next step is half as long, and from which a step is tried again. An error
+  !> grows with the third power of the step: halving it brings the first back to a quarter.
+  real(wp), parameter, public :: shrinks = 2, retries = 8
+  !> Error of a step in the rise of first contact, over the third power of their ratio.
+  real(wp), parameter :: first_error = 4
+  !> Error over the tolerance that a longer step may be expected to have, in an impact and after it.
+  real(wp), parameter :: spare_in_impact = 0.125_wp, spare_after = 0.5_wp
+  !> Doublings of a step that follows the error. Gear's method bears one after some equal steps: the product of its
+  !> companion matrices then has a norm of 23, of 1100 with one after two steps, of 128 with two at once, of 6 without.
+  integer, parameter :: most_levels = 3, most_levels_of_gear = 1
+  integer, parameter, public :: equal_of_gear = 4
+  !> Steps that must have gone well before the step grows: in an impact, where waves may come back, and after it.
+  integer, parameter :: quiet_in_impact = 24, quiet_after = 8
+  !> Parts of the time to the first event of which steps that follow the error are halves of halves, at most.
+  integer, parameter :: most_parts = 8
+
   !> What is remembered from step to step.
   type :: step_controller_t
     !> Step wanted next, and the last one taken
     real(wp) :: wanted = 0, last = 0
+    !> Steps of its length in a row
+    integer :: equal = 0
     !> Part of the step wanted that growing fronts leave: halves of halves, so that the factored operator need not
     !> follow every small change
     real(wp) :: part = 1
     !> Fewest iterations of a step since the operator was renewed, and the sum of those beyond it
     integer :: fewest = huge(1), excess = 0
+    !> Steps since the step wanted last changed
+    integer :: quiet = 0
+    !> Largest error over its tolerance among them
+    real(wp) :: error = 0
+    !> Doublings of the step that wait until they fit into what is left to the next event
+    integer :: levels = 0
   contains
+    !> First step of those that follow the error.
+    procedure :: begin
+    !> Learns from the error of an accepted step.
+    procedure :: follow_error
+    !> Shortens the step after one with too large an error.
+    procedure :: shorten
     !> Step to try next, landing on the next output time.
     procedure :: propose
     !> Learns from an accepted step.
@@ -42,16 +72,25 @@ module step_controllers
 contains
 
   !> Length of the next step, of which a whole number reaches the next event.
-  pure real(wp) function propose(self, remaining, limit) result(step)
+  pure real(wp) function propose(self, remaining, limit, growth) result(step)
     !> The controller
     class(step_controller_t), intent(in) :: self
     !> Time to the next event
     real(wp), intent(in) :: remaining
     !> Longest step that the impactor's integrator bears
     real(wp), intent(in) :: limit
+    !> Largest ratio to the step before; left out: that of steps which grow one after the other
+    real(wp), intent(in), optional :: growth
+    real(wp) :: ratio, longer
 
-    step = min(self%part*self%wanted, limit)
-    if (self%last > 0) step = min(step, largest_growth_ratio*self%last)
+    ratio = largest_growth_ratio
+    if (present(growth)) ratio = growth
+    step = self%part*self%wanted
+    longer = step*2.0_wp**self%levels
+    ! A longer step waits until the steps left are a multiple of it: so there are few lengths.
+    if (abs(remaining/longer - anint(remaining/longer)) < 1.0e-6_wp .and. remaining > longer/2) step = longer
+    step = min(step, limit)
+    if (self%last > 0) step = min(step, ratio*self%last)
     step = remaining/max(1.0_wp, ceiling_of(remaining/step*(1 - 1.0e-9_wp)))
   end function propose
 
@@ -78,11 +117,14 @@ contains
     real(wp), intent(in) :: stress_change
     real(wp) :: room
 
+    self%equal = merge(self%equal + 1, 1, abs(step - self%last) <= 1.0e-9_wp*step)
     self%last = step
     self%fewest = min(self%fewest, lasting)
     self%excess = self%excess + lasting - self%fewest
     room = 2
-    if (stepping%adapt%on) then
+    if (follows_error(stepping%adapt)) then
+      return
+    else if (stepping%adapt%on) then
       room = stepping%adapt%stress_change/max(stress_change, tiny(room)**0.5_wp)
       if (4*iterations > 3*stepping%equilibrium%max_iterations) room = min(room, 0.7_wp)
     end if
@@ -93,6 +135,90 @@ contains
     end if
     self%wanted = min(max(self%wanted, stepping%time%step_min), stepping%time%step_max)
   end subroutine accept
+
+  !> First step of those that follow the error: the deck's, or what the tolerance leaves of the rise of first contact.
+  !> From it on all are that many halves or doubles, and whole numbers of them reach the first event.
+  pure subroutine begin(self, stepping, remaining)
+    !> The controller
+    class(step_controller_t), intent(inout) :: self
+    !> How steps are taken
+    type(stepping_t), intent(in) :: stepping
+    !> Time to the first event
+    real(wp), intent(in) :: remaining
+    real(wp) :: parts, step
+
+    step = stepping%time%step
+    if (stepping%outlook%rise > 0) &
+      step = min(step, stepping%outlook%rise*(first_error*stepping%adapt%tolerance)**(1.0_wp/3))
+    step = min(max(step, stepping%time%step_min), stepping%time%step_max)
+    parts = remaining/step
+    self%wanted = 1
+    do while (parts > most_parts)
+      parts = parts/2
+      self%wanted = self%wanted/2
+    end do
+    self%wanted = self%wanted*remaining/max(1.0_wp, ceiling_of(parts*(1 - 1.0e-9_wp)))
+  end subroutine begin
+
+  !> Learns from the error of an accepted step: halves the step, or doubles it once that pays for a factorization.
+  pure subroutine follow_error(self, stepping, step, error, remaining, is_over, gear)
+    !> The controller
+    class(step_controller_t), intent(inout) :: self
+    !> How steps are taken
+    type(stepping_t), intent(in) :: stepping
+    !> Step taken, and its error over the tolerance
+    real(wp), intent(in) :: step, error
+    !> Time to the end of the run
+    real(wp), intent(in) :: remaining
+    !> True: there is no impact, or it is over
+    logical, intent(in) :: is_over
+    !> True: Gear's method moves the impactor
+    logical, intent(in) :: gear
+    integer :: levels
+    real(wp) :: spare
+
+    if (step > 1.5_wp*self%part*self%wanted) then
+      self%wanted = step/self%part
+      call start_watch(self)
+    end if
+    self%quiet = self%quiet + 1
+    self%error = max(self%error, error)
+    if (error > shrinks) then
+      call self%shorten(stepping, step, error)
+    else if (self%levels == 0 .and. self%quiet >= merge(quiet_after, quiet_in_impact, is_over)) then
+      spare = merge(spare_after, spare_in_impact, is_over)
+      do levels = merge(most_levels_of_gear, most_levels, gear), 1, -1
+        if (self%error*8.0_wp**levels > spare .or. self%wanted*2.0_wp**levels > stepping%time%step_max) cycle
+        if (remaining*(1 - 0.5_wp**levels) > stepping%adapt%iterations*step) exit
+      end do
+      call start_watch(self)
+      self%levels = levels
+    end if
+  end subroutine follow_error
+
+  !> Begins to watch errors anew.
+  pure subroutine start_watch(self)
+    !> The controller
+    class(step_controller_t), intent(inout) :: self
+
+    self%quiet = 0
+    self%error = 0
+    self%levels = 0
+  end subroutine start_watch
+
+  !> Halves the step until the error is expected to be within the tolerance again.
+  pure subroutine shorten(self, stepping, step, error)
+    !> The controller
+    class(step_controller_t), intent(inout) :: self
+    !> How steps are taken
+    type(stepping_t), intent(in) :: stepping
+    !> Step taken or tried in vain, and its error over the tolerance
+    real(wp), intent(in) :: step, error
+
+    self%wanted = max(stepping%time%step_min, step/self%part*0.5_wp**max(1, nint(log(error/shrinks)/log(8.0_wp) &
+                                                                                 + 0.2_wp)))
+    call start_watch(self)
+  end subroutine shorten
 
   !> Shortens the step where delaminations that grow one cell a step are about to grow or have grown (section 3.3.3
   !> of the paper, step 5): as their energy release rate nears the critical one, the step is halved at 0.9 of it, again
@@ -174,8 +300,12 @@ contains
 
     call archive%item('controller/wanted', self%wanted)
     call archive%item('controller/last', self%last)
+    call archive%item('controller/equal', self%equal)
     call archive%item('controller/part', self%part)
     call archive%item('controller/fewest', self%fewest)
     call archive%item('controller/excess', self%excess)
+    call archive%item('controller/quiet', self%quiet)
+    call archive%item('controller/error', self%error)
+    call archive%item('controller/levels', self%levels)
   end subroutine visit
 end module step_controllers

@@ -3,12 +3,15 @@ module stepping_parameters
   use kinds, only: wp
   implicit none
   private
-  public :: time_t, adapt_t, equilibrium_t, stepping_t
+  public :: time_t, adapt_t, equilibrium_t, outlook_t, stepping_t, follows_error
 
   !> Time integrators of the plate.
   integer, parameter, public :: integrator_newmark = 1, integrator_generalized_alpha = 2
   !> Rules for renewing the factored operator.
   integer, parameter, public :: refactor_deflection = 1, refactor_iterations = 2
+  !> What an adaptive step follows: the stress at the struck point (the paper's), or the error of each step.
+  integer, parameter, public :: rule_stress_rate = 1, rule_local_error = 2
+
   !> Time integration of the plate.
   type :: time_t
     !> End of the run
@@ -27,10 +30,14 @@ module stepping_parameters
     real(wp) :: rho_infinity = 1
   end type time_t
 
-  !> Adaptive rules of the paper's section 3.4.
+  !> Adaptive rules of the paper's section 3.4, and one that follows the error.
   type :: adapt_t
-    !> True: the time step follows the stress rate at the struck point
+    !> True: the time step adapts
     logical :: on = .false.
+    !> rule_stress_rate or rule_local_error
+    integer :: rule = rule_local_error
+    !> Error of a step aimed at, fraction of the largest force and of the largest deflection (rule_local_error)
+    real(wp) :: tolerance = 1.0e-3_wp
     !> refactor_deflection (the paper's) or refactor_iterations
     integer :: refactor = refactor_iterations
     !> Growth of the struck point's deflection that renews the operator, fraction of the thickness
@@ -51,6 +58,16 @@ module stepping_parameters
     integer :: max_iterations = 30
   end type equilibrium_t
 
+  !> What a run is expected to show, by a pilot calculation; 0: not known.
+  type :: outlook_t
+    !> Time in which the force of first contact rises
+    real(wp) :: rise = 0
+    !> Largest force and deflection
+    real(wp) :: force = 0, deflection = 0
+    !> End of the last contact
+    real(wp) :: last_contact = 0
+  end type outlook_t
+
   !> All that steps are taken by.
   type :: stepping_t
     !> Time integration
@@ -61,7 +78,18 @@ module stepping_parameters
     real(wp) :: dissipation = 0
     !> Adaptivity
     type(adapt_t) :: adapt
+    !> What the run is expected to show
+    type(outlook_t) :: outlook
     !> Convergence of equilibrium
     type(equilibrium_t) :: equilibrium
   end type stepping_t
+contains
+
+  !> True: steps follow the error that each makes.
+  elemental logical function follows_error(adapt)
+    !> Adaptive rules
+    type(adapt_t), intent(in) :: adapt
+
+    follows_error = adapt%on .and. adapt%rule == rule_local_error
+  end function follows_error
 end module stepping_parameters

@@ -25,7 +25,7 @@ module time_deck
       &First time step, and the step if it doesn''t adapt.', &
     'time | step_min | real | 1 | time | = step/1024 | > 0 | &
       &Smallest step tried before giving up.', &
-    'time | step_max | real | 1 | time | = step | > 0 | &
+    'time | step_max | real | 1 | time | = step, end with &adapt rule=''local_error'' | > 0 | &
       &Largest step taken.', &
     'time | wall_limit | real | 1 | s | none | > 0 | &
       &Seconds on the wall by which the run ends with a checkpoint; --wall-limit overrides it.', &
@@ -44,11 +44,13 @@ module time_deck
 contains
 
   !> Time integration of the plate.
-  subroutine fill_time(settings, layers_separate, time)
+  subroutine fill_time(settings, layers_separate, grows, time)
     !> Keys in effect; gets what the deck doesn't give
     type(settings_t), intent(inout) :: settings
     !> True: layers of the plate may separate, which takes damping
     logical, intent(in) :: layers_separate
+    !> True: the step may grow beyond the first unless the deck forbids it
+    logical, intent(in) :: grows
     !> Receives them
     type(time_t), intent(inout) :: time
 
@@ -57,7 +59,8 @@ contains
       time%step = s%real_of(time_group, key_step)
       if (.not. s%is_given(time_group, 'step_min')) &
         call s%derive(time_group, 'step_min', to_text(time%step/1024), .false.)
-      if (.not. s%is_given(time_group, 'step_max')) call s%derive(time_group, 'step_max', to_text(time%step), .false.)
+      if (.not. s%is_given(time_group, 'step_max')) call s%derive(time_group, 'step_max', to_text(merge(time%end, &
+        time%step, grows)), .false.)
       time%step_min = s%real_of(time_group, 'step_min')
       time%step_max = s%real_of(time_group, 'step_max')
       time%wall_limit = s%real_of(time_group, 'wall_limit')

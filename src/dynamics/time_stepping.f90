@@ -5,14 +5,15 @@ module time_stepping
   use archives, only: archive_t
   use text, only: rounded_text
   use initial_equilibrium, only: find_initial_equilibrium
-  use impactor_integrators, only: largest_safe_step
-  use stepping_parameters, only: stepping_t
+  use step_errors, only: step_error_t
+  use stepping_parameters, only: stepping_t, follows_error
   use linear_solver_parameters, only: linear_solver_parameters_t
   use newmark_integrators, only: plate_integrator_t, plate_integrator
   use models, only: model_t
   use states, only: state_t, new_state
   use tangent_operators, only: tangent_operator_t
-  use step_controllers, only: step_controller_t
+  use step_controllers, only: step_controller_t, retries
+  use step_limits, only: impactor_limit, growth_limit, has_gear
   use step_problems, only: solve_step
   use dynamic_steps, only: dynamic_step_t, new_dynamic_step
   use static_steps, only: static_step_t, new_static_step
@@ -39,6 +40,10 @@ module time_stepping
     type(tangent_operator_t) :: operator
     !> The step controller
     type(step_controller_t) :: controller
+    !> Error that each step adds
+    type(step_error_t) :: step_error
+    !> The last one over its tolerance
+    real(wp), private :: error = 0
     !> Integrator of the plate
     type(plate_integrator_t) :: integrator
     !> How steps are taken
@@ -90,6 +95,7 @@ contains
     self%integrator = plate_integrator(self%stepping%time)
     self%operator%condenses = allocated(self%now%interfaces%cohesive%cohesive)
     self%controller%wanted = self%stepping%time%step
+    if (follows_error(stepping%adapt)) call self%step_error%start(model, stepping%time%step)
     if (allocated(model%pressure) .or. size(model%lines) > 0) call start_acceleration(self, model, error)
   end subroutine start
 
@@ -130,8 +136,10 @@ contains
     !> Set if the smallest step failed
     type(error_t), allocatable, intent(out) :: error
     real(wp) :: step
-    logical :: converged
+    logical :: converged, follows
 
+    follows = follows_error(self%stepping%adapt) .and. .not. model%scene%has_static
+    if (follows .and. self%now%step == 0) call self%controller%begin(self%stepping, event)
     do
       if (model%scene%has_static) then
         call try_load(self, model, event, step, converged, error)
@@ -139,6 +147,15 @@ contains
         call try_step(self, model, event, step, converged, error)
       end if
       if (allocated(error)) return
+      if (converged .and. follows) then
+        call self%step_error%estimate(model, self%integrator, self%stepping%outlook, self%now, self%trial, self%error)
+        self%error = self%error/self%stepping%adapt%tolerance
+        if (self%error > retries .and. step > self%smallest_step(model)*(1 + 1.0e-9_wp)) then
+          self%rejected = self%rejected + 1
+          call self%controller%shorten(self%stepping, step, self%error)
+          cycle
+        end if
+      end if
       if (converged) exit
       self%rejected = self%rejected + 1
       call self%controller%reject(step)
@@ -204,7 +221,8 @@ contains
     real(wp) :: mass_factor
     logical :: due
 
-    step = self%controller%propose(event - self%now%time, impactor_limit(self, model))
+    step = self%controller%propose(event - self%now%time, impactor_limit(model, self%now, self%controller%wanted), &
+                                   growth_limit(model, self%stepping%adapt, self%controller))
     mass_factor = self%integrator%mass_factor(step)
     due = .not. self%operator%ready .or. self%operator%changes%kept > most_answers .and. self%operator%condenses
     if (.not. due) due = self%controller%renewal_due(self%stepping%adapt, &
@@ -230,21 +248,6 @@ contains
     ! Steps of the smallest length are taken as they are: the energy watch tells what they create.
     if (converged .and. self%trial%plies%leapt) converged = step <= self%smallest_step(model)*(1 + 1.0e-9_wp)
   end subroutine try_step
-
-  !> Longest step that the impactor's integrator bears now, as a binary fraction of the step wanted so that
-  !> the factored operator need not follow every small change.
-  pure real(wp) function impactor_limit(self, model) result(limit)
-    !> The time stepper
-    type(time_stepper_t), intent(in) :: self
-    type(model_t), intent(in) :: model
-
-    limit = huge(limit)
-    if (.not. model%scene%has_impactor) return
-    limit = largest_safe_step(model%scene%impactor, model%scene%indentation, self%now%indentation, &
-                              self%now%indentation%alpha, self%now%impactor%velocity)
-    if (limit < self%controller%wanted) limit = self%controller%wanted*2.0_wp**floor(log(limit/self%controller%wanted) &
-                                                                                     /log(2.0_wp))
-  end function impactor_limit
 
   !> Tries one load step.
   subroutine try_load(self, model, event, step, converged, error)
@@ -343,6 +346,8 @@ contains
                                         .not. model%scene%has_static .and. &
                                         self%trial%impactor%velocity <= 0 .and. self%trial%force < self%now%force
     extended = self%trial%ledger%delamination > self%now%ledger%delamination
+    if (follows_error(self%stepping%adapt) .and. .not. model%scene%has_static) &
+      call self%step_error%note(model, self%now, self%trial)
     call move_alloc(self%now, before)
     call move_alloc(self%trial, self%now)
     call move_alloc(before, self%trial)
@@ -351,6 +356,10 @@ contains
     else
       call self%controller%accept(self%stepping, step, self%now%iterations, &
                                   self%now%iterations - self%operator%switches, change)
+      if (follows_error(self%stepping%adapt)) &
+        call self%controller%follow_error(self%stepping, step, self%error, self%stepping%time%end - self%now%time, &
+          .not. model%scene%has_impactor .or. self%step_error%impact_is_over(self%stepping%outlook, self%now), &
+                                          has_gear(model))
       ! What a step took until it renewed the operator itself does not speak against the new one.
       if (self%operator%factorizations /= self%factorizations_begun) call self%controller%renewed()
       if (grows_by_steps(model)) &
@@ -394,6 +403,7 @@ contains
 
     call self%now%visit(archive, model)
     call self%controller%visit(archive)
+    if (allocated(self%step_error%share)) call self%step_error%visit(archive, model)
     call archive%item('stepper/rejected', self%rejected)
     call self%operator%visit(archive, model, error)
   end subroutine visit

@@ -8,7 +8,7 @@ module pilot_impacts
                                  commit_indentation
   implicit none
   private
-  public :: pilot_t, run_pilot, difference
+  public :: pilot_t, run_pilot, difference, figures_of
 
   !> What a pilot calculation found.
   type :: pilot_t
@@ -22,6 +22,8 @@ module pilot_impacts
     real(wp) :: indentation = 0, deflection = 0
     !> Time after which the force never passes a hundredth of its peak again
     real(wp) :: last_contact = 0
+    !> Time that the bodies touched in all, and velocity of the impactor at the end
+    real(wp) :: duration = 0, velocity = 0
     !> Times that the bodies touched
     integer :: contacts = 0
     !> The contact was over before the steps were
@@ -97,6 +99,7 @@ contains
       if (now > pilot%peak) pilot%peak_time = i*step
       pilot%peak = max(pilot%peak, now)
       if (now > 0 .and. .not. before > 0) pilot%contacts = pilot%contacts + 1
+      if (now > 0) pilot%duration = pilot%duration + step
       if (now > contact_part*pilot%peak) active = i
       if (i > waiting*active .and. active > 0 .and. .not. to_the_end) exit
     end do
@@ -104,6 +107,7 @@ contains
     pilot%force = force(:min(i, most_steps))
     pilot%indentation = contact%alpha_max
     pilot%last_contact = active*step
+    pilot%velocity = ball(2)
   end function run_pilot
 
   !> Modes at rest, and what a step makes of them.
@@ -189,6 +193,17 @@ contains
     end do
     force = next
   end subroutine find_force
+
+  !> What a summary of a run tells, in its order: largest force, its time, time in contact, largest deflection, velocity
+  !> of the impactor at the end.
+  pure function figures_of(pilot) result(figures)
+    !> The pilot
+    type(pilot_t), intent(in) :: pilot
+    !> The figures
+    real(wp) :: figures(5)
+
+    figures = [pilot%peak, pilot%peak_time, pilot%duration, pilot%deflection, pilot%velocity]
+  end function figures_of
 
   !> What two pilots differ by: largest force, and the whole history in the mean of squares, relative to the finer one.
   pure function difference(coarse, fine, ratio) result(relative)

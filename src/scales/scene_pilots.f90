@@ -3,7 +3,7 @@
 module scene_pilots
   use kinds, only: wp
   use modal_plates, only: modal_plate_t, reduced
-  use pilot_impacts, only: pilot_t, run_pilot, difference
+  use pilot_impacts, only: pilot_t, run_pilot, difference, figures_of
   use scene_scales, only: scene_scales_t, plate_modes, contact_side
   use scenes, only: scene_t
   implicit none
@@ -36,6 +36,9 @@ module scene_pilots
     real(wp) :: edge = 0
     !> Relative errors of the force's peak and history, by the step and by the mesh; negative: not known
     real(wp) :: step_error(2) = -1, mesh_error(2) = -1
+    !> Errors by step and mesh together of the figures that a summary tells, in the order of `figures_of`; negative: not
+    !> known
+    real(wp) :: figure_error(5) = -1
     !> Side of the area that carries the contact force, and what a larger patch changes of peak and history
     real(wp) :: contact_side = 0, patch_error(2) = -1
   end type scene_outlook_t
@@ -142,6 +145,8 @@ contains
     if (coarse%complete) then
       meshed = run_of(pilot, step, end, edge)
       outlook%mesh_error = difference(meshed, coarse, 1)
+      if (outlook%step_error(1) >= 0) outlook%figure_error = abs(figures_of(coarse) - figures_of(fine))*4/3 &
+                                                + abs(figures_of(meshed) - figures_of(coarse))
     end if
     outlook%force = fine%peak
     outlook%indentation = fine%indentation

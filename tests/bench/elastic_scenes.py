@@ -2,6 +2,7 @@
 """Holds meshes and steps that `&case accuracy` chooses against semi-analytic answers. See README.md."""
 import argparse
 import csv
+import json
 import math
 import os
 import pathlib
@@ -87,6 +88,8 @@ class Run:
             self.seconds = usage.ru_utime + usage.ru_stime
             self.said = pathlib.Path(folder, 'said').read_text()
             log = pathlib.Path(folder, name + '.log')
+            summary = pathlib.Path(folder, name + '_summary.json')
+            self.summary = json.loads(summary.read_text()) if summary.exists() else {}
             self.log = log.read_text() if log.exists() else ''
             if self.code:
                 return
@@ -108,17 +111,27 @@ class Run:
         return self.force.max()/forces.max() - 1, math.sqrt(np.sum((mine - forces)**2)/np.sum(forces**2))
 
 
-def compare(program, scene, accuracy):
-    """One row of the table: the run with the accuracy asked for, and its errors."""
-    run = Run(program, deck_of(scene, case=f'accuracy={accuracy}'), scene.name)
+def over_estimates(summary, answered):
+    """Errors of peak force, its time, time in contact and the ball's velocity over the run's estimates."""
+    times, forces, speeds, _ = answered
+    exact = {'peak_force': forces.max(), 'peak_force_at': times[forces.argmax()],
+             'contact_duration': np.count_nonzero(forces > 0)*times[1], 'impactor_velocity': speeds[-1]}
+    estimate = summary['error_estimate']
+    return [abs(summary[name] - value)/estimate[name] if estimate[name] else math.inf
+            for name, value in exact.items()]
+
+
+def compare(program, scene, case):
+    """One row of the table: the run with some keys of the case, its errors, and these over its estimates."""
+    run = Run(program, deck_of(scene, case=case), scene.name)
     if run.code:
-        return run, None
+        return run, None, None
     tau = scene.contact_time()
     end = run.key('time', 'end')[0]
     # A long contact answers to low modes: its peak and history change by less than 0.1 % with twice as many.
     long = end > 300*tau
-    times, forces, _, _ = answer(scene, run.key('mesh', 'patch')[0], end, *((20, 20) if long else (60, 50)))
-    return run, run.errors(times, forces)
+    answered = answer(scene, run.key('mesh', 'patch')[0], end, *((20, 20) if long else (60, 50)))
+    return run, run.errors(*answered[:2]), over_estimates(run.summary, answered)
 
 
 def main():
@@ -132,10 +145,11 @@ def main():
     parser.add_argument('--longest', type=float, default=2000,
                         help='contacts that last more rises than this have no answer here')
     parser.add_argument('--only', type=int, nargs='+', help='numbers of scenes')
+    parser.add_argument('--case', default='', help='more keys of &case')
     parser.add_argument('--at-least', type=int, default=0, help='scenes within the bounds, or else exit code 1')
     options = parser.parse_args()
-    within, seconds, answered = 0, [], 0
-    print('scene      peak, %  history, %  elements  steps  in a rise  end/rise  processor, s')
+    within, seconds, answered, told = 0, [], 0, np.zeros(4, int)
+    print('scene      peak, %  history, %  elements  steps  in a rise  end/rise  processor, s  over the estimates')
     for number, scene in enumerate(random_scenes(options.count, options.seed), 1):
         if options.only and number not in options.only:
             continue
@@ -146,7 +160,7 @@ def main():
         if last and float(last[1]) > options.longest*tau:
             print(f'{scene.name:9s}  the contact lasts {float(last[1])/tau:.0f} rises')
             continue
-        run, errors = compare(options.program, scene, options.accuracy)
+        run, errors, ratios = compare(options.program, scene, f'accuracy={options.accuracy} {options.case}')
         seconds.append(run.seconds)
         answered += 1
         if run.code:
@@ -157,10 +171,12 @@ def main():
         elements = 'x'.join(f'{n:.0f}' for n in run.key('mesh', 'elements'))
         step = run.key('time', 'step')[0]
         print(f'{scene.name:9s}  {100*errors[0]:+7.2f}  {100*errors[1]:10.2f}  {elements:>8s}  {run.steps:5d}'
-              f'  {tau/step:9.1f}  {run.time[-1]/tau:8.1f}  {run.seconds:12.2f}{"" if good else "  misses"}',
-              flush=True)
+              f'  {tau/step:9.1f}  {run.time[-1]/tau:8.1f}  {run.seconds:12.2f}  '
+              f'{" ".join(f"{ratio:5.2f}" for ratio in ratios)}{"" if good else "  misses"}', flush=True)
+        told += np.array(ratios) <= 2
     print(f'{within} of {answered} within {options.bounds[0]:g} % and {options.bounds[1]:g} %; processor time of the '
           f'median scene {np.median(seconds):.2f} s')
+    print('within twice the estimate: peak {}, its time {}, time in contact {}, velocity {}'.format(*told))
     if within < options.at_least:
         raise SystemExit(1)
 

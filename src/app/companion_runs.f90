@@ -1,0 +1,80 @@
+!> A companion of a run: the same scene with half the elements along each side and twice the step, about an eighth of
+!> the work. What the two differ by tells how far the run may be off.
+module companion_runs
+  use communicators, only: communicator_t
+  use deck_contents, only: deck_t
+  use errors, only: error_t
+  use interface_figures, only: interface_figures_t, figures_of
+  use kinds, only: wp
+  use model_building, only: create_model
+  use models, only: model_t
+  use queue_signals, only: stop_signal
+  use run_records, only: run_record_t, new_run_record
+  use time_stepping, only: time_stepper_t
+  implicit none
+  private
+  public :: companion_t, run_companion
+
+  integer, parameter :: coarser = 2
+
+  !> What a companion has come to.
+  type :: companion_t
+    !> True: it has come to its end; false: a mesh so coarse can't be made, no step converged, or a queue's signal came
+    logical :: done = .false.
+    !> What it remembers
+    type(run_record_t) :: record
+    !> Velocity of the impactor and delaminated area at the end
+    real(wp) :: velocity = 0, area = 0
+  end type companion_t
+
+contains
+
+  !> Runs the companion. Collective.
+  subroutine run_companion(deck, communicator, companion)
+    !> The deck of the run
+    type(deck_t), intent(in) :: deck
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> What it has come to
+    type(companion_t), intent(out) :: companion
+    type(deck_t) :: coarse
+    type(model_t) :: model
+    type(interface_figures_t), allocatable :: figures(:)
+    type(time_stepper_t) :: stepper
+    type(error_t), allocatable :: error
+
+    coarse = coarser_deck(deck)
+    call create_model(coarse%scene_t, communicator, model, error)
+    if (.not. allocated(error)) call stepper%start(model, coarse%stepping, coarse%linear_solver, error)
+    if (allocated(error)) return
+    companion%record = new_run_record(model)
+    do while (stepper%now%time < coarse%stepping%time%end)
+      call stepper%advance(model, coarse%stepping%time%end, error)
+      if (allocated(error)) exit
+      call companion%record%observe(model, stepper%now)
+      if (communicator%any(stop_signal() /= 0)) exit
+    end do
+    companion%done = .not. (stepper%now%time < coarse%stepping%time%end)
+    companion%velocity = stepper%now%impactor%velocity
+    figures = figures_of(model, stepper%now%interfaces)
+    companion%area = sum(figures%area)
+    call stepper%operator%solver%release()
+  end subroutine run_companion
+
+  !> The deck of a companion.
+  pure function coarser_deck(deck) result(coarse)
+    !> The deck of the run
+    type(deck_t), intent(in) :: deck
+    !> The same scene, coarser
+    type(deck_t) :: coarse
+
+    coarse = deck
+    coarse%mesh%elements = max(2, (deck%mesh%elements + 1)/coarser)
+    coarse%mesh%cell = coarser*deck%mesh%cell
+    associate (time => coarse%stepping%time)
+      time%step = min(coarser*time%step, time%end)
+      time%step_max = max(time%step, min(coarser*time%step_max, time%end))
+    end associate
+    coarse%stepping%adapt%tolerance = coarser**3*deck%stepping%adapt%tolerance
+  end function coarser_deck
+end module companion_runs

@@ -1,0 +1,81 @@
+!> How far the figures of a summary may be off by step and mesh, and where that is known from.
+module run_errors
+  use companion_runs, only: companion_t
+  use deck_contents, only: deck_t
+  use kinds, only: wp
+  use run_records, only: run_record_t
+  implicit none
+  private
+  public :: run_errors_t, errors_by_pilot, errors_by_companion
+
+  !> Errors of figures, in their units; negative: not known.
+  type :: run_errors_t
+    !> What they are from: none, pilot or companion
+    character(len=9) :: source = 'none'
+    !> Of the largest force and its time
+    real(wp) :: peak_force = -1, peak_time = -1
+    !> Of the time in contact
+    real(wp) :: contact_duration = -1
+    !> Of the largest deflection
+    real(wp) :: deflection = -1
+    !> Of the impactor's velocity at the end
+    real(wp) :: velocity = -1
+    !> Of the area delaminated
+    real(wp) :: area = -1
+  end type run_errors_t
+
+  !> Part of the largest force by which run and pilot, linear and undamaged, may differ and still be of one scene.
+  real(wp), parameter :: same_scene = 0.1_wp
+
+contains
+
+  !> Errors by the pilot calculation of the deck's check: with half the step, and with the frequencies that modes have
+  !> on the mesh. Nothing is known of a run whose largest force isn't that of the pilot.
+  pure function errors_by_pilot(deck, record) result(errors)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> What the run remembers
+    type(run_record_t), intent(in) :: record
+    !> The errors
+    type(run_errors_t) :: errors
+
+    associate (o => deck%outlook)
+      if (.not. o%of_impact .or. any(o%figure_error < 0) .or. deck%stepping%adapt%on) return
+      if (abs(record%peak_force - o%force) > same_scene*o%force) return
+      errors%source = 'pilot'
+      errors%peak_force = o%figure_error(1)
+      errors%peak_time = max(o%figure_error(2), deck%stepping%time%step/2)
+      errors%contact_duration = max(o%figure_error(3), deck%stepping%time%step)
+      errors%deflection = o%figure_error(4)
+      errors%velocity = o%figure_error(5)
+    end associate
+  end function errors_by_pilot
+
+  !> Errors by a run of the same scene with half the elements and twice the step. It errs four times as much by the step
+  !> and more by the mesh, so a third of the difference is the estimate. The two may cancel in a difference: where the
+  !> pilot tells more, that holds.
+  pure function errors_by_companion(pilot, record, velocity, area, companion, step) result(errors)
+    !> Errors by the pilot calculation
+    type(run_errors_t), intent(in) :: pilot
+    !> What the run remembers
+    type(run_record_t), intent(in) :: record
+    !> Velocity of the impactor and delaminated area at its end
+    real(wp), intent(in) :: velocity, area
+    !> What the companion has come to
+    type(companion_t), intent(in) :: companion
+    !> Step of the run
+    real(wp), intent(in) :: step
+    !> The errors
+    type(run_errors_t) :: errors
+
+    errors%source = 'companion'
+    errors%peak_force = max(pilot%peak_force, abs(record%peak_force - companion%record%peak_force)/3)
+    errors%peak_time = max(pilot%peak_time, abs(record%peak_time - companion%record%peak_time)/3, step/2)
+    errors%contact_duration = max(pilot%contact_duration, step, &
+                                  abs(record%contact_duration - companion%record%contact_duration)/3)
+    errors%deflection = max(pilot%deflection, abs(record%deflection - companion%record%deflection)/3)
+    errors%velocity = max(pilot%velocity, abs(velocity - companion%velocity)/3)
+    ! A delamination moves by whole elements: its area falls with the first power of their side.
+    errors%area = abs(area - companion%area)
+  end function errors_by_companion
+end module run_errors

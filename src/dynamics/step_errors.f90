@@ -1,0 +1,215 @@
+!> Estimate of the error that a step in time adds to the motion of plate and impactor. A method of second order moves a
+!> harmonic of frequency w by c (w h)**3 too little in a step h, so the error is c h**3 times the third derivative. This
+!> is found from the last four states by divided differences: unlike h**2 (beta - 1/6) times the change of acceleration
+!> (Zienkiewicz and Xie 1991) it stays finite for modes that no step resolves, whose acceleration alternates.
+module step_errors
+  use archives, only: archive_t
+  use kinds, only: wp
+  use models, only: model_t
+  use newmark_integrators, only: plate_integrator_t
+  use states, only: state_t
+  use stepping_parameters, only: outlook_t
+  use tan_sun_indentation, only: indentation_stiffness
+  implicit none
+  private
+  public :: step_error_t, error_weights
+
+  !> States before the present one that are remembered.
+  integer, parameter :: past = 2
+
+  !> What was before the present state, and the largest so far.
+  type :: step_error_t
+    !> How many of them there are
+    integer :: known = 0
+    !> Their times, indentations and deflections of the struck point, latest first
+    real(wp) :: time(past) = 0, indentation(past) = 0, struck(past) = 0
+    !> Their deflections of the plate, (owned points, past)
+    real(wp), allocatable :: deflection(:, :)
+    !> Share of the plate's area that belongs to each point, (owned points)
+    real(wp), allocatable :: share(:)
+    !> Largest force, contact stiffness and deflection of the struck point so far
+    real(wp) :: force = 0, stiffness = 0, largest = 0
+  contains
+    !> The plate at rest, the impactor in free flight.
+    procedure :: start
+    !> Error of a step that has been tried.
+    procedure :: estimate
+    !> Remembers a state that is about to be replaced.
+    procedure :: note
+    !> True: impactor and plate are not to meet again.
+    procedure :: impact_is_over
+    !> Saves or loads what is remembered.
+    procedure :: visit
+  end type step_error_t
+
+contains
+
+  !> The plate at rest, the impactor in free flight up to first touch.
+  subroutine start(self, model, step)
+    !> The estimate
+    class(step_error_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> A step: the spacing of the states before the first
+    real(wp), intent(in) :: step
+    real(wp), allocatable :: unit(:, :), mass(:, :)
+    real(wp) :: total
+
+    associate (owned => model%distribution%owned)
+      allocate (self%deflection(owned, past), source=0.0_wp)
+      allocate (unit, mass, source=spread(spread(0.0_wp, 1, 5), 2, size(model%distribution%points)))
+      where (model%zone == 0) unit(3, :) = 1
+      call model%inertia(unit, mass)
+      self%share = mass(3, :owned)*unit(3, :owned)
+    end associate
+    total = sum(self%share)
+    call model%communicator%sum(total)
+    self%share = self%share/total
+    if (.not. model%scene%has_impactor) return
+    self%known = past
+    self%time = -step*[1, 2]
+    self%indentation = model%scene%impactor%velocity*self%time
+  end subroutine start
+
+  !> Weights of the last four states, latest first, in the error of displacements over the last step. For
+  !> generalised-alpha c = 1/12 + 3/8 ((1 - rho)/(1 + rho))**2, for Newmark's method beta/2 - 1/24 and, in the second
+  !> difference, its damping (gamma - 1/2)/2; found from the roots of their amplification at small w h.
+  pure function error_weights(integrator, times) result(weights)
+    !> Integrator of the plate
+    type(plate_integrator_t), intent(in) :: integrator
+    !> Times of the states
+    real(wp), intent(in) :: times(:)
+    !> The weights
+    real(wp) :: weights(size(times))
+    real(wp) :: step, third, second
+    integer :: i
+
+    step = times(1) - times(2)
+    third = 1.0_wp/12 + 0.375_wp*(1 - 2*integrator%alpha_f)**2
+    second = 0
+    if (abs(integrator%alpha_m) + abs(integrator%alpha_f) <= 0) then
+      third = abs(integrator%beta/2 - 1.0_wp/24)
+      second = (integrator%gamma - 0.5_wp)/2
+    end if
+    do i = 1, size(times)
+      weights(i) = third*6*step**3/product(times(i) - pack(times, [1, 2, 3, 4] /= i))
+    end do
+    do i = 1, 3
+      weights(i) = weights(i) + second*2*step**2/product(times(i) - pack(times(:3), [1, 2, 3] /= i))
+    end do
+  end function error_weights
+
+  !> Error of a step that has been tried: of the indentation as a part of the largest force, of the deflection as a part
+  !> of the largest deflection, whichever is larger. 0 until there are four states. Collective.
+  subroutine estimate(self, model, integrator, outlook, now, trial, error)
+    !> The estimate; learns the largest force and deflection
+    class(step_error_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> Integrator of the plate
+    type(plate_integrator_t), intent(in) :: integrator
+    !> What the run is expected to show
+    type(outlook_t), intent(in) :: outlook
+    !> State at the start of the step
+    type(state_t), intent(in) :: now
+    !> State at its end
+    type(state_t), intent(in) :: trial
+    !> Its error
+    real(wp), intent(out) :: error
+    real(wp) :: weights(past + 2), square, force, deflection
+
+    error = 0
+    if (self%known < past) return
+    weights = error_weights(integrator, [trial%time, now%time, self%time])
+    square = sum(self%share*(weights(1)*trial%motion%displacement(3, :size(self%share)) &
+                             + weights(2)*now%motion%displacement(3, :size(self%share)) &
+                             + weights(3)*self%deflection(:, 1) + weights(4)*self%deflection(:, 2))**2)
+    call model%communicator%sum(square)
+    deflection = max(outlook%deflection, self%largest, abs(trial%deflection))
+    if (deflection > 0) error = max(sqrt(square), abs(dot_product(weights, [trial%deflection, now%deflection, &
+                                                                            self%struck])))/deflection
+    if (.not. model%scene%has_impactor .or. self%impact_is_over(outlook, trial)) return
+    force = max(outlook%force, self%force, trial%force)
+    if (force > 0) error = max(error, max(self%stiffness, stiffness_of(model, trial))/force* &
+                               abs(dot_product(weights, [trial%indentation%alpha, now%indentation%alpha, &
+                                                         self%indentation])))
+  end subroutine estimate
+
+  !> Stiffness of the contact at a state.
+  pure real(wp) function stiffness_of(model, state) result(stiffness)
+    type(model_t), intent(in) :: model
+    !> The state
+    type(state_t), intent(in) :: state
+
+    stiffness = indentation_stiffness(model%scene%indentation, state%indentation, state%indentation%alpha)
+  end function stiffness_of
+
+  !> True: impactor and plate are apart, he flies off, and no other contact is expected.
+  pure logical function impact_is_over(self, outlook, state) result(over)
+    !> The estimate
+    class(step_error_t), intent(in) :: self
+    !> What the run is expected to show
+    type(outlook_t), intent(in) :: outlook
+    !> The state
+    type(state_t), intent(in) :: state
+
+    over = self%force > 0 .and. .not. state%force > 0 .and. state%impactor%velocity < 0 .and. &
+           state%time > outlook%last_contact
+  end function impact_is_over
+
+  !> Remembers a state that is about to be replaced, and the largest of the one that replaces it.
+  subroutine note(self, model, now, next)
+    !> The estimate
+    class(step_error_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> The state that becomes a past one
+    type(state_t), intent(in) :: now
+    !> The state that comes next
+    type(state_t), intent(in) :: next
+
+    self%known = min(self%known + 1, past)
+    self%time = [now%time, self%time(1)]
+    self%indentation = [now%indentation%alpha, self%indentation(1)]
+    self%struck = [now%deflection, self%struck(1)]
+    self%deflection(:, 2) = self%deflection(:, 1)
+    self%deflection(:, 1) = now%motion%displacement(3, :size(self%share))
+    self%largest = max(self%largest, abs(next%deflection))
+    if (.not. model%scene%has_impactor) return
+    self%force = max(self%force, next%force)
+    self%stiffness = max(self%stiffness, stiffness_of(model, next))
+  end subroutine note
+
+  !> Saves or loads what is remembered.
+  subroutine visit(self, archive, model)
+    !> The estimate
+    class(step_error_t), intent(inout) :: self
+    !> Where to or where from
+    class(archive_t), intent(inout) :: archive
+    type(model_t), intent(in) :: model
+
+    call archive%item('step_error/known', self%known)
+    call archive%item('step_error/time_1', self%time(1))
+    call archive%item('step_error/time_2', self%time(2))
+    call archive%item('step_error/indentation_1', self%indentation(1))
+    call archive%item('step_error/indentation_2', self%indentation(2))
+    call archive%item('step_error/struck_1', self%struck(1))
+    call archive%item('step_error/struck_2', self%struck(2))
+    call archive%item('step_error/force', self%force)
+    call archive%item('step_error/stiffness', self%stiffness)
+    call archive%item('step_error/largest', self%largest)
+    call visit_deflections(self, archive, model)
+  end subroutine visit
+
+  !> Saves or loads the deflections.
+  subroutine visit_deflections(self, archive, model)
+    !> The estimate
+    class(step_error_t), intent(inout) :: self
+    !> Where to or where from
+    class(archive_t), intent(inout) :: archive
+    type(model_t), intent(in) :: model
+    real(wp), allocatable :: field(:, :)
+
+    field = transpose(self%deflection)
+    call archive%field('step_error/deflection', model%distribution%points(:model%distribution%owned), &
+                       model%mesh%points(), field)
+    self%deflection = transpose(field)
+  end subroutine visit_deflections
+end module step_errors
