@@ -44,7 +44,7 @@ contains
     !> State at the end; receives its ledger
     type(state_t), intent(inout) :: new
     type(products_t) :: products
-    real(wp) :: amplitudes(2), gain, impactor, taken, fracture, heat, damage
+    real(wp) :: amplitudes(2), gain, impactor, taken, fracture, heat, damage, lost
 
     products = step_products(model, old, energy, new)
     amplitudes = model%scene%pressure%amplitude([old%time, new%time])

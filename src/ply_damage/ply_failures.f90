@@ -126,7 +126,8 @@ contains
     !> Energy of the whole run so far
     real(wp), intent(in) :: energy
 
-    self%leapt = allocated(self%bands) .and. .not. self%lagging .and. abs(created) > max(path_tolerance*dissipated, noticed*energy)
+    self%leapt = allocated(self%bands) .and. .not. self%lagging .and. &
+                 abs(created) > max(path_tolerance*dissipated, noticed*energy)
   end subroutine judge
 
   !> Modes that have occurred in a ply; one that softens has failed where it bears nothing any more.

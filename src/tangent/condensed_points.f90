@@ -69,8 +69,9 @@ module condensed_points
     real(wp), allocatable :: stiffness(:, :)
     !> What the points hold beyond what the operator takes for it, less the force from outside, (unknowns)
     real(wp), allocatable :: forces(:)
-    !> Symmetric part of the latest iteration's tangent, factored, and all of it
+    !> Symmetric part of the latest iteration's tangent, factored
     type(positive_factor_t), private :: factor
+    !> All of it, factored
     type(dense_factor_t), private :: whole
     !> True: modes of different toughness grow, and the tangent is not symmetric
     logical, private :: skew = .false.
