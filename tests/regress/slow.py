@@ -56,7 +56,8 @@ def check_restart(implam, folder):
     shutil.rmtree(copy, ignore_errors=True)
     shutil.copytree(whole.parent, copy)
     run([implam, "restart", checkpoint_of(copy)], folder=copy)
-    require(history_of(copy).read_bytes() == whole.read_bytes(), "The history goes on otherwise than without a restart.")
+    require(history_of(copy).read_bytes() == whole.read_bytes(),
+            "The history goes on otherwise than without a restart.")
 
 
 def trial(kind, implam, folder):
