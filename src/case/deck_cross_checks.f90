@@ -194,7 +194,7 @@ contains
           are_clear(s, problems, indentation_group, key_k) .and. are_clear(s, problems, impactor_group, key_radius)) &
         call tell(s, problems, impactor_group, key_radius, &
                   'is missing; give it, or the contact stiffness &indentation k.')
-      if (deck%has_static) return
+      if (deck%has_static .or. deck%impactor%travel > 0) return
       if (deck%impactor%velocity <= 0 .and. deck%impactor%gravity <= 0 .and. .not. deck%has_pressure .and. &
           .not. problems%concern(pressure_group) .and. &
           are_clear(s, problems, impactor_group, keys_of_motion(s)//' '//key_gravity)) &

@@ -96,7 +96,8 @@ contains
     type(problems_t), intent(inout) :: problems
 
     if (.not. settings%has_group(impactor_group) .or. settings%is_given(impactor_group, key_travel)) return
-    if (.not. settings%is_given(impactor_group, key_mass) .and. are_clear(settings, problems, impactor_group, key_mass)) &
+    if (.not. settings%is_given(impactor_group, key_mass) .and. &
+        are_clear(settings, problems, impactor_group, key_mass)) &
       call tell(settings, problems, impactor_group, key_mass, 'is missing; allowed: 1 real value > 0.')
   end subroutine require_mass
 

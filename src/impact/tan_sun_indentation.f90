@@ -14,8 +14,8 @@ module tan_sun_indentation
   use kinds, only: wp
   implicit none
   private
-  public :: indentation_t, touch_indentation, indentation_of, indentation_force, indentation_stiffness, mean_indentation_force, &
-            indentation_work, stiffening, commit_indentation
+  public :: indentation_t, touch_indentation, indentation_of, indentation_force, indentation_stiffness, &
+            mean_indentation_force, indentation_work, stiffening, commit_indentation
 
   !> What the contact remembers; changes only when a step is accepted.
   type :: indentation_t
