@@ -75,8 +75,8 @@ contains
       end if
       if (starter_aside(deck%delaminations(i), deck%plate%symmetry) .and. &
           are_clear(deck%settings, problems, delamination_group, key_starter_at, deck%delaminations(i)%group)) &
-        call tell(deck%settings, problems, delamination_group, key_starter_at, 'the starter lies beside the lines of '// &
-                  'symmetry = '//name//'; use ''none''.', deck%delaminations(i)%group)
+        call tell(deck%settings, problems, delamination_group, key_starter_at, 'the starter lies beside the lines '// &
+                  'of symmetry = '//name//'; use ''none''.', deck%delaminations(i)%group)
     end do
   end subroutine check_starters
 

@@ -252,11 +252,10 @@ contains
       call check_strengths(settings, delaminations(i), place, problems)
       call remark_idle_keys(settings, delaminations(i), place, problems)
       call check_strip(settings, delaminations(i), place, problems)
-      associate (d => delaminations(i))
-        if (any(d%starter + 2*abs(d%starter_at) >= d%zone) .and. d%starter > 0 .and. &
-            are_clear(settings, problems, group, key_zone//' '//key_starter//' '//key_starter_at, place)) &
-          call tell(settings, problems, group, '', 'the starter must be smaller than the zone and lie within it.', place)
-      end associate
+      if (delaminations(i)%starter > 0 .and. &
+          any(delaminations(i)%starter + 2*abs(delaminations(i)%starter_at) >= delaminations(i)%zone) .and. &
+          are_clear(settings, problems, group, key_zone//' '//key_starter//' '//key_starter_at, place)) &
+        call tell(settings, problems, group, '', 'the starter must be smaller than the zone and lie within it.', place)
     end do
     do i = 2, size(delaminations)
       if (delaminations(i)%below_ply <= delaminations(i - 1)%below_ply .and. &
@@ -376,11 +375,7 @@ contains
       else
         call idle('strength_opening strength_shear stiffness', 'without law = ''cohesive''')
       end if
-      if (settings%is_given(group, key_strip, place)) then
-        call idle('starter_shape '//key_starter_at, 'with '//key_strip)
-      else if (.not. d%starter > 0) then
-        call idle('starter_shape '//key_starter_at, 'without a starter')
-      end if
+      if (.not. d%starter > 0) call idle('starter_shape '//key_starter_at, 'without '//key_starter)
       if (d%toughness > 0) call idle('eta', 'as G_c is given')
       if (d%law == law_cohesive) return
       if (d%tie /= tie_penalty) call idle('penalty', 'without tie = ''penalty''')

@@ -123,8 +123,8 @@ contains
     end function cell_energy
   end subroutine release_cells
 
-  !> Which cells a smooth front meets first as it moves on: those whose middles lie least far ahead of it among the cells
-  !> within reach that it could enter. A rate averaged over that reach cannot tell them apart.
+  !> Which cells a smooth front meets first as it moves on: those whose middles lie least far ahead of it among
+  !> the cells within reach that it could enter. A rate averaged over that reach cannot tell them apart.
   pure function met_first(front, open, reach) result(first)
     !> The front
     type(front_energy_release_t), intent(in) :: front

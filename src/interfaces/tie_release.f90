@@ -146,8 +146,8 @@ contains
   end subroutine act
 
   !> Books the work against the forces in a step: as the step had it, the force at its end acting throughout, and as
-  !> what is set free has it, with the mean of the forces at its start and end. Of ties released in this step the difference
-  !> is that of `first_opening`.
+  !> what is set free has it, with the mean of the forces at its start and end. Of ties released in this step the
+  !> difference is that of `first_opening`.
   subroutine book(self, model, old, change, taken)
     !> The ties at the end of the step
     class(tie_release_t), intent(inout) :: self
