@@ -4,9 +4,10 @@
 !> those that are now behind the front: a force at the distance d ahead acts on the jump at b - d behind. Closing that
 !> again takes the work of forces that grow in proportion to the closing, so G b = 1/2 sum of F.d for each unit of
 !> length along the front. The jump is a parabola through the smooth line of the front, where it vanishes, fitted
-!> to the nodes behind it. Both are moments of forces and jumps at the nodes, which can be averaged along the front before they are
-!> multiplied. On a straight front with equal cells, b one of them, this is the closure of nine-node elements: the force
-!> on the front with the jump one cell behind, and the force half a cell ahead with the jump half a cell behind.
+!> to the nodes behind it. Both are moments of forces and jumps at the nodes, which can be averaged along the front
+!> before they are multiplied. On a straight front with equal cells, b one of them, this is the closure of nine-node
+!> elements: the force on the front with the jump one cell behind, and the force half a cell ahead with the jump half a
+!> cell behind.
 module virtual_crack_closure
   use dense_systems, only: solve_dense
   use kinds, only: wp

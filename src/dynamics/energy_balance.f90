@@ -9,7 +9,7 @@ module energy_balance
   use states, only: state_t
   implicit none
   private
-  public :: book_step
+  public :: book_step, book_failures
 
   !> Products of the step's fields that the energies are made of, summed over the modelled part.
   type :: products_t
@@ -78,6 +78,30 @@ contains
     new%ledger%algorithmic = new%ledger%algorithmic - (force*(new%patch_mean - old%patch_mean) &
       + impactor - old%ledger%impactor + new%ledger%indentation - old%ledger%indentation)
   end subroutine book_step
+
+  !> Books the strain energy that failed plies have lost, and finds the forces that are left. What plies that soften
+  !> lose beyond their fracture energy, as they follow a step late, is the integrator's.
+  subroutine book_failures(model, now, trial)
+    type(model_t), intent(in) :: model
+    !> The state before the step
+    type(state_t), intent(in) :: now
+    !> The state after it
+    type(state_t), intent(inout) :: trial
+    real(wp) :: energy, lost, dissipated
+
+    call trial%find_internal(model, now, energy)
+    call model%communicator%sum(energy)
+    energy = energy*model%mesh%multiplicity
+    lost = trial%ledger%strain - energy
+    dissipated = lost
+    if (allocated(trial%plies%bands)) then
+      call trial%plies%book(model, dissipated)
+      call trial%plies%bands%commit()
+    end if
+    trial%ledger%ply_damage = trial%ledger%ply_damage + dissipated
+    trial%ledger%algorithmic = trial%ledger%algorithmic + lost - dissipated
+    trial%ledger%strain = energy
+  end subroutine book_failures
 
   !> Energy that the plate's integrator adds to a linear plate in a step: the Newmark formulas and the
   !> weighted equation of motion combined. Zero for alpha_m = alpha_f = gamma = 1/2, beta = 1/4.

@@ -18,6 +18,7 @@ module time_stepping
   use dynamic_steps, only: dynamic_step_t, new_dynamic_step
   use static_steps, only: static_step_t, new_static_step
   use dissipation_steps, only: dissipation_step_t, new_dissipation_step
+  use energy_balance, only: book_failures
   use struck_stresses, only: struck_stress
   use front_growth, only: find_release_ratio
   use growth_in_steps, only: grow_in_step, grows_by_steps
@@ -366,30 +367,6 @@ contains
         call self%controller%heed_fronts(self%stepping, self%now%interfaces%growth_ratio, extended)
     end if
   end subroutine accept
-
-  !> Books the strain energy that failed plies have lost, and finds the forces that are left. What plies that soften lose
-  !> beyond their fracture energy, as they follow a step late, is the integrator's.
-  subroutine book_failures(model, now, trial)
-    type(model_t), intent(in) :: model
-    !> The state before the step
-    type(state_t), intent(in) :: now
-    !> The state after it
-    type(state_t), intent(inout) :: trial
-    real(wp) :: energy, lost, dissipated
-
-    call trial%find_internal(model, now, energy)
-    call model%communicator%sum(energy)
-    energy = energy*model%mesh%multiplicity
-    lost = trial%ledger%strain - energy
-    dissipated = lost
-    if (allocated(trial%plies%bands)) then
-      call trial%plies%book(model, dissipated)
-      call trial%plies%bands%commit()
-    end if
-    trial%ledger%ply_damage = trial%ledger%ply_damage + dissipated
-    trial%ledger%algorithmic = trial%ledger%algorithmic + lost - dissipated
-    trial%ledger%strain = energy
-  end subroutine book_failures
 
   !> Saves or loads all that evolves.
   subroutine visit(self, archive, model, error)
