@@ -9,6 +9,7 @@ module programs
   use launchers, only: launched
   use petsc_session, only: start_petsc, finish_petsc
   use linear_solver_deck, only: check_ranks
+  use case_deck, only: case_group, key_name
   use deck_symmetries, only: symmetry_sentence
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
@@ -340,7 +341,7 @@ contains
     call read_deck_text(archive%provenance%deck, path, deck, problems)
     ! A deck without a name has that of its file, which isn't the checkpoint's.
     deck%name = archive%provenance%case_name
-    call deck%settings%derive('case', 'name', deck%name, .true.)
+    call deck%settings%derive(case_group, key_name, deck%name, .true.)
     call archive%close(error)
     deck%output%directory = '.'
     slash = index(path, '/', back=.true.)

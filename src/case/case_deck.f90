@@ -8,8 +8,9 @@ module case_deck
   private
   public :: fill_case, fill_claims, has_accuracy
 
-  !> Name of the group.
-  character(len=*), parameter, public :: case_group = 'case', key_accuracy = 'accuracy'
+  !> Names of the group and of keys.
+  character(len=*), parameter, public :: case_group = 'case', key_name = 'name', &
+                                         key_accuracy = 'accuracy'
   character(len=*), parameter :: group = case_group
   !> Row of the group.
   character(len=group_row_length), parameter, public :: case_group_row = &

@@ -20,6 +20,8 @@ OTHERS = (
     ("app/simulations.f90", "history fields", "items of a checkpoint, which must stay readable"),
     ("app/simulations.f90", "steps", "a timer"),
     ("app/summary_file.f90", "at force", "a name in NAME_summary.json"),
+    ("app/summary_file.f90", "case", "a name in NAME_summary.json"),
+    ("app/summary_file.f90", "title", "a name in NAME_summary.json"),
     ("app/summary_file.f90", "energy", "a name in NAME_summary.json"),
     ("base/text.f90", "e", "the exponent of a number"),
     ("deck/deck_scanner.f90", "end", "&end, which closes a group in old decks"),
