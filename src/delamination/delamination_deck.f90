@@ -140,8 +140,15 @@ contains
       d%penalty_stiffness = s%real_of(group, 'penalty', place)
       d%contact_exponent = s%real_of(group, 'contact_exponent', place)
       d%smoothing = s%real_of(group, 'smoothing', place)
+      d%energy_release = code_of(s%text_of(group, 'energy_release', place), 'two_state vcct', &
+                                 [release_two_state, release_vcct])
+      d%growth = code_of(s%text_of(group, 'growth', place), 'equilibrium one_per_step', &
+                         [growth_equilibrium, growth_one_per_step])
+      d%tie = code_of(s%text_of(group, 'tie', place), 'eliminate penalty', [tie_eliminate, tie_penalty])
+      d%contact = code_of(s%text_of(group, 'contact', place), 'augmented_lagrangian continuous_penalty none', &
+                          [contact_augmented_lagrangian, contact_continuous_penalty, contact_none])
+      d%unloading = code_of(s%text_of(group, 'unloading', place), 'contact glued', [unloading_contact, unloading_glued])
     end associate
-    call fill_choices(settings, place, delamination)
   end subroutine fill_delamination
 
   !> The law of one interface, cohesive unless a starter is given, and its strengths.
@@ -214,27 +221,6 @@ contains
     strength = of_plies
     if (settings%is_given(group, key, place)) strength = settings%real_of(group, key, place)
   end subroutine fill_strength
-
-  !> The choices of one interface.
-  subroutine fill_choices(settings, place, delamination)
-    !> Keys in effect
-    type(settings_t), intent(in) :: settings
-    !> Which of the groups
-    integer, intent(in) :: place
-    !> Receives them
-    type(delamination_t), intent(inout) :: delamination
-
-    associate (s => settings, d => delamination)
-      d%energy_release = code_of(s%text_of(group, 'energy_release', place), 'two_state vcct', &
-                                 [release_two_state, release_vcct])
-      d%growth = code_of(s%text_of(group, 'growth', place), 'equilibrium one_per_step', &
-                         [growth_equilibrium, growth_one_per_step])
-      d%tie = code_of(s%text_of(group, 'tie', place), 'eliminate penalty', [tie_eliminate, tie_penalty])
-      d%contact = code_of(s%text_of(group, 'contact', place), 'augmented_lagrangian continuous_penalty none', &
-                          [contact_augmented_lagrangian, contact_continuous_penalty, contact_none])
-      d%unloading = code_of(s%text_of(group, 'unloading', place), 'contact glued', [unloading_contact, unloading_glued])
-    end associate
-  end subroutine fill_choices
 
   !> Each interface by itself, and their order.
   subroutine check_delaminations(settings, delaminations, problems)
@@ -329,13 +315,19 @@ contains
     call check_law(settings, delamination, place, problems)
     ! Without a place there are no plies whose strengths it might have.
     if (delamination%below_ply < 1) return
-    if (.not. delamination%strength_opening > 0 .and. &
-        are_clear(settings, problems, group, 'strength_opening', place)) &
-      call tell(settings, problems, group, 'strength_opening', 'is missing; a cohesive law needs it, or YT of the '// &
-                'materials.', place)
-    if (.not. delamination%strength_shear > 0 .and. are_clear(settings, problems, group, 'strength_shear', place)) &
-      call tell(settings, problems, group, 'strength_shear', 'is missing; a cohesive law needs it, or S12 of the '// &
-                'materials.', place)
+    if (.not. delamination%strength_opening > 0) call want('strength_opening', 'YT')
+    if (.not. delamination%strength_shear > 0) call want('strength_shear', 'S12')
+
+  contains
+
+    !> Tells of a strength that is missing, unless its key has a fault already.
+    subroutine want(key, other)
+      !> The key, and the key of the material that serves as well
+      character(len=*), intent(in) :: key, other
+
+      if (are_clear(settings, problems, group, key, place)) call tell(settings, problems, group, key, &
+        'is missing; a cohesive law needs it, or '//other//' of the materials.', place)
+    end subroutine want
   end subroutine check_strengths
 
   !> A stiffness that leaves the fall of the curve gentle.
@@ -373,11 +365,9 @@ contains
     type(problems_t), intent(inout) :: problems
 
     associate (d => delamination)
-      if (d%law == law_cohesive) then
-        call idle(keys_of_fronts, 'with law = ''cohesive''')
-      else
+      if (d%law == law_cohesive) call idle(keys_of_fronts, 'with law = ''cohesive''')
+      if (d%law /= law_cohesive) &
         call idle('strength_opening strength_shear stiffness friction', 'without law = ''cohesive''')
-      end if
       if (d%contact == contact_none) call idle('friction', 'as faces pass through each other')
       if (.not. d%starter > 0) call idle('starter_shape '//key_starter_at, 'without '//key_starter)
       if (d%toughness > 0) call idle('eta', 'as G_c is given')

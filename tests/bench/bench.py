@@ -195,26 +195,6 @@ def absent_physics(program, arguments):
               f'{statistics.median(new/before for before, new in pairs):.3f} | {counts} |', flush=True)
 
 
-def spread(program, arguments):
-    """Peanut-shaped delamination of input/peanut.nml on finer meshes and with halved steps."""
-    print('| cell, mm | step, us | unknowns | first growth, N | peak force, N | area, mm^2 | along x across, mm '
-          '| at x = 0, mm | cracks | fibre failures | processor, s |')
-    print('|---|---|---|---|---|---|---|---|---|---|---|')
-    runs = {}
-    for side in arguments.cell:
-        runs[side, 1] = Peanut(program, side, 1, arguments.velocity)
-    for parts in arguments.parts:
-        runs[arguments.halved, parts] = Peanut(program, arguments.halved, parts, arguments.velocity)
-    finest = sorted(arguments.cell)[:2]
-    pairs = [('finest two meshes', runs[finest[1], 1], runs[finest[0], 1])] if len(finest) > 1 else []
-    if (arguments.halved, 1) in runs:
-        pairs += [(f'step over {parts}', runs[arguments.halved, 1], runs[arguments.halved, parts])
-                  for parts in arguments.parts]
-    for name, rough, fine in pairs:
-        print(f'{name}: first growth {100*(fine.growth/rough.growth - 1):+.1f} %, peak force '
-              f'{100*(fine.peak/rough.peak - 1):+.1f} %, area {100*(fine.area/rough.area - 1):+.1f} %')
-
-
 def run_deck(program, deck, folder):
     """Runs a deck given as text into a folder; seconds of the processor."""
     folder.joinpath('deck.nml').write_text(deck)
@@ -235,7 +215,7 @@ def history(folder):
 
 
 def fronts(program, arguments):
-    """Forces at which round starters grow on several meshes over the closed form, as input/reference/threshold_1mm.nml."""
+    """Forces at which round starters grow on several meshes over the closed form: threshold_1mm.nml."""
     sys.path.insert(0, str(pathlib.Path(__file__).parents[1]/'regress'))
     from front_threshold import growth_ratios
     from solver_runs import change_deck
@@ -312,47 +292,6 @@ def one_deck(program, arguments):
               f'{last["refactorisations"]:.0f} | {seconds:.1f} |', flush=True)
 
 
-class Peanut:
-    """input/peanut.nml on a mesh of its own; prints a row of the table."""
-
-    def __init__(self, program, side, finer_steps, velocity=None):
-        deck = pathlib.Path(__file__).parents[2].joinpath('input/peanut.nml').read_text()
-        core = [float(n) for n in re.search(r'core=(\S+), (\S+)', deck).groups()]
-        cell, step = (float(re.search(key + r'=([\d.e+-]+)', deck)[1]) for key in ('cell', 'step'))
-        counts = [int(n) for n in re.search(r'elements=(\d+), (\d+)', deck).groups()]
-        # The rest of the plate gets finer in proportion.
-        counts = [round(extent/2/(1e-3*side)) + round((count - extent/2/cell)*cell/(1e-3*side))
-                  for extent, count in zip(core, counts, strict=True)]
-        deck = re.sub(r'elements=\d+, \d+', 'elements={}, {}'.format(*counts), deck)
-        deck = deck.replace(re.search(r'cell=\S+', deck)[0], f'cell={1e-3*side}')
-        deck = deck.replace(re.search(r'step=\S+', deck)[0], f'step={step/finer_steps}')
-        if velocity:
-            deck = re.sub(r'velocity=\S+', f'velocity={velocity}', deck)
-        with tempfile.TemporaryDirectory() as folder:
-            seconds = run_deck(program, deck, pathlib.Path(folder))
-            self.read(pathlib.Path(folder))
-        print(f'| {side:g} | {1e6*step/finer_steps:g} | {self.unknowns} | {self.growth:.0f} | {self.peak:.0f} | '
-              f'{self.area:.0f} | {self.along:.1f} x {self.across:.1f} | {self.waist:.1f} | {self.cracks} | '
-              f'{self.fibres} | {seconds:.0f} |', flush=True)
-
-    def read(self, folder):
-        """What the table shows."""
-        # Elsewhere Python's standard library is enough.
-        sys.path.insert(0, str(pathlib.Path(__file__).parents[2]/'postproc'))
-        from implam_post.fields import extents, read_fields
-        self.unknowns = int(re.search(r'(\d+) unknowns', folder.joinpath('peanut.log').read_text())[1])
-        rows = history(folder)
-        self.peak = max(row['force'] for row in rows)
-        self.growth = growth_force(rows)
-        self.area = 1e6*rows[-1]['delaminated_area']
-        self.cracks, self.fibres = (int(rows[-1][name]) for name in ('matrix_cracks', 'fibre_failures'))
-        fields = read_fields(folder/'peanut.h5')
-        cells = fields.whole(fields.snapshots[-1].delaminated_cells(10))
-        self.along, self.across = (1e3*extent for extent in extents(cells))
-        near = min(abs(cells[:, :, 0]).max(axis=1))
-        self.waist = 1e3*extents(cells[abs(cells[:, :, 0]).max(axis=1) < 1.001*near])[1]
-
-
 def main():
     """Reads the command line."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -381,12 +320,6 @@ def main():
     part.add_argument('--repeat', type=int, default=10)
     part.add_argument('--instructions', action='store_true', help='count them by valgrind instead of taking times')
     part.set_defaults(act=absent_physics)
-    part = parts.add_parser('mesh-study', help=spread.__doc__)
-    part.add_argument('--cell', type=float, nargs='+', default=[1.2, 0.8, 0.6, 0.48], help='mm; a divisor of 2.4')
-    part.add_argument('--halved', type=float, default=0.8, help='the mesh that is also run with shorter steps')
-    part.add_argument('--parts', type=int, nargs='*', default=[2, 4], help='into which its steps are divided')
-    part.add_argument('--velocity', type=float, help="m/s, in place of the deck's")
-    part.set_defaults(act=spread)
     part = parts.add_parser('growth', help=growth.__doc__)
     part.add_argument('--step', type=float, nargs='*', default=[16, 8, 4, 2, 1], help='us')
     part.set_defaults(act=growth)
