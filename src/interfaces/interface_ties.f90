@@ -51,10 +51,8 @@ contains
     allocate (self%regions(size(model%mesh%zones)))
     allocate (self%fracture(size(model%mesh%zones)), source=0.0_wp)
     do zone = 1, size(self%regions)
-      associate (starter => model%scene%delaminations(zone))
-        self%regions(zone) = create_region(model%mesh, zone, starter%starter, starter%starter_strip, &
-                                           starter%starter_round, starter%starter_at)
-      end associate
+      self%regions(zone) = create_region(model%mesh, zone, model%scene%delaminations(zone)%starter, &
+                                           model%scene%delaminations(zone)%starter_strip)
     end do
     if (.not. model%map%layered) return
     allocate (self%free(size(model%zone)), source=.false.)
