@@ -165,7 +165,7 @@ plate_shown.SetScalarBarVisibility(view, True)
         script += f'''ball_shown = Show(opened("{base.name}_impactor"), view)
 ball_shown.DiffuseColor = [0.7, 0.7, 0.7]
 '''
-    return script + f'''view.CameraPosition = [{-1.2 * length!r}, {-1.6 * length!r}, {-0.9 * length!r}]
+    return script + f'''view.CameraPosition = [{1.2 * length!r}, {1.6 * length!r}, {-0.9 * length!r}]
 view.CameraFocalPoint = [0.0, 0.0, {0.05 * length!r}]
 view.CameraViewUp = [0.0, 0.0, -1.0]
 animation = GetAnimationScene()
