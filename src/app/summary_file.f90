@@ -102,7 +102,7 @@ contains
     !> The errors
     type(run_errors_t), intent(in) :: errors
 
-    call json%open_object('error_estimate')
+    call json%open_object('estimated_errors')
     call json%put('source', trim(errors%source))
     call put_known('peak_force', errors%peak_force)
     call put_known('peak_force_at', errors%peak_time)

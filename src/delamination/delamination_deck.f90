@@ -307,18 +307,18 @@ contains
     call check_law(settings, delamination, place, problems)
     ! Without a place there are no plies whose strengths it might have.
     if (delamination%below_ply < 1) return
-    if (.not. delamination%strength_opening > 0) call want('strength_opening', 'YT')
-    if (.not. delamination%strength_shear > 0) call want('strength_shear', 'S12')
+    if (.not. delamination%strength_opening > 0) call want('strength_opening', 'or YT of the materials.')
+    if (.not. delamination%strength_shear > 0) call want('strength_shear', 'or S12 of the materials.')
 
   contains
 
     !> Tells of a strength that is missing, unless its key has a fault already.
     subroutine want(key, other)
-      !> The key, and the key of the material that serves as well
+      !> The key, and what serves as well
       character(len=*), intent(in) :: key, other
 
       if (are_clear(settings, problems, group, key, place)) call tell(settings, problems, group, key, &
-        'is missing; a cohesive law needs it, or '//other//' of the materials.', place)
+        'is missing; a cohesive law needs it, '//other, place)
     end subroutine want
   end subroutine check_strengths
 

@@ -116,7 +116,7 @@ def over_estimates(summary, answered):
     times, forces, speeds, _ = answered
     exact = {'peak_force': forces.max(), 'peak_force_at': times[forces.argmax()],
              'contact_duration': np.count_nonzero(forces > 0)*times[1], 'impactor_velocity': speeds[-1]}
-    estimate = summary['error_estimate']
+    estimate = summary['estimated_errors']
     return [abs(summary[name] - value)/estimate[name] if estimate[name] else math.inf
             for name, value in exact.items()]
 
