@@ -263,7 +263,8 @@ contains
     pressure = 0
     if (.not. allocated(self%cohesive)) return
     do i = 1, model%distribution%owned
-      if (self%cohesive(i) .and. holds_closed(model, model%zone(i))) &
+      if (.not. self%cohesive(i)) cycle
+      if (holds_closed(model, model%zone(i))) &
         pressure(i) = max(0.0_wp, -model%cohesive_laws(model%zone(i))%stiffness_opening*displacement(3, i))
     end do
   end function pressure
