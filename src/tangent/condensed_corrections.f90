@@ -12,8 +12,8 @@ module condensed_corrections
   private
   public :: condensed_correction_t, new_condensed_correction
 
-  !> Force left at a point over that at its strength from which it becomes an unknown. crossply_cohesive_2mm.nml takes one
-  !> iteration a step with it; a tenth of it, or ten times it, dissipates the same area to 4e-9.
+  !> Force left at a point over that at its strength from which it becomes an unknown. With it
+  !> crossply_cohesive_2mm.nml takes one iteration a step; ten times or a tenth of it dissipates the same area to 4e-9.
   real(wp), parameter :: noticed = 1.0e-4_wp
   !> Unknowns at most, and numbers in the operator's answers to forces on them.
   integer, parameter :: most_unknowns = 2000
