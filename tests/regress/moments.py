@@ -18,7 +18,7 @@ from pathlib import Path
 
 from released_cells import damage_of
 from restart import ranks_of, require_close, require_same, wait_until
-from restart_growth import GROWING, SOFTENING
+from restart_growth import GROWING, SOFTENING, rows_written
 from solver_runs import EXIT_DONE, EXIT_STOPPED, exit_code_of, history_of, require, run, run_deck, write_deck
 
 HERE = Path(__file__).resolve().parent
@@ -42,9 +42,7 @@ class Scene:
         self.implam, self.folder, self.name, self.launcher = implam, folder / name, name, launcher
         source, settings = SCENES[name]
         self.settings = source, [*settings, "solver%tolerance=1e-9"]
-        begun = time.monotonic()
         self.reference = run_deck(implam, write_deck(self.folder / "alone", *self.settings), launcher)
-        self.seconds = time.monotonic() - begun
         self.damage = damage_of(self.reference)
 
     def fresh(self):
@@ -116,6 +114,13 @@ def wait_for_writing(deck, process, times):
                 time.sleep(0.0005)
 
 
+def wait_for_rows(deck, process, more):
+    """Wait until the run has written so many rows more, however slow the machine; the end of the run ends it too."""
+    wanted = rows_written(deck.parent) + more
+    while rows_written(deck.parent) < wanted and process.poll() is None:
+        time.sleep(0.002)
+
+
 def kill_once(scene, deck, moments, writing):
     """Kill a run at a random moment; return whether it ran still, whether a checkpoint was being written, and whether
     the run has ended all the same."""
@@ -123,8 +128,11 @@ def kill_once(scene, deck, moments, writing):
     if writing:
         wait_for_writing(deck, process, moments.randrange(1, 6))
         time.sleep(moments.uniform(0, 0.004))
+    elif moments.random() < 0.25:
+        time.sleep(moments.uniform(0, 0.5))  # while the run is set up or the checkpoint read
     else:
-        time.sleep(moments.uniform(0, 1.2 * scene.seconds))
+        wait_for_rows(deck, process, moments.randrange(1, 9))
+        time.sleep(moments.uniform(0, 0.03))
     running = session_of(process)
     victims = moments.choice([running, [process.pid], scene.ranks(process)[:1]])
     send(running, signal.SIGSTOP)  # so that what is seen is what is left
@@ -162,11 +170,12 @@ def check_kills(implam, folder, count, launcher):
               f"{'to 1e-9' if launched else 'the same to the last bit'}, no file left over", flush=True)
 
 
-def told(scene, deck, target, stop, times, delay):
+def told(scene, deck, target, stop, times, rows):
     """Tell a run to stop; return the exit code."""
     process = scene.start(deck)
     wait_until(lambda: list(deck.parent.glob("*.log")), process)
-    time.sleep(delay)
+    if rows:
+        wait_for_rows(deck, process, rows)
     chosen = {"mpirun": [process.pid], "one rank": scene.ranks(process)[:1]}.get(target) or scene.ranks(process)
     for _ in range(times):
         send(chosen, stop)
@@ -185,7 +194,7 @@ def check_signals(implam, folder, count, launcher):
                 checkpoints = 0
                 for _ in range(count):
                     deck = scene.fresh()
-                    code = told(scene, deck, target, stop, times, moments.uniform(0, 0.3 * scene.seconds))
+                    code = told(scene, deck, target, stop, times, moments.randrange(12))
                     saved = bool(list(deck.parent.glob("*_restart.h5")))
                     what = f"{stop.name} {'twice' if times == 2 else 'once'} to {target}"
                     if target == "mpirun" and stop != signal.SIGUSR1:
