@@ -36,7 +36,8 @@ def _check_decks(sweep: Sweep, cases: Sequence[Case], jobs: int) -> None:
     if faulty:
         more = f" (the first {_SHOWN} are told)" if len(faulty) > _SHOWN else ""
         raise DeckError(f"{len(faulty)} of {len(sweep.plan.cases)} decks are faulty{more}; nothing was run.")
-    warnings = Counter(re.sub(r"^.*?: warning: ", "", line) for _, said in verdicts for line in set(said))
+    told = (re.match(r".*?: warning: (.*)", line) for _, said in verdicts for line in set(said))
+    warnings = Counter(found[1] for found in told if found)
     for warning, number in warnings.items():
         print(f"warning, {number} of {len(cases)} decks: {warning}", file=sys.stderr)
 

@@ -77,6 +77,19 @@ class SweepTest(unittest.TestCase):
             self.assertTrue(float(row.pop("cpu_time") or "nan") > 0 or row["exit_code"] == "", row)
         return rows
 
+    def test_checks_are_told(self) -> None:
+        """Warnings of the check are told once for all decks, and nothing else that it prints."""
+        code, text = run_quietly(sweep.main, *self.arguments("""
+            deck = "ply_damage.nml"
+            [grid]
+            "impactor.mass" = [0.5, 0.6]
+            "output.history_every" = [1e-7]
+            """, "--array"))
+        self.assertEqual(code, 0, text)
+        told = [line for line in text.splitlines() if line.startswith("warning, ")]
+        self.assertEqual(len(told), 1, text)
+        self.assertTrue(told[0].startswith("warning, 2 of 2 decks: "), text)
+
     def test_table_and_plots(self) -> None:
         """Figures are those of the histories, in CSV and HDF5; the energy is the one swept; nothing is run twice."""
         arguments = self.arguments("""

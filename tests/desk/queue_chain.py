@@ -9,7 +9,6 @@ import shutil
 import signal
 import sys
 import tempfile
-import time
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
@@ -20,29 +19,22 @@ from solver_runs import change_deck, require, run
 SKIPPED = 77
 PARTS = 4
 DECK = HERE.parents[1] / "input/small/damage.nml"
-# Slurm looks at limits every half a minute. So that seconds of computing fill some minutes, the program is stopped most
-# of the time in all parts but the last; what it computes is the same.
-FILLED, AWAKE = 300, 0.02  # seconds
 
 
-def undisturbed(implam, folder):
-    """Run the deck once as it is; return its history and the seconds it has taken, on a machine as busy as it is."""
-    begun = time.monotonic()
-    run([implam, folder / "deck.nml", "--output", folder / "whole"])
-    return (folder / "whole/deck_history.csv").read_bytes(), time.monotonic() - begun
+def write_program(path, code):
+    """Write what is called in the program's place."""
+    path.write_text(f"#!/bin/bash\n{code}\n", encoding="utf-8")
+    path.chmod(0o755)
+    return str(path)
 
 
-def chain(implam, slurm, folder, expected, taken):
-    """A job of a minute's limit that comes again until the run has ended."""
-    slow = folder / "slow"
-    asleep = FILLED * AWAKE / taken
-    slow.write_text(f"""#!/bin/bash
+def chain(implam, slurm, folder, expected):
+    """A job of a minute's limit that comes again until the run has ended; all parts but the last are held."""
+    held = write_program(folder / "held", f"""
 if ((${{SLURM_RESTART_COUNT:-0}} >= {PARTS - 1})); then exec {implam} "$@"; fi
-exec {HERE}/slow.sh {AWAKE} {asleep} {implam} "$@"
-""", encoding="utf-8")
-    slow.chmod(0o755)
+exec {HERE}/held.sh {folder}/results/deck_restart.h5 {implam} "$@" """)
     run([implam, "queue", "slurm", "deck.nml", "--chain", "--time", "0:01:00"], folder=folder)
-    number = slurm.submit(folder, "deck.slurm", "--signal=B:USR1@50", IMPLAM=str(slow))
+    number = slurm.submit(folder, "deck.slurm", "--signal=B:USR1@50", IMPLAM=held)
     job = slurm.end_of(number, 800)
     told = (folder / f"deck.{number}.txt").read_text(encoding="utf-8")
     print(f"chain: {job['JobState']}, requeued {job['Restarts']} times")
@@ -56,6 +48,7 @@ SWEEP = """deck = "swept.nml"
 [grid]
 "impactor.velocity" = [1.5, 2.0, 2.5, 3.0]
 "time.end" = [2e-3]
+"output.checkpoint_every" = [0.5e-3]
 """
 
 
@@ -75,7 +68,13 @@ def array(implam, slurm, folder):
     (folder / "sweep.toml").write_text(SWEEP, encoding="utf-8")
     sweep = [sys.executable, "-m", "implam_post.sweep", "sweep.toml"]
     run([*sweep, "--output", "plain", "--program", implam], folder=folder)
-    run([*sweep, "--output", "queued", "--program", f"{HERE}/slow.sh 0.05 0.1 {implam}", "--array"], folder=folder)
+    # The first task is held until it is told; the last word it is called with is the folder of its results.
+    held = write_program(folder / "held", f"""
+if [[ ${{SLURM_ARRAY_TASK_ID:-}} != 1 || ${{SLURM_RESTART_COUNT:-0}} != 0 ]]; then
+  exec {implam} "$@"
+fi
+exec {HERE}/held.sh "${{!#}}/swept_restart.h5" {implam} "$@" """)
+    run([*sweep, "--output", "queued", "--program", held, "--array"], folder=folder)
     run([implam, "queue", "slurm", "queued/array.txt", "--chain", "--time", "0:10:00"], folder=folder)
     number = slurm.submit(folder, "sweep.slurm")
     slurm.wait(lambda: slurm.job(f"{number}_1").get("JobState") == "RUNNING", "the first task", 60)
@@ -97,14 +96,15 @@ def main():
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     deck = change_deck(DECK.read_text(encoding="utf-8"), ["output%directory='results'", "case%name='deck'",
-                                                          "time%end=10e-3"])
+                                                          "time%end=4e-3", "output%checkpoint_every=0.8e-3"])
     (folder / "deck.nml").write_text(deck, encoding="utf-8")
-    expected, taken = undisturbed(implam, folder)
+    run([implam, folder / "deck.nml", "--output", folder / "whole"])
+    expected = (folder / "whole/deck_history.csv").read_bytes()
     place = tempfile.mkdtemp(prefix="slurm")  # paths of sockets have to be short
     try:
         with Slurm(place) as slurm:
             array(implam, slurm, folder / "array")
-            chain(implam, slurm, folder, expected, taken)
+            chain(implam, slurm, folder, expected)
     except MissingError as reason:
         print(f"skipped: {reason}")
         return SKIPPED

@@ -69,16 +69,17 @@ def play(folder, name, code):
 
 def check_chain_of_pbs(implam, folder):
     """Each job ends ahead of its limit and submits the next; the last one none; the history is the undisturbed one."""
-    write_deck(folder, "time%end=2e-3")
+    write_deck(folder, "time%end=2e-3", "output%checkpoint_every=0.5e-3")
     run([implam, "deck.nml", "--output", "whole"], folder=folder)
     run([implam, "queue", "pbs", "deck.nml", "--chain"], folder=folder)
-    # A limit of a few seconds, and a program that waits: the time is over before the second half.
+    # A limit of a few seconds, and a program that is held at each checkpoint: the time is over before the end.
     script = folder / "deck.pbs"
-    script.write_text(re.sub(r"USR1 \d+", "USR1 5", script.read_text(encoding="utf-8")), encoding="utf-8")
-    slow = folder / "slow"
-    slow.write_text(f'#!/bin/bash\nexec {HERE}/slow.sh 0.03 0.15 {implam} "$@"\n', encoding="utf-8")
-    slow.chmod(0o755)
-    environment = play(folder, "qsub", "true") | {"PBS_O_WORKDIR": str(folder), "IMPLAM": str(slow)}
+    script.write_text(re.sub(r"USR1 \d+", "USR1 4", script.read_text(encoding="utf-8")), encoding="utf-8")
+    held = folder / "held"
+    held.write_text(f'#!/bin/bash\nexec {HERE}/held.sh {folder}/results/deck_restart.h5 {implam} "$@"\n',
+                    encoding="utf-8")
+    held.chmod(0o755)
+    environment = play(folder, "qsub", "true") | {"PBS_O_WORKDIR": str(folder), "IMPLAM": str(held)}
     parts = 0
     while True:
         environment["IMPLAM_PARTS"] = str(parts)
