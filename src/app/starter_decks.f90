@@ -1,4 +1,4 @@
-!> The deck that `implam new` writes: a drop-weight test on a quasi-isotropic coupon, small enough to run at once.
+!> The deck that `implam new` writes: a drop-weight test on a cross-ply coupon, small enough to run at once.
 module starter_decks
   use errors, only: error_t
   use new_files, only: write_new_file
@@ -9,40 +9,38 @@ module starter_decks
 
   !> Name that it has without another.
   character(len=*), parameter, public :: starter_name = 'impact.nml'
-  !> Its lines. The material is that of the specimens in Tan and Sun's and Li's papers, T300/976.
-  character(len=104), parameter :: lines(*) = [character(len=104) :: &
+  !> Its lines. Material and interface are those of input/peanut.nml.
+  character(len=105), parameter :: lines(*) = [character(len=105) :: &
     '! A drop weight strikes the middle of a composite plate. Lengths are in m, masses in kg, times in s,', &
     '! so forces are in N, energies in J, stresses in Pa; any other units that go together will do.', &
     '! `implam explain GROUP` tells all keys of a group, with their defaults.', &
     '', &
     '&plate        length=0.10, 0.10        ! sides along x and y', &
-    '              edges=''clamped'' /        ! or ''simple'', ''free''; four values: x-min, x-max, y-min, y-max', &
+    '              edges=''clamped''          ! or ''simple'', ''free''; four values: x-min, x-max, y-min, y-max', &
+    '              symmetry=''quarter'' /     ! plies at 0 and 90 degrees; others: ''point'' or ''none''', &
     '', &
-    '&mesh         elements=18, 18          ! along x and y; more are more accurate and take longer', &
-    '              core=30e-3, 30e-3        ! around the struck point cells are equal,', &
-    '              cell=2.5e-3              ! of this side; outside they grow', &
-    '              patch=5e-3 /             ! side of the square that the impactor presses on', &
+    '&mesh         elements=26, 20          ! along x and y; more are more accurate and take longer', &
+    '              core=36e-3, 24e-3        ! around the struck point cells are equal,', &
+    '              cell=1e-3                ! of this side; outside they grow', &
+    '              patch=2e-3 /             ! side of the square that the impactor presses on, its contact', &
     '', &
     '&material     name=''carbon/epoxy''  density=1580', &
     '              E1=139e9  E2=9.4e9  G12=4.5e9  G23=2.98e9  nu12=0.309   ! stiffness of a ply', &
-    '              XT=1517e6  XC=1590e6  YT=46e6  YC=253e6  S12=105e6      ! strengths: along and across', &
-    '              Sf=500e6  Sm23=105e6 /                                  ! the fibres, in shear', &
+    '              YT=46e6  S12=105e6 /     ! strengths: across the fibres, in shear', &
     '', &
     '&laminate     materials=''carbon/epoxy''', &
-    '              stacking=''[45/0/-45/90]2s''  ply_thickness=0.125e-3 /    ! from the struck face', &
+    '              stacking=''[0_4/90_4]s''  ply_thickness=0.125e-3 /    ! from the struck face', &
     '', &
-    '&impactor     mass=1.0  energy=3.0     ! or velocity instead of energy', &
+    '&impactor     mass=1.0  energy=3.5     ! or velocity instead of energy', &
     '              radius=8e-3 /            ! of the nose', &
     '&indentation  law=''tan_sun''  alpha_cr=80.3e-6 /        ! how the struck face gives way', &
     '', &
-    '! Plies crack, and the interface below ply 15 (between 0 and 45 degrees, near the back) delaminates:', &
-    '! leave these groups out for a plate that stays whole.', &
-    '&ply_damage   d=100  e=1e-3 /          ! what stiffness a failed ply loses', &
-    '&delamination below_ply=15  G_c=300    ! energy per area that growth takes', &
-    '              starter=10e-3            ! side of the square flaw that it grows from', &
-    '              zone=30e-3, 30e-3 /      ! where it may grow', &
+    '! The interface below ply 12, where the lower 0-degree plies begin, delaminates: leave this group out', &
+    '! for a plate that stays whole, add &ply_damage for plies that crack.', &
+    '&delamination below_ply=12  G_Ic=280  G_IIc=790    ! energy per area that growth takes, opening and shear', &
+    '              zone=36e-3, 24e-3 /      ! where it may grow', &
     '', &
-    '&time         end=4e-3  step=20e-6 /   ! the blow lasts about 3 ms', &
+    '&time         end=4e-3  step=20e-6 /   ! the blow lasts about 3.5 ms', &
     '&output       directory=''results''  fields_every=0.5e-3 /   ! history, fields for ParaView, checkpoint']
 
 contains

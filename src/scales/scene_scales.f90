@@ -6,6 +6,7 @@ module scene_scales
   use packed_matrices, only: unpacked, inverse
   use scenes, only: scene_t
   use stacking, only: section_t, stacked_plies, section_of
+  use threshold_forces, only: effective_bending_stiffness, threshold_force
   implicit none
   private
   public :: scene_scales_t, scales_of, plate_modes, contact_side, has_blow
@@ -60,7 +61,8 @@ contains
     bent = minval(plate%frequency, mask=plate%frequency > 1.0e-6_wp*maxval(plate%frequency))
     if (section%mass(1) > 0) scales%first_period = 2*pi*sqrt(section%mass(1))/bent
     scales%compliance = sum(plate%weight/plate%frequency**2, mask=plate%frequency >= bent)
-    if (allocated(scene%delaminations)) scales%threshold = growth_threshold(scene, scales%bending)
+    if (allocated(scene%delaminations)) &
+      scales%threshold = growth_threshold(scene, effective_bending_stiffness(section%stiffness))
     if (.not. has_blow(scene)) return
     associate (m => scene%impactor%mass, v => scene%impactor%velocity, k => scene%indentation%k)
       scales%energy = m*v**2/2
@@ -137,12 +139,11 @@ contains
     side = sqrt(pi*radius*indentation) + sum(scene%laminate%thickness)
   end function contact_side
 
-  !> Force at which delaminations grow under a central load, pi sqrt(32 D G_IIc/(n + 2)) with n of them (Olsson 2001;
-  !> n = 1 is the closed form of Davies and Robinson 1992).
+  !> Force at the middle under which the least tough of the scene's interfaces begin to grow.
   pure real(wp) function growth_threshold(scene, bending) result(force)
     !> The scene
     type(scene_t), intent(in) :: scene
-    !> Bending stiffness
+    !> Effective bending stiffness
     real(wp), intent(in) :: bending
     real(wp) :: toughness(2), least
     integer :: i
@@ -153,6 +154,6 @@ contains
       least = min(least, toughness(2))
     end do
     force = 0
-    if (size(scene%delaminations) > 0) force = pi*sqrt(32*bending*least/(size(scene%delaminations) + 2))
+    if (size(scene%delaminations) > 0) force = threshold_force(bending, least, size(scene%delaminations))
   end function growth_threshold
 end module scene_scales
