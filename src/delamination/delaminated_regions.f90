@@ -89,7 +89,8 @@ contains
 
     cells = size(edges) - 1
     rounding = 1.0e-9_wp*(edges(cells + 1) - edges(1))
-    taken = abs(edges(:cells) + edges(2:)) < extent .or. &
+    ! A centre on the border is outside whatever the units round it to.
+    taken = abs(edges(:cells) + edges(2:)) < extent - rounding .or. &
             (edges(:cells) < rounding .and. edges(2:) > -rounding)
     range = [findloc(taken, .true., dim=1), cells]
     do cell = range(1), cells

@@ -6,6 +6,9 @@ module gradings
   private
   public :: graded_half_line, graded_line, cored_half_line, off_centre_line, core_elements, move_to_lines
 
+  !> Part of an element by which a tie between two numbers of elements goes to the larger one in all units.
+  real(wp), parameter :: tie = 1.0e-9_wp
+
 contains
 
   !> Element edges from the struck point (0) to the border, for a model cut at the struck point.
@@ -73,7 +76,7 @@ contains
     real(wp) :: lengths(2)
 
     lengths = [half_patch, max(0.0_wp, half_core - half_patch)]
-    counts = nint(lengths/cell)
+    counts = nint(lengths/cell + tie)
     where (lengths > 1.0e-9_wp*half_core) counts = max(1, counts)
   end function core_elements
 
@@ -205,7 +208,7 @@ contains
     if (patch <= 0) return
     most = elements
     if (patch < length*(1 - 1.0e-9_wp)) most = elements - stride
-    inside = offset + stride*nint((patch*elements/length - offset)/stride)
+    inside = offset + stride*nint((patch*elements/length - offset)/stride + tie)
     inside = max(merge(offset, stride, offset > 0), min(inside, most))
   end function patch_elements
 

@@ -1,0 +1,166 @@
+#!/usr/bin/env python3
+"""Random impacts whose interfaces delaminate by the cohesive law, each run in several ways that must not matter.
+Usage: damaging_scenes.py IMPLAM [COUNT] [FIRST] [LEFT_OUT]     (ways to leave out: two_ranks,three_ranks)
+
+A scene is run as it is, on two and on three ranks, in mm-t-s, turned by a right angle, mirrored, and stopped and gone
+on with. It passes if the run ends with 0, or with 3 and a sentence; if the energy dissipated is G_c times the area to
+1e-6; if it takes under a minute of the processor; and if all ways give its cracks and its delaminated area."""
+
+import csv
+import os
+import random
+import resource
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+LAYUPS = ((0, 90, 0), (90, 0, 90), (0, 90, 90, 0), (0, 45, 90, -45, -45, 90, 45, 0), (45, -45, -45, 45),
+          (30, -30, 90, -30, 30), (0, 60, -60, -60, 60, 0))
+EXIT_DONE, EXIT_CONVERGENCE, EXIT_STOPPED = 0, 3, 75
+AREA, ENERGY = "delaminated_area", "energy_delamination"
+COUNTS = ("fibre_failures", "matrix_cracks", "matrix_crushings")
+MINUTE = 60  # seconds of the processor
+os.environ |= {"OMP_NUM_THREADS": "1", "OMPI_MCA_mpi_yield_when_idle": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1",
+               "OMPI_MCA_hwloc_base_binding_policy": "none"}
+
+
+def scene(seed):
+    """Return the choices that make a scene, in SI."""
+    chance = random.Random(seed)
+    layup = chance.choice(LAYUPS)
+    thickness = chance.uniform(1e-3, 3e-3)
+    cell = chance.uniform(1.5e-3, 2.5e-3)
+    core = 2 * chance.randint(4, 6), 2 * chance.randint(4, 6)
+    interfaces = sorted(chance.sample([i for i in range(1, len(layup)) if layup[i - 1] != layup[i]],
+                                      k=min(chance.choice([1, 1, 2, 3]), len(layup) - 1 - sum(
+                                          layup[i - 1] == layup[i] for i in range(1, len(layup))))))
+    return {"layup": layup, "thickness": thickness, "cell": cell, "interfaces": interfaces,
+            "length": (chance.uniform(0.04, 0.1), chance.uniform(0.04, 0.1)),
+            "edges": (chance.choice(["clamped", "simple"]),) * 2 + (chance.choice(["clamped", "simple", "free"]),) * 2,
+            "elements": [number + 6 for number in core], "zone": [cell * number for number in core],
+            "patch": 2 * cell * chance.choice([0.5, 1]), "mass": 10**chance.uniform(-1.5, 0.3),
+            "energy": chance.uniform(0.8, 3) * (thickness / 1e-3)**1.5, "radius": chance.uniform(5e-3, 12e-3),
+            "G_c": chance.uniform(200, 900), "YT": chance.uniform(20e6, 60e6), "S12": chance.uniform(40e6, 110e6),
+            "starter": cell * 4 if chance.random() < 0.3 else 0, "friction": chance.choice([0, 0, 0.3]),
+            "plies": chance.choice(["", "", "hashin", "puck"]), "kinematics": chance.choice(["von_karman", "linear"]),
+            "law": chance.choice(["tan_sun", "hertz"]),
+            "contact": chance.choice(["augmented_lagrangian"] * 3 + ["none"]),
+            "thermal": chance.random() < 0.2,
+            "steps": chance.randint(60, 120)}
+
+
+def deck(s, turned=False, mirrored=False, scale=(1, 1, 1)):
+    """Return its deck; `scale` are the units of length, mass and time that it is written in, in those of SI."""
+    length, mass, _ = scale
+    stress, toughness = mass / length, mass  # the unit of time is the second
+    x, y = (1, 0) if turned else (0, 1)
+    edges = s["edges"][2:] + s["edges"][:2] if turned else s["edges"]
+    angles = [angle + 90 if turned else -angle if mirrored else angle for angle in s["layup"]]
+    end = min(max(3.2 * (s["mass"] / (4e6 * s["thickness"] / 2e-3))**0.5, 480e-6), 3e-3)
+    plies = f"&ply_damage criteria='{s['plies']}' /" if s["plies"] else ""
+    starter = f"starter={s['starter'] * length}" if s["starter"] else ""
+    groups = "\n".join(f"&delamination below_ply={below} G_c={s['G_c'] * toughness} law='cohesive' {starter} "
+                       f"zone={s['zone'][x] * length},{s['zone'][y] * length} contact='{s['contact']}' "
+                       f"friction={s['friction']} /" for below in s["interfaces"])
+    return f"""&case name='scene' kinematics='{s["kinematics"]}' /
+&plate length={s["length"][x] * length},{s["length"][y] * length} edges={",".join(f"'{edge}'" for edge in edges)} /
+&mesh elements={s["elements"][x]},{s["elements"][y]} patch={s["patch"] * length} cell={s["cell"] * length}
+  core={s["zone"][x] * length},{s["zone"][y] * length} /
+&material name='ply' density={1600 * mass / length**3} E1={130e9 * stress} E2={7.7e9 * stress} G12={4.8e9 * stress}
+  G23={3.8e9 * stress} nu12=0.30 alpha1=-0.3e-6 alpha2=28e-6 XT={2080e6 * stress} XC={1250e6 * stress}
+  YT={s["YT"] * stress} YC={290e6 * stress} S12={s["S12"] * stress} G_ft={130e3 * toughness} G_fc={60e3 * toughness}
+  G_mt={400 * toughness} G_mc={1500 * toughness} /
+&laminate materials='ply' angles={",".join(map(str, angles))} thicknesses={s["thickness"] / len(angles) * length} /
+&impactor mass={s["mass"] * mass} velocity={(2 * s["energy"] / s["mass"])**0.5 * length} radius={s["radius"] * length} /
+&indentation law='{s["law"]}' {f"alpha_cr={80.3e-6 * length}" if s["law"] == "tan_sun" else ""} /
+{plies}
+{"&thermal delta_T=-100 /" if s["thermal"] else ""}
+{groups}
+&solver tolerance=1e-9 /
+&time end={end} step={end / s["steps"]} /
+&output fields_every={end} /
+"""
+
+
+def ended(command, stop_after=None):
+    """Run a command, told to stop after some seconds; return exit code, last line and processor time."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    process = subprocess.Popen([str(word) for word in command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                               text=True)
+    if stop_after:
+        time.sleep(stop_after)
+        process.send_signal(signal.SIGUSR1)
+    said = process.communicate(timeout=1800)[0]
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return process.returncode, (said.splitlines() or [""])[-1], after.ru_utime - before.ru_utime
+
+
+def row_of(folder, number):
+    """Return a row of the history."""
+    with (folder / "scene_history.csv").open(encoding="utf-8") as file:
+        return {name: float(value) for name, value in list(csv.DictReader(file))[number].items()}
+
+
+def run_in(folder, text, implam, launcher=(), stop_after=None):
+    """Run a deck; return exit code, last line, processor time and the last row of the history, if there is one."""
+    folder.mkdir()
+    (folder / "scene.nml").write_text(text, encoding="utf-8")
+    code, said, seconds = ended([*launcher, implam, folder / "scene.nml", "--output", folder], stop_after)
+    if stop_after and code == EXIT_STOPPED:
+        code, said, _ = ended([implam, "restart", folder])
+    return code, said, seconds, row_of(folder, -1) if (folder / "scene_history.csv").exists() else None
+
+
+def ways(s, seconds, implam, folder, left_out):
+    """Yield each way to run a scene: its name, exit code, last row, and the unit of area it is in."""
+    mpirun = ("mpirun", "--allow-run-as-root", "-n")
+    for name, options, keywords, area in (
+            ("two_ranks", {}, {"launcher": (*mpirun, "2")}, 1), ("three_ranks", {}, {"launcher": (*mpirun, "3")}, 1),
+            ("units", {"scale": (1e3, 1e-3, 1)}, {}, 1e6), ("turned", {"turned": True}, {}, 1),
+            ("mirrored", {"mirrored": True}, {}, 1), ("stopped", {}, {"stop_after": 0.3 + 0.4 * seconds}, 1)):
+        if name not in left_out:
+            code, _, _, row = run_in(folder / name, deck(s, **options), implam, **keywords)
+            yield name, code, row, area
+
+
+def faults_of(seed, implam, folder, left_out):
+    """Run a scene in all ways; return what is told of it, and what is wrong."""
+    s = scene(seed)
+    code, said, seconds, row = run_in(folder / "plain", deck(s), implam)
+    if code == EXIT_CONVERGENCE and said:
+        return f"ends with 3: {said}", []
+    if code != EXIT_DONE:
+        return "", [f"ends with {code}: {said}"]
+    starter = row_of(folder / "plain", 0)[AREA] if s["starter"] else 0
+    cost = s["G_c"] * (row[AREA] - starter)
+    told = (f"area {1e6 * row[AREA]:.1f} mm2, {len(s['interfaces'])} interface(s), {row['matrix_cracks']:.0f} cracks, "
+            f"{row['step']:.0f} steps, {row['total_iterations']:.0f} iterations, {seconds:.1f} s")
+    faults = [f"dissipates {row[ENERGY]}, not {cost}"] if abs(row[ENERGY] - cost) > 1e-6 * max(cost, 1e-12) else []
+    if seconds > MINUTE:
+        faults.append(f"takes {seconds:.0f} s")
+    for name, other, end, area in ways(s, seconds, implam, folder, left_out):
+        if other != EXIT_DONE:
+            faults.append(f"{name}: ends with {other}")
+        elif abs(end[AREA] / area - row[AREA]) > 1e-6 * max(row[AREA], 1e-6):
+            faults.append(f"{name}: area {1e6 * end[AREA] / area:.4f} mm2")
+        elif [end[count] for count in COUNTS] != [row[count] for count in COUNTS]:
+            faults.append(f"{name}: other plies fail")
+    return told, faults
+
+
+def main(implam, count="40", first="1", left_out=""):
+    """Print a line a scene, and how many pass."""
+    passed = 0
+    for seed in range(int(first), int(first) + int(count)):
+        with tempfile.TemporaryDirectory() as folder:
+            told, faults = faults_of(seed, Path(implam).absolute(), Path(folder), left_out.split(","))
+        passed += not faults
+        print(f"{seed}: {'; '.join([told, *faults])}", flush=True)
+    print(f"{passed} of {count} scenes pass.")
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
