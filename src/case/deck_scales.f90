@@ -80,6 +80,7 @@ contains
       call put('mass of the plate', scales%plate_mass)
       call put('period of the plate''s first bending', scales%first_period)
       call put('force at which delaminations grow', scales%threshold)
+      call put('force at which they begin beside the patch', scales%onset)
       if (.not. o%of_impact) return
       call put('energy of the impactor', scales%energy)
       call put('force per indentation**1.5, k', deck%indentation%k)

@@ -9,7 +9,9 @@ module interface_fields
   use kinds, only: wp
   use models, only: model_t
   use motions, only: motion_t
-  use output_parameters, only: output_t, field_gap, field_contact_pressure, field_delamination, field_energy_release
+  use onset_index, only: onset_of_elements
+  use output_parameters, only: output_t, field_gap, field_contact_pressure, field_delamination, field_energy_release, &
+                               field_onset
   use result_tables, only: result_row_length
   implicit none
   private
@@ -29,7 +31,11 @@ module interface_fields
     'shear_share_above | points | - | '//field_delamination//' | &delamination | Share of shear in the energy of the &
       &jumps of the cohesive interface on top of a layer.', &
     'energy_release_above | cells | - | '//field_energy_release//' | &delamination | G/G_c of the interface on top in &
-      &the intact elements next to a front, 0 elsewhere.']
+      &the intact elements next to a front, 0 elsewhere.', &
+    'onset_index | cells | - | '//field_onset//' | - | Largest interlaminar shear stress over strength between the &
+      &plies of an element and on its top, by equilibrium through the thickness of layers that are joined.', &
+    'onset_ply | cells | - | '//field_onset//' | - | Ply above the interface where onset_index is reached; 0 if no &
+      &strength is known.']
 
 contains
 
@@ -49,6 +55,7 @@ contains
     !> Set if the file cannot be written
     type(error_t), allocatable, intent(inout) :: error
 
+    if (output%wants(field_onset)) call write_onset(model, stiffness, interfaces, motion, fields, error)
     if (.not. model%map%layered) return
     associate (faces => interfaces%faces)
       if (output%wants(field_gap)) call fields%write_point_field('jump', jumps(model, motion%displacement), error)
@@ -65,6 +72,28 @@ contains
         call fields%write_cell_field('energy_release_above', release_ahead(model, stiffness, faces, motion), error)
     end associate
   end subroutine write_interface_fields
+
+  !> Writes where delaminations would begin.
+  subroutine write_onset(model, stiffness, interfaces, motion, fields, error)
+    type(model_t), intent(in) :: model
+    !> Section stiffness left in the elements, (lanes, 21, batches)
+    real(wp), intent(in) :: stiffness(:, :, :)
+    !> The interfaces
+    type(interface_state_t), intent(in) :: interfaces
+    !> Motion with its forces
+    type(motion_t), intent(in) :: motion
+    !> The file
+    type(fields_file_t), intent(inout) :: fields
+    !> Set if the file cannot be written
+    type(error_t), allocatable, intent(inout) :: error
+    real(wp), allocatable :: delaminated(:, :), onset(:, :)
+
+    allocate (delaminated(1, model%elements%elements), source=0.0_wp)
+    if (model%map%layered) delaminated = delaminated_above(model, interfaces)
+    onset = onset_of_elements(model, stiffness, delaminated, motion%displacement)
+    call fields%write_cell_field('onset_index', onset(1:1, :), error)
+    call fields%write_cell_field('onset_ply', onset(2:2, :), error)
+  end subroutine write_onset
 
   !> Jumps of the faces above each point's layer.
   pure function jumps(model, displacement)

@@ -12,7 +12,7 @@ module transverse_shear
   use packed_matrices, only: unpacked, inverse, inverse_of_two
   implicit none
   private
-  public :: shear_stiffness_from_energy
+  public :: shear_stiffness_from_energy, shear_between_plies
 
   !> Three Gauss points of the unit interval, exact for the fourth-degree energy density of a ply
   real(wp), parameter :: abscissae(3) = 0.5_wp + [-1, 0, 1]*sqrt(0.15_wp)
@@ -54,6 +54,26 @@ contains
     end do
     stiffness = inverse_of_two(compliance)
   end function shear_stiffness_from_energy
+
+  !> Shear stresses between the plies under unit shear forces.
+  pure function shear_between_plies(z, in_plane) result(stress)
+    !> z of the plies' faces, top of the first to bottom of the last, from any origin
+    real(wp), intent(in) :: z(0:)
+    !> Packed in-plane stiffness of each ply, shape (6, plies)
+    real(wp), intent(in) :: in_plane(:, :)
+    !> tau_xz and tau_yz on the bottom of each ply but the last, for Qx = 1 and Qy = 1, (2, 2, plies - 1)
+    real(wp) :: stress(2, 2, size(in_plane, 2) - 1)
+    real(wp) :: constant(3, 2), slope(3, 2), flow(2, 2), middle
+    integer :: ply
+
+    middle = (z(0) + z(ubound(z, 1)))/2
+    call strains_of_unit_shear(z - middle, in_plane, constant, slope)
+    flow = 0
+    do ply = 1, size(stress, 3)
+      flow = flow + flow_between(z(ply - 1) - middle, z(ply) - middle, unpacked(in_plane(:, ply)), constant, slope)
+      stress(:, :, ply) = -flow
+    end do
+  end function shear_between_plies
 
   !> Growth of the in-plane strain, constant + slope z, along x for Qx = 1 (column 1) and along y for Qy = 1 (column 2).
   pure subroutine strains_of_unit_shear(z, in_plane, constant, slope)

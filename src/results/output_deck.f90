@@ -28,10 +28,11 @@ module output_deck
       &Time between fields written; 0: only the last.', &
     'output | checkpoint_every | real | 1 | time | 0 | >= 0 | &
       &Time between checkpoints; 0: only when a queue stops the run.', &
-    'output | fields | choice | 1 or more | - | = all but the stresses | displacement rotation velocity gap &
-      &contact_pressure delamination energy_release ply_damage stress face_stress | Fields written, parted by commas.']
+    'output | fields | choice | 1 or more | - | = all but stresses and onset | displacement rotation velocity gap &
+      &contact_pressure delamination energy_release ply_damage stress face_stress onset | &
+      &Fields written, parted by commas.']
 
-  !> Fields written unless the deck chooses: all but the stresses, which are many.
+  !> Fields written unless the deck chooses: all but the stresses, which are many, and the onset.
   character(len=*), parameter :: usual_fields = &
     field_displacement//','//field_rotation//','//field_velocity//','//field_gap//','//field_contact_pressure//','// &
     field_delamination//','//field_energy_release//','//field_ply_damage

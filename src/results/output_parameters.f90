@@ -10,7 +10,7 @@ module output_parameters
     field_displacement = 'displacement', field_rotation = 'rotation', field_velocity = 'velocity', &
     field_gap = 'gap', field_contact_pressure = 'contact_pressure', field_delamination = 'delamination', &
     field_energy_release = 'energy_release', field_ply_damage = 'ply_damage', field_stress = 'stress', &
-    field_face_stress = 'face_stress'
+    field_face_stress = 'face_stress', field_onset = 'onset'
 
   !> Outputs; an interval of 0 means never (fields, checkpoint) or every accepted step (history).
   type :: output_t

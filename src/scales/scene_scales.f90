@@ -1,9 +1,12 @@
 !> Scales of a scene from its parameters alone: what its mesh and its steps have to resolve.
 module scene_scales
   use delamination_parameters, only: toughnesses
+  use interface_strengths, only: shear_strengths
+  use interlaminar_shear, only: onset_indices
   use kinds, only: wp
   use modal_plates, only: modal_plate_t, modal_plate_of
   use packed_matrices, only: unpacked, inverse
+  use plies, only: ply_t
   use scenes, only: scene_t
   use stacking, only: section_t, stacked_plies, section_of
   use threshold_forces, only: effective_bending_stiffness, threshold_force
@@ -31,6 +34,8 @@ module scene_scales
     real(wp) :: compliance = 0
     !> Force at which delaminations begin to grow; 0: no interface may delaminate
     real(wp) :: threshold = 0
+    !> Force at which interlaminar shear reaches its strength beside the patch; 0: no strength or no patch is known
+    real(wp) :: onset = 0
   end type scene_scales_t
 
   !> Hertz' contact of two bodies that move freely lasts 2.943 alpha_max/v, Goldsmith 1960.
@@ -63,6 +68,7 @@ contains
     scales%compliance = sum(plate%weight/plate%frequency**2, mask=plate%frequency >= bent)
     if (allocated(scene%delaminations)) &
       scales%threshold = growth_threshold(scene, effective_bending_stiffness(section%stiffness))
+    scales%onset = onset_force(scene)
     if (.not. has_blow(scene)) return
     associate (m => scene%impactor%mass, v => scene%impactor%velocity, k => scene%indentation%k)
       scales%energy = m*v**2/2
@@ -156,4 +162,22 @@ contains
     force = 0
     if (size(scene%delaminations) > 0) force = threshold_force(bending, least, size(scene%delaminations))
   end function growth_threshold
+
+  !> Force at which the shear between two plies reaches its strength just beside the loaded patch, where it is spread
+  !> evenly over the patch's four sides.
+  pure real(wp) function onset_force(scene) result(force)
+    !> The scene
+    type(scene_t), intent(in) :: scene
+    type(ply_t), allocatable :: plies(:)
+    real(wp), allocatable :: strengths(:)
+    real(wp) :: index
+
+    force = 0
+    plies = stacked_plies(scene%laminate, scene%materials)
+    if (size(plies) < 2 .or. .not. scene%mesh%patch > 0) return
+    strengths = shear_strengths(plies, scene%materials, scene%delaminations)
+    index = max(maxval(onset_indices(plies, strengths, [1.0_wp, 0.0_wp])), &
+                maxval(onset_indices(plies, strengths, [0.0_wp, 1.0_wp])))
+    if (index > 0) force = 4*scene%mesh%patch/index
+  end function onset_force
 end module scene_scales

@@ -176,6 +176,42 @@ def check_energy_release(implam, folder):
     print(f"energy release: {np.count_nonzero(ratio)} cells ahead of the front, G/G_c up to {np.max(ratio):.3f}")
 
 
+STRIP = """&case name='strip' kinematics='linear' /
+&plate length=0.1, 0.02  edges='free' /
+&mesh elements=20, 2 /
+&material name='c'  density=1600  E1=130e9 E2=8e9 G12=5e9 G13=5e9 G23=4e9 nu12=0 YT=60e6 S12=50e6 /
+&laminate materials='c'  angles=0,90,0  thicknesses=0.5e-3,1e-3,0.5e-3 /
+&line at=-0.04  displacement=0 /
+&line at=0.04  displacement=0 /
+&line at=0  force=100 /
+&static steps=1 /
+&output fields='onset' /
+"""
+# Joined, it is the same strip; its lower layer is alone from 10 to 30 mm, where the starter is.
+JOINED = "&delamination below_ply=2 G_c=1e3 law='cohesive' zone=0.06,0.02 /\n"
+APART = JOINED.replace("G_c", "starter_strip=0.01,0.03 G_c")
+
+
+def check_onset(implam, folder):
+    """The index of a bent strip is the shear stress of beam theory, Q/D times the moment of what is outside."""
+    outer, inner = 1e-3, 0.5e-3
+    bending = 2 * (130e9 * (outer**3 - inner**3) + 8e9 * inner**3) / 3
+    expected = 50 / 0.02 / bending * 130e9 * (outer**2 - inner**2) / 2 / 50e6
+    for name, more in (("whole", ""), ("joined", JOINED), ("apart", APART)):
+        (folder / name).mkdir(parents=True)
+        (folder / name / "deck.nml").write_text(STRIP + more, encoding="utf-8")
+        results = Results(run_deck(implam, folder / name / "deck.nml"))
+        index, ply = results.cells["onset_index"], results.cells["onset_ply"]
+        middle = (results.low[:, 0] + results.high[:, 0]) / 2
+        loaded = (np.abs(middle) < 0.04) & ((name != "apart") | (np.abs(middle - 0.02) > 0.03))
+        worst = np.max(np.abs(index[loaded] / expected - 1))
+        print(f"onset, {name}: {np.count_nonzero(loaded)} elements, {worst:.1e} off beam theory")
+        require(worst < 1e-9, "The index isn't that of beam theory.")
+        require(set(ply[loaded]) <= {1, 2}, "It stands in another interface.")
+        alone = (np.abs(middle - 0.02) < 0.009) & (results.first_ply == 3)
+        require(name != "apart" or (np.any(alone) and not np.any(index[alone])), "A single ply has an interface.")
+
+
 def table_of(implam, topic):
     """Return the rows of a table of results, each a list of cells, without the heading."""
     command = [implam, "explain", topic, "--markdown"]
@@ -249,7 +285,8 @@ def check_columns(implam, folder):
 
 def main(implam, folder):
     """Run the trials; the exit code is 1 if one fails."""
-    trials = check_navier, check_damaged_layers, check_energy_release, check_table, check_columns
+    trials = (check_navier, check_damaged_layers, check_energy_release, check_onset, check_table,
+              check_columns)
     return max(exit_code_of(trial, implam, Path(folder)) for trial in trials)
 
 

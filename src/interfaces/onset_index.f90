@@ -1,0 +1,112 @@
+!> Where delaminations would begin: interlaminar shear by equilibrium through the thickness, over the strength.
+module onset_index
+  use element_batches, only: first_element, lanes
+  use interface_strengths, only: shear_strengths
+  use interlaminar_shear, only: onset_indices
+  use kinds, only: wp
+  use models, only: model_t
+  use strain_recovery, only: mean_strains
+  implicit none
+  private
+  public :: onset_of_elements
+
+contains
+
+  !> Largest shear stress over strength in the interfaces within each element and on top of it, and the ply above that
+  !> interface. Layers that are joined in a cell, less than half of their area delaminated, make one stack; its shear
+  !> force is the sum of theirs. Stresses of opening are left out: under a load from above, equilibrium through the
+  !> thickness presses the plies together. All ranks must call together.
+  function onset_of_elements(model, stiffness, delaminated, displacement) result(onset)
+    type(model_t), intent(in) :: model
+    !> Section stiffness left in the elements, (lanes, 21, batches)
+    real(wp), intent(in) :: stiffness(:, :, :)
+    !> Part of each element's area that has delaminated above it, (1, elements)
+    real(wp), intent(in) :: delaminated(:, :)
+    !> Displacement, ghosts up to date, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> Index and ply, (2, elements)
+    real(wp), allocatable :: onset(:, :)
+    real(wp), allocatable :: everywhere(:, :), strengths(:)
+    integer :: i, cell
+
+    strengths = shear_strengths(model%plies, model%scene%materials, model%scene%delaminations)
+    everywhere = gathered(model, stiffness, delaminated, displacement)
+    allocate (onset(2, model%elements%elements), source=0.0_wp)
+    do i = 1, size(onset, 2)
+      associate (mesh => model%mesh, element => model%distribution%elements(i))
+        cell = mesh%element_cell(element)
+        onset(:, i) = onset_in_stack(model, strengths, everywhere, element, &
+                                     [mesh%first_element(cell), mesh%first_element(cell + 1) - 1])
+      end associate
+    end do
+  end function onset_of_elements
+
+  !> Shear forces and delaminated parts of all elements of the mesh. All ranks must call together.
+  function gathered(model, stiffness, delaminated, displacement) result(everywhere)
+    type(model_t), intent(in) :: model
+    !> Section stiffness left in the elements, (lanes, 21, batches)
+    real(wp), intent(in) :: stiffness(:, :, :)
+    !> Part of each element's area that has delaminated above it, (1, elements)
+    real(wp), intent(in) :: delaminated(:, :)
+    !> Displacement, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> Qx, Qy, delaminated part, (3, elements of the mesh)
+    real(wp), allocatable :: everywhere(:, :)
+    real(wp), allocatable :: motion(:, :), list(:)
+    real(wp) :: means(lanes, 8)
+    integer :: b, lane, i
+
+    allocate (everywhere(3, model%mesh%elements()), source=0.0_wp)
+    motion = model%motion_of(displacement)
+    do b = 1, model%elements%batches
+      call mean_strains(model%elements, b, model%scene%kinematics, motion, means)
+      do lane = 1, model%elements%lanes_used(b)
+        i = first_element(b) + lane - 1
+        associate (s => stiffness(lane, 19:21, b), shear => means(lane, 7:8))
+          everywhere(:, model%distribution%elements(i)) = &
+            [s(1)*shear(1) + s(2)*shear(2), s(2)*shear(1) + s(3)*shear(2), delaminated(1, i)]
+        end associate
+      end do
+    end do
+    list = reshape(everywhere, [size(everywhere)])
+    call model%communicator%sum(list)
+    everywhere = reshape(list, shape(everywhere))
+  end function gathered
+
+  !> Index of an element from the stack of joined layers that it is in.
+  pure function onset_in_stack(model, strengths, everywhere, element, cell) result(onset)
+    type(model_t), intent(in) :: model
+    !> Strength of the interface below each ply
+    real(wp), intent(in) :: strengths(:)
+    !> What gathered returns
+    real(wp), intent(in) :: everywhere(:, :)
+    !> Element of the mesh
+    integer, intent(in) :: element
+    !> First and last element of its cell
+    integer, intent(in) :: cell(2)
+    !> Index and ply above the interface; both 0 where no strength is known
+    real(wp) :: onset(2)
+    real(wp), allocatable :: indices(:)
+    integer :: first, last, range(2), within(2), place
+
+    first = element
+    do while (first > cell(1))
+      if (everywhere(3, first) >= 0.5_wp) exit
+      first = first - 1
+    end do
+    last = element
+    do while (last < cell(2))
+      if (everywhere(3, last + 1) >= 0.5_wp) exit
+      last = last + 1
+    end do
+    range = [model%mesh%element_plies(1, first), model%mesh%element_plies(2, last)]
+    indices = onset_indices(model%plies(range(1):range(2)), strengths(range(1):range(2) - 1), &
+                            sum(everywhere(1:2, first:last), 2))
+    ! From the interface on top of the element to the one above its last ply.
+    within = [max(1, model%mesh%element_plies(1, element) - range(1)), model%mesh%element_plies(2, element) - range(1)]
+    onset = 0
+    if (within(2) < within(1)) return
+    place = within(1) + maxloc(indices(within(1):within(2)), 1) - 1
+    if (indices(place) > 0) onset = [indices(place), real(range(1) + place - 1, wp)]
+  end function onset_in_stack
+end module onset_index
