@@ -29,8 +29,7 @@ module output_deck
     'output | checkpoint_every | real | 1 | time | 0 | >= 0 | &
       &Time between checkpoints; 0: only when a queue stops the run.', &
     'output | fields | choice | 1 or more | - | = all but stresses and onset | displacement rotation velocity gap &
-      &contact_pressure delamination energy_release ply_damage stress face_stress onset | &
-      &Fields written, parted by commas.']
+      &contact_pressure delamination energy_release ply_damage stress face_stress onset | Fields, parted by commas.']
 
   !> Fields written unless the deck chooses: all but the stresses, which are many, and the onset.
   character(len=*), parameter :: usual_fields = &
