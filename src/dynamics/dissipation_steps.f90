@@ -117,7 +117,7 @@ contains
   end function residual_norm
 
   !> Turns the correction at a fixed load into one with the change of the load that brings the energy wanted.
-  subroutine improve(self, model, operator, old, new, correction, error)
+  subroutine improve(self, model, operator, old, new, residual, correction, error)
     !> The problem
     class(dissipation_step_t), intent(inout) :: self
     type(model_t), intent(in) :: model
@@ -127,6 +127,8 @@ contains
     type(state_t), intent(in) :: old
     !> State at the end, before the correction
     type(state_t), intent(inout) :: new
+    !> The residual at the owned points, (5, points)
+    real(wp), intent(in) :: residual(:, :)
     !> Correction of the displacement, (5, points)
     real(wp), intent(inout) :: correction(:, :)
     !> Set if the solver fails

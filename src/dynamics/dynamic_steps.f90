@@ -13,6 +13,7 @@ module dynamic_steps
   use impact_coupling, only: impact_coupling_t, begin_coupling
   use tangent_operators, only: tangent_operator_t
   use residual_norms, only: relative_residual
+  use softening_corrections, only: softening_memory_t
   use condensed_steps, only: condense
   use energy_balance, only: book_step
   implicit none
@@ -39,6 +40,8 @@ module dynamic_steps
     real(wp) :: patch_square = 0
     !> The impactor's side of the step
     type(impact_coupling_t) :: coupling
+    !> What corrections have found about softening points
+    type(softening_memory_t) :: memory
   contains
     procedure :: begin
     procedure :: find_residual
@@ -102,6 +105,7 @@ contains
     new%contact_iterations = 0
     call operator%anderson%forget()
     operator%switches = 0
+    call self%memory%forget()
   end subroutine begin
 
   !> Residual of the equation of motion (Eq. 1 with the exact internal force).
@@ -202,7 +206,7 @@ contains
     type(error_t), allocatable, intent(inout) :: error
     logical :: follows
 
-    follows = modulo(new%iterations + 1, self%renewal) > 0
+    follows = modulo(new%iterations + 1, self%renewal) > 0 .and. .not. self%memory%is_full(operator)
     if (follows) call operator%follow(model, new%interfaces, follows, error)
     if (follows .or. allocated(error)) return
     call operator%renew(model, new%plies%stiffness, new%interfaces, new%motion%displacement, &
@@ -211,7 +215,7 @@ contains
 
   !> Turns the correction for the force assumed into one for the force that goes with it, and betters it by
   !> what earlier iterations showed.
-  subroutine improve(self, model, operator, old, new, correction, error)
+  subroutine improve(self, model, operator, old, new, residual, correction, error)
     !> The problem
     class(dynamic_step_t), intent(inout) :: self
     type(model_t), intent(in) :: model
@@ -221,13 +225,15 @@ contains
     type(state_t), intent(in) :: old
     !> State at the end, before the correction
     type(state_t), intent(inout) :: new
+    !> The residual at the owned points, (5, points)
+    real(wp), intent(in) :: residual(:, :)
     !> Correction of the displacement, (5, points)
     real(wp), intent(inout) :: correction(:, :)
     !> Set if numbers are not finite
     type(error_t), allocatable, intent(inout) :: error
 
     if (operator%condenses) then
-      call condense(self%coupling, model, operator, old, new, correction, error)
+      call condense(self%memory, self%coupling, model, operator, old, new, residual, correction, error)
     else if (model%scene%has_impactor) then
       call self%coupling%solve(model, operator, old, new, correction, error)
     end if

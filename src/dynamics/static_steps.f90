@@ -167,7 +167,7 @@ contains
   end function changes
 
   !> Keeps held jumps as they are, and minds that tangents are unsymmetric.
-  subroutine improve(self, model, operator, old, new, correction, error)
+  subroutine improve(self, model, operator, old, new, residual, correction, error)
     !> The problem
     class(static_step_t), intent(inout) :: self
     type(model_t), intent(in) :: model
@@ -177,6 +177,8 @@ contains
     type(state_t), intent(in) :: old
     !> State at this load, before the correction
     type(state_t), intent(inout) :: new
+    !> The residual at the owned points, (5, points)
+    real(wp), intent(in) :: residual(:, :)
     !> Correction of the displacement, (5, points)
     real(wp), intent(inout) :: correction(:, :)
     !> Set if a solve fails

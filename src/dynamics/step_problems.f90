@@ -113,7 +113,7 @@ module step_problems
     end subroutine prepare_operator
 
     !> Betters a correction: the impact force that goes with it, what earlier iterations showed.
-    subroutine improve(self, model, operator, old, new, correction, error)
+    subroutine improve(self, model, operator, old, new, residual, correction, error)
       import :: step_problem_t, model_t, tangent_operator_t, state_t, error_t, wp
       !> The problem
       class(step_problem_t), intent(inout) :: self
@@ -124,6 +124,8 @@ module step_problems
       type(state_t), intent(in) :: old
       !> State at the end, before the correction
       type(state_t), intent(inout) :: new
+      !> The residual at the owned points, (5, points)
+      real(wp), intent(in) :: residual(:, :)
       !> Correction of the displacement, (5, points)
       real(wp), intent(inout) :: correction(:, :)
       !> Set if numbers are not finite
@@ -208,7 +210,7 @@ contains
         if (problem%curable .and. error%code == exit_convergence) deallocate (error)
         return
       end if
-      call problem%improve(model, operator, old, new, correction, error)
+      call problem%improve(model, operator, old, new, residual, correction, error)
       if (allocated(error)) then
         ! Numbers have run away, or the operator is not positive: a shorter step may cure it.
         deallocate (error)

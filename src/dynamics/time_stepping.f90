@@ -49,8 +49,8 @@ module time_stepping
     type(plate_integrator_t) :: integrator
     !> How steps are taken
     type(stepping_t) :: stepping
-    !> Factorizations when the present step was begun
-    integer, private :: factorizations_begun = 0
+    !> Factorizations and solves when the present step was begun
+    integer, private :: factorizations_begun = 0, solves_begun = 0
     !> Steps that were tried in vain
     integer :: rejected = 0
     !> Room for the state that is being tried
@@ -236,6 +236,7 @@ contains
       call self%controller%renewed()
     end if
     self%factorizations_begun = self%operator%factorizations
+    self%solves_begun = self%operator%solves
     problem = new_dynamic_step(self%integrator, step, self%stepping%adapt%iterations)
     call solve_step(problem, model, self%stepping%equilibrium, self%operator, self%now, self%trial, converged, error)
     if (.not. (converged .or. allocated(error)) .and. model%scene%has_crack_bands()) then
@@ -330,6 +331,7 @@ contains
     logical :: damaged(size(model%mesh%zones))
     real(wp) :: change
     logical :: extended
+    integer :: lasting
 
     call note_path(self, step)
     self%trial%stress = struck_stress(model, self%trial%motion%displacement)
@@ -355,8 +357,10 @@ contains
     if (model%scene%has_static) then
       self%controller%wanted = 1.0_wp/self%stepping%static_steps
     else
-      call self%controller%accept(self%stepping, step, self%now%iterations, &
-                                  self%now%iterations - self%operator%switches, change)
+      ! Softening points take many solves in an iteration, the fewer the better the operator knows them.
+      lasting = self%now%iterations
+      if (self%operator%condenses) lasting = self%operator%solves - self%solves_begun
+      call self%controller%accept(self%stepping, step, self%now%iterations, lasting - self%operator%switches, change)
       if (follows_error(self%stepping%adapt)) &
         call self%controller%follow_error(self%stepping, step, self%error, self%stepping%time%end - self%now%time, &
           .not. model%scene%has_impactor .or. self%step_error%impact_is_over(self%stepping%outlook, self%now), &

@@ -3,10 +3,11 @@
 module condensed_corrections
   use cohesive_interfaces, only: cohesive_interfaces_t
   use cohesive_points, only: cohesive_point_t
-  use condensed_points, only: condensed_points_t, outside_force_t
+  use condensed_points, only: condensed_points_t
   use face_friction, only: sliding_t
   use kinds, only: wp
   use models, only: model_t
+  use outside_forces, only: outside_force_t
   use tangent_operators, only: tangent_operator_t
   implicit none
   private
@@ -15,9 +16,9 @@ module condensed_corrections
   !> Force left at a point over that at its strength from which it becomes an unknown. With it
   !> crossply_cohesive_2mm.nml takes one iteration a step; ten times or a tenth of it dissipates the same area to 4e-9.
   real(wp), parameter :: noticed = 1.0e-4_wp
-  !> Unknowns at most, and numbers in the operator's answers to forces on them.
-  integer, parameter :: most_unknowns = 2000
-  real(wp), parameter :: most_numbers = 2.0e8_wp
+  !> Unknowns at most, those that join together at most, and numbers in the operator's answers to forces on them.
+  integer, parameter :: most_unknowns = 800, most_joining = 300
+  real(wp), parameter :: most_numbers = 1.0e8_wp
   !> Numbers that tell of an unknown.
   integer, parameter :: told = 17
 
@@ -177,9 +178,8 @@ contains
     end associate
   end subroutine field
 
-  !> Equations of points that should be unknowns and are none: the operator's answer is wrong there. Those most in want
-  !> come first if there is not room for all.
-  subroutine wanting(self, operator, model, old, displacement, correction, equations)
+  !> Equations of points that should be unknowns and are none: the operator's answer is wrong there.
+  subroutine wanting(self, operator, model, old, displacement, correction, equations, crowded)
     !> The correction
     class(condensed_correction_t), intent(in) :: self
     !> The factored operator
@@ -191,8 +191,10 @@ contains
     real(wp), intent(in) :: displacement(:, :), correction(:, :)
     !> The equations, the same on every rank
     integer, allocatable, intent(out) :: equations(:)
-    real(wp) :: error(3, model%distribution%owned), threshold
-    integer :: room, found, i
+    !> True: there is no room for all of them
+    logical, intent(out) :: crowded
+    real(wp) :: error(3, model%distribution%owned)
+    integer :: i
 
     call old%mismatch(model, operator%stiffness_factor, operator%present, displacement, correction, error)
     call strike_columns(operator, error)
@@ -201,15 +203,10 @@ contains
     do i = 1, size(error, 2)
       if (operator%numbering%leader(i) > 0) error(:, i) = 0
     end do
-    room = min(most_unknowns, int(most_numbers/operator%numbering%total)) - self%columns
-    threshold = noticed
-    do
-      call model%communicator%allgather(pack(operator%numbering%equation(1:3, :size(error, 2)), error > threshold), &
-                                        equations)
-      found = size(equations)
-      if (found <= room .or. found == 0) exit
-      threshold = 1.5_wp*threshold
-    end do
+    call model%communicator%allgather(pack(operator%numbering%equation(1:3, :size(error, 2)), error > noticed), &
+                                      equations)
+    crowded = size(equations) > min(most_joining, min(most_unknowns, int(most_numbers/operator%numbering%total)) &
+                                    - self%columns)
   end subroutine wanting
 
   !> Leaves out what is an unknown already.

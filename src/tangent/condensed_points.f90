@@ -9,9 +9,10 @@ module condensed_points
   use cohesive_points, only: cohesive_point_t
   use dense_systems, only: dense_factor_t, positive_factor_t
   use kinds, only: wp
+  use outside_forces, only: outside_force_t
   implicit none
   private
-  public :: condensed_point_t, condensed_points_t, outside_force_t
+  public :: condensed_point_t, condensed_points_t
 
   !> Newton iterations at most; those that soften far take some twenty.
   integer, parameter :: most_iterations = 60
@@ -38,26 +39,6 @@ module condensed_points
     !> Unknown of each jump; 0: none
     integer :: place(3) = 0
   end type condensed_point_t
-
-  !> A force from outside that depends on the plate's motion, such as that of an impactor.
-  type, abstract :: outside_force_t
-  contains
-    !> The force at a motion.
-    procedure(force_at), deferred :: at
-  end type outside_force_t
-
-  abstract interface
-    !> The force at a motion.
-    subroutine force_at(self, motion, force, slope)
-      import :: outside_force_t, wp
-      !> The force, which remembers the latest motion
-      class(outside_force_t), intent(inout) :: self
-      !> Change of the motion on which the force does work
-      real(wp), intent(in) :: motion
-      !> Change of the force, and its slope, not positive
-      real(wp), intent(out) :: force, slope
-    end subroutine force_at
-  end interface
 
   !> The system. Its last unknown is the motion under a force from outside, if there is one.
   type :: condensed_points_t

@@ -77,8 +77,9 @@ module tangent_operators
     procedure :: follow
     !> Correction of the displacement for a residual.
     procedure :: correct
-    !> Answers to unit forces.
+    !> Answers to unit forces, and what changes since the factorization make of an answer.
     procedure :: find_columns
+    procedure :: follow_changes
     !> Saves what is needed to make the same factor again, or loads it and makes it.
     procedure :: visit
   end type tangent_operator_t
@@ -196,9 +197,8 @@ contains
     logical, intent(out) :: possible
     !> Set if a solve fails
     type(error_t), allocatable, intent(inout) :: error
-    real(wp), allocatable :: wanted(:, :)
+    real(wp), allocatable :: wanted(:, :), stiffness(:)
     integer, allocatable :: equations(:)
-    real(wp), allocatable :: stiffness(:)
     integer :: k
 
     possible = .true.
@@ -241,7 +241,7 @@ contains
     self%present = self%added + self%present
     if (self%condenses) return
     self%response = self%fresh_response
-    call follow_changes(self, model, self%response)
+    call self%follow_changes(model, self%response)
     self%compliance = model%patch_mean(self%response)
   end subroutine put_in_force
 
@@ -289,18 +289,18 @@ contains
 
     call solve_factor(self, model, residual, correction, error)
     self%solves = self%solves + 1
-    if (.not. allocated(error)) call follow_changes(self, model, correction)
+    if (.not. (allocated(error) .or. self%condenses)) call self%follow_changes(model, correction)
   end subroutine correct
 
   !> Turns a solution of the operator as it was factored into one of the operator as it is now.
   subroutine follow_changes(self, model, solution)
     !> The operator
-    type(tangent_operator_t), intent(in) :: self
+    class(tangent_operator_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> Solution, ghosts included, (5, points)
     real(wp), intent(inout) :: solution(:, :)
 
-    if (size(self%changes%equations) == 0 .or. self%condenses) return
+    if (size(self%changes%equations) == 0) return
     call self%changes%correct(model%communicator, self%numbering, solution)
     call model%halo%update(solution)
   end subroutine follow_changes

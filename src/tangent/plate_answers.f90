@@ -1,0 +1,160 @@
+!> Motions of a linear plate under forces, found one by one by a solve and kept: they span the space in which softening
+!> points are brought into equilibrium. Each does work on the forces of no other, and unit work on its own.
+module plate_answers
+  use errors, only: error_t
+  use kinds, only: wp
+  implicit none
+  private
+  public :: linear_plate_t, plate_answers_t
+
+  !> Work of a new motion over what it was before the kept ones were taken out of it below which it is one of them.
+  real(wp), parameter :: dependent = 1.0e-10_wp
+
+  !> A plate that answers to forces in proportion.
+  type, abstract :: linear_plate_t
+  contains
+    !> Motion under forces.
+    procedure(answer_to), deferred :: answer
+    !> Sums over the ranks.
+    procedure(sum_over), deferred :: sum
+    !> Size of forces by which they are held against each other, the same on every rank.
+    procedure(size_of), deferred :: size
+  end type linear_plate_t
+
+  abstract interface
+    !> Motion under forces, ghosts included.
+    subroutine answer_to(self, forces, motion, error)
+      import :: linear_plate_t, error_t, wp
+      !> The plate
+      class(linear_plate_t), intent(inout) :: self
+      !> Forces at the owned points, (5, local points)
+      real(wp), intent(in) :: forces(:, :)
+      !> Motion, (5, local points)
+      real(wp), intent(inout) :: motion(:, :)
+      !> Set if there is none
+      type(error_t), allocatable, intent(inout) :: error
+    end subroutine answer_to
+
+    !> Sums over the ranks.
+    subroutine sum_over(self, sums)
+      import :: linear_plate_t, wp
+      !> The plate
+      class(linear_plate_t), intent(in) :: self
+      !> Sums of this rank's owned points on entry, of all on return
+      real(wp), intent(inout) :: sums(:)
+    end subroutine sum_over
+
+    !> Size of forces, the same on every rank.
+    real(wp) function size_of(self, forces)
+      import :: linear_plate_t, wp
+      !> The plate
+      class(linear_plate_t), intent(in) :: self
+      !> Forces, (5, local points)
+      real(wp), intent(in) :: forces(:, :)
+    end function size_of
+  end interface
+
+  !> The motions kept.
+  type :: plate_answers_t
+    !> How many there are
+    integer :: kept = 0
+    !> Points of this rank, which come first
+    integer :: owned = 0
+    !> Motions, and the forces that cause them, (5, local points, room)
+    real(wp), allocatable :: motions(:, :, :), forces(:, :, :)
+  contains
+    !> Forgets all.
+    procedure :: clear
+    !> Adds a motion and its forces.
+    procedure :: add
+    !> Work of forces on each motion.
+    procedure :: works
+    !> A combination of motions, and of their forces.
+    procedure :: combine
+  end type plate_answers_t
+
+contains
+
+  !> Forgets all.
+  pure subroutine clear(self, points, owned, room)
+    !> The motions
+    class(plate_answers_t), intent(inout) :: self
+    !> Points of this rank, ghosts included and not, and motions at most
+    integer, intent(in) :: points, owned, room
+
+    self%kept = 0
+    self%owned = owned
+    if (.not. allocated(self%motions)) allocate (self%motions(5, points, room), self%forces(5, points, room))
+  end subroutine clear
+
+  !> Adds a motion and its forces, freed from those kept, twice for the digits.
+  subroutine add(self, plate, motion, forces, added)
+    !> The motions
+    class(plate_answers_t), intent(inout) :: self
+    !> The plate
+    class(linear_plate_t), intent(in) :: plate
+    !> The motion and its forces, (5, local points)
+    real(wp), intent(in) :: motion(:, :), forces(:, :)
+    !> False: there is no room, or it is a combination of those kept
+    logical, intent(out) :: added
+    real(wp), allocatable :: new_motion(:, :), new_forces(:, :), shares(:)
+    real(wp) :: work(1), first
+    integer :: pass, k
+
+    added = self%kept < size(self%motions, 3)
+    if (.not. added) return
+    new_motion = motion
+    new_forces = forces
+    first = 0
+    do pass = 1, 3
+      work = sum(new_motion(:, :self%owned)*new_forces(:, :self%owned))
+      call plate%sum(work)
+      if (pass == 1) first = work(1)
+      if (pass == 3) exit
+      shares = self%works(plate, new_forces)
+      do k = 1, self%kept
+        new_motion = new_motion - shares(k)*self%motions(:, :, k)
+        new_forces = new_forces - shares(k)*self%forces(:, :, k)
+      end do
+    end do
+    added = work(1) > dependent*first
+    if (.not. added) return
+    self%kept = self%kept + 1
+    self%motions(:, :, self%kept) = new_motion/sqrt(work(1))
+    self%forces(:, :, self%kept) = new_forces/sqrt(work(1))
+  end subroutine add
+
+  !> Work of forces on each motion, the same on every rank.
+  function works(self, plate, forces)
+    !> The motions
+    class(plate_answers_t), intent(in) :: self
+    !> The plate
+    class(linear_plate_t), intent(in) :: plate
+    !> Forces, (5, local points)
+    real(wp), intent(in) :: forces(:, :)
+    !> Work, (kept)
+    real(wp), allocatable :: works(:)
+    integer :: k
+
+    works = [(sum(self%motions(:, :self%owned, k)*forces(:, :self%owned)), k=1, self%kept)]
+    call plate%sum(works)
+  end function works
+
+  !> A combination of the motions, and of their forces.
+  pure subroutine combine(self, shares, motion, forces)
+    !> The motions
+    class(plate_answers_t), intent(in) :: self
+    !> Share of each, (kept)
+    real(wp), intent(in) :: shares(:)
+    !> The combinations, (5, local points)
+    real(wp), intent(out) :: motion(:, :), forces(:, :)
+    integer :: k
+
+    motion = 0
+    forces = 0
+    do k = 1, self%kept
+      motion = motion + shares(k)*self%motions(:, :, k)
+      forces = forces + shares(k)*self%forces(:, :, k)
+    end do
+  end subroutine combine
+end module plate_answers
