@@ -95,7 +95,7 @@ contains
 
     answer = correction
     before = coupling
-    crowded = memory%in_use(operator)
+    crowded = memory%crowded
     allocate (guess(0))
     do round = 1, most_rounds
       if (crowded) exit

@@ -17,7 +17,7 @@ module condensed_corrections
   !> crossply_cohesive_2mm.nml takes one iteration a step; ten times or a tenth of it dissipates the same area to 4e-9.
   real(wp), parameter :: noticed = 1.0e-4_wp
   !> Unknowns at most, those that join together at most, and numbers in the operator's answers to forces on them.
-  integer, parameter :: most_unknowns = 800, most_joining = 300
+  integer, parameter :: most_unknowns = 500, most_joining = 300
   real(wp), parameter :: most_numbers = 1.0e8_wp
   !> Numbers that tell of an unknown.
   integer, parameter :: told = 17

@@ -23,13 +23,15 @@ module softening_corrections
     type(plate_answers_t), private :: kept
     !> Factorizations and changes of the operator when they were found
     integer, private :: factorizations = -1, switches = -1
+    !> True: so many points soften in this step that none of them gets an answer of its own
+    logical :: crowded = .false.
   contains
     !> Turns the operator's answer into a correction.
     procedure :: correct => soften
     !> Forgets all.
     procedure :: forget
     !> True if it has answers of an operator.
-    procedure :: in_use
+    procedure, private :: in_use
     !> True once the operator should be renewed.
     procedure :: is_full
   end type softening_memory_t
@@ -54,6 +56,7 @@ contains
     class(softening_memory_t), intent(inout) :: self
 
     self%factorizations = -1
+    self%crowded = .false.
   end subroutine forget
 
   !> True if it has answers of an operator as it is now.
@@ -111,6 +114,7 @@ contains
       call self%kept%clear(size(residual, 2), model%distribution%owned, most_kept + most_answers)
     self%factorizations = operator%factorizations
     self%switches = operator%switches
+    self%crowded = .true.
     call operator%follow_changes(model, correction)
     call operator%timers%start('softening')
     call find_equilibrium(plate, self%kept, points, outside, pattern, residual, most_answers, correction, error)
