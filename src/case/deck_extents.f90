@@ -306,7 +306,10 @@ contains
     real(wp), intent(out) :: zone(2), starter(2)
 
     zone = [extent_of_cells(x_edges, delamination%zone(1)), extent_of_cells(y_edges, delamination%zone(2))]
-    starter = [extent_of_cells(x_edges, delamination%starter), extent_of_cells(y_edges, delamination%starter)]
+    associate (at => delamination%starter_at)
+      starter = [extent_of_cells(x_edges - at(1), delamination%starter), &
+                 extent_of_cells(y_edges - at(2), delamination%starter)]
+    end associate
     starter = min(starter, zone)
   end subroutine extents_of
 

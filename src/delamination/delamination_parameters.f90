@@ -21,9 +21,6 @@ module delamination_parameters
   !> While the impactor rebounds: real contact, or both faces glued together (Eq. 13b).
   integer, parameter, public :: unloading_contact = 1, unloading_glued = 2
 
-  !> What a front's account of energy counts: debts only, or what was set free in excess too.
-  integer, parameter, public :: account_debts = 1, account_balance = 2
-
   !> One interface that may delaminate. It has many components because two laws share
   !> one group of the deck.
   type :: delamination_t
@@ -39,8 +36,12 @@ module delamination_parameters
     real(wp) :: mixing_exponent = 1.75_wp
     !> Full extents of the layered rectangle along x and y, centred on the struck point
     real(wp) :: zone(2) = 0
-    !> Side of the square starter, centred on the struck point
+    !> Side of the square starter, or diameter of the round one
     real(wp) :: starter = 0
+    !> True: the starter is round
+    logical :: starter_round = .false.
+    !> Its centre, from the struck point
+    real(wp) :: starter_at(2) = 0
     !> First and last x of a starter across the whole width of the zone, if the first is smaller
     real(wp) :: starter_strip(2) = 0
     !> law_front or law_cohesive
@@ -67,8 +68,8 @@ module delamination_parameters
     real(wp) :: contact_exponent = 1
     !> unloading_contact or unloading_glued
     integer :: unloading = unloading_contact
-    !> account_debts or account_balance
-    integer :: account = account_debts
+    !> Distance along a front over which forces and openings are averaged; 0: from cells and thickness
+    real(wp) :: smoothing = 0
   end type delamination_t
 
 contains
