@@ -132,7 +132,8 @@ contains
     type(model_t), intent(in) :: model
     !> Index of the zone
     integer, intent(in) :: zone
-    !> Cells at least: on stepped discs rates then scatter by 2 to 7 % about their mean, with 3 cells by 10 %.
+    !> Cells at least: on stepped discs rates then scatter by 2 to 7 % about their mean, with 3 cells by 4 to 13 %. Where
+    !> rates differ much along the front, as on cross-plies, more cells level too much.
     integer, parameter :: least_cells = 5
 
     reach = model%scene%delaminations(zone)%smoothing
