@@ -118,14 +118,28 @@ contains
       weight = product(merge(0.5_wp, 1.0_wp, model%mesh%lines_of(nodes%node(k)) == 0 .and. model%mesh%mirrored))
       associate (s => nodes%segment(k))
         figures(:, s) = figures(:, s) + nodes%share(k)*closure_moments(line%normal(:, s), nodes%distance(k), &
-          line%ahead(s), line%behind(s), .not. faces%free(i), weight, -motion%internal(1:3, i) - &
-          motion%inertia(1:3, i), motion%displacement(1:3, i))
+          line%ahead(s), line%behind(s), .not. faces%free(i), weight, tie_force(model, motion, i), &
+          motion%displacement(1:3, i))
       end associate
     end do
     sums = reshape(figures, [size(figures)])
     call model%communicator%sum(sums)
     figures = reshape(sums, shape(figures))
   end function moments_of
+
+  !> Force that holds the jump at a point: external less internal and inertia forces.
+  pure function tie_force(model, motion, i) result(force)
+    type(model_t), intent(in) :: model
+    !> Motion with its forces
+    type(motion_t), intent(in) :: motion
+    !> Point below the interface, on the rank that owns it
+    integer, intent(in) :: i
+    !> Force, x, y, z; what a line of symmetry or an edge of the plate holds is none of the ties'
+    real(wp) :: force(3)
+
+    force = -motion%internal(1:3, i) - motion%inertia(1:3, i)
+    where (model%held(1:3, model%distribution%points(i))) force = 0
+  end function tie_force
 
   !> Distance along a front over which forces and jumps are averaged.
   pure real(wp) function front_reach(model, zone) result(reach)
