@@ -21,7 +21,8 @@ module delamination_deck
   !> Names that checks across groups use.
   character(len=*), parameter, public :: key_zone = 'zone', key_starter = 'starter', key_toughness = 'G_c', &
                                          key_toughness_shear = 'G_IIc', key_strip = 'starter_strip', &
-                                         key_starter_at = 'starter_at'
+                                         key_starter_at = 'starter_at', &
+                                         key_smoothing = 'smoothing'
   character(len=*), parameter :: group = delamination_group
   !> Keys that have no effect on a cohesive interface.
   character(len=*), parameter :: keys_of_fronts = &
@@ -139,7 +140,7 @@ contains
       if (s%is_given(group, key_starter_at, place)) d%starter_at = s%reals_of(group, key_starter_at, place)
       d%penalty_stiffness = s%real_of(group, 'penalty', place)
       d%contact_exponent = s%real_of(group, 'contact_exponent', place)
-      d%smoothing = s%real_of(group, 'smoothing', place)
+      d%smoothing = s%real_of(group, key_smoothing, place)
       d%energy_release = code_of(s%text_of(group, 'energy_release', place), 'two_state vcct', &
                                  [release_two_state, release_vcct])
       d%growth = code_of(s%text_of(group, 'growth', place), 'equilibrium one_per_step', &

@@ -3,7 +3,7 @@ module delamination_parameters
   use kinds, only: wp
   implicit none
   private
-  public :: delamination_t, interface_objection, toughness_objection, default_starter, toughnesses
+  public :: delamination_t, interface_objection, toughness_objection, default_starter, default_smoothing, toughnesses
 
   !> What holds the faces and lets them part: a cohesive law of tractions against jumps, or ties that a front releases
   !> by its energy release rate.
@@ -72,7 +72,20 @@ module delamination_parameters
     real(wp) :: smoothing = 0
   end type delamination_t
 
+  !> Cells at least over which a front is smoothed. On stepped discs rates then scatter by 2 to 7 % about their mean,
+  !> with 3 cells by 4 to 13 %; a cross-ply with cells of 1 mm sets free .97 of what it books, with 2.6 cells .84.
+  integer, parameter, public :: least_smoothed_cells = 5
+
 contains
+
+  !> Distance over which a front is smoothed unless the deck says it: stresses beside a front change within a thickness,
+  !> so nothing is resolved by less.
+  pure real(wp) function default_smoothing(thickness, cell) result(distance)
+    !> Thickness of the laminate, and length of the mean cell
+    real(wp), intent(in) :: thickness, cell
+
+    distance = max(thickness, least_smoothed_cells*cell)
+  end function default_smoothing
 
   !> Side of a starter that covers 0.05 % of the plate, as in section 3.3.2 of the paper.
   pure real(wp) function default_starter(length) result(side)

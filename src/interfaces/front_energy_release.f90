@@ -1,7 +1,7 @@
 !> Energy release rates along the fronts of a state.
 module front_energy_release
   use kinds, only: wp
-  use delamination_parameters, only: release_two_state
+  use delamination_parameters, only: release_two_state, default_smoothing
   use delamination_fronts, only: front_segment_t, find_front
   use virtual_crack_closure, only: closure_moments, closure_rates, closure_figures, closure_odd
   use front_smoothing, only: smooth_front_t, beside_front_t, create_smooth_front
@@ -146,12 +146,9 @@ contains
     type(model_t), intent(in) :: model
     !> Index of the zone
     integer, intent(in) :: zone
-    !> Cells at least: on stepped discs rates then scatter by 2 to 7 % about their mean, with 3 cells by 4 to 13 %. Where
-    !> rates differ much along the front, as on cross-plies, more cells level too much.
-    integer, parameter :: least_cells = 5
 
     reach = model%scene%delaminations(zone)%smoothing
-    if (.not. reach > 0) reach = max(model%thickness, least_cells*model%mesh%mean_cell(zone))
+    if (.not. reach > 0) reach = default_smoothing(model%thickness, model%mesh%mean_cell(zone))
   end function front_reach
 
   !> Position of a node's point below an interface on the rank that owns it; 0: elsewhere or none.
