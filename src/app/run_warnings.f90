@@ -56,7 +56,7 @@ contains
     if (deck%has_static) return
     amplitude = 1
     if (.not. deck%has_impactor) amplitude = deck%pressure%amplitude(now%time)
-    if (watch%alarms(now%ledger, sum(now%interfaces%ties%deficit()), amplitude)) call tell(warning_energy, 0)
+    if (watch%alarms(now%ledger, now%interfaces%unreleased(model), amplitude)) call tell(warning_energy, 0)
     if (now%ledger%algorithmic > most_taken*now%ledger%initial .and. now%ledger%initial > 0) call tell(warning_loss, 0)
 
   contains

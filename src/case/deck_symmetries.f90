@@ -4,8 +4,10 @@ module deck_symmetries
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
   use deck_remarks, only: tell, are_clear
-  use delamination_parameters, only: law_front
+  use delamination_deck, only: key_starter_at
+  use delamination_parameters, only: delamination_t, law_front
   use impactor_deck, only: impactor_group, key_at
+  use interface_places, only: delamination_group
   use kinds, only: wp
   use line_deck, only: line_group
   use laminate_parameters, only: shear_five_sixths
@@ -45,6 +47,7 @@ contains
       if (struck_aside(deck, symmetry) .and. are_clear(s, problems, impactor_group, key_at)) &
         call tell(s, problems, impactor_group, key_at, 'the impactor strikes beside the lines of symmetry = '//name// &
                   '; use ''none''.')
+      call check_starters(deck, name, problems)
       if (.not. rigs_alike(deck, symmetry) .and. .not. problems%concern(support_group)) &
         call tell(s, problems, support_group, key_clamps, 'clamps have no image under symmetry = '//name// &
                   '; list all of the whole plate, or use ''none''.')
@@ -55,6 +58,38 @@ contains
                   'use ''none''.')
     end associate
   end subroutine check_symmetry
+
+  !> Refuses starters beside the lines of symmetry.
+  subroutine check_starters(deck, name, problems)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Name of the symmetry, in quotes
+    character(len=*), intent(in) :: name
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    integer :: i
+
+    do i = 1, size(deck%delaminations)
+      if (i > 1) then
+        if (deck%delaminations(i)%group == deck%delaminations(i - 1)%group) cycle
+      end if
+      if (starter_aside(deck%delaminations(i), deck%plate%symmetry) .and. &
+          are_clear(deck%settings, problems, delamination_group, key_starter_at, deck%delaminations(i)%group)) &
+        call tell(deck%settings, problems, delamination_group, key_starter_at, 'the starter lies beside the lines '// &
+                  'of symmetry = '//name//'; use ''none''.', deck%delaminations(i)%group)
+    end do
+  end subroutine check_starters
+
+  !> True if a starter has its centre beside a line of symmetry.
+  pure logical function starter_aside(delamination, symmetry)
+    !> The interface
+    type(delamination_t), intent(in) :: delamination
+    !> The symmetry
+    integer, intent(in) :: symmetry
+
+    starter_aside = any(abs(delamination%starter_at) > 0 .and. &
+                        (is_halved(symmetry) .or. symmetry == symmetry_point))
+  end function starter_aside
 
   !> Sentence on the smallest part of the plate that could stand for the whole; empty if the deck has it already.
   function symmetry_sentence(deck) result(sentence)
@@ -87,10 +122,12 @@ contains
     !> The part
     integer, intent(in) :: symmetry
     logical :: alike(2)
+    integer :: i
 
     alike = deck%plate%edges([1, 3]) == deck%plate%edges([2, 4])
     ! Lines and strips are where the deck puts them, whether or not an image faces them.
     suits = size(deck%lines) == 0 .and. .not. any_strip(deck) .and. &
+            .not. any([(starter_aside(deck%delaminations(i), symmetry), i=1, size(deck%delaminations))]) .and. &
             all(alike .or. .not. is_halved(symmetry)) .and. (symmetry /= symmetry_point .or. all(alike)) .and. &
             .not. struck_aside(deck, symmetry) .and. rigs_alike(deck, symmetry)
     if (.not. suits) return

@@ -30,18 +30,23 @@ module delaminated_regions
 contains
 
   !> The region of a zone with the starter as its only delamination. The starter takes the cells whose
-  !> middle lies in its square; a starter smaller than a cell takes those that touch the struck point.
-  pure function create_region(mesh, zone, starter, strip) result(self)
+  !> middle lies in its square or circle; a starter smaller than a cell takes those that touch its centre.
+  pure function create_region(mesh, zone, starter, strip, round, at) result(self)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Index of the zone
     integer, intent(in) :: zone
-    !> Side of the starter, of the whole plate; 0: none
+    !> Side or diameter of the starter, of the whole plate; 0: none
     real(wp), intent(in) :: starter
     !> First and last x of a starter across the zone's width; none unless the first is smaller
     real(wp), intent(in), optional :: strip(2)
+    !> True: the starter is a circle
+    logical, intent(in), optional :: round
+    !> Centre of the starter, from the struck point; left out: there
+    real(wp), intent(in), optional :: at(2)
     !> The region
     type(delaminated_region_t) :: self
+    real(wp) :: centre(2)
     integer :: columns(2), rows(2)
 
     self%cells = mesh%cells
@@ -50,12 +55,49 @@ contains
     allocate (self%delaminated(self%columns(1):self%columns(2), self%rows(1):self%rows(2)), source=.false.)
     if (present(strip)) call delaminate_strip(self, mesh%x_edges - mesh%struck(1), strip)
     if (.not. starter > 0) return
-    columns = cells_within(mesh%x_edges - mesh%struck(1), starter)
-    rows = cells_within(mesh%y_edges - mesh%struck(2), starter)
+    centre = mesh%struck
+    if (present(at)) centre = centre + at
+    columns = cells_within(mesh%x_edges - centre(1), starter)
+    rows = cells_within(mesh%y_edges - centre(2), starter)
     columns = [max(columns(1), self%columns(1)), min(columns(2), self%columns(2))]
     rows = [max(rows(1), self%rows(1)), min(rows(2), self%rows(2))]
     self%delaminated(columns(1):columns(2), rows(1):rows(2)) = .true.
+    if (.not. present(round)) return
+    if (round) call round_off(self, mesh, centre, starter)
   end function create_region
+
+  !> Leaves of a square starter the cells whose middle lies in its circle, and those that touch its centre.
+  pure subroutine round_off(self, mesh, centre, diameter)
+    !> The region, with the square
+    type(delaminated_region_t), intent(inout) :: self
+    !> The mesh
+    type(layered_mesh_t), intent(in) :: mesh
+    !> Centre, and diameter of the circle
+    real(wp), intent(in) :: centre(2), diameter
+    real(wp) :: x(2), y(2)
+    integer :: column, row
+
+    do row = self%rows(1), self%rows(2)
+      do column = self%columns(1), self%columns(2)
+        x = mesh%x_edges(column:column + 1) - centre(1)
+        y = mesh%y_edges(row:row + 1) - centre(2)
+        if (norm2([sum(x), sum(y)]) < diameter) cycle
+        if (.not. touches(x) .or. .not. touches(y)) self%delaminated(column, row) = .false.
+      end do
+    end do
+
+  contains
+
+    !> True if a cell touches the centre along one direction.
+    pure logical function touches(edges)
+      !> Edges of the cell, the centre at 0
+      real(wp), intent(in) :: edges(2)
+      real(wp) :: rounding
+
+      rounding = 1.0e-9_wp*diameter
+      touches = edges(1) < rounding .and. edges(2) > -rounding
+    end function touches
+  end subroutine round_off
 
   !> Delaminates the cells of a zone whose middle lies in a strip across it.
   pure subroutine delaminate_strip(self, x_edges, strip)

@@ -10,7 +10,7 @@ module delamination_deck
                                      toughness_objection, release_two_state, release_vcct, growth_equilibrium, &
                                      growth_one_per_step, tie_eliminate, &
                                      tie_penalty, contact_augmented_lagrangian, contact_continuous_penalty, &
-                                     contact_none, unloading_contact, unloading_glued, account_debts, account_balance
+                                     contact_none, unloading_contact, unloading_glued
   use interface_places, only: delamination_group, key_below_ply, plies_above
   use kinds, only: wp
   use text, only: line_t, to_text, words_of
@@ -20,11 +20,13 @@ module delamination_deck
 
   !> Names that checks across groups use.
   character(len=*), parameter, public :: key_zone = 'zone', key_starter = 'starter', key_toughness = 'G_c', &
-                                         key_toughness_shear = 'G_IIc', key_strip = 'starter_strip'
+                                         key_toughness_shear = 'G_IIc', key_strip = 'starter_strip', &
+                                         key_starter_at = 'starter_at', &
+                                         key_smoothing = 'smoothing'
   character(len=*), parameter :: group = delamination_group
   !> Keys that have no effect on a cohesive interface.
   character(len=*), parameter :: keys_of_fronts = &
-    'energy_release growth tie penalty unloading account contact_exponent'
+    'energy_release growth tie penalty unloading smoothing contact_exponent'
   !> Row of the group.
   character(len=group_row_length), parameter, public :: delamination_group_row = &
     'delamination | several | Interfaces that may delaminate; one group for those that are alike.'
@@ -44,7 +46,11 @@ module delamination_deck
     'delamination | zone | real | 2 | length | required | > 0 | &
       &Full extents of the layered rectangle along x and y, centred on the struck point.', &
     'delamination | starter | real | 1 | length | = 0.05 % of the plate, with law = cohesive none | > 0 | &
-      &Side of the square starter delamination, centred on the struck point.', &
+      &Side of the square starter delamination, or diameter of the round one.', &
+    'delamination | starter_shape | choice | 1 | - | ''square'' | square round | &
+      &Outline of the starter, in whole cells.', &
+    'delamination | starter_at | real | 2 | length | = the struck point | any | &
+      &Centre of the starter, from the struck point.', &
     'delamination | starter_strip | real | 2 | length | none | any | &
       &First and last x of a starter across the whole width of the zone, from the struck point; instead of starter.', &
     'delamination | law | choice | 1 | - | = cohesive; front with a starter or without strengths | front cohesive | &
@@ -71,8 +77,8 @@ module delamination_deck
       &Exponent q of the continuous penalty (Eq. 12).', &
     'delamination | unloading | choice | 1 | - | ''contact'' | contact glued | &
       &While the impactor rebounds: real contact, or separated faces move together (Eq. 13b).', &
-    'delamination | account | choice | 1 | - | ''debts'' | debts balance | &
-      &Energy owed raises what the next cell must offer; with balance, energy in excess lowers it.']
+    'delamination | smoothing | real | 1 | length | = 5 cells of the zone, at least the laminate | > 0 | &
+      &Distance along a front within which tie forces and openings are averaged before they make its rate.']
 
 contains
 
@@ -130,8 +136,11 @@ contains
       if (s%is_known(group, key_zone, place)) d%zone = s%reals_of(group, key_zone, place)
       if (s%is_given(group, key_starter, place)) d%starter = s%real_of(group, key_starter, place)
       if (s%is_given(group, key_strip, place)) d%starter_strip = s%reals_of(group, key_strip, place)
+      d%starter_round = s%text_of(group, 'starter_shape', place) == 'round'
+      if (s%is_given(group, key_starter_at, place)) d%starter_at = s%reals_of(group, key_starter_at, place)
       d%penalty_stiffness = s%real_of(group, 'penalty', place)
       d%contact_exponent = s%real_of(group, 'contact_exponent', place)
+      d%smoothing = s%real_of(group, key_smoothing, place)
       d%energy_release = code_of(s%text_of(group, 'energy_release', place), 'two_state vcct', &
                                  [release_two_state, release_vcct])
       d%growth = code_of(s%text_of(group, 'growth', place), 'equilibrium one_per_step', &
@@ -140,7 +149,6 @@ contains
       d%contact = code_of(s%text_of(group, 'contact', place), 'augmented_lagrangian continuous_penalty none', &
                           [contact_augmented_lagrangian, contact_continuous_penalty, contact_none])
       d%unloading = code_of(s%text_of(group, 'unloading', place), 'contact glued', [unloading_contact, unloading_glued])
-      d%account = code_of(s%text_of(group, 'account', place), 'debts balance', [account_debts, account_balance])
     end associate
   end subroutine fill_delamination
 
@@ -234,9 +242,10 @@ contains
       call check_strengths(settings, delaminations(i), place, problems)
       call remark_idle_keys(settings, delaminations(i), place, problems)
       call check_strip(settings, delaminations(i), place, problems)
-      if (delaminations(i)%starter >= minval(delaminations(i)%zone) .and. &
-          are_clear(settings, problems, group, key_zone//' '//key_starter, place)) &
-        call tell(settings, problems, group, '', 'the starter must be smaller than the zone.', place)
+      if (delaminations(i)%starter > 0 .and. &
+          any(delaminations(i)%starter + 2*abs(delaminations(i)%starter_at) >= delaminations(i)%zone) .and. &
+          are_clear(settings, problems, group, key_zone//' '//key_starter//' '//key_starter_at, place)) &
+        call tell(settings, problems, group, '', 'the starter must be smaller than the zone and lie within it.', place)
     end do
     do i = 2, size(delaminations)
       if (delaminations(i)%below_ply <= delaminations(i - 1)%below_ply .and. &
@@ -361,12 +370,14 @@ contains
       if (d%law /= law_cohesive) &
         call idle('strength_opening strength_shear stiffness friction', 'without law = ''cohesive''')
       if (d%contact == contact_none) call idle('friction', 'as faces pass through each other')
+      if (.not. d%starter > 0) call idle('starter_shape '//key_starter_at, 'without '//key_starter)
       if (d%toughness > 0) call idle('eta', 'as G_c is given')
       if (d%law == law_cohesive) return
       if (d%tie /= tie_penalty) call idle('penalty', 'without tie = ''penalty''')
       if (d%contact /= contact_continuous_penalty) &
         call idle('contact_exponent', 'without contact = ''continuous_penalty''')
-      if (d%growth /= growth_equilibrium) call idle('account', 'without growth = ''equilibrium''')
+      if (d%energy_release /= release_vcct .and. d%growth /= growth_equilibrium) &
+        call idle('smoothing', 'without energy_release = ''vcct'' or growth = ''equilibrium''')
     end associate
 
   contains

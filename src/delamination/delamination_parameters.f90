@@ -3,7 +3,7 @@ module delamination_parameters
   use kinds, only: wp
   implicit none
   private
-  public :: delamination_t, interface_objection, toughness_objection, default_starter, toughnesses
+  public :: delamination_t, interface_objection, toughness_objection, default_starter, default_smoothing, toughnesses
 
   !> What holds the faces and lets them part: a cohesive law of tractions against jumps, or ties that a front releases
   !> by its energy release rate.
@@ -21,9 +21,6 @@ module delamination_parameters
   !> While the impactor rebounds: real contact, or both faces glued together (Eq. 13b).
   integer, parameter, public :: unloading_contact = 1, unloading_glued = 2
 
-  !> What a front's account of energy counts: debts only, or what was set free in excess too.
-  integer, parameter, public :: account_debts = 1, account_balance = 2
-
   !> One interface that may delaminate. It has many components because two laws share
   !> one group of the deck.
   type :: delamination_t
@@ -39,8 +36,12 @@ module delamination_parameters
     real(wp) :: mixing_exponent = 1.75_wp
     !> Full extents of the layered rectangle along x and y, centred on the struck point
     real(wp) :: zone(2) = 0
-    !> Side of the square starter, centred on the struck point
+    !> Side of the square starter, or diameter of the round one
     real(wp) :: starter = 0
+    !> True: the starter is round
+    logical :: starter_round = .false.
+    !> Its centre, from the struck point
+    real(wp) :: starter_at(2) = 0
     !> First and last x of a starter across the whole width of the zone, if the first is smaller
     real(wp) :: starter_strip(2) = 0
     !> law_front or law_cohesive
@@ -67,11 +68,24 @@ module delamination_parameters
     real(wp) :: contact_exponent = 1
     !> unloading_contact or unloading_glued
     integer :: unloading = unloading_contact
-    !> account_debts or account_balance
-    integer :: account = account_debts
+    !> Distance along a front over which forces and openings are averaged; 0: from cells and thickness
+    real(wp) :: smoothing = 0
   end type delamination_t
 
+  !> Cells at least over which a front is smoothed. On stepped discs rates then scatter by 2 to 7 % about their mean,
+  !> with 3 cells by 4 to 13 %; a cross-ply with cells of 1 mm sets free .97 of what it books, with 2.6 cells .84.
+  integer, parameter, public :: least_smoothed_cells = 5
+
 contains
+
+  !> Distance over which a front is smoothed unless the deck says it: stresses beside a front change within a thickness,
+  !> so nothing is resolved by less.
+  pure real(wp) function default_smoothing(thickness, cell) result(distance)
+    !> Thickness of the laminate, and length of the mean cell
+    real(wp), intent(in) :: thickness, cell
+
+    distance = max(thickness, least_smoothed_cells*cell)
+  end function default_smoothing
 
   !> Side of a starter that covers 0.05 % of the plate, as in section 3.3.2 of the paper.
   pure real(wp) function default_starter(length) result(side)

@@ -1,25 +1,31 @@
 !> Energy release rates at the front of a delamination.
 !>
-!> Virtual crack closure. Tying the faces over the cell ahead of a segment holds back forces F on jumps d
-!> that the cell would have as soon as it delaminated; it would then look like the delaminated cell behind,
-!> so d is taken from there. Closing it again takes the work of forces that grow in proportion to the
-!> closing, 1/2 sum F.d, hence G A = 1/2 sum F.d with A the area of the cell ahead. In a nine-node cell a
-!> line of nodes that crosses the front gets two pairs: the force on the front with the jump one cell
-!> behind, and the force one node ahead with the jump half a cell behind.
-!>
-!> Corner lines belong to two segments, so their forces are shared (see `delamination_fronts`): the works
-!> of all segments of a straight front then add up to what the ties really do. Where the front turns around
-!> delaminated cells the corner line has no jump behind, as the other leg of the front runs there: it adds
-!> nothing. Where it turns around an intact cell both legs lead into that cell and the shared forces are split
-!> between them; what both together release is found by `over_outside_cells`.
+!> Virtual crack closure. A front that moves on by a length b frees the tie forces F over it, and the jumps there become
+!> those that are now behind the front: a force at the distance d ahead acts on the jump at b - d behind. Closing that
+!> again takes the work of forces that grow in proportion to the closing, so G b = 1/2 sum of F.d for each unit of
+!> length along the front. The jump is a parabola through the smooth line of the front, where it vanishes, fitted
+!> to the nodes behind it. Both are moments of forces and jumps at the nodes, which can be averaged along the front
+!> before they are multiplied. On a straight front with equal cells, b one of them, this is the closure of nine-node
+!> elements: the force on the front with the jump one cell behind, and the force half a cell ahead with the jump half a
+!> cell behind.
 module virtual_crack_closure
-  use delamination_fronts, only: front_segment_t
   use dense_systems, only: solve_dense
   use kinds, only: wp
   use packed_matrices, only: unpacked
   implicit none
   private
-  public :: two_state_release, carried_over, segment_mean, vcct_release, over_outside_cells
+  public :: two_state_release, carried_over, segment_mean, closure_moments, closure_rates
+
+  !> Figures of a node that closure is made of: sums of forces times powers 0 to 2 of their distance ahead, of powers 2
+  !> to 4 of the distance behind, and of jumps times its powers 1 and 2. Components are across the front, along it and
+  !> through the thickness.
+  integer, parameter, public :: closure_figures = 18
+  !> True for those along the front, which change their sign in a mirror.
+  logical, parameter, public :: closure_odd(closure_figures) = &
+    [.false., .true., .false., .false., .true., .false., .false., .true., .false., .false., .false., .false., &
+     .false., .true., .false., .false., .true., .false.]
+  !> Cells behind the front whose nodes the jump is fitted to, times the cell: on slanting fronts too a whole cell.
+  real(wp), parameter :: fitted = sqrt(2.0_wp)*(1 + 1.0e-6_wp)
 
 contains
 
@@ -106,83 +112,66 @@ contains
     mean = sum(rates)/3
   end function segment_mean
 
-  !> Energy release rates G_I (opening), G_II (sliding across the front) and G_III (sliding along it) of a
-  !> segment by virtual crack closure. A negative rate of a mode (closed faces pressed together) counts as zero.
-  pure function vcct_release(segment, tie_force, jump) result(modes)
-    !> The segment
-    type(front_segment_t), intent(in) :: segment
-    !> Forces x, y, z that hold the jumps at zero at the nodes of the edge (1) and one ahead (2), positive where
-    !> they hold back a positive jump: external less internal and inertia force on the held jump, (3, 2, lines)
-    real(wp), intent(in) :: tie_force(3, 2, 3)
-    !> Jumps of the displacements x, y, z at the nodes one (1) and two (2) behind the edge, zero where the faces
-    !> are tied, as at the opposite front of a region one cell wide, (3, 2, lines)
-    real(wp), intent(in) :: jump(3, 2, 3)
+  !> What a node brings to the closure of a front.
+  pure function closure_moments(normal, distance, ahead, behind, tied, weight, force, jump) result(figures)
+    !> Normal of the front beside the node, away from the delamination
+    real(wp), intent(in) :: normal(2)
+    !> Distance of the node ahead of the front, negative behind it
+    real(wp), intent(in) :: distance
+    !> Length of the cells ahead and behind
+    real(wp), intent(in) :: ahead, behind
+    !> True: the faces are joined there
+    logical, intent(in) :: tied
+    !> Weight of the node's jump
+    real(wp), intent(in) :: weight
+    !> Force x, y, z that holds the jump at zero, positive where it holds back a positive one
+    real(wp), intent(in) :: force(3)
+    !> Jump of the displacements x, y, z
+    real(wp), intent(in) :: jump(3)
+    !> The figures
+    real(wp) :: figures(closure_figures)
+    real(wp) :: turn(3, 3)
+
+    figures = 0
+    turn = reshape([normal(1), -normal(2), 0.0_wp, normal(2), normal(1), 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp], [3, 3])
+    if (tied .and. distance < ahead) then
+      figures(1:3) = matmul(turn, force)
+      figures(4:6) = distance*figures(1:3)
+      figures(7:9) = distance*figures(4:6)
+    end if
+    ! What is tied behind the smooth line counts too: the jump there is the mean of those along the front.
+    if (distance < 0 .and. -distance < fitted*behind) then
+      figures(10:12) = weight*distance**2*[1.0_wp, -distance, distance**2]
+      figures(13:15) = -weight*distance*matmul(turn, jump)
+      figures(16:18) = -distance*figures(13:15)
+    end if
+  end function closure_moments
+
+  !> Energy release rates G_I (opening), G_II (sliding across the front) and G_III (sliding along it) from sums of the
+  !> figures of nodes. A negative rate of a mode (closed faces pressed together) counts as zero.
+  pure function closure_rates(figures, length, extension) result(modes)
+    !> The sums
+    real(wp), intent(in) :: figures(closure_figures)
+    !> Length of the front that they belong to, and length by which it moves on; positive
+    real(wp), intent(in) :: length, extension
     !> G_I, G_II, G_III, none negative
     real(wp) :: modes(3)
-    real(wp) :: ratio, work(3)
-    integer :: line
+    !> Determinant, relative, below which nodes at one distance leave a straight line only.
+    real(wp), parameter :: one_distance = 1.0e-9_wp
+    real(wp) :: slope(3), bend(3), det, work(3)
 
-    ratio = segment%ahead_length/segment%behind_length
-    work = 0
-    do line = 1, 3
-      work = work + segment%edge_share(line)*tie_force(:, 1, line)*jump_behind(jump(:, :, line), ratio) + &
-             segment%ahead_share(line)*tie_force(:, 2, line)*jump_behind(jump(:, :, line), ratio/2)
-    end do
-    work = max(0.0_wp, work/2)
-    modes = work([3, segment%direction, 3 - segment%direction])/(segment%width*segment%ahead_length)
-  end function vcct_release
-
-  !> Jump at a distance behind the front: the quadratic through the nodes of the cell there, and far beyond
-  !> the cell in proportion to the distance.
-  pure function jump_behind(jump, distance) result(value)
-    !> Jumps half a cell and a whole cell behind the front, (3, 2)
-    real(wp), intent(in) :: jump(3, 2)
-    !> Distance in lengths of the cell
-    real(wp), intent(in) :: distance
-    !> The jump
-    real(wp) :: value(3)
-    real(wp) :: inside
-
-    ! Beyond a whole cell the quadratic is stretched a little where the faces are still apart there: on a
-    ! double cantilever with cells 1.1 and 1.5 times longer ahead that gives 1.000 and 1.001 of the exact
-    ! rate, a straight line 0.965 and 0.909.
-    inside = min(distance, merge(1.5_wp, 1.0_wp, any(jump(:, 2) /= 0)))
-    value = (4*inside*(1 - inside)*jump(:, 1) + inside*(2*inside - 1)*jump(:, 2))*(distance/inside)
-  end function jump_behind
-
-  !> Rates of the intact cells ahead of a front from those of the segments that lead into them. Along a stepped
-  !> front each segment gets the component of G along its own normal, as the true front is shorter than its steps:
-  !> rates of parallel segments add up, and G is the root of the squares of the two directions' sums. On a straight
-  !> front nothing changes. The mixture of modes is that of the plain sums.
-  !> Measured on discs of six cells or more in radius that grow cell by cell under a central load: at the hardest
-  !> outline on the way the largest of these rates is 0.96 of the exact one, as is the energy really released
-  !> on the whole way; the largest plain sum is 1.18, the largest rate of a single segment 0.74.
-  pure function over_outside_cells(segments, rates) result(combined)
-    !> All segments of a front, those into the same cell one after the other
-    type(front_segment_t), intent(in) :: segments(:)
-    !> G_I, G_II, G_III of each segment, (3, segments)
-    real(wp), intent(in) :: rates(:, :)
-    !> The rates of the cells, repeated for each segment of a cell, (3, segments)
-    real(wp) :: combined(3, size(segments))
-    real(wp) :: along(2)
-    integer :: first, last, s
-
-    first = 1
-    do while (first <= size(segments))
-      last = first
-      do while (last < size(segments))
-        if (any(segments(last + 1)%outside /= segments(first)%outside)) exit
-        last = last + 1
-      end do
-      along = 0
-      do s = first, last
-        along(segments(s)%direction) = along(segments(s)%direction) + sum(rates(:, s))
-      end do
-      do s = first, last
-        combined(:, s) = sum(rates(:, first:last), dim=2)
-        if (all(along > 0)) combined(:, s) = combined(:, s)*(norm2(along)/sum(along))
-      end do
-      first = last + 1
-    end do
-  end function over_outside_cells
+    slope = 0
+    bend = 0
+    associate (s => figures(10:12), b => extension)
+      det = s(1)*s(3) - s(2)**2
+      if (det > one_distance*s(1)*s(3)) then
+        slope = (figures(13:15)*s(3) - figures(16:18)*s(2))/det
+        bend = (figures(16:18)*s(1) - figures(13:15)*s(2))/det
+      else if (s(1) > 0) then
+        slope = figures(13:15)/s(1)
+      end if
+      work = slope*(b*figures(1:3) - figures(4:6)) + bend*(b**2*figures(1:3) - 2*b*figures(4:6) + figures(7:9))
+    end associate
+    modes = max(0.0_wp, work([3, 1, 2]))/(2*extension*length)
+  end function closure_rates
 end module virtual_crack_closure

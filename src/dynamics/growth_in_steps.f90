@@ -52,7 +52,6 @@ contains
       if (.not. grown .or. grows_by_steps(model)) return
       call ties%release(model, free, trial%interfaces%faces%free, &
                        trial%motion%internal(1:3, :) + trial%motion%inertia(1:3, :))
-      ties%required = trial%interfaces%ties%required
       problem%guess = trial%motion%displacement
       start = now
       start%interfaces%faces = trial%interfaces%faces

@@ -1,10 +1,10 @@
 !> Energy release rates along the fronts of a state.
 module front_energy_release
   use kinds, only: wp
-  use delamination_parameters, only: release_two_state
+  use delamination_parameters, only: release_two_state, default_smoothing
   use delamination_fronts, only: front_segment_t, find_front
-  use virtual_crack_closure, only: vcct_release, over_outside_cells
-  use front_smoothing, only: smoothed_along_front
+  use virtual_crack_closure, only: closure_moments, closure_rates, closure_figures, closure_odd
+  use front_smoothing, only: smooth_front_t, beside_front_t, create_smooth_front
   use benzeggagh_kenane, only: release_ratio
   use motions, only: motion_t
   use contact_and_ties, only: contact_and_ties_t
@@ -12,12 +12,14 @@ module front_energy_release
   use two_state_energy_release, only: two_state_rates
   implicit none
   private
-  public :: front_energy_release_t, release_along_front
+  public :: front_energy_release_t, release_along_front, front_reach
 
   !> The front of one zone and what it would release, the same on every rank.
   type :: front_energy_release_t
     !> The segments
     type(front_segment_t), allocatable :: segments(:)
+    !> The smooth line that they stand for
+    type(smooth_front_t) :: line
     !> G_I, G_II, G_III of each segment; Eq. 11 gives no modes and stands in the second row, (3, segments)
     real(wp), allocatable :: modes(:, :)
     !> G over its critical value, of each segment
@@ -44,85 +46,110 @@ contains
     integer :: s
 
     front%segments = find_front(faces%regions(zone), model%mesh)
+    front%line = create_smooth_front(front%segments, model%mesh)
     if (method == release_two_state) then
       front%modes = two_state_rates(model, stiffness, motion, zone, front%segments)
     else
-      front%modes = vcct_rates(model, motion, zone, front%segments)
+      front%modes = vcct_rates(model, faces, motion, zone, front%segments, front%line)
     end if
     front%ratio = [(release_ratio(model%scene%delaminations(zone), front%modes(:, s)), s=1, size(front%segments))]
   end function release_along_front
 
-  !> Rates by virtual crack closure, smoothed along the front, those of the edges into the same cell put together.
-  function vcct_rates(model, motion, zone, segments) result(modes)
+  !> Rates by virtual crack closure, from forces and jumps averaged along the front.
+  function vcct_rates(model, faces, motion, zone, segments, line) result(modes)
     type(model_t), intent(in) :: model
+    !> Delaminated cells
+    type(contact_and_ties_t), intent(in) :: faces
     !> Motion with its forces
     type(motion_t), intent(in) :: motion
     !> Index of the zone
     integer, intent(in) :: zone
     !> The front
     type(front_segment_t), intent(in) :: segments(:)
+    !> Its smooth line
+    type(smooth_front_t), intent(in) :: line
     !> G_I, G_II, G_III, (3, segments)
     real(wp), allocatable :: modes(:, :)
-    real(wp), allocatable :: values(:)
-    real(wp) :: forces(3, 2, 3), jumps(3, 2, 3)
-    integer :: s, line, k
+    real(wp) :: figures(closure_figures + 2, size(segments)), sums(closure_figures + 2)
+    logical :: odd(closure_figures + 2)
+    integer :: s
 
-    allocate (modes(3, size(segments)), values(36*size(segments)))
-    values = 0
+    figures(:closure_figures, :) = moments_of(model, faces, motion, zone, segments, line)
+    figures(closure_figures + 1, :) = line%length
+    figures(closure_figures + 2, :) = line%length*line%ahead
+    odd = .false.
+    odd(:closure_figures) = closure_odd
+    allocate (modes(3, size(segments)), source=0.0_wp)
     do s = 1, size(segments)
-      do line = 1, 3
-        do k = 1, 2
-          forces(:, k, line) = tie_force(model, motion, zone, &
-                                         merge(segments(s)%edge(line), segments(s)%ahead(1, line), k == 1))
-          jumps(:, k, line) = jump(model, motion, zone, segments(s)%behind(k, line))
-        end do
-      end do
-      values(36*s - 35:36*s) = [reshape(forces, [18]), reshape(jumps, [18])]
+      if (.not. line%length(s) > 0) cycle
+      sums = line%means(s, front_reach(model, zone), figures, odd)
+      associate (length => sums(closure_figures + 1))
+        modes(:, s) = closure_rates(sums(:closure_figures), length, sums(closure_figures + 2)/length)
+      end associate
     end do
-    call model%communicator%sum(values)
-    do s = 1, size(segments)
-      modes(:, s) = vcct_release(segments(s), reshape(values(36*s - 35:36*s - 18), [3, 2, 3]), &
-                                 reshape(values(36*s - 17:36*s), [3, 2, 3]))
-    end do
-    modes = over_outside_cells(segments, smoothed_along_front(segments, model%thickness, &
-      model%mesh%mirrored, modes))
   end function vcct_rates
 
-  !> Force that holds the jump at a node, on the rank that owns it: external less internal and inertia forces.
-  pure function tie_force(model, motion, zone, node) result(force)
+  !> What the nodes beside each segment bring to its closure, of all ranks.
+  function moments_of(model, faces, motion, zone, segments, line) result(figures)
     type(model_t), intent(in) :: model
+    !> Delaminated cells
+    type(contact_and_ties_t), intent(in) :: faces
     !> Motion with its forces
     type(motion_t), intent(in) :: motion
     !> Index of the zone
     integer, intent(in) :: zone
-    !> Node
-    integer, intent(in) :: node
-    !> Force, x, y, z; zero on other ranks and where there is no jump
-    real(wp) :: force(3)
-    integer :: i
+    !> The front
+    type(front_segment_t), intent(in) :: segments(:)
+    !> Its smooth line
+    type(smooth_front_t), intent(in) :: line
+    !> Sums of the figures of nodes, (figures, segments)
+    real(wp), allocatable :: figures(:, :)
+    type(beside_front_t) :: nodes
+    real(wp), allocatable :: sums(:)
+    real(wp) :: weight
+    integer :: i, k
 
-    force = 0
-    i = owned_lower_point(model, zone, node)
-    if (i > 0) force = -motion%internal(1:3, i) - motion%inertia(1:3, i)
+    allocate (figures(closure_figures, size(segments)), source=0.0_wp)
+    nodes = line%beside(segments, model%mesh)
+    do k = 1, size(nodes%node)
+      i = owned_lower_point(model, zone, nodes%node(k))
+      if (i == 0) cycle
+      ! A node on a line of symmetry has half of its forces, but its whole jump.
+      weight = product(merge(0.5_wp, 1.0_wp, model%mesh%lines_of(nodes%node(k)) == 0 .and. model%mesh%mirrored))
+      associate (s => nodes%segment(k))
+        figures(:, s) = figures(:, s) + nodes%share(k)*closure_moments(line%normal(:, s), nodes%distance(k), &
+          line%ahead(s), line%behind(s), .not. faces%free(i), weight, tie_force(model, motion, i), &
+          motion%displacement(1:3, i))
+      end associate
+    end do
+    sums = reshape(figures, [size(figures)])
+    call model%communicator%sum(sums)
+    figures = reshape(sums, shape(figures))
+  end function moments_of
+
+  !> Force that holds the jump at a point: external less internal and inertia forces.
+  pure function tie_force(model, motion, i) result(force)
+    type(model_t), intent(in) :: model
+    !> Motion with its forces
+    type(motion_t), intent(in) :: motion
+    !> Point below the interface, on the rank that owns it
+    integer, intent(in) :: i
+    !> Force, x, y, z; what a line of symmetry or an edge of the plate holds is none of the ties'
+    real(wp) :: force(3)
+
+    force = -motion%internal(1:3, i) - motion%inertia(1:3, i)
+    where (model%held(1:3, model%distribution%points(i))) force = 0
   end function tie_force
 
-  !> Jump at a node, on the rank that owns it.
-  pure function jump(model, motion, zone, node)
+  !> Distance along a front over which forces and jumps are averaged.
+  pure real(wp) function front_reach(model, zone) result(reach)
     type(model_t), intent(in) :: model
-    !> Motion
-    type(motion_t), intent(in) :: motion
     !> Index of the zone
     integer, intent(in) :: zone
-    !> Node
-    integer, intent(in) :: node
-    !> Jump, x, y, z; zero on other ranks and where there is none
-    real(wp) :: jump(3)
-    integer :: i
 
-    jump = 0
-    i = owned_lower_point(model, zone, node)
-    if (i > 0) jump = motion%displacement(1:3, i)
-  end function jump
+    reach = model%scene%delaminations(zone)%smoothing
+    if (.not. reach > 0) reach = default_smoothing(model%thickness, model%mesh%mean_cell(zone))
+  end function front_reach
 
   !> Position of a node's point below an interface on the rank that owns it; 0: elsewhere or none.
   pure integer function owned_lower_point(model, zone, node) result(i)

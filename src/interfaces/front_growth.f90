@@ -1,9 +1,9 @@
 !> Growth of delaminations: which cells delaminate in a state, and what that costs.
 module front_growth
   use kinds, only: wp
-  use delamination_parameters, only: growth_one_per_step, law_cohesive, unloading_glued
+  use delamination_parameters, only: growth_one_per_step, growth_equilibrium, law_cohesive, unloading_glued
   use benzeggagh_kenane, only: critical_release_rate
-  use front_energy_release, only: front_energy_release_t, release_along_front
+  use front_energy_release, only: front_energy_release_t, release_along_front, front_reach
   use motions, only: motion_t
   use interface_states, only: interface_state_t
   use models, only: model_t
@@ -80,7 +80,8 @@ contains
     real(wp), intent(inout) :: fracture
     !> Set true if cells delaminated
     logical, intent(inout) :: grown
-    real(wp) :: largest, enough, energy, required
+    real(wp) :: largest, enough, energy
+    logical :: enters(size(front%segments))
     integer :: s, foremost
 
     ! Where the layers end, virtual crack closure finds no force to close: a rate cannot tell that growth is barred.
@@ -91,13 +92,15 @@ contains
     if (state%faces%glued .and. model%scene%delaminations(zone)%unloading == unloading_glued) return
     largest = front%ratio(foremost)
     state%growth_ratio = max(state%growth_ratio, largest)
-    required = state%ties%required_ratio(zone, cell_energy(foremost))
-    if (.not. largest > required) return
-    enough = max(required, together*largest)
+    if (.not. largest > 1) return
+    enough = max(1.0_wp, together*largest)
     if (model%scene%delaminations(zone)%growth == growth_one_per_step) enough = largest
+    enters = .not. front%segments%at_border .and. front%ratio >= enough
+    if (model%scene%delaminations(zone)%growth == growth_equilibrium) &
+      enters = enters .and. met_first(front, enters, front_reach(model, zone))
     do s = 1, size(front%segments)
       associate (segment => front%segments(s), region => state%faces%regions(zone))
-        if (segment%at_border .or. front%ratio(s) < enough) cycle
+        if (.not. enters(s)) cycle
         if (region%is_delaminated(segment%outside(1), segment%outside(2))) cycle
         call region%release(segment%outside)
         energy = cell_energy(s)*model%mesh%multiplicity
@@ -105,7 +108,6 @@ contains
         state%faces%fracture(zone) = state%faces%fracture(zone) + energy
         grown = .true.
         if (model%scene%delaminations(zone)%growth == growth_one_per_step) return
-        state%ties%required(zone) = state%ties%required(zone) + energy
       end associate
     end do
 
@@ -120,6 +122,31 @@ contains
                     *model%mesh%cell_area(front%segments(s)%outside)
     end function cell_energy
   end subroutine release_cells
+
+  !> Which cells a smooth front meets first as it moves on: those whose middles lie least far ahead of it among
+  !> the cells within reach that it could enter. A rate averaged over that reach cannot tell them apart.
+  pure function met_first(front, open, reach) result(first)
+    !> The front
+    type(front_energy_release_t), intent(in) :: front
+    !> True for segments that the front could pass
+    logical, intent(in) :: open(:)
+    !> The reach
+    real(wp), intent(in) :: reach
+    !> True for segments that it passes first
+    logical :: first(size(open))
+    !> Distance, relative to a cell, that counts as none.
+    real(wp), parameter :: alike = 1.0e-6_wp
+    integer :: s, t, image
+
+    first = open
+    do s = 1, size(open)
+      if (.not. open(s)) cycle
+      do t = 1, size(open)
+        if (.not. open(t) .or. front%line%offset(t) > front%line%offset(s) - alike*front%line%ahead(s)) cycle
+        if (any([(front%line%weight(s, t, image, reach) > 0, image=0, 3)])) first(s) = .false.
+      end do
+    end do
+  end function met_first
 
   !> Frees the jumps of the new delamination; faces that were pressed together start in contact.
   subroutine open_faces(model, motion, state)

@@ -3,6 +3,7 @@
 module interface_states
   use kinds, only: wp
   use archives, only: archive_t
+  use delamination_parameters, only: growth_equilibrium
   use models, only: model_t
   use contact_and_ties, only: contact_and_ties_t, new_contact_and_ties
   use cohesive_interfaces, only: cohesive_interfaces_t, new_cohesive_interfaces
@@ -40,6 +41,8 @@ module interface_states
     procedure :: keep_touching
     !> Work of contact and penalty ties in a step.
     procedure :: contact_work
+    !> Energy booked as fracture that fronts have not set free.
+    procedure :: unreleased
     !> Stiffness that ties, contact and cohesive laws add to the diagonal.
     procedure :: added_stiffness
     !> Energy that friction has turned into heat since an earlier state.
@@ -177,6 +180,20 @@ contains
       node_of = model%mesh%point_node(model%distribution%points(i))
     end function node_of
   end function projected_area
+
+  !> Energy booked as fracture that fronts in equilibrium have not set free: no integrator made it.
+  pure real(wp) function unreleased(self, model)
+    !> The state
+    class(interface_state_t), intent(in) :: self
+    type(model_t), intent(in) :: model
+    integer :: zone
+
+    unreleased = 0
+    do zone = 1, size(self%border_reached)
+      if (model%scene%delaminations(zone)%growth /= growth_equilibrium) cycle
+      unreleased = unreleased + max(0.0_wp, self%faces%fracture(zone) - self%ties%set_free(zone))
+    end do
+  end function unreleased
 
   !> Stiffness that ties, contact and cohesive laws add to the diagonal of the operator.
   pure subroutine added_stiffness(self, model, diagonal, stiffness_factor, added)

@@ -51,8 +51,10 @@ contains
     allocate (self%regions(size(model%mesh%zones)))
     allocate (self%fracture(size(model%mesh%zones)), source=0.0_wp)
     do zone = 1, size(self%regions)
-      self%regions(zone) = create_region(model%mesh, zone, model%scene%delaminations(zone)%starter, &
-                                           model%scene%delaminations(zone)%starter_strip)
+      associate (starter => model%scene%delaminations(zone))
+        self%regions(zone) = create_region(model%mesh, zone, starter%starter, starter%starter_strip, &
+                                           starter%starter_round, starter%starter_at)
+      end associate
     end do
     if (.not. model%map%layered) return
     allocate (self%free(size(model%zone)), source=.false.)

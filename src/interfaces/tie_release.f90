@@ -1,29 +1,19 @@
-!> Ties that have been released: their forces fade, and what the faces set free meanwhile is held against what their
-!> toughness requires.
+!> Ties that have been released: their forces fade, and what the faces set free meanwhile is added up.
 !>
 !> A tie that vanished at once would be a blow: the energy that it set free would stay in the motion and, the shorter
 !> the steps, the less of it would show as work against the tie. Its force therefore fades, in proportion to time,
 !> while waves of shear cross a few elements; where a step is longer than that it is gone at the end of the step. The
 !> work against the fading force is the energy that is really released.
-!>
-!> That account also corrects the growth of stepped fronts. The rates of single cells scatter around the mean of the
-!> front, and those that are released first are the overestimated ones: on a circle that grows cell by cell their cells
-!> set free some 0.84 of G_c times their area. A front with a deficit of energy therefore has to
-!> offer more than G_c for the next cell, in proportion to its deficit.
-!>
-!> The other way round, a row of cells that delaminates one after the other at the kinks of its ends sets free more than
-!> its toughness requires, and how much is a matter of the mesh: a front that moved on as a whole would have used it
-!> up. If the deck says so, energy in excess is therefore credited, and the next cell may offer less.
 module tie_release
   use kinds, only: wp
   use archives, only: archive_t
-  use delamination_parameters, only: contact_none, account_balance
+  use delamination_parameters, only: contact_none
   use models, only: model_t
   implicit none
   private
   public :: tie_release_t, new_tie_release
 
-  !> Forces of released ties, and the energy accounts of all interfaces.
+  !> Forces of released ties, and the energy that they set free.
   type :: tie_release_t
     !> Forces on the jumps when the ties were released, (3, local points)
     real(wp), allocatable :: force(:, :)
@@ -31,10 +21,8 @@ module tie_release
     real(wp), allocatable :: share(:)
     !> Time in which they fade, (zones)
     real(wp), allocatable :: duration(:)
-    !> Energy that the toughness of released cells requires, and what their faces set free, whole plate, (zones)
-    real(wp), allocatable :: required(:), set_free(:)
-    !> True: energy in excess is credited, (zones)
-    logical, allocatable :: credited(:)
+    !> Energy that released faces set free, whole plate, (zones)
+    real(wp), allocatable :: set_free(:)
     !> Time until the last of them is gone, the same on every rank
     real(wp) :: left = 0
   contains
@@ -48,10 +36,6 @@ module tie_release
     procedure :: act
     !> Books the work against the forces in a step.
     procedure :: book
-    !> Energy that each interface still has to release.
-    procedure :: deficit
-    !> Times its toughness that a front must offer for the next cell.
-    procedure :: required_ratio
     !> Saves or loads.
     procedure :: visit
   end type tie_release_t
@@ -70,30 +54,14 @@ contains
     integer :: points, zones, zone
 
     zones = size(model%mesh%zones)
-    allocate (self%required(zones), self%set_free(zones), self%duration(zones), source=0.0_wp)
-    allocate (self%credited(zones), source=.false.)
-    if (zones > 0) self%credited = model%scene%delaminations%account == account_balance
+    allocate (self%set_free(zones), self%duration(zones), source=0.0_wp)
     if (.not. model%map%layered) return
     points = size(model%zone)
     allocate (self%force(3, points), self%share(points), source=0.0_wp)
     slowness = sqrt(minval(model%plies%density/max(model%plies%elasticity%g13, model%plies%elasticity%g23)))
     do zone = 1, zones
-      self%duration(zone) = elements_crossed*mean_length(zone)*slowness
+      self%duration(zone) = elements_crossed*model%mesh%mean_cell(zone)*slowness
     end do
-
-  contains
-
-    !> Length of the mean cell of a zone.
-    pure real(wp) function mean_length(zone)
-      !> Index of the zone
-      integer, intent(in) :: zone
-
-      associate (range => model%mesh%zones(zone))
-        mean_length = sqrt((model%mesh%x_edges(range%columns(2) + 1) - model%mesh%x_edges(range%columns(1))) &
-                           *(model%mesh%y_edges(range%rows(2) + 1) - model%mesh%y_edges(range%rows(1))) &
-                           /product([range%columns(2) - range%columns(1), range%rows(2) - range%rows(1)] + 1))
-      end associate
-    end function mean_length
   end function new_tie_release
 
   !> Releases the ties whose jumps have become free; where the faces press on each other contact takes over at once, if
@@ -128,7 +96,7 @@ contains
     !> Jumps, (5, points)
     real(wp), intent(in) :: opening(:, :)
     !> The energy, of the whole plate, (zones)
-    real(wp) :: energy(size(self%required))
+    real(wp) :: energy(size(self%set_free))
     integer :: i
 
     energy = 0
@@ -178,8 +146,8 @@ contains
   end subroutine act
 
   !> Books the work against the forces in a step: as the step had it, the force at its end acting throughout, and as
-  !> the account has it, with the mean of the forces at its start and end. Of ties released in this step the difference
-  !> is that of `first_opening`.
+  !> what is set free has it, with the mean of the forces at its start and end. Of ties released in this step the
+  !> difference is that of `first_opening`.
   subroutine book(self, model, old, change, taken)
     !> The ties at the end of the step
     class(tie_release_t), intent(inout) :: self
@@ -190,7 +158,7 @@ contains
     real(wp), intent(in) :: change(:, :)
     !> Energy that the forces took from the whole plate
     real(wp), intent(out) :: taken
-    real(wp) :: sums(size(self%required) + 1), work, mean
+    real(wp) :: sums(size(self%set_free) + 1), work, mean
     integer :: i
 
     taken = 0
@@ -210,35 +178,6 @@ contains
     self%set_free = self%set_free + sums(2:)
   end subroutine book
 
-  !> Energy that each interface still has to release: what its cells' toughness requires beyond what they set free.
-  pure function deficit(self)
-    !> The ties
-    class(tie_release_t), intent(in) :: self
-    !> Energy, none negative: what is set free beyond what is required for went into the motion, (zones)
-    real(wp) :: deficit(size(self%required))
-
-    deficit = max(0.0_wp, self%required - self%set_free)
-  end function deficit
-
-  !> Times its toughness that a front must offer for the next cell.
-  pure real(wp) function required_ratio(self, zone, energy)
-    !> The ties
-    class(tie_release_t), intent(in) :: self
-    !> Index of the zone
-    integer, intent(in) :: zone
-    !> Energy that the toughness of the cell requires, of this one cell also under symmetry
-    real(wp), intent(in) :: energy
-    !> Cells all around whose deficit doubles what is required, and whose credit halves it: ten in each quarter
-    real(wp), parameter :: doubling_cells = 40
-    real(wp) :: deficit_share
-
-    deficit_share = (self%required(zone) - self%set_free(zone))/(doubling_cells*energy)
-    if (.not. self%credited(zone)) deficit_share = max(0.0_wp, deficit_share)
-    required_ratio = 1 + deficit_share
-    ! However much is credited, something must be offered.
-    if (deficit_share < 0) required_ratio = 1/(1 - deficit_share)
-  end function required_ratio
-
   !> Saves or loads.
   subroutine visit(self, archive, model)
     !> The ties
@@ -249,7 +188,6 @@ contains
     real(wp), allocatable :: fields(:, :)
 
     if (.not. model%map%layered) return
-    call archive%item('ties/required', self%required)
     call archive%item('ties/set_free', self%set_free)
     call archive%item('ties/left', self%left)
     allocate (fields(4, size(self%share)))

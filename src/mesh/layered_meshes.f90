@@ -1,6 +1,7 @@
 !> The mesh of the modelled part: a grid of cells, and over each cell the layers of plies that may separate
 !> there. Every rank holds the whole of it; it is small beside a factor.
 module layered_meshes
+  use kinds, only: wp
   use mesh_parameters, only: plate_t, mesh_t
   use cell_grids, only: cell_grid_t, create_grid
   use nine_node_grids, only: cells_around
@@ -41,6 +42,8 @@ module layered_meshes
     !> Element of a cell that contains a ply, and point of a node below an interface.
     procedure :: element_at
     procedure :: lower_point
+    !> Length of the mean cell of a zone.
+    procedure :: mean_cell
     !> Point that gives a point its motion.
     procedure :: leader
   end type layered_mesh_t
@@ -243,4 +246,17 @@ contains
     class(layered_mesh_t), intent(in) :: self
     elements = size(self%element_cell)
   end function elements
+  !> Length of the mean cell of a zone: the root of its mean area.
+  pure real(wp) function mean_cell(self, zone) result(length)
+    !> The mesh
+    class(layered_mesh_t), intent(in) :: self
+    !> Index of the zone
+    integer, intent(in) :: zone
+
+    associate (range => self%zones(zone))
+      length = sqrt((self%x_edges(range%columns(2) + 1) - self%x_edges(range%columns(1))) &
+                    *(self%y_edges(range%rows(2) + 1) - self%y_edges(range%rows(1))) &
+                    /product([range%columns(2) - range%columns(1), range%rows(2) - range%rows(1)] + 1))
+    end associate
+  end function mean_cell
 end module layered_meshes

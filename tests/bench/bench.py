@@ -214,6 +214,29 @@ def history(folder):
                 csv.DictReader(line for line in lines if not line.startswith('#'))]
 
 
+def fronts(program, arguments):
+    """Forces at which round starters grow on several meshes over the closed form: threshold_1mm.nml."""
+    sys.path.insert(0, str(pathlib.Path(__file__).parents[1]/'regress'))
+    from front_threshold import growth_ratios
+    from solver_runs import change_deck
+    deck = pathlib.Path(__file__).parents[2].joinpath('input/reference/threshold_1mm.nml').read_text()
+    print('| cell, mm | starter, mm | first growth | least, mean, largest after steps with growth | largest step of '
+          'the growth, mm^2 | released over booked | processor, s |')
+    print('|---|---|---|---|---|---|---|')
+    for cell, starter in itertools.product(arguments.cell, arguments.starter):
+        elements = round(20/cell) + 6
+        settings = [f'mesh%cell={cell}e-3', f'mesh%elements={elements},{elements}', f'time%end={arguments.end}',
+                    f'delamination%starter={starter}e-3', "delamination%starter_shape='round'"]
+        with tempfile.TemporaryDirectory() as name:
+            seconds = run_deck(program, change_deck(deck, settings), pathlib.Path(name))
+            rows = history(pathlib.Path(name))
+        first, ratios, areas = growth_ratios(rows)
+        mean = sum(ratio*area for ratio, area in zip(ratios, areas, strict=True))/sum(areas)
+        print(f'| {cell:g} | {starter:g} | {first:.3f} | {min(ratios):.3f}, {mean:.3f}, {max(ratios):.3f} | '
+              f'{1e6*max(areas):.0f} of {1e6*sum(areas):.0f} | '
+              f'{rows[-1]["energy_released"]/rows[-1]["energy_delamination"]:.3f} | {seconds:.0f} |', flush=True)
+
+
 def growth(program, arguments):
     """Forces at which fronts grow and the energy they release: the threshold deck, and steps of a cross-ply."""
     decks = pathlib.Path(__file__).parents[2]/'input'
@@ -300,6 +323,11 @@ def main():
     part = parts.add_parser('growth', help=growth.__doc__)
     part.add_argument('--step', type=float, nargs='*', default=[16, 8, 4, 2, 1], help='us')
     part.set_defaults(act=growth)
+    part = parts.add_parser('fronts', help=fronts.__doc__)
+    part.add_argument('--cell', type=float, nargs='+', default=[2, 1, 0.5], help='mm')
+    part.add_argument('--starter', type=float, nargs='+', default=[10, 20], help='mm')
+    part.add_argument('--end', type=float, default=7.6e-3, help='s')
+    part.set_defaults(act=fronts)
     part = parts.add_parser('deck', help=one_deck.__doc__)
     part.add_argument('deck', type=pathlib.Path)
     part.add_argument('--set', nargs='+', action='append', metavar='GROUP%%KEY=VALUE',

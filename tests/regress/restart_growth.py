@@ -45,7 +45,7 @@ DECK = "../small/damage.nml"
 STEP = 10e-6
 GROWING = ["mesh%elements=10,10", "impactor%velocity=3", "delamination%G_c=200", "delamination%zone=28.3e-3,20.6e-3",
            "delamination%starter=8.9e-3"]
-AVERAGES = ["ply_damage%average=2e-3", f"ply_damage%fade={4 * STEP!r}", "delamination%account='balance'"]
+AVERAGES = ["ply_damage%average=2e-3", f"ply_damage%fade={4 * STEP!r}"]
 # Up to the first cracks, cooled from the cure.
 SOFTENING = ["time%end=120e-6", "thermal%delta_T=-150", "material%alpha1=-0.3e-6", "material%alpha2=28e-6"]
 # Steps of a second, with several releases each.
@@ -114,7 +114,7 @@ def check_splits(implam, folder, _):
 
 
 def check_averages(implam, folder, _):
-    """Plies that fade and fail by averaged strains, beside fronts that keep both sides of their account."""
+    """Plies that fade and fail by averaged strains, beside fronts."""
     split_around_growth(implam, folder, "averages", AVERAGES)
 
 

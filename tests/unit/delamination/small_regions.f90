@@ -14,11 +14,19 @@ contains
     real(wp), intent(in) :: x_edges(:), y_edges(:)
     integer, intent(in) :: columns(2), rows(2)
     type(layered_mesh_t) :: mesh
+    integer :: i, j
 
     mesh%x_edges = x_edges
     mesh%y_edges = y_edges
     mesh%cells = [size(x_edges) - 1, size(y_edges) - 1]
     mesh%zones = [zone_t(below_ply=1, columns=columns, rows=rows)]
+    allocate (mesh%node_coordinates(2, product(2*mesh%cells + 1)))
+    do j = 0, 2*mesh%cells(2)
+      do i = 0, 2*mesh%cells(1)
+        mesh%node_coordinates(:, mesh%node_at(i, j)) = [x_edges(i/2 + 1) + x_edges((i + 1)/2 + 1), &
+                                                        y_edges(j/2 + 1) + y_edges((j + 1)/2 + 1)]/2
+      end do
+    end do
   end function mesh_with_zone
 
   !> A region whose zone is the whole of a mesh of unit cells; `picture` shows the rows from the top down,

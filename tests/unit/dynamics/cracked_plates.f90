@@ -259,10 +259,10 @@ contains
     front = release_along_front(self%model, self%stiffness, self%state%interfaces%faces, self%state%motion, 1, method)
   end function rates
 
-  !> Mean rate over the length of a front.
+  !> Mean rate over the length of the smooth line of a front.
   pure real(wp) function front_mean(front) result(mean)
     type(front_energy_release_t), intent(in) :: front
 
-    mean = sum(sum(front%modes, dim=1)*front%segments%width)/sum(front%segments%width)
+    mean = sum(sum(front%modes, dim=1)*front%line%length)/sum(front%line%length)
   end function front_mean
 end module cracked_plates
