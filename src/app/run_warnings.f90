@@ -118,7 +118,7 @@ contains
              ' and cannot grow on there: if it would, make the zone larger.'
     case (warning_energy)
       text = 'The time integrators have created more than 1 % of the energy by time '//rounded_text(time)// &
-             ': take smaller steps, or more damping (rho_inf) with delamination.'
+             ': take smaller steps, &impactor integrator=''conserving'', or more damping (rho_inf) with delamination.'
     case (warning_loss)
       text = 'The time integrators have taken more than '//short_text(100*most_taken)// &
              ' % of the impact''s energy by time '//rounded_text(time)// &
