@@ -29,6 +29,8 @@ module command_lines
     integer :: ranks = 0, seconds = 0
     !> True: jobs follow each other
     logical :: chain = .false.
+    !> True: the scene is run once more on a finer mesh with shorter steps
+    logical :: verify = .false.
     !> Arguments for PETSc, in one string
     character(len=:), allocatable :: petsc_options
     !> True: explain as a Markdown table, for the manual
@@ -77,6 +79,8 @@ contains
       i = i + 1
     end do
     call require_target(command, error)
+    if (command%verify .and. command%verb /= verb_run .and. .not. allocated(error)) &
+      call fail(error, exit_usage, '--verify takes a deck to run.')
   end subroutine read_command_line
 
   !> Reads an option that begins with two dashes.
@@ -97,6 +101,8 @@ contains
       command%verb = verb_help
     case ('--markdown')
       command%markdown = .true.
+    case ('--verify')
+      command%verify = .true.
     case ('--chain')
       command%chain = .true.
     case ('--ranks')

@@ -20,10 +20,14 @@ module result_rows
   private
   public :: column_names, column_whole, row_of
 
+  !> What the run has warned of.
+  character(len=result_row_length), parameter :: limit_rows(*) = [character(len=result_row_length) :: &
+    'limits_passed | integer | - | Limits of the model that the run has passed so far; log and summary tell which, &
+      &and when.']
   !> Columns that every history has, of which the first seventeen are the public interface.
   character(len=*), parameter :: plate_rows(*) = [character(len=result_row_length) :: &
     motion_rows, area_rows, ledger_rows, step_rows, release_rows, iteration_rows, operator_rows, ply_rows, &
-    border_rows, rig_rows, heat_rows]
+    border_rows, rig_rows, heat_rows, limit_rows]
   !> The table of columns in their order.
   character(len=*), parameter, public :: column_rows(*) = [character(len=result_row_length) :: &
     plate_rows, interface_rows, line_column_rows]
@@ -121,10 +125,12 @@ contains
   end function loads_on
 
   !> Row of the state reached. Collective.
-  function row_of(model, stepper) result(row)
+  function row_of(model, stepper, limits) result(row)
     type(model_t), intent(in) :: model
     !> The time stepper
     type(time_stepper_t), intent(in) :: stepper
+    !> Limits of the model passed so far
+    integer, intent(in) :: limits
     !> Values in the order of the columns
     real(wp), allocatable :: row(:)
     real(wp), allocatable :: loads(:, :)
@@ -136,7 +142,7 @@ contains
              release_values(model, now%interfaces, now%motion%displacement), iteration_values(now, stepper%rejected), &
              operator_values(stepper%operator), ply_values(model, now%plies), border_values(model, now%interfaces), &
              rig_values(model, now%interfaces, now%motion, loads), heat_values(now%ledger), &
-             interface_values(model, now%interfaces), line_values(model, now)]
+             real(limits, wp), interface_values(model, now%interfaces), line_values(model, now)]
     end associate
     row(1) = shown_time(row(1))
   end function row_of

@@ -7,8 +7,9 @@ module run_warnings
   use kinds, only: wp
   use mesh_parameters, only: edge_clamped
   use models, only: model_t
-  use run_records, only: run_record_t, warning_border, warning_energy, warning_indentation, warning_loss, &
-                         warning_slopes, warning_torn
+  use ply_damage_parameters, only: failure_modes, fibre_failure
+  use run_records, only: run_record_t, warning_border, warning_energy, warning_hole, warning_indentation, &
+                         warning_loss, warning_slopes, warning_torn
   use short_numbers, only: short_text
   use states, only: state_t
   use text, only: line_t, append, rounded_text, to_text
@@ -22,6 +23,8 @@ module run_warnings
   real(wp), parameter :: steepest = 0.2_wp
   !> Deflection over thickness beyond which membrane forces carry a clamped plate.
   real(wp), parameter :: deepest = 3
+  !> Part of an area that rounding may take away.
+  real(wp), parameter :: rounded_off = 1.0e-9_wp
 
 contains
 
@@ -53,6 +56,9 @@ contains
     if (.not. record%has_warned(warning_torn, 0) .and. abs(now%deflection) > deepest*thickness) then
       if (is_torn(deck, model, now)) call tell(warning_torn, 0)
     end if
+    if (.not. record%has_warned(warning_hole, 0) .and. deck%has_ply_damage .and. deck%has_impactor) then
+      if (has_hole(model, now)) call tell(warning_hole, 0)
+    end if
     if (deck%has_static) return
     amplitude = 1
     if (.not. deck%has_impactor) amplitude = deck%pressure%amplitude(now%time)
@@ -81,6 +87,22 @@ contains
     is_steep = model%communicator%any(maxval(abs(now%motion%displacement(4:5, :))) > steepest)
   end function is_steep
 
+  !> True: fibres of every ply have broken over an area as large as the patch, so nothing bears what presses on it any
+  !> more. Collective.
+  logical function has_hole(model, now)
+    type(model_t), intent(in) :: model
+    !> The step reached
+    type(state_t), intent(in) :: now
+    integer :: counts(failure_modes)
+    real(wp), allocatable :: areas(:, :)
+
+    has_hole = .false.
+    counts = now%plies%counts(model)
+    if (counts(fibre_failure) < size(model%scene%laminate%angle)) return
+    areas = now%plies%areas(model)
+    has_hole = all(areas(fibre_failure, :) >= model%scene%mesh%patch**2*(1 - rounded_off))
+  end function has_hole
+
   !> True: a clamped plate has lost fibres. Collective.
   logical function is_torn(deck, model, now)
     !> The deck
@@ -88,13 +110,12 @@ contains
     type(model_t), intent(in) :: model
     !> The step reached
     type(state_t), intent(in) :: now
-    integer, parameter :: fibres = 1
-    integer :: counts(3)
+    integer :: counts(failure_modes)
 
     is_torn = .false.
     if (.not. (deck%has_ply_damage .and. any(deck%plate%edges == edge_clamped))) return
     counts = now%plies%counts(model)
-    is_torn = counts(fibres) > 0
+    is_torn = counts(fibre_failure) > 0
   end function is_torn
 
   !> What a warning says.
@@ -118,7 +139,7 @@ contains
              ' and cannot grow on there: if it would, make the zone larger.'
     case (warning_energy)
       text = 'The time integrators have created more than 1 % of the energy by time '//rounded_text(time)// &
-             ': take smaller steps, or more damping (rho_inf) with delamination.'
+             ': take smaller steps, &impactor integrator=''conserving'', or more damping (rho_inf) with delamination.'
     case (warning_loss)
       text = 'The time integrators have taken more than '//short_text(100*most_taken)// &
              ' % of the impact''s energy by time '//rounded_text(time)// &
@@ -133,6 +154,9 @@ contains
       text = 'The clamped plate deflects by more than '//to_text(deepest)// &
              ' thicknesses with broken fibres since time '//rounded_text(time)// &
              ': membrane forces carry it, and the model tears no plies; distrust what follows.'
+    case (warning_hole)
+      text = 'The fibres of every ply are broken over an area as large as the patch since time '// &
+             rounded_text(time)//': the impactor goes through, and the model has no hole; distrust what follows.'
     end select
   end function warning_text
 

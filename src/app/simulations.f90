@@ -316,11 +316,11 @@ contains
     end if
     if (allocated(error)) then
       ! The row that passed the limit ends the history.
-      call self%history%write_row(row_of(self%model, self%stepper), row_error)
+      call self%history%write_row(row_of(self%model, self%stepper, size(self%record%warning_kinds)), row_error)
       if (.not. allocated(row_error)) call self%history%flush(row_error)
       return
     end if
-    if (row_due) call self%history%write_row(row_of(self%model, self%stepper), error)
+    if (row_due) call self%history%write_row(row_of(self%model, self%stepper, size(self%record%warning_kinds)), error)
     if (allocated(error)) return
     if (fields_due) call write_fields(self%model, self%stepper, self%deck%output, self%fields, error)
     if (allocated(error)) return

@@ -10,7 +10,7 @@ module case_deck
 
   !> Names of the group and of keys.
   character(len=*), parameter, public :: case_group = 'case', key_name = 'name', &
-                                         key_accuracy = 'accuracy'
+                                         key_accuracy = 'accuracy', key_refine = 'refine'
   character(len=*), parameter :: group = case_group
   !> Row of the group.
   character(len=group_row_length), parameter, public :: case_group_row = &
@@ -28,7 +28,9 @@ module case_deck
     'case | strict | logical | 1 | - | .false. | .true. .false. | &
       &Whether a run ends with exit code 3 where it passes the model''s limits, instead of a warning.', &
     'case | error_estimate | logical | 1 | - | .false. | .true. .false. | &
-      &Whether a coarser companion run, about an eighth of the work, tells the errors of the results at the end.']
+      &Whether a coarser companion run, about an eighth of the work, tells the errors of the results at the end.', &
+    'case | refine | integer | 1 | - | 0 | >= 0, <= 4 | &
+      &Times that elements and steps are halved; the results are then those of NAME_finer1 and so on.']
 
   !> Errors of the peak force that the names of `accuracy` stand for, %.
   real(wp), parameter :: draft_error = 5, standard_error = 1, reference_error = 0.2_wp
@@ -60,7 +62,7 @@ contains
   end function has_accuracy
 
   !> What the case claims of its results.
-  pure subroutine fill_claims(settings, accuracy, units, strict, error_estimate)
+  pure subroutine fill_claims(settings, accuracy, units, strict, error_estimate, refine)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> Error of the peak force allowed, %; 0: mesh and steps are the deck's
@@ -71,7 +73,10 @@ contains
     logical, intent(out) :: strict
     !> True: a companion run tells the errors of the results
     logical, intent(out) :: error_estimate
+    !> Times that elements and steps are halved
+    integer, intent(out) :: refine
 
+    refine = settings%integer_of(group, key_refine)
     units = settings%text_of(group, 'units')
     strict = settings%logical_of(group, 'strict')
     error_estimate = settings%logical_of(group, 'error_estimate')

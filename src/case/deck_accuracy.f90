@@ -126,8 +126,6 @@ contains
       call largest_step(pilot, end, bounds, step, error)
       call choose_one(deck, time_group, key_step, step)
       step = deck%settings%real_of(time_group, key_step)
-      if (error(2) < 0) call remark(deck%settings, problems, case_group, key_accuracy, 'can''t be told for this '// &
-        'step: a pilot calculation of so long a contact on so large a plate would take too long.')
       call append(deck%reasons, 'Step '//short_text(step)//': '//to_text(ceiling(end/step))// &
                   ' steps; by pilot calculations it changes the force history by '//short_text(100*error(2))//' %.')
     end if

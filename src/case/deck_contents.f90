@@ -31,6 +31,8 @@ module deck_contents
     logical :: strict = .false.
     !> True: a companion run tells the errors of the summary's figures
     logical :: error_estimate = .false.
+    !> Times that elements and steps are halved
+    integer :: refine = 0
     !> What was chosen for the accuracy and why
     type(line_t), allocatable :: reasons(:)
     !> Scales of the scene, and what the run is to show

@@ -34,8 +34,10 @@ module deck_extents
   real(wp), parameter :: least_starter = 1.5_wp
   !> Difference from the size asked for, relative to it, that a user is warned of.
   real(wp), parameter :: noticeable = 0.05_wp
-  !> Distance from its place at which a line counts as moved, and as off the plate, relative to the plate's length.
-  real(wp), parameter :: moved_line = 1.0e-3_wp, off_plate = 1.0e-9_wp
+  !> Distance from its place at which a line counts as moved, relative to the plate's length.
+  real(wp), parameter :: moved_line = 1.0e-3_wp
+  !> Part by which rounding may carry a length beyond its limit.
+  real(wp), parameter :: rounded_off = 1.0e-9_wp
 
 contains
 
@@ -72,7 +74,7 @@ contains
       associate (line => deck%lines(place))
         direction = merge(2, 1, line%direction == along_x)
         half = deck%plate%length(direction)/2
-        if (abs(line%at) > half*(1 + off_plate)) then
+        if (abs(line%at) > half*(1 + rounded_off)) then
           call tell(deck%settings, problems, line_group, line_key_at, 'the line passes beside the plate; allowed: '// &
                     to_text(-half)//' to '//to_text(half)//'.', place)
         else if (mirrored(direction) .and. line%at < 0) then
@@ -118,7 +120,7 @@ contains
     if (thickness > shorter) then
       call tell(deck%settings, problems, laminate_group, key_thicknesses, 'the laminate is '//to_text(thickness)// &
                 ' thick, more than the plate is wide; this is no plate.')
-    else if (longer > most_slender*thickness) then
+    else if (longer > most_slender*thickness*(1 + rounded_off)) then
       call tell(deck%settings, problems, laminate_group, key_thicknesses, 'the laminate is '//to_text(thickness)// &
                 ' thick, less than '//to_text(1/most_slender)//' of the plate''s length, where rounding spoils it.')
     else if (thickness*least_slender > shorter) then

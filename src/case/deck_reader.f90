@@ -10,6 +10,7 @@ module deck_reader
   use deck_process_zones, only: check_process_zones
   use deck_extents, only: check_sizes, check_extents
   use deck_problems, only: problems_t
+  use deck_refinements, only: refine
   use deck_rules, only: settle
   use deck_scales, only: check_scales
   use deck_scanner, only: scan_t, scan_deck, most_bytes
@@ -94,6 +95,7 @@ contains
     call fill_bodies(deck, problems)
     call fill_loads(deck, problems)
     call fill_steps(deck)
+    call refine(deck)
     call check_groups(deck, problems)
     call check_sizes(deck, problems)
     call check_across_groups(deck, problems)
@@ -131,7 +133,8 @@ contains
     type(problems_t), intent(inout) :: problems
 
     call fill_case(deck%settings, deck%source, deck%name, deck%title)
-    call fill_claims(deck%settings, deck%accuracy, deck%units, deck%strict, deck%error_estimate)
+    call fill_claims(deck%settings, deck%accuracy, deck%units, deck%strict, deck%error_estimate, &
+                     deck%refine)
     call fill_kinematics(deck%settings, deck%kinematics)
     call fill_plate(deck%settings, deck%plate)
     call fill_supports(deck%settings, deck%supports)

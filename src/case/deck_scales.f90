@@ -1,5 +1,6 @@
 !> What the deck's scene has to resolve, as a table and as warnings where mesh or step don't.
 module deck_scales
+  use case_deck, only: case_group, key_accuracy
   use cell_grids, only: cell_edges
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
@@ -20,6 +21,8 @@ module deck_scales
   real(wp), parameter :: noticeable(2) = [0.05_wp, 0.2_wp]
   !> The same for the size of the patch, which is an estimate itself.
   real(wp), parameter :: noticeable_patch(2) = [0.1_wp, 0.2_wp]
+  !> Part of the accuracy asked for above which pilots' errors are told: they are 1.2 to 2 times the true ones.
+  real(wp), parameter :: missed = 1.5_wp
 
 contains
 
@@ -40,6 +43,7 @@ contains
         deck%stepping%outlook = outlook_t(scales%contact_time, o%force, o%deflection, o%last_contact)
       end associate
       call check_resolution(deck, problems)
+      call check_accuracy(deck, problems)
     end if
     deck%outlook%scales = scales
   end subroutine check_scales
@@ -66,6 +70,26 @@ contains
         ' %, its history by '//short_text(100*o%patch_error(2))//' %.')
     end associate
   end subroutine check_resolution
+
+  !> Tells where mesh and step do not reach the accuracy asked for, or where nobody knows: a contact so long on so large
+  !> a plate that pilot calculations with half the step would take too long.
+  subroutine check_accuracy(deck, problems)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Warnings are added
+    type(problems_t), intent(inout) :: problems
+
+    if (.not. deck%accuracy > 0) return
+    associate (o => deck%outlook)
+      if (o%step_error(1) < 0 .or. o%mesh_error(1) < 0) then
+        call remark(deck%settings, problems, case_group, key_accuracy, 'can''t be held against pilot calculations '// &
+                    'for this step: so long a contact on so large a plate would take them too long.')
+      else if (100*(o%step_error(1) + o%mesh_error(1)) > missed*deck%accuracy) then
+        call remark(deck%settings, problems, case_group, key_accuracy, 'isn''t reached: by a pilot calculation the '// &
+                    'largest force will be '//short_text(100*(o%step_error(1) + o%mesh_error(1)))//' % off.')
+      end if
+    end associate
+  end subroutine check_accuracy
 
   !> The table of scales.
   function scale_lines(deck) result(lines)

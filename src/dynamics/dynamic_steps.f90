@@ -12,7 +12,7 @@ module dynamic_steps
   use step_problems, only: step_problem_t
   use impact_coupling, only: impact_coupling_t, begin_coupling
   use tangent_operators, only: tangent_operator_t
-  use residual_norms, only: relative_residual
+  use residual_norms, only: relative_residual, forces_to_round
   use softening_corrections, only: softening_memory_t
   use condensed_steps, only: condense
   use energy_balance, only: book_step
@@ -176,8 +176,8 @@ contains
 
     residual_norm = relative_residual(model%communicator, operator%numbering, residual, new%motion%internal, &
                                       new%motion%inertia, self%patch_square*self%coupling%load()**2, &
-                                      operator%diagonal*new%motion%displacement, equilibrium%tolerance, &
-                                      model%thickness, new%largest_forces)
+                                      forces_to_round(operator%diagonal, new%motion%displacement), &
+                                      equilibrium%tolerance, model%thickness, new%largest_forces)
   end function residual_norm
 
   !> The force answers to the motion only within an iteration, so an impact needs one.

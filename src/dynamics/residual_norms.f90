@@ -7,7 +7,7 @@ module residual_norms
   use numberings, only: numbering_t
   implicit none
   private
-  public :: relative_residual
+  public :: relative_residual, forces_to_round
 
 contains
 
@@ -49,6 +49,25 @@ contains
     largest = max(largest, scale)
     norm = maxval(squares(1:2)/max(scale, last_digits/tolerance*squares(7:8), tiny(norm)))
   end function relative_residual
+
+  !> Forces whose last digit a residual can't fall below. A moment is a sum of what rotation and deflection give, and
+  !> the stiffness between the two is at most the root of the product of their own, as the operator is positive: long
+  !> elements of thin plates have moments that are small differences of what the deflection gives.
+  pure function forces_to_round(diagonal, displacement) result(forces)
+    !> Diagonal of the operator, (5, points)
+    real(wp), intent(in) :: diagonal(:, :)
+    !> Unknowns, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> The forces, (5, points)
+    real(wp), allocatable :: forces(:, :)
+    integer :: component
+
+    forces = diagonal*displacement
+    do component = 4, 5
+      forces(component, :) = abs(forces(component, :)) &
+                             + sqrt(abs(diagonal(component, :)*diagonal(3, :)))*abs(displacement(3, :))
+    end do
+  end function forces_to_round
 
   !> Sums of squares over this rank's unknowns that are not held.
   pure function sums_of_squares(numbering, force) result(squares)

@@ -32,9 +32,9 @@ DECK = """&case name='{name}' kinematics='linear' {case} /
 """
 
 
-def limit_time():
-    """End a run after a minute of the processor."""
-    resource.setrlimit(resource.RLIMIT_CPU, (60, 60))
+def limit_time(seconds):
+    """End a run after some seconds of the processor."""
+    resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
 
 
 def random_scenes(count, seed):
@@ -76,13 +76,13 @@ def deck_of(scene, case='', mesh='', impactor='', time='', more=''):
 class Run:
     """One run: exit code, processor time, log, history, and how far it is from the semi-analytic answer."""
 
-    def __init__(self, program, deck, name):
+    def __init__(self, program, deck, name, seconds=60):
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder, name + '.nml')
             path.write_text(deck)
             with open(pathlib.Path(folder, 'said'), 'w') as said:
                 process = subprocess.Popen([program, path, '--output', folder], stdout=said, stderr=said,
-                                           env=ENVIRONMENT, preexec_fn=limit_time)
+                                           env=ENVIRONMENT, preexec_fn=lambda: limit_time(seconds))
                 _, status, usage = os.wait4(process.pid, 0)
             process.returncode = self.code = os.waitstatus_to_exitcode(status)
             self.seconds = usage.ru_utime + usage.ru_stime
@@ -121,9 +121,9 @@ def over_estimates(summary, answered):
             for name, value in exact.items()]
 
 
-def compare(program, scene, case):
+def compare(program, scene, case, seconds=60):
     """One row of the table: the run with some keys of the case, its errors, and these over its estimates."""
-    run = Run(program, deck_of(scene, case=case), scene.name)
+    run = Run(program, deck_of(scene, case=case), scene.name, seconds)
     if run.code:
         return run, None, None
     tau = scene.contact_time()
@@ -144,6 +144,7 @@ def main():
     parser.add_argument('--seed', type=int, default=1)
     parser.add_argument('--longest', type=float, default=2000,
                         help='contacts that last more rises than this have no answer here')
+    parser.add_argument('--seconds', type=int, default=60, help='processor time after which a run is ended')
     parser.add_argument('--only', type=int, nargs='+', help='numbers of scenes')
     parser.add_argument('--case', default='', help='more keys of &case')
     parser.add_argument('--at-least', type=int, default=0, help='scenes within the bounds, or else exit code 1')
@@ -160,7 +161,8 @@ def main():
         if last and float(last[1]) > options.longest*tau:
             print(f'{scene.name:9s}  the contact lasts {float(last[1])/tau:.0f} rises')
             continue
-        run, errors, ratios = compare(options.program, scene, f'accuracy={options.accuracy} {options.case}')
+        run, errors, ratios = compare(options.program, scene, f'accuracy={options.accuracy} {options.case}',
+                                     options.seconds)
         seconds.append(run.seconds)
         answered += 1
         if run.code:

@@ -17,7 +17,7 @@ class Scene:
 
     length: tuple
     angles: list
-    ply: float
+    ply: float  # thickness of each, or a list of thicknesses
     moduli: tuple  # E1, E2, G12, G13, G23, nu12
     density: float
     mass: float
@@ -32,7 +32,11 @@ class Scene:
 
     @property
     def thickness(self):
-        return self.ply*len(self.angles)
+        return float(np.sum(self.plies))
+
+    @property
+    def plies(self):
+        return np.broadcast_to(self.ply, len(self.angles))
 
     def contact_time(self):
         """tau: the indentation grows until the plate's resistance to waves carries the contact force."""
@@ -48,12 +52,12 @@ def section(scene):
     nu21 = nu12*e2/e1
     q11, q22, q12 = e1/(1 - nu12*nu21), e2/(1 - nu12*nu21), nu12*e2/(1 - nu12*nu21)
     h = scene.thickness
-    z = -h/2 + scene.ply*np.arange(len(scene.angles) + 1)
+    z = np.cumsum(np.append(-h/2, scene.plies))
     third = (z[1:]**3 - z[:-1]**3)/3
     along = np.array(scene.angles) == 0
     bending = (sum(third*np.where(along, q11, q22)), q12*sum(third), sum(third*np.where(along, q22, q11)),
                g12*sum(third))
-    shear = (5/6*scene.ply*sum(np.where(along, g13, g23)), 5/6*scene.ply*sum(np.where(along, g23, g13)))
+    shear = (5/6*sum(scene.plies*np.where(along, g13, g23)), 5/6*sum(scene.plies*np.where(along, g23, g13)))
     return bending, shear, scene.density*h, scene.density*h**3/12
 
 

@@ -6,7 +6,7 @@ import re
 import sys
 from pathlib import Path
 
-from solver_runs import EXIT_CONVERGENCE, EXIT_DONE, exit_code_of, require, run
+from solver_runs import EXIT_CONVERGENCE, EXIT_DONE, exit_code_of, read_history, require, run
 
 # A plate that bends like a membrane, and a contact so soft that the ball would go through.
 BEGINNING = """&plate length=0.1, 0.1  edges='clamped'  symmetry='quarter' /
@@ -14,14 +14,34 @@ BEGINNING = """&plate length=0.1, 0.1  edges='clamped'  symmetry='quarter' /
 &material name='ply' density=1580  E1=139e9  E2=9.4e9  G12=4.5e9  G23=2.98e9  nu12=0.309 /
 &laminate materials='ply'  angles=0, 90, 0  thicknesses=0.25e-3 /
 """
-# What is passed: the rest of the deck, the column of the history that tells when, and its limit.
+# Plies that break: strengths of the ply above, lower across the board where a plate is to be torn or broken through.
+WEAK = """&plate length=0.1, 0.1  edges='clamped'  symmetry='quarter' /
+&mesh elements=6, 6  grading=1  patch=5e-3 /
+&material name='ply' density=1580  E1=139e9  E2=9.4e9  G12=4.5e9  G13=4.5e9  G23=2.98e9  nu12=0.309  XT=20e6  XC=20e6
+  YT=5e6  YC=25e6  S12=10e6  Sf=50e6  Sm23=10e6 /
+&laminate materials='ply'  angles=0, 90, 0  thicknesses=0.25e-3 /
+&ply_damage d=100  e=1e-2 /
+"""
+ZONE = "&delamination below_ply=2  G_c=1  zone=40e-3, 40e-3  starter=15e-3 /\n"
+# What is passed, and the rest of the deck.
 SCENES = {
     "steeper than": "&impactor mass=2  velocity=14  radius=10e-3 /\n&time end=1e-3  step=10e-6 /\n",
     "indentation is deeper": "&impactor mass=0.05  velocity=10 /\n&indentation law='hertz'  k=2e6 /\n"
                              "&time end=1e-3  step=10e-6 /\n",
     "have taken more than 10 %": "&impactor mass=0.005  velocity=10  radius=10e-3 /\n"
                                  "&time end=2e-3  step=50e-6  rho_inf=0 /\n",
+    "reached the border of its zone": ZONE + "&impactor mass=0.5  velocity=3  radius=10e-3 /\n"
+                                      "&time end=1e-3  step=10e-6 /\n",
+    "broken over an area as large as the patch": "&impactor mass=2  velocity=5  radius=10e-3 /\n"
+                                                 "&time end=1e-3  step=10e-6 /\n",
+    "deflects by more than 3 thicknesses with broken fibres": "&impactor mass=2  velocity=5  radius=10e-3 /\n"
+                                                              "&time end=1e-3  step=10e-6 /\n",
 }
+
+
+def time_of(warning):
+    """The time that a warning tells."""
+    return float(re.search(r"time ([-\d.e]+\d)", warning)[1])
 
 
 def main(implam, folder):
@@ -30,21 +50,26 @@ def main(implam, folder):
         here = Path(folder) / str(number)
         here.mkdir(parents=True, exist_ok=True)
         deck = here / "deck.nml"
-        deck.write_text("&case name='limits' /\n" + BEGINNING + rest, "utf-8")
+        plate = WEAK if "broken" in sentence else BEGINNING
+        deck.write_text("&case name='limits' /\n" + plate + rest, "utf-8")
         said = run([implam, deck, "--output", here])
         told = [line for line in said.splitlines() if line.startswith("implam: warning:") and sentence in line]
         require(len(told) == 1, f"'{sentence}' is told {len(told)} times.")
-        since = re.search(rf"{sentence}.*?time ([-\d.e]+\d)", told[0])
+        since = time_of(told[0])
         closing = [warning for warning in json.loads((here / "limits_summary.json").read_text("utf-8"))["warnings"]
                    if sentence in json.dumps(warning)]
         require(len(closing) == 1, f"The summary doesn't tell of '{sentence}'.")
-        deck.write_text("&case name='limits' strict=.true. /\n" + BEGINNING + rest, "utf-8")
+        times = [time_of(line) for line in said.splitlines() if line.startswith("implam: warning:") and "time " in line]
+        history = read_history(here / "limits_history.csv")
+        for time, passed in zip(history["time"], history["limits_passed"], strict=True):
+            require(passed == sum(at <= time*(1 + 1e-3) for at in times), f"The history counts {passed} at {time}.")
+        # A strict run ends at the first limit that it passes.
+        deck.write_text("&case name='limits' strict=.true. /\n" + plate + rest, "utf-8")
         run([implam, deck, "--output", here], EXIT_CONVERGENCE)
         log = (here / "limits.log").read_text("utf-8")
-        require(sentence in log, f"The log of a strict run doesn't tell that '{sentence}'.")
-        last = (here / "limits_history.csv").read_text("utf-8").splitlines()[-1]
-        require(abs(float(last.split(",")[0]) - float(since[1])) <= 1e-3*float(since[1]),
-                "The history doesn't end at the limit.")
+        require(sentence in log or min(times) < since, f"The log of a strict run doesn't tell that '{sentence}'.")
+        last = read_history(here / "limits_history.csv")["time"][-1]
+        require(abs(last - min(times)) <= 1e-3*last, "The history doesn't end at the limit.")
     return EXIT_DONE
 
 

@@ -1,0 +1,244 @@
+!> Runs of decks from the command line: from the start, from a checkpoint, and twice to verify what the first says.
+module computations
+  use build_information, only: commit
+  use case_deck, only: case_group, key_name
+  use checkpoints, only: checkpoint_archive_t, checkpoint_ending, newest_checkpoint
+  use command_lines, only: command_t, verb_restart
+  use communicators, only: communicator_t, start_mpi
+  use deck_contents, only: deck_t
+  use deck_problems, only: problems_t
+  use deck_reader, only: read_deck, read_deck_text
+  use deck_refinements, only: refined_text
+  use errors, only: error_t, exit_done, exit_stopped, exit_usage, fail
+  use files, only: is_directory
+  use kinds, only: wp
+  use linear_solver_deck, only: check_ranks
+  use petsc_session, only: start_petsc, finish_petsc
+  use root_output, only: print_lines
+  use simulations, only: simulation_t
+  use text, only: line_t
+  use timers, only: wall_time
+  use verifications, only: stage_done, stage_stopped, stage_of, tell_changes
+  implicit none
+  private
+  public :: compute, read_deck_everywhere
+
+contains
+
+  !> Runs a deck, or goes on from a checkpoint.
+  subroutine compute(command, communicator, code, error)
+    !> What is asked
+    type(command_t), intent(in) :: command
+    !> The ranks; MPI is started here if it was not before
+    type(communicator_t), intent(inout) :: communicator
+    !> Exit code
+    integer, intent(inout) :: code
+    !> Set if the run fails
+    type(error_t), allocatable, intent(out) :: error
+    type(deck_t) :: deck
+    type(problems_t) :: problems
+    character(len=:), allocatable :: checkpoint
+    real(wp) :: begun
+
+    begun = wall_time()
+    checkpoint = ''
+    ! A checkpoint is read through MPI.
+    if (command%verb == verb_restart) then
+      call start_mpi(communicator)
+      call find_checkpoint(command, communicator, checkpoint, error)
+      if (allocated(error)) return
+      call read_checkpoint_deck(checkpoint, communicator, deck, problems, error)
+      if (allocated(error)) return
+    else
+      call read_deck_everywhere(command%target, communicator, deck, problems)
+    end if
+    call accept_deck(command, communicator, deck, problems, code)
+    if (code /= exit_done) return
+    if (command%verify .and. deck%refine > 0) then
+      call fail(error, exit_usage, '--verify refines the scene itself; take refine out of &case.')
+      return
+    end if
+    call start_mpi(communicator)
+    call start_petsc(communicator, deck%linear_solver%petsc_options//command%petsc_options, error)
+    if (allocated(error)) return
+    if (command%verify) then
+      call verify(command, communicator, deck, begun, code, error)
+    else
+      call simulate(deck, communicator, begun, checkpoint, error)
+    end if
+    call finish_petsc()
+  end subroutine compute
+
+  !> Tells what is wrong with a deck, and sets what the command line overrides.
+  subroutine accept_deck(command, communicator, deck, problems, code)
+    !> What is asked
+    type(command_t), intent(in) :: command
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> The deck
+    type(deck_t), intent(inout) :: deck
+    !> Faults found so far
+    type(problems_t), intent(inout) :: problems
+    !> Exit code
+    integer, intent(inout) :: code
+
+    call check_ranks(deck%settings, deck%linear_solver, communicator%size, problems)
+    code = problems%exit_code()
+    call print_lines(communicator, problems%lines())
+    if (allocated(command%output)) deck%output%directory = command%output
+    if (command%wall_limit > 0) deck%stepping%time%wall_limit = command%wall_limit
+  end subroutine accept_deck
+
+  !> Runs the deck's scene to its end.
+  subroutine simulate(deck, communicator, begun, checkpoint, error)
+    !> The deck, checked
+    type(deck_t), intent(in) :: deck
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> Clock at the program's start
+    real(wp), intent(in) :: begun
+    !> Checkpoint to go on from; empty: from the start
+    character(len=*), intent(in) :: checkpoint
+    !> Set if the run fails
+    type(error_t), allocatable, intent(out) :: error
+    type(simulation_t), allocatable :: simulation
+
+    allocate (simulation)
+    if (checkpoint /= '') then
+      call simulation%resume(deck, communicator, begun, checkpoint, error)
+    else
+      call simulation%initialize(deck, communicator, begun, error)
+    end if
+    if (.not. allocated(error)) call simulation%run(error)
+    if (.not. allocated(error)) call simulation%finalize(error)
+    call simulation%conclude(error)
+    if (allocated(error)) call simulation%log%error(error%message)
+    call simulation%log%close()
+  end subroutine simulate
+
+  !> Runs a scene as it is and once more finer, and tells what its figures change by. What an earlier command has done
+  !> of that isn't done again.
+  subroutine verify(command, communicator, deck, begun, code, error)
+    !> What is asked
+    type(command_t), intent(in) :: command
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> The deck as it is
+    type(deck_t), intent(in) :: deck
+    !> Clock at the program's start
+    real(wp), intent(in) :: begun
+    !> Exit code
+    integer, intent(inout) :: code
+    !> Set if a run fails
+    type(error_t), allocatable, intent(out) :: error
+    type(deck_t) :: finer
+    type(problems_t) :: problems
+
+    call read_deck_text(refined_text(deck%text), command%target, finer, problems)
+    call accept_deck(command, communicator, finer, problems, code)
+    if (code /= exit_done) return
+    call go_on(deck, communicator, begun, error)
+    if (.not. allocated(error)) call go_on(finer, communicator, begun, error)
+    if (allocated(error)) then
+      if (error%code == exit_stopped) &
+        error%message = error%message//', or do all that is left with the same command.'
+      return
+    end if
+    call tell_changes(deck, finer, communicator, error)
+  end subroutine verify
+
+  !> Runs a deck's scene from where an earlier command has left it.
+  subroutine go_on(deck, communicator, begun, error)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> Clock at the program's start
+    real(wp), intent(in) :: begun
+    !> Set if the run fails
+    type(error_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: base
+
+    base = deck%output%directory//'/'//deck%name
+    select case (stage_of(base, deck%text, commit, communicator))
+    case (stage_done)
+      call print_lines(communicator, [line_t(deck%name//' has been run before.')])
+    case (stage_stopped)
+      call simulate(deck, communicator, begun, base//checkpoint_ending, error)
+    case default
+      call simulate(deck, communicator, begun, '', error)
+    end select
+  end subroutine go_on
+
+  !> Reads a deck on the root rank and gives its text to all.
+  subroutine read_deck_everywhere(path, communicator, deck, problems)
+    !> Path of the deck
+    character(len=*), intent(in) :: path
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> The deck
+    type(deck_t), intent(out) :: deck
+    !> What is wrong with it
+    type(problems_t), intent(out) :: problems
+    character(len=:), allocatable :: text
+
+    if (communicator%is_root()) then
+      call read_deck(path, deck, problems)
+      text = deck%text
+    end if
+    call communicator%broadcast_text(text)
+    if (.not. communicator%is_root()) call read_deck_text(text, path, deck, problems)
+  end subroutine read_deck_everywhere
+
+  !> The checkpoint to go on from: the file named, or else the newest whole one of a folder.
+  subroutine find_checkpoint(command, communicator, path, error)
+    !> What is asked
+    type(command_t), intent(in) :: command
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> Path of the checkpoint
+    character(len=:), allocatable, intent(out) :: path
+    !> Set if there is none in the folder
+    type(error_t), allocatable, intent(inout) :: error
+    character(len=:), allocatable :: folder
+    logical :: is_file
+
+    path = command%target
+    is_file = path /= ''
+    if (is_file .and. communicator%is_root()) is_file = .not. is_directory(path)
+    call communicator%broadcast(is_file)
+    if (is_file) return
+    folder = '.'
+    if (allocated(command%output)) folder = command%output
+    if (path /= '') folder = path
+    call newest_checkpoint(communicator, folder, path, error)
+    if (.not. allocated(error)) call print_lines(communicator, [line_t('Going on from '//path//'.')])
+  end subroutine find_checkpoint
+
+  !> Reads the deck that a checkpoint holds. Results go on in the folder of the checkpoint.
+  subroutine read_checkpoint_deck(path, communicator, deck, problems, error)
+    !> The checkpoint
+    character(len=*), intent(in) :: path
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> The deck
+    type(deck_t), intent(out) :: deck
+    !> What is wrong with it
+    type(problems_t), intent(out) :: problems
+    !> Set if the file is no checkpoint or damaged
+    type(error_t), allocatable, intent(out) :: error
+    type(checkpoint_archive_t) :: archive
+    integer :: slash
+
+    call archive%open_for_loading(communicator, path, error)
+    if (allocated(error)) return
+    call read_deck_text(archive%provenance%deck, path, deck, problems)
+    ! A deck without a name has that of its file, which isn't the checkpoint's.
+    deck%name = archive%provenance%case_name
+    call deck%settings%derive(case_group, key_name, deck%name, .true.)
+    call archive%close(error)
+    deck%output%directory = '.'
+    slash = index(path, '/', back=.true.)
+    if (slash > 0) deck%output%directory = path(:max(slash - 1, 1))
+  end subroutine read_checkpoint_deck
+end module computations

@@ -1,0 +1,190 @@
+!> What a scene's figures change by on a finer mesh with shorter steps, from the summaries of both runs.
+module verifications
+  use checkpoints, only: checkpoint_archive_t, checkpoint_ending
+  use communicators, only: communicator_t
+  use deck_contents, only: deck_t
+  use errors, only: error_t
+  use files, only: file_exists, read_whole_file
+  use json_text, only: json_t
+  use kinds, only: wp
+  use root_output, only: print_lines
+  use summary_file, only: summary_ending, write_summary
+  use text, only: line_t, append, rounded_text
+  implicit none
+  private
+  public :: stage_of, tell_changes
+
+  !> How far an earlier command has come with a run.
+  integer, parameter, public :: stage_none = 0, stage_stopped = 1, stage_done = 2
+  !> Ending of the file's name.
+  character(len=*), parameter :: verification_ending = '_verification.json'
+  !> Largest summary read.
+  integer, parameter :: most_bytes = 10000000
+  !> Figures compared, members of the summary, and what they are called.
+  character(len=*), parameter :: figures(2, 10) = reshape([character(len=24) :: &
+    'peak_force', 'peak force', 'peak_force_at', '  its time', 'contact_duration', 'time in contact', &
+    'impactor_velocity', 'impactor''s velocity', 'largest_deflection', 'largest deflection', &
+    'energy_absorbed', 'energy absorbed', 'delaminated_area', 'delaminated area', 'projected_area', '  projected', &
+    'energy_delamination', 'energy of delamination', 'energy_ply_damage', 'energy of ply damage'], [2, 10])
+
+contains
+
+  !> How far an earlier command has come with a run of the same deck by the same program. Collective.
+  integer function stage_of(base, deck, commit, communicator) result(stage)
+    !> Folder and name of its results
+    character(len=*), intent(in) :: base
+    !> Text of the deck
+    character(len=*), intent(in) :: deck
+    !> Of the program
+    character(len=*), intent(in) :: commit
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    type(checkpoint_archive_t) :: archive
+    type(error_t), allocatable :: error
+    character(len=:), allocatable :: summary
+    logical :: ended, stopped
+
+    stage = stage_none
+    if (communicator%is_root()) then
+      call read_summary(base, summary)
+      ended = index(summary, '"kind": "done"') > 0
+      if (ended .and. holds(summary, 'deck', deck) .and. holds(summary, 'commit', commit)) stage = stage_done
+      stopped = file_exists(base//checkpoint_ending) .and. .not. ended
+    end if
+    call communicator%broadcast(stage)
+    call communicator%broadcast(stopped)
+    if (.not. stopped) return
+    call archive%open_for_loading(communicator, base//checkpoint_ending, error)
+    if (allocated(error)) return
+    if (archive%provenance%deck == deck) stage = stage_stopped
+    call archive%close(error)
+  end function stage_of
+
+  !> A summary; empty if there is none.
+  subroutine read_summary(base, summary)
+    !> Folder and name of the results
+    character(len=*), intent(in) :: base
+    !> Its text
+    character(len=:), allocatable, intent(out) :: summary
+    type(error_t), allocatable :: error
+
+    call read_whole_file(base//summary_ending, most_bytes, summary, error)
+  end subroutine read_summary
+
+  !> True: a summary has a member of this name and text.
+  logical function holds(summary, name, content)
+    !> The summary
+    character(len=*), intent(in) :: summary
+    !> Name and text of the member
+    character(len=*), intent(in) :: name, content
+    type(json_t) :: json
+    character(len=:), allocatable :: member
+
+    call json%begin()
+    call json%put(name, content)
+    call json%finished(member)
+    ! The line between the brackets.
+    member = member(index(member, '"'):index(member, '"', back=.true.))
+    holds = index(summary, member) > 0
+  end function holds
+
+  !> Prints what the figures change by, and writes it to NAME_verification.json. Collective.
+  subroutine tell_changes(deck, finer, communicator, error)
+    !> The deck, and the same refined
+    type(deck_t), intent(in) :: deck, finer
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> Set if the file can't be written
+    type(error_t), allocatable, intent(inout) :: error
+    type(line_t), allocatable :: lines(:)
+    character(len=:), allocatable :: content
+
+    if (communicator%is_root()) then
+      call compare_summaries(deck, finer, lines, content)
+      call print_lines(communicator, lines)
+      call write_summary(deck%output%directory//'/'//deck%name//verification_ending, content, error)
+    end if
+    call communicator%agree(error)
+  end subroutine tell_changes
+
+  !> The changes as a table and as JSON.
+  subroutine compare_summaries(deck, finer, lines, content)
+    !> The deck, and the same refined
+    type(deck_t), intent(in) :: deck, finer
+    !> The table
+    type(line_t), allocatable, intent(out) :: lines(:)
+    !> The JSON
+    character(len=:), allocatable, intent(out) :: content
+    character(len=:), allocatable :: summary, finer_summary
+    type(json_t) :: json
+    real(wp) :: values(2)
+    logical :: found(2)
+    integer :: i
+
+    call read_summary(deck%output%directory//'/'//deck%name, summary)
+    call read_summary(finer%output%directory//'/'//finer%name, finer_summary)
+    call json%begin()
+    call json%put('as_it_is', deck%name)
+    call json%put('finer', finer%name)
+    call json%open_object('figures')
+    allocate (lines(0))
+    call append(lines, 'Verification with half the elements'' sides and half the steps:')
+    call append(lines, '  figure                  as it is      finer         change')
+    do i = 1, size(figures, 2)
+      call find_number(summary, trim(figures(1, i)), values(1), found(1))
+      call find_number(finer_summary, trim(figures(1, i)), values(2), found(2))
+      if (.not. all(found) .or. all(abs(values) <= 0)) cycle
+      call append(lines, '  '//figures(2, i)//wide(rounded_text(values(1)))//wide(rounded_text(values(2)))// &
+                  change(values))
+      call json%open_object(trim(figures(1, i)))
+      call json%put('as_it_is', values(1))
+      call json%put('finer', values(2))
+      call json%close()
+    end do
+    call json%finished(content)
+  end subroutine compare_summaries
+
+  !> Number of a member of the outermost object, which stands in a line of its own.
+  pure subroutine find_number(summary, name, value, found)
+    !> The summary
+    character(len=*), intent(in) :: summary
+    !> The member
+    character(len=*), intent(in) :: name
+    !> Its number
+    real(wp), intent(out) :: value
+    !> False: there is none, or it isn't known
+    logical, intent(out) :: found
+    character(len=:), allocatable :: opening
+    integer :: first, status
+
+    value = 0
+    opening = new_line('a')//'  "'//name//'": '
+    first = index(summary, opening)
+    found = first > 0
+    if (.not. found) return
+    first = first + len(opening)
+    read (summary(first:first + scan(summary(first:), ','//new_line('a')) - 2), *, iostat=status) value
+    found = status == 0
+  end subroutine find_number
+
+  !> A word with blanks behind it.
+  pure function wide(word)
+    !> The word
+    character(len=*), intent(in) :: word
+    !> The same in 14 columns or more
+    character(len=max(14, len(word) + 1)) :: wide
+
+    wide = word
+  end function wide
+
+  !> Relative change of a figure.
+  pure function change(values) result(word)
+    !> As it is, and finer
+    real(wp), intent(in) :: values(2)
+    !> Such as -0.27 %; from nothing there is none
+    character(len=:), allocatable :: word
+
+    word = '-'
+    if (abs(values(1)) > 0) word = rounded_text(100*(values(2)/values(1) - 1), 2)//' %'
+  end function change
+end module verifications

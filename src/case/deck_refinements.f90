@@ -1,0 +1,95 @@
+!> A deck's scene on finer elements with shorter steps, to see what its figures change by.
+module deck_refinements
+  use case_deck, only: case_group, key_refine
+  use deck_contents, only: deck_t
+  use text, only: line_t, append, lower_case, to_text
+  implicit none
+  private
+  public :: refine, refined_text
+
+  !> What the names of finer results end with, before the number of refinements.
+  character(len=*), parameter, public :: finer_ending = '_finer'
+
+contains
+
+  !> Halves the sides of the elements, the steps, and, where these follow the error, the part of it that a step of third
+  !> order adds, as often as the deck asks for. The results get names of their own.
+  subroutine refine(deck)
+    !> The deck, filled
+    type(deck_t), intent(inout) :: deck
+    integer :: parts
+
+    if (deck%refine == 0) return
+    parts = 2**deck%refine
+    deck%name = deck%name//finer_ending//to_text(deck%refine)
+    deck%mesh%elements = parts*deck%mesh%elements
+    deck%mesh%cell = deck%mesh%cell/parts
+    associate (time => deck%stepping%time)
+      time%step = time%step/parts
+      time%step_min = min(time%step_min, time%step)
+      time%step_max = time%step_max/parts
+    end associate
+    deck%stepping%adapt%tolerance = deck%stepping%adapt%tolerance/parts**3
+    deck%stepping%static_steps = parts*deck%stepping%static_steps
+    if (.not. allocated(deck%reasons)) allocate (deck%reasons(0))
+    call append(deck%reasons, 'Refined '//to_text(deck%refine)//' time(s): '//to_text(deck%mesh%elements(1))//' x '// &
+                to_text(deck%mesh%elements(2))//' elements'//steps_of(deck)//'.')
+  end subroutine refine
+
+  !> What is said of the steps.
+  function steps_of(deck) result(clause)
+    !> The deck, refined
+    type(deck_t), intent(in) :: deck
+    !> Such as , steps of 2e-6
+    character(len=:), allocatable :: clause
+
+    if (deck%has_static) then
+      clause = ', '//to_text(deck%stepping%static_steps)//' load step(s)'
+    else
+      clause = ', steps of '//to_text(deck%stepping%time%step)
+    end if
+  end function steps_of
+
+  !> The text of a deck that asks for one refinement more than the deck, which asks for none.
+  pure function refined_text(text) result(finer)
+    !> Text of the deck
+    character(len=*), intent(in) :: text
+    !> The same with one key more
+    character(len=:), allocatable :: finer
+    integer :: place
+
+    place = end_of_case(text)
+    if (place > 0) then
+      finer = text(:place)//' '//key_refine//'=1'//text(place + 1:)
+    else
+      finer = text//new_line('a')//'&'//case_group//' '//key_refine//'=1 /'//new_line('a')
+    end if
+  end function refined_text
+
+  !> Last character of the name of the group &case where it begins, outside of texts and comments; 0: there is none.
+  pure integer function end_of_case(text) result(place)
+    !> Text of the deck
+    character(len=*), intent(in) :: text
+    character(len=*), parameter :: letters = 'abcdefghijklmnopqrstuvwxyz0123456789_'
+    character(len=1) :: quote
+    integer :: i
+
+    place = 0
+    quote = ' '
+    i = 0
+    do while (i < len(text) - len(case_group))
+      i = i + 1
+      if (quote /= ' ') then
+        if (text(i:i) == quote) quote = ' '
+      else if (scan(text(i:i), '''"') == 1) then
+        quote = text(i:i)
+      else if (text(i:i) == '!') then
+        i = i + scan(text(i + 1:)//new_line('a'), new_line('a'))
+      else if (lower_case(text(i:i + len(case_group))) == '&'//case_group) then
+        place = i + len(case_group)
+        if (verify(lower_case(text(place + 1:min(place + 1, len(text)))), letters) /= 0) return
+        place = 0
+      end if
+    end do
+  end function end_of_case
+end module deck_refinements
