@@ -3,7 +3,7 @@
 # The same processors, threads and launcher settings for every test, so that two tests at a time don't
 # disturb each other: one thread a rank, ranks not bound to cores, more ranks than cores allowed.
 set(IMPLAM_TEST_ENVIRONMENT OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
-  OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_hwloc_base_binding_policy=none OMPI_MCA_mpi_yield_when_idle=1)
+  OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_hwloc_base_binding_policy=none)
 execute_process(COMMAND id -u OUTPUT_VARIABLE user OUTPUT_STRIP_TRAILING_WHITESPACE)
 if(user EQUAL 0) # Open MPI refuses to start for root unless told twice
   list(APPEND IMPLAM_TEST_ENVIRONMENT OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1)
@@ -12,6 +12,12 @@ endif()
 # implam_settle_test(<test> <label>): label, environment and time limit of a registered test.
 function(implam_settle_test test label)
   set_tests_properties(${test} PROPERTIES LABELS ${label} ENVIRONMENT "${IMPLAM_TEST_ENVIRONMENT}" TIMEOUT 300)
+endfunction()
+
+# implam_share_cores(<test>...): several ranks; one that waits for another leaves its core to others. A single rank never
+# waits, and on a busy machine would lose its turn whenever it looks.
+function(implam_share_cores)
+  set_property(TEST ${ARGN} APPEND PROPERTY ENVIRONMENT OMPI_MCA_mpi_yield_when_idle=1)
 endfunction()
 
 # implam_add_unit_tests(<layer>...): one test program a layer from tests/unit/<layer>/*.pf and the helpers
@@ -50,6 +56,7 @@ function(implam_add_unit_tests)
     implam_settle_test(unit_${layer} unit)
     if(processes) # on two cores one such program at a time
       set_tests_properties(unit_${layer} PROPERTIES PROCESSORS 2)
+      implam_share_cores(unit_${layer})
     endif()
   endforeach()
 endfunction()
@@ -83,6 +90,7 @@ endfunction()
 function(implam_test_stand_in)
   add_pfunit_ctest(framework_counts TEST_SOURCES framework/failing.pf MAX_PES 2)
   implam_settle_test(framework_counts unit)
+  implam_share_cores(framework_counts)
   set_tests_properties(framework_counts PROPERTIES PASS_REGULAR_EXPRESSION "9 tests run, 9 failed")
   add_test(NAME framework_fails COMMAND framework_counts -f test_condition)
   add_test(NAME framework_needs_a_test COMMAND framework_counts -f none_of_this_name)
