@@ -14,8 +14,7 @@ function(implam_settle_test test label)
   set_tests_properties(${test} PROPERTIES LABELS ${label} ENVIRONMENT "${IMPLAM_TEST_ENVIRONMENT}" TIMEOUT 300)
 endfunction()
 
-# implam_share_cores(<test>...): several ranks; one that waits for another leaves its core to others. A single rank never
-# waits, and on a busy machine would lose its turn whenever it looks.
+# implam_share_cores(<test>...): tests of several ranks; one that waits for another leaves its core to others.
 function(implam_share_cores)
   set_property(TEST ${ARGN} APPEND PROPERTY ENVIRONMENT OMPI_MCA_mpi_yield_when_idle=1)
 endfunction()
