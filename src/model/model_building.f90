@@ -42,7 +42,6 @@ contains
     type(scene_t), intent(in) :: scene
     !> The ranks
     type(communicator_t), intent(in) :: communicator
-    !> The model
     type(model_t), intent(out) :: self
     !> Set if the mesh can't be dealt out or an element is ill-shaped; the same on every rank
     type(error_t), allocatable, intent(out) :: error
@@ -184,7 +183,6 @@ contains
 
   !> This rank's elements under the patch, of the struck layer only.
   pure function patch_elements(self) result(elements)
-    !> The model
     type(model_t), intent(in) :: self
     !> Positions among this rank's elements
     integer, allocatable :: elements(:)
@@ -198,7 +196,6 @@ contains
 
   !> Nodal forces of the pressure on the struck face.
   subroutine build_pressure(self)
-    !> The model
     type(model_t), intent(inout) :: self
     real(wp), allocatable :: x(:, :, :), pressure(:, :)
     real(wp), parameter :: pi = acos(-1.0_wp)
@@ -233,7 +230,6 @@ contains
 
   !> Finds the struck node's first point if this rank owns it, and the elements around it.
   subroutine find_struck_point(self)
-    !> The model
     type(model_t), intent(inout) :: self
     integer :: i, first
 

@@ -111,7 +111,6 @@ contains
 
   !> Motion of every layer from the unknowns.
   pure function motion_of(self, unknowns) result(motion)
-    !> The model
     class(model_t), intent(in) :: self
     !> Unknowns, (5, points)
     real(wp), intent(in) :: unknowns(:, :)
@@ -124,7 +123,6 @@ contains
 
   !> Internal forces at the owned points and this rank's share of the strain energy.
   subroutine internal(self, stiffness, displacement, force, energy, law, free)
-    !> The model
     class(model_t), intent(in) :: self
     !> Section stiffness left in the elements, (lanes, 21, batches)
     real(wp), contiguous, intent(in) :: stiffness(:, :, :)
@@ -153,7 +151,6 @@ contains
 
   !> Nodal forces of the lines at the owned points.
   pure subroutine line_forces(self, displacement, load_factor, forces)
-    !> The model
     class(model_t), intent(in) :: self
     !> Displacement, (5, points)
     real(wp), intent(in) :: displacement(:, :)
@@ -171,7 +168,6 @@ contains
 
   !> Adds the nodal forces of the lines that hold the plate before anything loads it.
   pure subroutine add_holding_lines(self, displacement, forces)
-    !> The model
     class(model_t), intent(in) :: self
     !> Displacement, (5, points)
     real(wp), intent(in) :: displacement(:, :)
@@ -186,7 +182,6 @@ contains
 
   !> Nodal loads of a static analysis: pressure and lines, at the owned points.
   pure subroutine static_loads(self, displacement, load_factor, loads)
-    !> The model
     class(model_t), intent(in) :: self
     !> Displacement, (5, points)
     real(wp), intent(in) :: displacement(:, :)
@@ -201,7 +196,6 @@ contains
 
   !> Change of these loads with the load factor.
   pure subroutine load_slopes(self, loads)
-    !> The model
     class(model_t), intent(in) :: self
     !> Forces on the unknowns, (5, points); ghosts zero
     real(wp), intent(out) :: loads(:, :)
@@ -216,7 +210,6 @@ contains
 
   !> Mass times a field, at the owned points.
   subroutine inertia(self, field, force)
-    !> The model
     class(model_t), intent(in) :: self
     !> Acceleration or velocity, ghosts up to date, (5, points)
     real(wp), intent(in) :: field(:, :)
@@ -247,7 +240,6 @@ contains
 
   !> Mean deflection of the patch, the same on every rank.
   real(wp) function patch_mean(self, displacement) result(mean)
-    !> The model
     class(model_t), intent(in) :: self
     !> Displacement, (5, points)
     real(wp), intent(in) :: displacement(:, :)
@@ -258,7 +250,6 @@ contains
 
   !> Deflection at the struck point, the same on every rank.
   real(wp) function deflection(self, displacement) result(w)
-    !> The model
     class(model_t), intent(in) :: self
     !> Displacement, (5, points)
     real(wp), intent(in) :: displacement(:, :)
@@ -270,7 +261,6 @@ contains
 
   !> Product of two fields summed over the owned points of this rank only.
   pure real(wp) function field_product(self, left, right) result(total)
-    !> The model
     class(model_t), intent(in) :: self
     !> The fields, (5, points)
     real(wp), intent(in) :: left(:, :), right(:, :)

@@ -40,7 +40,7 @@ module softening_corrections
   type, extends(linear_plate_t) :: operator_plate_t
     !> The factored operator
     type(tangent_operator_t), pointer :: operator => null()
-    !> The model
+    !> Mesh, numbering and interfaces of the plate
     type(model_t), pointer :: model => null()
   contains
     procedure :: answer
@@ -85,7 +85,7 @@ contains
     class(softening_memory_t), intent(inout) :: self
     !> The factored operator
     type(tangent_operator_t), target, intent(inout) :: operator
-    !> The model
+    !> Mesh, numbering and interfaces of the plate
     type(model_t), target, intent(in) :: model
     !> Cohesive interfaces in the last accepted state
     type(cohesive_interfaces_t), intent(in) :: old
