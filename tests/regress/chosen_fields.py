@@ -198,7 +198,7 @@ def check_onset(implam, folder):
     bending = 2 * (130e9 * (outer**3 - inner**3) + 8e9 * inner**3) / 3
     expected = 50 / 0.02 / bending * 130e9 * (outer**2 - inner**2) / 2 / 50e6
     for name, more in (("whole", ""), ("joined", JOINED), ("apart", APART)):
-        (folder / name).mkdir(parents=True)
+        (folder / name).mkdir(parents=True, exist_ok=True)
         (folder / name / "deck.nml").write_text(STRIP + more, encoding="utf-8")
         results = Results(run_deck(implam, folder / name / "deck.nml"))
         index, ply = results.cells["onset_index"], results.cells["onset_ply"]
