@@ -31,8 +31,8 @@ module process_zones
     real(wp) :: strength_opening = 0, strength_shear = 0
     !> Longest side of a cell in the layered zone
     real(wp) :: cell = 0
-    !> True: loads pull the layers apart, so that opening may govern. Under an impactor growth is in shear: there, cells
-    !> of .9 to 2 in the zone of opening moved force and area by at most 2 % (doc/manual/accuracy.md).
+    !> True: loads pull the layers apart, so that opening may govern. Under an impactor growth is in shear: there, .9
+    !> cells in the zone of opening kept the force within 2 % of the closed form (input/verify/cohesive_threshold.nml).
     logical :: is_pulled = .true.
   end type process_zone_t
 

@@ -206,7 +206,7 @@ def check_onset(implam, folder):
         loaded = (np.abs(middle) < 0.04) & ((name != "apart") | (np.abs(middle - 0.02) > 0.03))
         worst = np.max(np.abs(index[loaded] / expected - 1))
         print(f"onset, {name}: {np.count_nonzero(loaded)} elements, {worst:.1e} off beam theory")
-        require(worst < 1e-9, "The index isn't that of beam theory.")
+        require(worst < 1e-11, "The index isn't that of beam theory.")
         require(set(ply[loaded]) <= {1, 2}, "It stands in another interface.")
         alone = (np.abs(middle - 0.02) < 0.009) & (results.first_ply == 3)
         require(name != "apart" or (np.any(alone) and not np.any(index[alone])), "A single ply has an interface.")
