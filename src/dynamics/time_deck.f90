@@ -35,7 +35,7 @@ module time_deck
       &Newmark''s beta; 2 beta >= gamma keeps every step stable.', &
     'time | gamma | real | 1 | - | 0.5 | >= 0.5, <= 1 | &
       &Newmark''s gamma; above 0.5 it damps.', &
-    'time | rho_inf | real | 1 | - | = 1, with &delamination 0 | >= 0, <= 1 | &
+    'time | rho_inf | real | 1 | - | = 1, with &delamination 0.5, with a front 0 | >= 0, <= 1 | &
       &Generalised-alpha''s spectral radius at high frequency: 1 damps nothing, 0 most.']
 
   !> Most steps of a run: more pass the range of default integers.
@@ -44,11 +44,11 @@ module time_deck
 contains
 
   !> Time integration of the plate.
-  subroutine fill_time(settings, layers_separate, grows, time)
+  subroutine fill_time(settings, rho_infinity, grows, time)
     !> Keys in effect; gets what the deck doesn't give
     type(settings_t), intent(inout) :: settings
-    !> True: layers of the plate may separate, which takes damping
-    logical, intent(in) :: layers_separate
+    !> What is left a step of the highest frequencies unless the deck says so
+    real(wp), intent(in) :: rho_infinity
     !> True: the step may grow beyond the first unless the deck forbids it
     logical, intent(in) :: grows
     !> Receives them
@@ -69,7 +69,7 @@ contains
       time%beta = s%real_of(time_group, 'beta')
       time%gamma = s%real_of(time_group, 'gamma')
       if (.not. s%is_given(time_group, 'rho_inf')) &
-        call s%derive(time_group, 'rho_inf', merge('0', '1', layers_separate), .false.)
+        call s%derive(time_group, 'rho_inf', to_text(rho_infinity), .false.)
       time%rho_infinity = s%real_of(time_group, 'rho_inf')
     end associate
   end subroutine fill_time
