@@ -3,7 +3,7 @@
 module cohesive_faces
   use cohesive_laws, only: cohesive_law_t, stiffness_of
   use cohesive_points, only: cohesive_point_t, cohesive_reach, cohesive_traction, grown_damage, stored_energy
-  use cohesive_tangents, only: cohesive_tangent, operator_stiffness, traction_slopes
+  use cohesive_tangents, only: operator_stiffness, traction_slopes
   use face_friction, only: friction_energy, friction_slopes, friction_traction
   use kinds, only: wp
   implicit none
@@ -23,9 +23,8 @@ module cohesive_faces
     procedure :: traction
     !> Energy per area that the jumps store.
     procedure :: stored
-    !> Derivative of the traction, whole and made symmetric.
+    !> Derivative of the traction.
     procedure :: slopes
-    procedure :: tangent
     !> Slopes of a line through the origin and the traction: never below those of the tangent.
     procedure :: secant
     !> Diagonal for a factored operator.
@@ -86,22 +85,6 @@ contains
     if (pressed(self, jumps)) slopes(3, 3) = self%law%stiffness_opening
     if (self%friction > 0) slopes(:2, :2) = slopes(:2, :2) + sticking(self, jumps, old)
   end function slopes
-
-  !> Derivative of the traction, its symmetric part.
-  pure function tangent(self, jumps, old)
-    !> The faces
-    class(cohesive_faces_t), intent(in) :: self
-    !> Two shears and opening
-    real(wp), intent(in) :: jumps(3)
-    !> The point in the last accepted state
-    type(cohesive_point_t), intent(in) :: old
-    !> Pressure per jump
-    real(wp) :: tangent(3, 3)
-
-    tangent = cohesive_tangent(self%law, jumps, 0.0_wp, old)
-    if (pressed(self, jumps)) tangent(3, 3) = self%law%stiffness_opening
-    if (self%friction > 0) tangent(:2, :2) = tangent(:2, :2) + sticking(self, jumps, old)
-  end function tangent
 
   !> Slopes of a line through the origin and the traction. As the law softens its energy lies below that of these
   !> slopes, so steps made with them always descend.

@@ -7,29 +7,13 @@ module cohesive_tangents
   use kinds, only: wp
   implicit none
   private
-  public :: cohesive_tangent, operator_stiffness, traction_slopes, toughness_slopes, dissipation_slopes
+  public :: operator_stiffness, traction_slopes, toughness_slopes, dissipation_slopes
 
 contains
 
-  !> Consistent tangent, its symmetric part: unsymmetric is only growth in a mixed mode with G_Ic /= G_IIc.
-  pure function cohesive_tangent(law, jumps, pressure, old) result(tangent)
-    !> The law
-    type(cohesive_law_t), intent(in) :: law
-    !> Two shears and opening
-    real(wp), intent(in) :: jumps(3)
-    !> Contact pressure of the last accepted state
-    real(wp), intent(in) :: pressure
-    !> The point in the last accepted state
-    type(cohesive_point_t), intent(in) :: old
-    !> Pressure per jump
-    real(wp) :: tangent(3, 3)
-
-    tangent = traction_slopes(law, jumps, cohesive_reach(law, jumps, pressure), old)
-    tangent = (tangent + transpose(tangent))/2
-  end function cohesive_tangent
-
   !> Derivative of the traction: (1 - d) diag(K), where damage grows less (K v) (x) dd/dv with
-  !> dd/dx = N/((N - 1) x**2) and dx/dv = (dY/Y - dG_c/G_c) x/2. Closing faces have no normal part.
+  !> dd/dx = N/((N - 1) x**2) and dx/dv = (dY/Y - dG_c/G_c) x/2. Closing faces have no normal part. Unsymmetric is only
+  !> growth in a mixed mode with G_Ic /= G_IIc.
   pure function traction_slopes(law, jumps, reach, old) result(slopes)
     !> The law
     type(cohesive_law_t), intent(in) :: law

@@ -26,8 +26,8 @@ module condensed_corrections
   type :: condensed_correction_t
     !> The small system; its unknowns are the operator's columns, and the patch's mean deflection with an impactor
     type(condensed_points_t) :: system
-    !> Change of the unknowns by the operator alone, and at equilibrium; that of the columns first
-    real(wp), allocatable :: free(:), change(:)
+    !> Change of the unknowns at equilibrium; that of the columns first
+    real(wp), allocatable :: change(:)
     !> Columns among them
     integer :: columns = 0
   contains
@@ -61,17 +61,17 @@ contains
 
     self%columns = operator%changes%kept
     if (self%columns == 0) return
-    self%free = operator%changes%values(model%communicator, operator%numbering, correction)
+    self%system%free = operator%changes%values(model%communicator, operator%numbering, correction)
     response = operator%changes%values(model%communicator, operator%numbering, operator%response)
     ! Mean deflections over the number of parts of the plate are what the force on the modelled part does work on.
     compliance = operator%compliance/model%mesh%multiplicity
     call operator%changes%stiffness_of_columns(response, compliance, self%system%stiffness)
     call gather_points(operator, model, old, displacement, correction, self%system)
     if (model%scene%has_impactor) then
-      self%free = [self%free, model%patch_mean(correction)/model%mesh%multiplicity]
+      self%system%free = [self%system%free, model%patch_mean(correction)/model%mesh%multiplicity]
       self%system%held = [self%system%held, 0.0_wp]
     end if
-    self%change = 0*self%free
+    self%change = 0*self%system%free
     self%change(:size(guess)) = guess
     self%system%forces = self%change
   end subroutine new_condensed_correction
@@ -146,7 +146,7 @@ contains
         point%old%sliding = sliding_t(slip=tale(15:16, k), limit=tale(17, k))
         point%jumps = tale(5:7, k)
         point%drift = tale(8:10, k)
-        point%place(nint(tale(3, k))) = k
+        point%unknown(nint(tale(3, k))) = k
         call point%faces%traction(point%jumps, point%old, point%traction, new)
       end associate
     end do
@@ -159,7 +159,7 @@ contains
     !> Force of the impactor; unallocated: there is none
     class(outside_force_t), allocatable, intent(inout) :: outside
 
-    call self%system%solve(self%free, outside, self%change)
+    call self%system%solve(outside, self%change)
   end subroutine solve
 
   !> Completes a correction: the operator's answer, mended by the forces of the unknowns.

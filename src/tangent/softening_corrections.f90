@@ -135,15 +135,13 @@ contains
     type(cohesive_point_t) :: new
     integer :: i, k
 
-    allocate (self%list(count(old%cohesive(:model%distribution%owned))))
-    k = 0
-    do i = 1, model%distribution%owned
-      if (.not. old%cohesive(i)) cycle
-      k = k + 1
+    self%places = pack([(i, i=1, model%distribution%owned)], old%cohesive(:model%distribution%owned))
+    allocate (self%list(size(self%places)))
+    do k = 1, size(self%places)
+      i = self%places(k)
       associate (point => self%list(k))
         point%faces = old%faces_of(model, model%zone(i))
         point%old = old%points(i)
-        point%place = i
         point%area = model%contact_area(i)*operator%stiffness_factor
         point%jumps = displacement(1:3, i)
         point%held = operator%present(:, i)

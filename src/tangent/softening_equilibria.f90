@@ -6,12 +6,12 @@
 !> does not matter how many points pass their onset at once, nor that their tangents are not positive definite. It
 !> remembers earlier answers, so the iteration of equilibrium around it starts from what the last one found.
 module softening_equilibria
-  use dense_systems, only: dense_factor_t, positive_factor_t
   use errors, only: error_t
   use kinds, only: wp
   use outside_forces, only: outside_force_t
   use plate_answers, only: linear_plate_t, plate_answers_t
-  use softening_points, only: softening_points_t, slopes_true, slopes_rising, slopes_secant
+  use softening_points, only: softening_points_t
+  use softening_systems, only: softening_system_t
   implicit none
   private
   public :: find_equilibrium
@@ -21,30 +21,28 @@ module softening_equilibria
   real(wp), parameter :: settled = 0.03_wp
   !> The same of the small system, over what it was before the latest answer.
   real(wp), parameter :: settled_inside = 0.03_wp
-  !> Newton iterations of the small system at most.
-  integer, parameter :: most_iterations = 60
-  !> Trials along a direction, and how much of the slope may be left at its end.
-  integer, parameter :: most_trials = 8
-  real(wp), parameter :: slope_left = 0.5_wp
 
   !> The small system. Its unknowns are the shares of the plate's answers.
-  type :: small_system_t
+  type, extends(softening_system_t) :: small_system_t
+    !> The plate
+    class(linear_plate_t), pointer :: plate => null()
+    !> The points
+    type(softening_points_t), pointer :: points => null()
     !> Jumps of the points in each answer, (3, points, unknowns)
     real(wp), allocatable :: jumps(:, :, :)
     !> Work of a unit force from outside on each answer, and that of the forces on the plate
-    real(wp), allocatable :: outside(:), works(:)
-    !> The shares
-    real(wp), allocatable :: shares(:)
+    real(wp), allocatable :: unit_works(:), works(:)
     !> Forces of the points, (3, points)
     real(wp), allocatable :: forces(:, :)
     !> Force from outside and its slope
     real(wp) :: load = 0, slope = 0
-    !> Symmetric part of the tangent, factored
-    type(positive_factor_t) :: factor
-    !> All of it, factored
-    type(dense_factor_t) :: whole
-    !> True: modes of different toughness grow, and the tangent is not symmetric
-    logical :: skew = .false.
+    !> Force out of balance that may be left
+    real(wp) :: tolerated = 0
+  contains
+    !> What Newton's method asks for.
+    procedure :: find_force
+    procedure :: find_tangent
+    procedure :: is_settled
   end type small_system_t
 
 contains
@@ -52,13 +50,13 @@ contains
   !> Change of the plate's motion that brings forces, points and the force from outside into balance, or nearer to it.
   subroutine find_equilibrium(plate, kept, points, outside, pattern, residual, most_answers, change, error)
     !> The plate
-    class(linear_plate_t), intent(inout) :: plate
+    class(linear_plate_t), target, intent(inout) :: plate
     !> Its answers so far
     type(plate_answers_t), intent(inout) :: kept
     !> The points
-    type(softening_points_t), intent(in) :: points
+    type(softening_points_t), target, intent(in) :: points
     !> Force from outside; unallocated: none
-    class(outside_force_t), allocatable, intent(inout) :: outside
+    class(outside_force_t), allocatable, target, intent(inout) :: outside
     !> Forces on the plate of a unit force from outside, (5, local points)
     real(wp), intent(in) :: pattern(:, :)
     !> Forces out of balance, (5, local points)
@@ -70,7 +68,7 @@ contains
     !> Set if the plate does not answer
     type(error_t), allocatable, intent(inout) :: error
     type(small_system_t) :: small
-    real(wp), allocatable :: answer(:, :), carried(:, :), imbalance(:, :)
+    real(wp), allocatable :: answer(:, :), carried(:, :), imbalance(:, :), shares(:)
     real(wp) :: first
     logical :: added
     integer :: i, k
@@ -79,17 +77,20 @@ contains
     allocate (carried, mold=residual)
     imbalance = residual
     first = plate%size(residual)
-    allocate (small%shares(kept%kept), source=0.0_wp)
+    allocate (shares(kept%kept), source=0.0_wp)
+    small%plate => plate
+    small%points => points
+    if (allocated(outside)) small%outside => outside
     do i = 0, most_answers
       call kept%add(plate, answer, imbalance, added)
       if (.not. added .and. i > 0) exit
-      if (added) small%shares = [small%shares, 0.0_wp]
-      call renew(small, plate, kept, points, pattern, residual)
-      call balance(small, plate, points, outside)
-      call kept%combine(small%shares, change, carried)
+      if (added) shares = [shares, 0.0_wp]
+      call renew(small, kept, pattern, residual)
+      call balance(small, shares)
+      call kept%combine(shares, change, carried)
       imbalance = residual - carried + small%load*pattern
-      do k = 1, size(points%list)
-        associate (place => points%list(k)%place)
+      do k = 1, size(points%places)
+        associate (place => points%places(k))
           imbalance(1:3, place) = imbalance(1:3, place) - small%forces(:, k)
         end associate
       end do
@@ -100,15 +101,11 @@ contains
   end subroutine find_equilibrium
 
   !> Renews the small system after answers have come.
-  subroutine renew(self, plate, kept, points, pattern, residual)
+  subroutine renew(self, kept, pattern, residual)
     !> The system
     type(small_system_t), intent(inout) :: self
-    !> The plate
-    class(linear_plate_t), intent(in) :: plate
-    !> Its answers
+    !> The plate's answers
     type(plate_answers_t), intent(in) :: kept
-    !> The points
-    type(softening_points_t), intent(in) :: points
     !> Forces on the plate of a unit force from outside, and those out of balance, (5, local points)
     real(wp), intent(in) :: pattern(:, :), residual(:, :)
     real(wp), allocatable :: jumps(:, :, :)
@@ -116,97 +113,56 @@ contains
 
     had = 0
     if (allocated(self%jumps)) had = size(self%jumps, 3)
-    allocate (jumps(3, size(points%list), kept%kept))
+    allocate (jumps(3, size(self%points%list), kept%kept))
     if (had > 0) jumps(:, :, :had) = self%jumps
-    jumps(:, :, had + 1:) = kept%motions(1:3, points%list%place, had + 1:kept%kept)
+    jumps(:, :, had + 1:) = kept%motions(1:3, self%points%places, had + 1:kept%kept)
     call move_alloc(jumps, self%jumps)
-    self%outside = kept%works(plate, pattern)
-    self%works = kept%works(plate, residual)
-    if (.not. allocated(self%forces)) allocate (self%forces(3, size(points%list)))
+    self%unit_works = kept%works(self%plate, pattern)
+    self%works = kept%works(self%plate, residual)
+    if (.not. allocated(self%forces)) allocate (self%forces(3, size(self%points%list)))
   end subroutine renew
 
-  !> Shares at equilibrium of the small system, found by Newton's method along directions that descend.
-  subroutine balance(self, plate, points, outside)
+  !> Shares at equilibrium of the small system.
+  subroutine balance(self, shares)
     !> The system
     type(small_system_t), intent(inout) :: self
-    !> The plate
-    class(linear_plate_t), intent(in) :: plate
-    !> The points
-    type(softening_points_t), intent(in) :: points
-    !> Force from outside; unallocated: none
-    class(outside_force_t), allocatable, intent(inout) :: outside
-    real(wp) :: force(size(self%shares)), direction(size(force)), share, first
-    integer :: i
+    !> The shares, (unknowns)
+    real(wp), intent(inout) :: shares(:)
+    real(wp) :: force(size(shares))
 
-    call find_force(self, plate, points, outside, self%shares, force)
-    first = norm2(force)
-    do i = 1, most_iterations
-      call factorize(self, plate, points)
-      direction = -force
-      if (self%skew) then
-        call self%whole%solve(direction)
-      else
-        call self%factor%solve(direction)
-      end if
-      call descend(self, plate, points, outside, direction, force, share)
-      self%shares = self%shares + share*direction
-      if (.not. norm2(force) > settled_inside*first) exit
-    end do
+    call self%find_force(shares, force)
+    self%tolerated = settled_inside*norm2(force)
+    call self%bring_into_balance(shares)
   end subroutine balance
 
-  !> Goes along a direction: all of it unless the force along it turns round too far on the way.
-  subroutine descend(self, plate, points, outside, direction, force, share)
-    !> The system
-    type(small_system_t), intent(inout) :: self
-    !> The plate
-    class(linear_plate_t), intent(in) :: plate
-    !> The points
-    type(softening_points_t), intent(in) :: points
-    !> Force from outside; unallocated: none
-    class(outside_force_t), allocatable, intent(inout) :: outside
-    !> Direction, (unknowns)
-    real(wp), intent(in) :: direction(:)
-    !> Force out of balance at its start on entry, at its end on return, (unknowns)
-    real(wp), intent(inout) :: force(:)
-    !> The share of it that was gone
-    real(wp), intent(out) :: share
-    real(wp) :: slope, slope_there
-    integer :: i
-
-    slope = dot_product(force, direction)
-    share = 1
-    do i = 1, most_trials
-      call find_force(self, plate, points, outside, self%shares + share*direction, force)
-      slope_there = dot_product(force, direction)
-      if (.not. slope_there > slope_left*abs(slope) .or. i == most_trials) return
-      share = share*min(0.9_wp, max(0.1_wp, -slope/(slope_there - slope)))
-    end do
-  end subroutine descend
-
   !> Force out of balance at some shares.
-  subroutine find_force(self, plate, points, outside, shares, force)
+  subroutine find_force(self, x, force)
     !> The system; receives the forces of the points and that from outside
-    type(small_system_t), intent(inout) :: self
-    !> The plate
-    class(linear_plate_t), intent(in) :: plate
-    !> The points
-    type(softening_points_t), intent(in) :: points
-    !> Force from outside; unallocated: none
-    class(outside_force_t), allocatable, intent(inout) :: outside
+    class(small_system_t), intent(inout) :: self
     !> The shares, (unknowns)
-    real(wp), intent(in) :: shares(:)
+    real(wp), intent(in) :: x(:)
     !> The force, (unknowns)
     real(wp), intent(out) :: force(:)
     integer :: k
 
-    call points%find_forces(jumps_of(self, shares), self%forces)
-    force = [(sum(self%jumps(:, :, k)*self%forces), k=1, size(shares))]
-    call plate%sum(force)
+    call self%points%find_forces(jumps_of(self, x), self%forces)
+    force = [(sum(self%jumps(:, :, k)*self%forces), k=1, size(x))]
+    call self%plate%sum(force)
     self%load = 0
     self%slope = 0
-    if (allocated(outside)) call outside%at(dot_product(self%outside, shares), self%load, self%slope)
-    force = force + shares - self%works - self%load*self%outside
+    if (associated(self%outside)) call self%outside%at(dot_product(self%unit_works, x), self%load, self%slope)
+    force = force + x - self%works - self%load*self%unit_works
   end subroutine find_force
+
+  !> True once a part of it is left only.
+  pure logical function is_settled(self, force)
+    !> The system
+    class(small_system_t), intent(in) :: self
+    !> The force, (unknowns)
+    real(wp), intent(in) :: force(:)
+
+    is_settled = .not. norm2(force) > self%tolerated
+  end function is_settled
 
   !> Jumps at some shares.
   pure function jumps_of(self, shares) result(jumps)
@@ -224,37 +180,12 @@ contains
     end do
   end function jumps_of
 
-  !> Factors the tangent at the shares: all of it if its symmetric part is positive definite, else one without its
-  !> falling part, else the secant, which always is. A positive symmetric part makes the direction of all of it descend.
-  subroutine factorize(self, plate, points)
-    !> The system
-    type(small_system_t), intent(inout) :: self
-    !> The plate
-    class(linear_plate_t), intent(in) :: plate
-    !> The points
-    type(softening_points_t), intent(in) :: points
-    real(wp), allocatable :: matrix(:, :)
-    integer :: kind
-
-    do kind = slopes_true, slopes_secant
-      call find_tangent(self, plate, points, kind, matrix)
-      call self%factor%factorize((matrix + transpose(matrix))/2)
-      if (self%factor%positive) exit
-    end do
-    self%skew = kind == slopes_true
-    if (.not. self%skew) return
-    call self%whole%factorize(matrix)
-    self%skew = .not. self%whole%singular
-  end subroutine factorize
-
   !> Tangent at the shares.
-  subroutine find_tangent(self, plate, points, kind, matrix)
+  subroutine find_tangent(self, x, kind, matrix)
     !> The system
-    type(small_system_t), intent(in) :: self
-    !> The plate
-    class(linear_plate_t), intent(in) :: plate
-    !> The points
-    type(softening_points_t), intent(in) :: points
+    class(small_system_t), intent(in) :: self
+    !> The shares, (unknowns)
+    real(wp), intent(in) :: x(:)
     !> Which of the points' derivatives
     integer, intent(in) :: kind
     !> The tangent, (unknowns, unknowns)
@@ -263,22 +194,22 @@ contains
     integer, allocatable :: found(:)
     integer :: i, k
 
-    call points%find_slopes(jumps_of(self, self%shares), kind, found, slopes)
+    call self%points%find_slopes(jumps_of(self, x), kind, found, slopes)
     jumps = self%jumps(:, found, :)
     allocate (forces, mold=jumps)
-    do k = 1, size(self%shares)
+    do k = 1, size(x)
       do i = 1, size(found)
         forces(:, i, k) = matmul(slopes(:, :, i), jumps(:, i, k))
       end do
     end do
-    associate (rows => 3*size(found), unknowns => size(self%shares))
+    associate (rows => 3*size(found), unknowns => size(x))
       sums = reshape(matmul(transpose(reshape(jumps, [rows, unknowns])), reshape(forces, [rows, unknowns])), &
                      [unknowns**2])
-      call plate%sum(sums)
+      call self%plate%sum(sums)
       matrix = reshape(sums, [unknowns, unknowns])
     end associate
-    do k = 1, size(self%shares)
-      matrix(:, k) = matrix(:, k) - self%slope*self%outside(k)*self%outside
+    do k = 1, size(x)
+      matrix(:, k) = matrix(:, k) - self%slope*self%unit_works(k)*self%unit_works
       matrix(k, k) = matrix(k, k) + 1
     end do
   end subroutine find_tangent

@@ -20,8 +20,6 @@ module softening_points
     type(cohesive_faces_t) :: faces
     !> The point in the last accepted state
     type(cohesive_point_t) :: old
-    !> Point of this rank
-    integer :: place = 0
     !> Its area times the factor of internal forces
     real(wp) :: area = 0
     !> Jumps before the correction, and the traction there
@@ -39,6 +37,8 @@ module softening_points
   type :: softening_points_t
     !> The points
     type(softening_point_t), allocatable :: list(:)
+    !> Which of this rank's points they are, (points)
+    integer, allocatable :: places(:)
   contains
     !> Forces of a change of the plate's motion.
     procedure :: find_forces
