@@ -41,8 +41,10 @@ def numbers(text):
     del text
     yield 'zone 59.2, 24 mm', ['mesh%core=59.2e-3, 24e-3', 'delamination%zone=59.2e-3, 24e-3', 'mesh%elements=43, 22']
     yield 'solver tolerance 1e-7', ['solver%tolerance=1e-7']
-    yield 'rho_inf .5 and not .8', ['time%rho_inf=.5']
+    yield 'rho_inf .25', ['time%rho_inf=.25']
+    yield 'rho_inf .75', ['time%rho_inf=.75']
     yield 'stiffness of the interface times 1.5', ['delamination%stiffness=1.06e14']
+    yield 'stiffness of the interface halved', ['delamination%stiffness=3.5e13']
     yield 'patch 3.2 mm (of the scene)', ['mesh%patch=3.2e-3']
 
 
