@@ -2,6 +2,7 @@
 !> points are brought into equilibrium. Each does work on the forces of no other, and unit work on its own.
 module plate_answers
   use errors, only: error_t
+  use field_products, only: add_combination, products_with
   use kinds, only: wp
   implicit none
   private
@@ -69,6 +70,8 @@ module plate_answers
     procedure :: add
     !> Work of forces on each motion.
     procedure :: works
+    !> Work of forces on one motion.
+    procedure, private :: work_on
     !> A combination of motions, and of their forces.
     procedure :: combine
   end type plate_answers_t
@@ -98,31 +101,41 @@ contains
     !> False: there is no room, or it is a combination of those kept
     logical, intent(out) :: added
     real(wp), allocatable :: new_motion(:, :), new_forces(:, :), shares(:)
-    real(wp) :: work(1), first
-    integer :: pass, k
+    real(wp) :: work, first
+    integer :: pass
 
     added = self%kept < size(self%motions, 3)
     if (.not. added) return
     new_motion = motion
     new_forces = forces
-    first = 0
-    do pass = 1, 3
-      work = sum(new_motion(:, :self%owned)*new_forces(:, :self%owned))
-      call plate%sum(work)
-      if (pass == 1) first = work(1)
-      if (pass == 3) exit
-      shares = self%works(plate, new_forces)
-      do k = 1, self%kept
-        new_motion = new_motion - shares(k)*self%motions(:, :, k)
-        new_forces = new_forces - shares(k)*self%forces(:, :, k)
-      end do
+    first = self%work_on(plate, new_motion, new_forces)
+    do pass = 1, 2
+      shares = -self%works(plate, new_forces)
+      call add_combination(shares, size(new_motion), self%motions, new_motion)
+      call add_combination(shares, size(new_forces), self%forces, new_forces)
     end do
-    added = work(1) > dependent*first
+    work = self%work_on(plate, new_motion, new_forces)
+    added = work > dependent*first
     if (.not. added) return
     self%kept = self%kept + 1
-    self%motions(:, :, self%kept) = new_motion/sqrt(work(1))
-    self%forces(:, :, self%kept) = new_forces/sqrt(work(1))
+    self%motions(:, :, self%kept) = new_motion/sqrt(work)
+    self%forces(:, :, self%kept) = new_forces/sqrt(work)
   end subroutine add
+
+  !> Work of forces on a motion, the same on every rank.
+  real(wp) function work_on(self, plate, motion, forces) result(work)
+    !> The motions
+    class(plate_answers_t), intent(in) :: self
+    !> The plate
+    class(linear_plate_t), intent(in) :: plate
+    !> Motion and forces, (5, local points)
+    real(wp), intent(in) :: motion(:, :), forces(:, :)
+    real(wp) :: works(1)
+
+    call products_with(forces, 5*self%owned, size(motion), motion, works)
+    call plate%sum(works)
+    work = works(1)
+  end function work_on
 
   !> Work of forces on each motion, the same on every rank.
   function works(self, plate, forces)
@@ -134,27 +147,24 @@ contains
     real(wp), intent(in) :: forces(:, :)
     !> Work, (kept)
     real(wp), allocatable :: works(:)
-    integer :: k
 
-    works = [(sum(self%motions(:, :self%owned, k)*forces(:, :self%owned)), k=1, self%kept)]
+    allocate (works(self%kept))
+    call products_with(forces, 5*self%owned, size(self%motions(:, :, 1)), self%motions, works)
     call plate%sum(works)
   end function works
 
   !> A combination of the motions, and of their forces.
-  pure subroutine combine(self, shares, motion, forces)
+  subroutine combine(self, shares, motion, forces)
     !> The motions
     class(plate_answers_t), intent(in) :: self
     !> Share of each, (kept)
     real(wp), intent(in) :: shares(:)
     !> The combinations, (5, local points)
     real(wp), intent(out) :: motion(:, :), forces(:, :)
-    integer :: k
 
     motion = 0
     forces = 0
-    do k = 1, self%kept
-      motion = motion + shares(k)*self%motions(:, :, k)
-      forces = forces + shares(k)*self%forces(:, :, k)
-    end do
+    call add_combination(shares, size(motion), self%motions, motion)
+    call add_combination(shares, size(forces), self%forces, forces)
   end subroutine combine
 end module plate_answers

@@ -7,6 +7,7 @@
 !> remembers earlier answers, so the iteration of equilibrium around it starts from what the last one found.
 module softening_equilibria
   use errors, only: error_t
+  use field_products, only: add_combination, products_with
   use kinds, only: wp
   use outside_forces, only: outside_force_t
   use plate_answers, only: linear_plate_t, plate_answers_t
@@ -143,10 +144,9 @@ contains
     real(wp), intent(in) :: x(:)
     !> The force, (unknowns)
     real(wp), intent(out) :: force(:)
-    integer :: k
 
     call self%points%find_forces(jumps_of(self, x), self%forces)
-    force = [(sum(self%jumps(:, :, k)*self%forces), k=1, size(x))]
+    call products_with(self%forces, size(self%forces), size(self%forces), self%jumps, force)
     call self%plate%sum(force)
     self%load = 0
     self%slope = 0
@@ -165,19 +165,16 @@ contains
   end function is_settled
 
   !> Jumps at some shares.
-  pure function jumps_of(self, shares) result(jumps)
+  function jumps_of(self, shares) result(jumps)
     !> The system
     type(small_system_t), intent(in) :: self
     !> The shares, (unknowns)
     real(wp), intent(in) :: shares(:)
     !> The jumps, (3, points)
     real(wp) :: jumps(3, size(self%jumps, 2))
-    integer :: k
 
     jumps = 0
-    do k = 1, size(shares)
-      jumps = jumps + shares(k)*self%jumps(:, :, k)
-    end do
+    call add_combination(shares, size(jumps), self%jumps, jumps)
   end function jumps_of
 
   !> Tangent at the shares.

@@ -1,0 +1,59 @@
+!> Many fields of one shape against one: products and combinations, by BLAS, which reads several of them at once.
+module field_products
+  use kinds, only: wp
+  implicit none
+  private
+  public :: products_with, add_combination
+
+  interface
+    !> BLAS: y = alpha A x + beta y, or with the transpose of A.
+    subroutine dgemv(trans, m, n, alpha, a, lda, x, incx, beta, y, incy)
+      import :: wp
+      !> 'N': the matrix itself, 'T': its transpose
+      character, intent(in) :: trans
+      !> Rows, columns, leading dimension, strides
+      integer, intent(in) :: m, n, lda, incx, incy
+      !> Factors
+      real(wp), intent(in) :: alpha, beta
+      !> Matrix and vector
+      real(wp), intent(in) :: a(lda, *), x(*)
+      !> Result
+      real(wp), intent(inout) :: y(*)
+    end subroutine dgemv
+  end interface
+
+contains
+
+  !> Product of a field with each of several.
+  subroutine products_with(field, rows, length, fields, products)
+    !> The field, (rows or more)
+    real(wp), intent(in) :: field(*)
+    !> How many of its values count: the first ones
+    integer, intent(in) :: rows
+    !> Values of one of the others
+    integer, intent(in) :: length
+    !> The others, (length, as many as products)
+    real(wp), intent(in) :: fields(length, *)
+    !> Sum over the values of field times other, (others)
+    real(wp), intent(out) :: products(:)
+
+    products = 0
+    if (rows > 0 .and. size(products) > 0) &
+      call dgemv('T', rows, size(products), 1.0_wp, fields, length, field, 1, 0.0_wp, products, 1)
+  end subroutine products_with
+
+  !> Adds a combination of fields to one.
+  subroutine add_combination(shares, length, fields, field)
+    !> Share of each, (others)
+    real(wp), intent(in) :: shares(:)
+    !> Values of one field
+    integer, intent(in) :: length
+    !> The fields to combine, (length, as many as shares)
+    real(wp), intent(in) :: fields(length, *)
+    !> Sum, (length)
+    real(wp), intent(inout) :: field(*)
+
+    if (length > 0 .and. size(shares) > 0) &
+      call dgemv('N', length, size(shares), 1.0_wp, fields, length, shares, 1, 1.0_wp, field, 1)
+  end subroutine add_combination
+end module field_products
