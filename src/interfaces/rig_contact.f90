@@ -211,7 +211,8 @@ contains
     end do
     do i = 1, size(model%rig%line_rig)
       associate (rig => model%rig%line_rig(i))
-        reactions(rig) = reactions(rig) + model%rig%line_stiffness &
+        if (rig == 0) cycle
+        reactions(rig) = reactions(rig) + model%rig%line_stiffness(i) &
                          *dot_product(model%rig%line_weights(:, i), displacement(3, model%rig%line_points(:, i)))
       end associate
     end do

@@ -7,7 +7,7 @@ module mesh_parameters
   public :: plate_t, mesh_t, parts_of, is_halved, is_mirrored
 
   !> Supports of an edge.
-  integer, parameter, public :: edge_free = 0, edge_simple = 1, edge_clamped = 2
+  integer, parameter, public :: edge_free = 0, edge_simple = 1, edge_clamped = 2, edge_elastic = 3
   !> Parts of the plate that are modelled: all; x >= 0 and y >= 0; x >= 0; y >= 0; x >= 0 of a plate that a turn by 180
   !> degrees leaves as it is.
   integer, parameter, public :: symmetry_none = 1, symmetry_quarter = 2, symmetry_half_x = 3, symmetry_half_y = 4, &
@@ -19,6 +19,8 @@ module mesh_parameters
     real(wp) :: length(2) = 0
     !> Supports at x-min, x-max, y-min, y-max
     integer :: edges(4) = edge_clamped
+    !> Stiffness of elastic edges per length, against deflection, 0: rigid, and against rotation about the edge
+    real(wp) :: edge_stiffness(2) = 0
     !> True: supported edges hold the plate in its plane too
     logical :: in_plane_fixed = .true.
     !> Part that is modelled, one of the constants above

@@ -2,12 +2,12 @@
 module plate_deck
   use deck_choices, only: code_of
   use deck_problems, only: problems_t
-  use deck_remarks, only: tell
+  use deck_remarks, only: remark_idle, tell
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
   use kinds, only: wp
-  use mesh_parameters, only: plate_t, edge_free, edge_simple, edge_clamped, symmetry_none, symmetry_quarter, &
-                             symmetry_half_x, symmetry_half_y, symmetry_point, is_halved
+  use mesh_parameters, only: plate_t, edge_free, edge_simple, edge_clamped, edge_elastic, symmetry_none, &
+                             symmetry_quarter, symmetry_half_x, symmetry_half_y, symmetry_point, is_halved
   use text, only: line_t, lower_case, to_text
   implicit none
   private
@@ -22,13 +22,19 @@ module plate_deck
   character(len=key_row_length), parameter, public :: plate_rows(*) = [character(len=key_row_length) :: &
     'plate | length | real | 2 | length | required | > 0 | &
       &Lengths of the whole plate along x and y, also under symmetry.', &
-    'plate | edges | choice | 1 or 4 | - | required | clamped simple free | &
+    'plate | edges | choice | 1 or 4 | - | required | clamped simple free elastic | &
       &Supports at x-min, x-max, y-min, y-max; one value serves all.', &
+    'plate | edge_stiffness | real | 1 | pressure | none | > 0 | &
+      &Force per length of an elastic edge and deflection of it; left out: it holds the deflection.', &
+    'plate | edge_rotation_stiffness | real | 1 | force | none | > 0 | &
+      &Moment per length of an elastic edge and rotation about it; left out: it turns freely.', &
     'plate | in_plane | choice | 1 | - | ''fixed'' | fixed free | &
       &Whether the supported edges also hold the plate in its plane.', &
     'plate | symmetry | choice | 1 | - | ''none'' | none quarter half_x half_y point | &
       &Part that is modelled: all, x >= 0 and y >= 0, x >= 0, y >= 0, or x >= 0 of one that a half turn leaves as is.']
 
+  !> What elastic edges need, against deflection and against rotation.
+  character(len=*), parameter :: stiffness_keys(2) = [character(len=23) :: 'edge_stiffness', 'edge_rotation_stiffness']
   !> Largest ratio of the plate's sides.
   real(wp), parameter :: most_oblong = 1.0e3_wp
 
@@ -46,8 +52,12 @@ contains
     if (settings%is_known(plate_group, key_length)) plate%length = settings%reals_of(plate_group, key_length)
     edges = settings%texts_of(plate_group, 'edges')
     do i = 1, merge(4, 0, size(edges) > 0)
-      plate%edges(i) = code_of(edges(min(i, size(edges)))%text, 'free simple clamped', &
-                               [edge_free, edge_simple, edge_clamped])
+      plate%edges(i) = code_of(edges(min(i, size(edges)))%text, 'free simple clamped elastic', &
+                               [edge_free, edge_simple, edge_clamped, edge_elastic])
+    end do
+    do i = 1, size(stiffness_keys)
+      if (settings%is_given(plate_group, stiffness_keys(i))) &
+        plate%edge_stiffness(i) = settings%real_of(plate_group, stiffness_keys(i))
     end do
     plate%in_plane_fixed = lower_case(settings%text_of(plate_group, 'in_plane')) /= 'free'
     plate%symmetry = code_of(settings%text_of(plate_group, key_symmetry), 'none quarter half_x half_y point', &
@@ -63,7 +73,17 @@ contains
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
     logical :: halved(2)
+    integer :: i
 
+    if (any(plate%edges == edge_elastic) .and. all(plate%edge_stiffness <= 0)) &
+      call tell(settings, problems, plate_group, 'edges', 'an elastic edge needs edge_stiffness, '// &
+                'edge_rotation_stiffness or both.')
+    if (all(plate%edges /= edge_elastic)) then
+      do i = 1, size(stiffness_keys)
+        call remark_idle(settings, problems, plate_group, trim(stiffness_keys(i)), &
+                         'has no effect without an elastic edge.')
+      end do
+    end if
     ! A plate that is turned onto itself has all opposite edges alike.
     halved = is_halved(plate%symmetry) .or. plate%symmetry == symmetry_point
     if (settings%is_known(plate_group, key_length) .and. maxval(plate%length) > most_oblong*minval(plate%length)) &
@@ -87,7 +107,8 @@ contains
     if (all(plate%edges == edge_free)) then
       call tell(settings, problems, plate_group, 'edges', &
                 'nothing holds the plate in a static analysis; support an edge.')
-    else if (count(plate%edges /= edge_free) == 1 .and. all(plate%edges /= edge_clamped)) then
+    else if (count(plate%edges /= edge_free) == 1 .and. all(plate%edges /= edge_clamped) .and. &
+             .not. plate%edge_stiffness(2) > 0) then
       call tell(settings, problems, plate_group, 'edges', 'in a static analysis the plate turns about its one '// &
                 'simply supported edge; clamp it or support another one.')
     end if

@@ -2,7 +2,7 @@
 !> joined, or because the scene never moves them.
 module supports
   use kinds, only: wp
-  use mesh_parameters, only: plate_t, edge_free, edge_clamped
+  use mesh_parameters, only: plate_t, edge_free, edge_clamped, edge_elastic
   use layered_meshes, only: layered_mesh_t
   use nine_node_grids, only: last_line
   implicit none
@@ -52,31 +52,32 @@ contains
         if (mesh%mirrored(direction)) then
           held([direction, 3 + direction]) = .true.
         else if (.not. mesh%halved(direction)) then
-          held = held .or. held_by_edge(plate%edges(2*direction - 1), direction, plate%in_plane_fixed)
+          held = held .or. held_by_edge(plate%edges(2*direction - 1), direction, plate)
         end if
       else if (line(direction) == last_line(mesh%cells(direction))) then
-        held = held .or. held_by_edge(plate%edges(2*direction), direction, plate%in_plane_fixed)
+        held = held .or. held_by_edge(plate%edges(2*direction), direction, plate)
       end if
     end do
   end function held_on_borders
 
-  !> Unknowns held by one edge. A simple support is a hard one: it also holds the rotation along the edge.
-  pure function held_by_edge(edge, normal, in_plane_fixed) result(held)
+  !> Unknowns held by one edge. A simple support is a hard one: it also holds the rotation along the edge. An edge that
+  !> gives way leaves it free.
+  pure function held_by_edge(edge, normal, plate) result(held)
     !> Kind of support
     integer, intent(in) :: edge
     !> Direction of the edge's normal: 1 for x, 2 for y
     integer, intent(in) :: normal
-    !> True: u and v are held too
-    logical, intent(in) :: in_plane_fixed
+    !> The plate
+    type(plate_t), intent(in) :: plate
     !> u, v, w, theta_x, theta_y
     logical :: held(5)
 
     held = .false.
     if (edge == edge_free) return
-    held(3) = .true.
-    held(3 + 3 - normal) = .true.
+    held(3) = edge /= edge_elastic .or. .not. plate%edge_stiffness(1) > 0
+    held(3 + 3 - normal) = held(3)
     if (edge == edge_clamped) held(4:5) = .true.
-    if (in_plane_fixed) held(1:2) = .true.
+    if (plate%in_plane_fixed) held(1:2) = .true.
   end function held_by_edge
 
   !> Holds what symmetry leaves of rigid motions in the plane: at the struck node, and the turn at the node beside it

@@ -276,10 +276,10 @@ contains
     real(wp), allocatable :: areas(:, :)
     integer :: i
 
-    self%rig = new_rig_model(self%mesh, self%scene%plate, self%scene%supports, self%distribution)
-    ! As hard as the laminate's own thickness over the area of a cell, and far harder: contact's stiffness.
-    self%rig%line_stiffness = rigid*self%plies(1)%elasticity%e2/self%thickness &
-                              *product(self%scene%plate%length/self%scene%mesh%elements)/self%mesh%multiplicity
+    ! A rigid frame is as hard as the laminate's own thickness over the area of a cell, and far harder: contact's.
+    self%rig = new_rig_model(self%mesh, self%scene%plate, self%scene%supports, self%distribution, &
+                             rigid*self%plies(1)%elasticity%e2/self%thickness &
+                             *product(self%scene%plate%length/self%scene%mesh%elements)/self%mesh%multiplicity)
     if (.not. self%rig%unilateral) return
     associate (share => self%distribution, last => self%plies(size(self%plies)))
       allocate (areas(1, size(share%points)), source=0.0_wp)

@@ -1,10 +1,11 @@
 !> How rigs hold this rank's points: which w a frame or a rigid clamp holds, where the plate rests on a frame that it
-!> may lift off, and the springs of clamps.
+!> may lift off, the springs of clamps, and those of the plate's elastic edges.
 module rig_models
   use kinds, only: wp
   use distributions, only: distribution_t
+  use elastic_edges, only: edge_spring_t, edge_springs
   use layered_meshes, only: layered_mesh_t
-  use mesh_parameters, only: plate_t
+  use mesh_parameters, only: plate_t, edge_elastic
   use rigs, only: crossing_t, nodes_on_frame, circle_crossings, clamp_nodes, clamp_share
   use support_parameters, only: support_t
   implicit none
@@ -23,21 +24,21 @@ module rig_models
     real(wp), allocatable :: springs(:, :)
     !> The rig that they belong to; 0: none, (local points)
     integer, allocatable :: clamps(:)
-    !> Points of three nodes each, (3, lines), whose weighted w, (3, lines), a stiffness holds, and the rig, (lines)
+    !> Points of three nodes each, (3, lines), whose weighted unknown a stiffness holds, and the rig; 0: an elastic edge
     integer, allocatable :: line_points(:, :), line_rig(:)
-    !> Their weights
-    real(wp), allocatable :: line_weights(:, :)
-    !> Stiffness that stands for a rigid frame there
-    real(wp) :: line_stiffness = 0
+    !> Which unknown, (lines)
+    integer, allocatable :: line_component(:)
+    !> Weights, (3, lines), and stiffness, (lines)
+    real(wp), allocatable :: line_weights(:, :), line_stiffness(:)
   contains
-    !> Adds the forces that hold w on lines.
+    !> Adds the forces that hold lines.
     procedure :: add_line_forces
   end type rig_model_t
 
 contains
 
   !> The rigs at a rank's points.
-  pure function new_rig_model(mesh, plate, supports, distribution) result(self)
+  pure function new_rig_model(mesh, plate, supports, distribution, rigid) result(self)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Plate and symmetry
@@ -46,12 +47,14 @@ contains
     type(support_t), intent(in) :: supports(:)
     !> This rank's points
     type(distribution_t), intent(in) :: distribution
+    !> Stiffness that stands for a rigid frame where its edge crosses a cell
+    real(wp), intent(in) :: rigid
     !> The rigs at its points
     type(rig_model_t) :: self
     integer, allocatable :: nodes(:)
     integer :: i, k, point
 
-    if (size(supports) == 0) return
+    if (size(supports) == 0 .and. all(plate%edges /= edge_elastic)) return
     allocate (self%holds(size(distribution%points)), self%bears(size(distribution%points)), &
               self%clamps(size(distribution%points)), source=0)
     allocate (self%springs(3, size(distribution%points)), source=0.0_wp)
@@ -79,42 +82,69 @@ contains
         end if
       end do
     end do
-    call find_lines(mesh, supports, distribution, self)
+    call find_lines(mesh, plate, supports, distribution, rigid, self)
     ! What is held needs no frame to bear it.
     where (self%holds > 0) self%bears = 0
     self%elastic = any(supports%clamp_stiffness > 0)
   end function new_rig_model
 
-  !> Finds where w is held on the edges of circular windows, on the sides of this rank's cells.
-  pure subroutine find_lines(mesh, supports, distribution, self)
+  !> Finds what is held on the sides of this rank's cells: w on the edges of circular windows, and elastic edges.
+  pure subroutine find_lines(mesh, plate, supports, distribution, rigid, self)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
+    !> The plate
+    type(plate_t), intent(in) :: plate
     !> The rigs
     type(support_t), intent(in) :: supports(:)
     !> This rank's elements
     type(distribution_t), intent(in) :: distribution
+    !> Stiffness that stands for a rigid frame
+    real(wp), intent(in) :: rigid
     !> Receives the points
     type(rig_model_t), intent(inout) :: self
     type(crossing_t), allocatable :: crossings(:)
-    integer :: i, k, element
+    type(edge_spring_t), allocatable :: springs(:)
+    integer :: i, k, element, cell
 
-    allocate (self%line_points(3, 0), self%line_rig(0), self%line_weights(3, 0))
-    do i = 1, size(supports)
-      if (supports(i)%unilateral) cycle
-      do element = 1, size(distribution%elements)
-        if (mesh%element_plies(1, distribution%elements(element)) /= 1) cycle
-        crossings = circle_crossings(mesh, supports(i), mesh%element_cell(distribution%elements(element)))
+    allocate (self%line_points(3, 0), self%line_rig(0), self%line_component(0), self%line_weights(3, 0), &
+              self%line_stiffness(0))
+    do element = 1, size(distribution%elements)
+      if (mesh%element_plies(1, distribution%elements(element)) /= 1) cycle
+      cell = mesh%element_cell(distribution%elements(element))
+      do i = 1, size(supports)
+        if (supports(i)%unilateral) cycle
+        crossings = circle_crossings(mesh, supports(i), cell)
         do k = 1, size(crossings)
-          self%line_rig = [self%line_rig, i]
-          self%line_points = reshape([self%line_points, distribution%connectivity(crossings(k)%nodes, element)], &
-                                     [3, size(self%line_rig)])
-          self%line_weights = reshape([self%line_weights, crossings(k)%weights], [3, size(self%line_rig)])
+          call add_line(self, i, distribution%connectivity(crossings(k)%nodes, element), 3, crossings(k)%weights, rigid)
         end do
+      end do
+      springs = edge_springs(mesh, plate, cell)
+      do k = 1, size(springs)
+        call add_line(self, 0, distribution%connectivity(springs(k)%nodes, element), springs(k)%component, &
+                      springs(k)%weights, springs(k)%stiffness)
       end do
     end do
   end subroutine find_lines
 
-  !> Adds the forces that hold w on lines to internal forces, ghosts included, and what they store to an energy.
+  !> Adds a point on a line.
+  pure subroutine add_line(self, rig, points, component, weights, stiffness)
+    !> Receives it
+    type(rig_model_t), intent(inout) :: self
+    !> The rig that it belongs to; 0: an elastic edge
+    integer, intent(in) :: rig
+    !> Points of three nodes, and which of their unknowns
+    integer, intent(in) :: points(3), component
+    !> Weights of the nodes, and stiffness
+    real(wp), intent(in) :: weights(3), stiffness
+
+    self%line_rig = [self%line_rig, rig]
+    self%line_points = reshape([self%line_points, points], [3, size(self%line_rig)])
+    self%line_component = [self%line_component, component]
+    self%line_weights = reshape([self%line_weights, weights], [3, size(self%line_rig)])
+    self%line_stiffness = [self%line_stiffness, stiffness]
+  end subroutine add_line
+
+  !> Adds the forces that hold lines to internal forces, ghosts included, and what they store to an energy.
   pure subroutine add_line_forces(self, displacement, force, energy)
     !> The rigs
     class(rig_model_t), intent(in) :: self
@@ -124,15 +154,15 @@ contains
     real(wp), intent(inout) :: force(:, :)
     !> Energy of this rank
     real(wp), intent(inout) :: energy
-    real(wp) :: w
+    real(wp) :: motion
     integer :: k
 
     if (.not. allocated(self%line_rig)) return
     do k = 1, size(self%line_rig)
-      associate (points => self%line_points(:, k), weights => self%line_weights(:, k))
-        w = dot_product(weights, displacement(3, points))
-        force(3, points) = force(3, points) + self%line_stiffness*w*weights
-        energy = energy + self%line_stiffness*w**2/2
+      associate (points => self%line_points(:, k), weights => self%line_weights(:, k), i => self%line_component(k))
+        motion = dot_product(weights, displacement(i, points))
+        force(i, points) = force(i, points) + self%line_stiffness(k)*motion*weights
+        energy = energy + self%line_stiffness(k)*motion**2/2
       end associate
     end do
   end subroutine add_line_forces

@@ -72,13 +72,13 @@ contains
         call add_block(model, numbering, [point], mass_factor*nodal_mass(model%lumped(:, point)), solver, diagonal)
       end do
     end if
-    call add_window_lines(model, stiffness_factor, numbering, solver, diagonal)
+    call add_held_lines(model, stiffness_factor, numbering, solver, diagonal)
     call add_lines(model, numbering, stiffness_factor, solver, diagonal)
     call model%halo%accumulate(diagonal)
   end subroutine assemble_elements
 
-  !> Adds the stiffness that holds w on the edges of circular windows.
-  subroutine add_window_lines(model, stiffness_factor, numbering, solver, diagonal)
+  !> Adds the stiffness that holds lines: w on the edges of circular windows, and elastic edges.
+  subroutine add_held_lines(model, stiffness_factor, numbering, solver, diagonal)
     type(model_t), intent(in) :: model
     !> Factor of stiffness
     real(wp), intent(in) :: stiffness_factor
@@ -96,13 +96,15 @@ contains
       matrix = 0
       do b = 1, 3
         do a = 1, 3
-          matrix(5*a - 2, 5*b - 2) = stiffness_factor*model%rig%line_stiffness*model%rig%line_weights(a, k) &
-                                     *model%rig%line_weights(b, k)
+          associate (i => model%rig%line_component(k) - 5)
+            matrix(5*a + i, 5*b + i) = stiffness_factor*model%rig%line_stiffness(k)*model%rig%line_weights(a, k) &
+                                       *model%rig%line_weights(b, k)
+          end associate
         end do
       end do
       call add_to(numbering, model%rig%line_points(:, k), matrix, solver, diagonal)
     end do
-  end subroutine add_window_lines
+  end subroutine add_held_lines
 
   !> Adds the springs of lines whose displacement is prescribed.
   subroutine add_lines(model, numbering, stiffness_factor, solver, diagonal)
