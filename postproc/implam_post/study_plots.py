@@ -14,6 +14,7 @@ from implam_post.study_table import Mean, Row
 
 _MOST_SCENES, _COLUMNS, _MOST_NAMED = 12, 4, 24
 _MARKS = "osD^v<>ph*XP"
+_NARROWEST = 5.0  # last over first value of an axis, so that 1, 2 and 5 mark it
 _LEAST = 1e-6  # in %; errors of nil have no place on an axis of powers of ten
 _WORDS = {"peak_force": "error of peak force", "peak_force_time": "error of its time",
           "contact_duration": "error of contact duration", "max_deflection": "error of largest deflection",
@@ -86,6 +87,9 @@ def _draw(axes: Axes, points: list[tuple[dict[str, object], float, float, bool]]
         axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
         axis.set_minor_locator(NullLocator())
     axes.margins(0.08)
+    for limits, set_limits in ((axes.get_xlim(), axes.set_xlim), (axes.get_ylim(), axes.set_ylim)):
+        wider = max(math.sqrt(_NARROWEST * limits[0] / limits[1]), 1.0)
+        set_limits(limits[0] / wider, limits[1] * wider)
     axes.grid(alpha=0.3, linewidth=0.4)
 
 
