@@ -1,6 +1,7 @@
 """The table of a study: a row a trial, with errors against its reference, what it cost, and whether it is on the front.
 
-Errors are parts of the reference's figure, with their sign; that of the force history is a relative L2 norm.
+Errors are parts of the reference's figure, with their sign, over the time that both last; that of the force history is
+a relative L2 norm.
 """
 
 import csv
@@ -115,8 +116,9 @@ def _row(sweep: Sweep, study: Study, trial: Trial, references: References) -> Ro
         row.figures |= {name: COLUMN_QUANTITIES[way](history[name]) for name, way in study.figures.items()}
         reference = references.of(trial)
         if reference is not None:
-            true = _figures(reference)
-            row.errors = {name: _error(row.figures[name], true[name]) for name in _FIGURES}
+            last = min(history.time[-1], reference.time[-1])
+            mine, true = _figures(history.until(last)), _figures(reference.until(last))
+            row.errors = {name: _error(mine[name], true[name]) for name in _FIGURES}
             row.errors["force_history"] = force_history_error(history, reference)
     except ImplamError as error:
         row.note = str(error)
@@ -220,7 +222,7 @@ def text_table(rows: list[Row], study: Study) -> str:
 def text_means(found: list[Mean], study: Study) -> str:
     """Return the table of methods over all scenes."""
     errors = [name for name in ERRORS if any(math.isfinite(mean.errors[name]) for mean in found)]
-    head = [*study.methods, *(f"{_HEADS[name][:-3]}, worst, %" for name in errors), "processor, s", "fronts", "front"]
+    head = [*study.methods, *(f"{_HEADS[name][:-3]}: mean, worst, %" for name in errors), "processor, s", "fronts", "front"]
     lines = [[*(_said(mean.method[name]) for name in study.methods),
               *(f"{100 * mean.errors[name]:.2g}, {100 * mean.worst[name]:.2g}" for name in errors), f"{mean.time:.2f}",
               f"{mean.fronts} of {mean.scenes}", "*" if mean.on_front else ""] for mean in found]
