@@ -222,7 +222,8 @@ def text_table(rows: list[Row], study: Study) -> str:
 def text_means(found: list[Mean], study: Study) -> str:
     """Return the table of methods over all scenes."""
     errors = [name for name in ERRORS if any(math.isfinite(mean.errors[name]) for mean in found)]
-    head = [*study.methods, *(f"{_HEADS[name][:-3]}: mean, worst, %" for name in errors), "processor, s", "fronts", "front"]
+    head = [*study.methods, *(f"{_HEADS[name][:-3]}: mean, worst, %" for name in errors), "processor, s", "fronts",
+            "front"]
     lines = [[*(_said(mean.method[name]) for name in study.methods),
               *(f"{100 * mean.errors[name]:.2g}, {100 * mean.worst[name]:.2g}" for name in errors), f"{mean.time:.2f}",
               f"{mean.fronts} of {mean.scenes}", "*" if mean.on_front else ""] for mean in found]

@@ -8,6 +8,7 @@ from implam_post.errors import DeckError
 from implam_post.study_plan import SEMI_ANALYTIC, Study, read_study
 from implam_post.sweep_plan import Case
 from tests.decks import KARAS, SUN_CHEN
+from tests.program import ROOT
 
 METHODS = """
 [grid]
@@ -67,6 +68,14 @@ class StudyPlanTest(unittest.TestCase):
         first, second, third = (scene.reference for scene in study.scenes)
         self.assertEqual((first, second), (SEMI_ANALYTIC, self.folder / "measured.csv"))
         self.assertIn("velocity=3.0", third.deck)
+
+    def test_studies_of_the_manual(self) -> None:
+        """Their files can be read, and every deck of theirs is another one."""
+        paths = sorted((ROOT / "tests" / "bench" / "studies").glob("*.toml"))
+        self.assertGreaterEqual(len(paths), 6)
+        for path in paths:
+            first = [trial.runs[0].key for trial in read_study(path).trials]
+            self.assertEqual(len(set(first)), len(first), path)
 
     def test_faults(self) -> None:
         """What can't be meant is told with the name of the file."""
