@@ -75,11 +75,16 @@ class Trial:
 
 @dataclass(frozen=True)
 class Study(Plan):
-    """The plan of all runs, and what they are for; `figures` are columns of the history and how they are measured."""
+    """The plan of all runs, and what they are for.
+
+    `methods` names what methods set, `told` those of it that tell them apart for readers. `figures` are columns of the
+    history and how they are measured.
+    """
 
     scenes: list[Scene]
     trials: list[Trial]
     methods: list[str]
+    told: list[str]
     figures: dict[str, str]
     error: str
     repeats: int
@@ -101,9 +106,10 @@ def read_study(path: Path, output: Path | None = None) -> Study:
     except (tomllib.TOMLDecodeError, DeckError) as error:
         raise DeckError(f"{path}: {error}") from None
     names = list(dict.fromkeys(name for run in runs for name in run.values))
+    told = ["method"] if "method" in tables["list"] else list(tables["list"])
     return Study(path, text, names, list(tables["derived"]), runs, output or path.parent / str(words["output"]),
-                 str(words["units"]), scenes, trials, [*tables["grid"], *tables["list"]], figures,
-                 str(words["error"]), int(words["repeats"]))
+                 str(words["units"]), scenes, trials, [*tables["grid"], *tables["list"]], [*tables["grid"], *told],
+                 figures, str(words["error"]), int(words["repeats"]))
 
 
 def _check_words(words: Mapping[str, object], figures: object) -> None:

@@ -10,12 +10,12 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
 from implam_post.files import replaced
 from implam_post.study_plan import Study
-from implam_post.study_table import Mean, Row
+from implam_post.study_table import LEAST, Mean, Row
 
 _MOST_SCENES, _COLUMNS, _MOST_NAMED = 12, 4, 24
 _MARKS = "osD^v<>ph*XP"
 _NARROWEST = 5.0  # last over first value of an axis, so that 1, 2 and 5 mark it
-_LEAST = 1e-6  # in %; errors of nil have no place on an axis of powers of ten
+_WIDE = 1e3  # from here on powers of ten are marks enough
 _WORDS = {"peak_force": "error of peak force", "peak_force_time": "error of its time",
           "contact_duration": "error of contact duration", "max_deflection": "error of largest deflection",
           "rebound_velocity": "error of rebound velocity", "force_history": "error of force history (L2)",
@@ -53,8 +53,8 @@ def plot_study(rows: list[Row], means: list[Mean], study: Study, path: Path) -> 
 
 def series_of(study: Study) -> tuple[list[str], list[str]]:
     """Return the names that tell curves apart, which are words, and those that run along a curve, which are numbers."""
-    words = [name for name in study.methods if any(isinstance(trial.method[name], str) for trial in study.trials)]
-    numbers = [name for name in study.methods if name not in words]
+    words = [name for name in study.told if any(isinstance(trial.method[name], str) for trial in study.trials)]
+    numbers = [name for name in study.told if name not in words]
     if not words and len(numbers) > 1:
         words, numbers = numbers[:1], numbers[1:]
     if not numbers:
@@ -69,7 +69,7 @@ def _draw(axes: Axes, points: list[tuple[dict[str, object], float, float, bool]]
     for method, error, time, _ in points:
         label = ", ".join(_short(method[name]) for name in words) or "trials"
         along = ", ".join(_short(method[name]) for name in numbers)
-        curves.setdefault(label, []).append((time, max(100 * error, _LEAST), along))
+        curves.setdefault(label, []).append((time, max(100 * error, 100 * LEAST), along))
     for place, (label, curve) in enumerate(curves.items()):
         x, y, names = zip(*curve, strict=True)
         axes.plot(x, y, "-", marker=_MARKS[place % len(_MARKS)], color=f"C{place % 10}", markersize=4, linewidth=0.8,
@@ -78,18 +78,18 @@ def _draw(axes: Axes, points: list[tuple[dict[str, object], float, float, bool]]
             for across, up, name in zip(x, y, names, strict=True):
                 if name and math.isfinite(up):
                     axes.annotate(name, (across, up), textcoords="offset points", xytext=(3, 3), fontsize=5)
-    best = np.array(sorted((time, max(100 * error, _LEAST)) for _, error, time, on_front in points if on_front))
+    best = np.array(sorted((time, max(100 * error, 100 * LEAST)) for _, error, time, on_front in points if on_front))
     if len(best):
         axes.step(best[:, 0], best[:, 1], "k--", where="post", linewidth=1.2, label="Pareto front")
     axes.set(xscale="log", yscale="log")
-    for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_locator(LogLocator(subs=(1, 2, 5), numticks=12))
+    axes.margins(0.08)
+    for axis, (first, last), set_limits in ((axes.xaxis, axes.get_xlim(), axes.set_xlim),
+                                            (axes.yaxis, axes.get_ylim(), axes.set_ylim)):
+        wider = max(math.sqrt(_NARROWEST * first / last), 1.0)
+        set_limits(first / wider, last * wider)
+        axis.set_major_locator(LogLocator(subs=(1, 2, 5) if last / first < _WIDE else (1,), numticks=12))
         axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
         axis.set_minor_locator(NullLocator())
-    axes.margins(0.08)
-    for limits, set_limits in ((axes.get_xlim(), axes.set_xlim), (axes.get_ylim(), axes.set_ylim)):
-        wider = max(math.sqrt(_NARROWEST * limits[0] / limits[1]), 1.0)
-        set_limits(limits[0] / wider, limits[1] * wider)
     axes.grid(alpha=0.3, linewidth=0.4)
 
 

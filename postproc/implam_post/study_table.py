@@ -27,6 +27,7 @@ from implam_post.sweep_plan import Case
 from implam_post.sweep_runs import Sweep
 from implam_post.sweep_table import FIGURES
 
+LEAST = 1e-6  # what is less has no error
 _FIGURES = tuple(name for name in ERRORS if name != "force_history")
 _COSTS = {"unknowns": "unknowns", "steps": "", "solves": "solves", "factorizations": "refactorisations"}
 # Column heads of the text, errors in %.
@@ -71,10 +72,15 @@ def make_rows(sweep: Sweep, study: Study, references: References) -> list[Row]:
     rows = [_row(sweep, study, trial, references) for trial in study.trials]
     for scene in study.scenes:
         mine = [row for row in rows if row.trial.scene is scene]
-        for row, on_front in zip(mine, front([(abs(row.errors.get(study.error, math.nan)), row.time) for row in mine]),
-                                 strict=True):
+        for row, on_front in zip(mine, front((_size(row, study.error), row.time) for row in mine), strict=True):
             row.on_front = on_front
     return rows
+
+
+def _size(row: Row, error: str) -> float:
+    """Return the size of an error, at least the least that counts; NaN if there is none."""
+    size = abs(row.errors.get(error, math.nan))
+    return max(size, LEAST) if math.isfinite(size) else size
 
 
 def front(points: Iterable[tuple[float, float]]) -> list[bool]:
@@ -159,7 +165,7 @@ def means(rows: list[Row], study: Study) -> list[Mean]:
     found = []
     for method in {str(row.trial.method): row.trial.method for row in rows}.values():
         mine = [row for row in rows if row.trial.method == method]
-        sizes = {name: np.array([abs(row.errors.get(name, math.nan)) for row in mine]) for name in ERRORS}
+        sizes = {name: np.array([_size(row, name) for row in mine]) for name in ERRORS}
         if any(row.end for row in mine):
             continue
         found.append(Mean(method, {name: _geometric(values) for name, values in sizes.items()},
@@ -171,8 +177,8 @@ def means(rows: list[Row], study: Study) -> list[Mean]:
 
 
 def _geometric(values: np.ndarray) -> float:
-    """Return the geometric mean; zeros count as a millionth of a percent."""
-    return float(np.exp(np.mean(np.log(np.maximum(values, 1e-8)))))
+    """Return the geometric mean."""
+    return float(np.exp(np.mean(np.log(values))))
 
 
 def write_csv(rows: list[Row], sweep: Sweep, study: Study, path: Path) -> None:
@@ -202,12 +208,12 @@ def text_table(rows: list[Row], study: Study) -> str:
     """Return the table for readers, errors in %; `*` marks the front, and columns that nobody has are left out."""
     errors = [name for name in ERRORS if any(math.isfinite(row.errors.get(name, math.nan)) for row in rows)]
     several = len(study.scenes) > 1
-    head = [*(["scene"] if several else []), *study.methods, *(_HEADS[name] for name in errors), *study.figures,
+    head = [*(["scene"] if several else []), *study.told, *(_HEADS[name] for name in errors), *study.figures,
             "processor, s", *(["median"] if study.repeats > 1 else []), "steps", "solves", "factorizations", "front"]
     lines = []
     for row in rows:
         words = [*([row.trial.scene.name] if several else []), *(_said(row.trial.method[name])
-                                                                for name in study.methods)]
+                                                                for name in study.told)]
         if row.end:
             lines.append([*words, row.end.split(":")[0], *[""] * (len(head) - len(words) - 1)])
             continue
@@ -222,11 +228,11 @@ def text_table(rows: list[Row], study: Study) -> str:
 def text_means(found: list[Mean], study: Study) -> str:
     """Return the table of methods over all scenes."""
     errors = [name for name in ERRORS if any(math.isfinite(mean.errors[name]) for mean in found)]
-    head = [*study.methods, *(f"{_HEADS[name][:-3]}: mean, worst, %" for name in errors), "processor, s", "fronts",
+    head = [*study.told, *(f"{_HEADS[name][:-3]}: mean, worst, %" for name in errors), "processor, s", "fronts",
             "front"]
-    lines = [[*(_said(mean.method[name]) for name in study.methods),
-              *(f"{100 * mean.errors[name]:.2g}, {100 * mean.worst[name]:.2g}" for name in errors), f"{mean.time:.2f}",
-              f"{mean.fronts} of {mean.scenes}", "*" if mean.on_front else ""] for mean in found]
+    lines = [[*(_said(mean.method[name]) for name in study.told),
+              *(f"{_small(mean.errors[name])}, {_small(mean.worst[name])}".strip(", ") for name in errors),
+              f"{mean.time:.2f}", f"{mean.fronts} of {mean.scenes}", "*" if mean.on_front else ""] for mean in found]
     return _lined_up([head, *lines])
 
 
@@ -235,6 +241,11 @@ def _said(value: object) -> str:
     if isinstance(value, str):
         return value or "-"
     return f"{value:.4g}" if isinstance(value, float) else deck_value(value)
+
+
+def _small(error: float) -> str:
+    """Return a size in %, to two digits; what is below a ten-thousandth is nil."""
+    return "" if math.isnan(error) else f"{100 * error:.2g}" if error > 1.001 * LEAST else "0"
 
 
 def _percent(error: float, name: str) -> str:
