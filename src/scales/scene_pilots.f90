@@ -53,7 +53,7 @@ module scene_pilots
   real(wp), parameter :: first_steps = 2, fine_steps = 4.5_wp
   !> Steps in one contact time up to which modes are kept at hand.
   real(wp), parameter :: most_fine = 128
-  !> Most steps of a pilot, and most steps times modes: a few tenths of a second for contacts whose run takes ten. A
+  !> Most steps of a pilot, and most steps times modes: a tenth of a second for contacts whose run takes ten. A
   !> tenth of it left two of 33 random scenes with a peak 1.1 % off instead of 1 %, and seven without an estimate.
   integer, parameter :: most_steps = 100000
   real(wp), parameter :: most_work = 3.0e8_wp
