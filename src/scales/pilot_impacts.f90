@@ -39,6 +39,8 @@ module pilot_impacts
   type :: moving_modes_t
     !> Deflection of the patch by each mode, and its rate times half a step, (lanes, blocks)
     real(wp), allocatable :: position(:, :), velocity(:, :)
+    !> Both as they are after the steps looked ahead, if no force comes
+    real(wp), allocatable :: next_position(:, :), next_velocity(:, :)
     !> The factor t of a step
     real(wp), allocatable :: turn(:, :)
     !> Deflection per force at either end of the step
@@ -132,13 +134,14 @@ contains
     square = [plate%frequency**2, spread(0.0_wp, 1, blocks*lanes - size(plate%frequency))]
     weight = [plate%weight, spread(0.0_wp, 1, blocks*lanes - size(plate%frequency))]
     allocate (modes%position(lanes, blocks), modes%velocity(lanes, blocks), source=0.0_wp)
+    allocate (modes%next_position(lanes, blocks), modes%next_velocity(lanes, blocks), source=0.0_wp)
     modes%turn = reshape((1 - square*step**2/4)/(1 + square*step**2/4), [lanes, blocks])
     modes%give = reshape(weight*step**2/4/(1 + square*step**2/4), [lanes, blocks])
     pulse = 0
     pulse(0) = 1
     call move_modes(modes, pulse, modes%answer)
-    modes%position = 0
-    modes%velocity = 0
+    modes%next_position = 0
+    modes%next_velocity = 0
   end subroutine start_modes
 
   !> Takes the modes over the steps whose forces have been found, and looks as many steps ahead.
@@ -150,15 +153,18 @@ contains
     !> Deflection of the patch at the ends of the steps to come without forces there
     real(wp), intent(out) :: alone(ahead)
     real(wp) :: position(lanes), velocity(lanes), turn(lanes), give(lanes), total(lanes, ahead), turned, before, pushed
-    integer :: block, i, lane
+    integer :: block, i, lane, pushes
 
+    pushes = merge(ahead, 0, any(force(1:) > 0))
+    if (pushes == 0) modes%position = modes%next_position
+    if (pushes == 0) modes%velocity = modes%next_velocity
     total = 0
     do block = 1, size(modes%position, 2)
       position = modes%position(:, block)
       velocity = modes%velocity(:, block)
       turn = modes%turn(:, block)
       give = modes%give(:, block)
-      do i = 1, ahead
+      do i = 1, pushes
         pushed = force(i - 1) + force(i)
         do lane = 1, lanes
           before = position(lane)
@@ -179,6 +185,8 @@ contains
           total(lane, i) = total(lane, i) + position(lane)
         end do
       end do
+      modes%next_position(:, block) = position
+      modes%next_velocity(:, block) = velocity
     end do
     alone = sum(total, 1)
   end subroutine move_modes
