@@ -26,7 +26,7 @@ _TABLE_EVERY = 10.0  # seconds between tables written on the way
 _SHOWN = 20  # faulty decks told one by one
 
 
-def _check_decks(sweep: Sweep, cases: Sequence[Case], jobs: int) -> None:
+def check_decks(sweep: Sweep, cases: Sequence[Case], jobs: int) -> None:
     """Let the program check every deck, and tell what is wrong with any of them before one is run."""
     with ThreadPoolExecutor(jobs) as pool:
         verdicts = list(pool.map(lambda case: check_deck(sweep.program, sweep.deck(case)), cases))
@@ -76,12 +76,18 @@ def _gather(sweep: Sweep, tables: _Tables) -> int:
     """Write table and plots, list what failed, and return the exit code."""
     from implam_post.sweep_plots import plot_table
     from implam_post.sweep_table import write_hdf5
-    output, total = sweep.plan.output, len(sweep.plan.cases)
+    output = sweep.plan.output
     table = tables.write()
     write_hdf5(table, output / "table.h5")
     print(output / "table.csv", output / "table.h5", *plot_table(table, output), sep="\n")
     for note in table.notes:
         print(f"note: {note}")
+    return tell_ends(sweep)
+
+
+def tell_ends(sweep: Sweep) -> int:
+    """List what failed and what is left, and return the exit code."""
+    total = len(sweep.plan.cases)
     ends = [(case, sweep.failure(case)) for case in sweep.plan.cases]
     left = [case for case, failure in ends if failure in (NOT_RUN, STOPPED)]
     failed = [(case, failure) for case, failure in ends if failure and failure not in (NOT_RUN, STOPPED)]
@@ -102,7 +108,7 @@ def _work(sweep: Sweep, options: argparse.Namespace) -> int:
     cases, tables = sweep.open_cases(), _Tables(sweep)
     if options.table:
         return _gather(sweep, tables)
-    _check_decks(sweep, cases, options.jobs)
+    check_decks(sweep, cases, options.jobs)
     if options.array:
         return _write_array(sweep, cases)
     print(f"{len(sweep.plan.cases)} cases, {len(cases)} decks to run", flush=True)

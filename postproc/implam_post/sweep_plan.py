@@ -55,17 +55,19 @@ _SAMPLES = {"number": None, "seed": 1, "method": "random"}
 
 @dataclass(frozen=True)
 class Case:
-    """One case: its number from 1, the values that tell it from others, and its deck."""
+    """One case: its number from 1, the values that tell it from others, its deck, and which of several runs of it."""
 
     number: int
     values: dict[str, object]
     deck_name: str
     deck: str
+    repeat: int = 1
 
     @cached_property
     def key(self) -> str:
-        """Return a name of the deck's content: cases of the same deck have the same."""
-        return hashlib.sha256(f"{self.deck_name}\n{self.deck}".encode()).hexdigest()[:12]
+        """Return a name of the deck's content: cases of the same deck have the same, but where one is repeated."""
+        name = hashlib.sha256(f"{self.deck_name}\n{self.deck}".encode()).hexdigest()[:12]
+        return name if self.repeat == 1 else f"{name}_{self.repeat}"
 
     @property
     def label(self) -> str:
@@ -92,35 +94,35 @@ def read_plan(path: Path, output: Path | None = None) -> Plan:
     text = read_text(path, "the sweep")
     try:
         content = tomllib.loads(text)
-        tables = {name: _flat(content.pop(name, {}), name) for name in _TABLES}
+        tables = {name: flat_table(content.pop(name, {}), name) for name in _TABLES}
         base, folder, units = content.pop("deck", ""), content.pop("output", path.stem), content.pop("units", "")
         if content:
             raise DeckError(f"'{next(iter(content))}' is none of deck, output, units, {', '.join(_TABLES)}.")
         if not all(isinstance(word, str) for word in (base, folder, units)) or units not in ("", *SYSTEMS):
             raise DeckError(f"deck and output are text, and units one of {', '.join(SYSTEMS)}.")
-        _check_names(tables)
-        cases = _Cases(path.parent, base, tables["derived"])
-        made = [cases.make(number, values) for number, values in enumerate(_combinations(tables), start=1)]
+        check_names(tables)
+        cases = CaseMaker(path.parent, base, tables["derived"])
+        made = [cases.make(number, values) for number, values in enumerate(combinations(tables), start=1)]
         cases.check_use(name for table in ("grid", "list", "samples") for name in tables[table])
     except (tomllib.TOMLDecodeError, DeckError) as error:
         raise DeckError(f"{path}: {error}") from None
     return Plan(path, text, list(made[0].values), list(tables["derived"]), made, output or path.parent / folder, units)
 
 
-def _flat(table: object, name: str) -> dict[str, object]:
+def flat_table(table: object, name: str) -> dict[str, object]:
     """Return a table with dotted names, whether or not they were written in quotes."""
     if not isinstance(table, dict):
         raise DeckError(f"{name} is a table: [{name}].")
     flat = {}
     for key, value in table.items():
         if isinstance(value, dict) and "distribution" not in value:
-            flat |= {f"{key}.{rest}": item for rest, item in _flat(value, name).items()}
+            flat |= {f"{key}.{rest}": item for rest, item in flat_table(value, name).items()}
         else:
             flat[key] = value
     return flat
 
 
-def _check_names(tables: dict[str, dict[str, object]]) -> None:
+def check_names(tables: dict[str, dict[str, object]]) -> None:
     """Refuse names that are neither keys nor plain names, and those given twice."""
     seen: dict[str, str] = {}
     for table, entries in tables.items():
@@ -140,7 +142,7 @@ def _check_names(tables: dict[str, dict[str, object]]) -> None:
             seen[same] = table
 
 
-def _combinations(tables: dict[str, dict[str, object]]) -> Iterator[dict[str, object]]:
+def combinations(tables: dict[str, dict[str, object]]) -> Iterator[dict[str, object]]:
     """Yield the swept values of every case, in order."""
     for table in ("grid", "list"):
         for name, values in tables[table].items():
@@ -176,7 +178,7 @@ def _samples(table: Mapping[str, object]) -> dict[str, list[float]]:
     return {name: draw(name, value, number, seed, method) for name, value in quantities.items()}
 
 
-class _Cases:
+class CaseMaker:
     """Makes the cases from the base decks, and keeps in mind which free names a formula uses."""
 
     def __init__(self, folder: Path, base: str, derived: dict[str, object]) -> None:

@@ -7,7 +7,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
-from implam_post import regress, sweep
+from implam_post import regress, study, sweep
 from implam_post.sweep_plan import COLUMNS
 from tests.program import ROOT, SMALL, implam, run_quietly
 
@@ -22,10 +22,10 @@ class ManualTest(unittest.TestCase):
         """Make the folder."""
         self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
 
-    def write_example(self, page: str, deck: str, name: str) -> str:
+    def write_example(self, page: str, deck: str, name: str, decks: Path = SMALL) -> str:
         """Put a page's example beside its deck; return the text of the page."""
         text = (ROOT / "doc" / "manual" / page).read_text(encoding="utf-8")
-        shutil.copy(SMALL / deck, self.folder)
+        shutil.copy(decks / deck, self.folder)
         (self.folder / name).write_text(re.search(r"^```toml\n(.*?)^```", text, re.DOTALL | re.MULTILINE)[1])
         return text
 
@@ -55,3 +55,24 @@ class ManualTest(unittest.TestCase):
         words = line.split()
         self.assertIn(heading.split(), [one.split() for one in said.splitlines()])
         self.assertTrue(any(one.split()[:3] == words[:3] and one.endswith("pass") for one in said.splitlines()), said)
+
+    def test_study(self) -> None:
+        """The table has the rows and figures of the page, errors to .02 %."""
+        text = self.write_example("studies.md", "karas.nml", "steps.toml", ROOT / "input" / "verify")
+        code, said = run_quietly(study.main, self.folder / "steps.toml", "--program", implam())
+        self.assertEqual(code, 0, said)
+        told, found = (_rows(re.search(r"^\| impactor\.integrator.*?\n\n", page, re.DOTALL | re.MULTILINE)[0])
+                       for page in (text, said))
+        self.assertEqual(len(told), 6)
+        for row, mine in zip(told, found, strict=True):
+            for name, value in row.items():
+                if name.endswith("%"):
+                    self.assertAlmostEqual(float(mine[name]), float(value), delta=0.02, msg=f"{row} {name}")
+                else:
+                    self.assertEqual(mine[name], value)
+
+
+def _rows(table: str) -> list[dict[str, str]]:
+    """Return the rows of a table in Markdown."""
+    lines = [[cell.strip() for cell in line.strip("|").split("|")] for line in table.strip().splitlines()]
+    return [dict(zip(lines[0], line, strict=True)) for line in lines[2:]]
