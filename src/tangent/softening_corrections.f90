@@ -141,7 +141,7 @@ contains
       if (.not. old%cohesive(i)) cycle
       k = k + 1
       associate (point => self%list(k))
-        point%faces = old%faces_of(model, model%zone(i))
+        point%faces = old%faces_of(model, model%zone(i), old%strength(i))
         point%old = old%points(i)
         point%place = i
         point%area = model%contact_area(i)*operator%stiffness_factor
