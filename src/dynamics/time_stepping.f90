@@ -20,6 +20,7 @@ module time_stepping
   use dissipation_steps, only: dissipation_step_t, new_dissipation_step
   use energy_balance, only: book_failures
   use struck_stresses, only: struck_stress
+  use crack_flaws, only: note_flaws
   use front_growth, only: find_release_ratio
   use growth_in_steps, only: grow_in_step, grows_by_steps
   use plate_options, only: kinematics_von_karman
@@ -159,7 +160,7 @@ contains
       end if
       if (converged) exit
       self%rejected = self%rejected + 1
-      call self%controller%reject(step)
+      call self%controller%reject(step/self%step_scale())
       self%operator%ready = .false.
       if (self%stepping%dissipation > 0) self%now%path%by_dissipation = self%now%path%dissipated > 0
       if (step <= self%smallest_step(model)*self%step_scale()*(1 + 1.0e-9_wp)) then
@@ -273,11 +274,12 @@ contains
       if (now%path%by_dissipation) then
         wanted = self%energy_rate()*step
         if (wanted > most_growth*now%path%dissipated) step = step*most_growth*now%path%dissipated/wanted
-        by_dissipation = new_dissipation_step(model, now%time + step, self%energy_rate()*step)
+        by_dissipation = new_dissipation_step(model, now%time + step, self%energy_rate()*step, &
+                                              1.0_wp/self%stepping%static_steps)
         call solve_step(by_dissipation, model, self%stepping%equilibrium, self%operator, now, self%trial, converged, &
                         error)
         ! Farther away there are other branches of equilibrium, which no path leads to.
-        if (converged) converged = abs(self%trial%load_factor - now%load_factor) <= 1.0_wp/self%stepping%static_steps
+        if (converged) converged = abs(self%trial%load_factor - now%load_factor) <= by_dissipation%farthest
       else
         by_load = new_static_step(model, now%time + step, now%load_factor + step)
         call solve_step(by_load, model, self%stepping%equilibrium, self%operator, now, self%trial, converged, error)
@@ -341,6 +343,7 @@ contains
     call self%trial%plies%grow(model, [self%now%time, self%trial%time], self%now%motion%displacement, &
                                self%trial%motion%displacement)
     if (self%trial%plies%softened) call book_failures(model, self%now, self%trial)
+    call note_flaws(model, self%trial%plies, self%trial%interfaces)
     if (model%scene%has_static) call find_release_ratio(model, self%trial%plies%stiffness, self%trial%motion, &
                                                         self%trial%interfaces)
     damaged = self%trial%interfaces%cohesive%border_reached(model)
