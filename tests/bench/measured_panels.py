@@ -17,7 +17,7 @@ from pathlib import Path
 
 DECKS = Path(__file__).resolve().parents[2] / "input" / "experiments"
 KEYS = ["mesh%cell=2e-3", "time%step=20e-6", "solver%tolerance=1e-5", "solver%factorization='cholmod'"]
-MORE_KEYS = {"6.5J": ["mesh%elements=24,36", "time%end=4e-3"],
+MORE_KEYS = {"6.5J": ["mesh%elements=24,36", "time%end=3.5e-3"],
              "25J": ["mesh%elements=26,40", "mesh%core=48e-3,48e-3", "delamination%zone=48e-3,48e-3", "time%end=4e-3"]}
 
 
