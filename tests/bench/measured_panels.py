@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Drops on measured panels of T700/M21, held against the measurement (doc/manual/experiments.md).
-Usage: measured_panels.py IMPLAM 6.5J|25J FOLDER [GROUP%KEY=VALUE ...]
+Usage: measured_panels.py IMPLAM 6.5J|25J FOLDER [GROUP%KEY=VALUE ...] [-GROUP ...]
        measured_panels.py FOLDER 6.5J|25J
 
-Runs the deck of input/experiments in FOLDER, on cells of 2 mm unless keys say otherwise, and prints peak force,
+Runs the deck of input/experiments in FOLDER, on cells of 2 mm unless keys say otherwise, without the groups named behind
+a dash (those of one line, such as -ply_damage), and prints peak force,
 largest displacement of the tup, end of contact, projected area, absorbed energy, for 25 J the relative L2 error of the
 force history, what plies and delaminations took, steps and cost. Without IMPLAM it reads what a run has left in
 FOLDER."""
@@ -53,7 +54,10 @@ def run(implam, name, folder, settings):
     sys.path.insert(0, str(Path(__file__).parents[1] / "regress"))
     from solver_runs import change_deck  # pylint: disable=import-outside-toplevel,import-error
     folder.mkdir(parents=True, exist_ok=True)
-    text = change_deck((DECKS / f"t700_m21_{name}.nml").read_text(encoding="utf-8"), KEYS + MORE_KEYS[name] + settings)
+    dropped = tuple(f"&{setting[1:]} " for setting in settings if setting.startswith("-"))
+    lines = (DECKS / f"t700_m21_{name}.nml").read_text(encoding="utf-8").splitlines(keepends=True)
+    text = change_deck("".join(line for line in lines if not line.startswith(dropped)),
+                       KEYS + MORE_KEYS[name] + [setting for setting in settings if not setting.startswith("-")])
     (folder / "deck.nml").write_text(text, encoding="utf-8")
     before = os.times()
     subprocess.run([implam, folder / "deck.nml", "--output", folder], check=True, stdout=subprocess.DEVNULL)
@@ -84,7 +88,7 @@ def show(name, folder):
 
 def main(*arguments):
     """Run a deck, or read its results."""
-    if arguments[0] in DECKS.parts or Path(arguments[0]).is_dir():
+    if Path(arguments[0]).is_dir():
         show(arguments[1], Path(arguments[0]))
         return
     implam, name, folder, settings = os.path.abspath(arguments[0]), arguments[1], Path(arguments[2]), arguments[3:]
