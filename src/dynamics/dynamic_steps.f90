@@ -13,6 +13,7 @@ module dynamic_steps
   use impact_coupling, only: impact_coupling_t, begin_coupling
   use tangent_operators, only: tangent_operator_t
   use residual_norms, only: relative_residual
+  use ply_rounds, only: ply_rounds_t
   use softening_corrections, only: softening_memory_t
   use condensed_steps, only: condense
   use energy_balance, only: book_step
@@ -30,8 +31,8 @@ module dynamic_steps
     real(wp) :: step = 0
     !> Iterations after which the operator is renewed
     integer :: renewal = huge(1)
-    !> True: plies that soften do so after the step, by the strains at its end
-    logical :: lagging = .false.
+    !> How plies that soften follow
+    type(ply_rounds_t) :: rounds
     !> Integrator of the plate
     type(plate_integrator_t) :: integrator
     !> Displacement to start from, (5, points); unallocated: the motion goes on as it was
@@ -48,6 +49,7 @@ module dynamic_steps
     procedure :: begin
     procedure :: find_residual
     procedure :: residual_norm
+    procedure :: soften
     procedure :: may_stop
     procedure :: prepare_operator
     procedure :: improve
@@ -107,7 +109,8 @@ contains
       call new%interfaces%keep_touching(model, new%motion%displacement)
       call self%complete(old, new)
     end if
-    new%plies%lagging = self%lagging
+    new%plies%lagging = model%scene%has_crack_bands()
+    self%rounds = ply_rounds_t()
     new%iterations = 0
     new%force_iterations = 0
     new%contact_iterations = 0
@@ -189,6 +192,23 @@ contains
                                       self%may_stop(model, new, .false.), equilibrium%tolerance, model%thickness, &
                                       new%largest_forces)
   end function residual_norm
+
+  !> Lets plies that soften follow.
+  subroutine soften(self, model, equilibrium, norm, new, softened)
+    !> The problem
+    class(dynamic_step_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> Convergence asked for
+    type(equilibrium_t), intent(in) :: equilibrium
+    !> Size of the residual
+    real(wp), intent(in) :: norm
+    !> State at the end
+    type(state_t), intent(inout) :: new
+    !> True: plies have changed
+    logical, intent(out) :: softened
+
+    call self%rounds%go_on(model, equilibrium, norm, new, softened)
+  end subroutine soften
 
   !> The force answers to the motion only within an iteration, so an impact needs one.
   pure logical function may_stop(self, model, new, pressures_new)

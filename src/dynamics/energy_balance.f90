@@ -20,6 +20,8 @@ module energy_balance
     real(wp) :: mean_internal = 0, internal_change = 0, pressure = 0, inertia_change = 0
     !> a.Ma at the end and at the start; change of a times change of Ma
     real(wp) :: jerk_new = 0, jerk_old = 0, jerk_change = 0
+    !> Energy that cohesive points store beyond the work on them
+    real(wp) :: cohesive = 0
     !> Work of the forces between faces
     real(wp) :: faces = 0
     !> Change of displacement times mean force and change of force of the lines
@@ -44,7 +46,7 @@ contains
     !> State at the end; receives its ledger
     type(state_t), intent(inout) :: new
     type(products_t) :: products
-    real(wp) :: amplitudes(2), gain, impactor, taken, fracture, heat, damage, lost
+    real(wp) :: amplitudes(2), gain, impactor, taken, fracture, heat, damage
 
     products = step_products(model, old, energy, new)
     amplitudes = model%scene%pressure%amplitude([old%time, new%time])
@@ -61,9 +63,8 @@ contains
     new%ledger%delamination = new%ledger%delamination + fracture
     heat = new%interfaces%friction_heat(model, old%interfaces)
     new%ledger%friction = new%ledger%friction + heat
-    lost = damage + fracture + heat
-    new%ledger%algorithmic = new%ledger%algorithmic - lost
-    call new%plies%judge(lost, products%strain - old%ledger%strain - products%mean_internal + lost, &
+    new%ledger%algorithmic = new%ledger%algorithmic - (damage + fracture + heat)
+    call new%plies%judge(damage, products%strain - old%ledger%strain - products%mean_internal - products%cohesive, &
                          max(new%ledger%initial + new%ledger%external_work, products%strain))
     if (model%map%layered) then
       ! What fracture takes has been booked, and taken off here, when the ties were released.
@@ -135,7 +136,7 @@ contains
     !> The products
     type(products_t) :: products
     real(wp), allocatable :: momentum(:, :)
-    real(wp) :: sums(12)
+    real(wp) :: sums(13)
 
     allocate (momentum, mold=old%motion%displacement)
     call model%inertia(new%motion%velocity, momentum)
@@ -147,11 +148,14 @@ contains
     if (model%has_bonds) sums(10) = new%interfaces%contact_work(model, new%motion%displacement, &
                                                                 new%motion%displacement - old%motion%displacement)
     if (size(model%lines) > 0) sums(11:12) = line_products(model, old, new)
+    if (model%scene%has_crack_bands()) &
+      sums(13) = new%interfaces%cohesive%stored_beyond_work(model, old%interfaces%cohesive, old%motion%displacement, &
+                                                            new%motion%displacement)
     call model%communicator%sum(sums)
     sums = sums*model%mesh%multiplicity
     products = products_t(kinetic=sums(1), mean_internal=sums(2)/2, internal_change=sums(3), inertia_change=sums(4), &
                           jerk_new=sums(5), jerk_old=sums(6), jerk_change=sums(7), strain=sums(8), pressure=sums(9), &
-                          faces=sums(10), lines=sums(11), lines_change=sums(12))
+                          faces=sums(10), lines=sums(11), lines_change=sums(12), cohesive=sums(13))
   end function step_products
 
   !> Change of displacement times mean force and times change of force of the lines, of this rank's points.

@@ -27,6 +27,8 @@ module step_problems
     procedure(find_residual), deferred :: find_residual
     !> Size of a residual relative to the forces in play.
     procedure(residual_norm), deferred :: residual_norm
+    !> Lets plies that soften follow, where a kind of step has them wait.
+    procedure :: soften
     !> True if a residual within the tolerance is the end.
     procedure(may_stop), deferred :: may_stop
     !> Makes the operator fit the state, by changes or by a factorization.
@@ -160,6 +162,23 @@ module step_problems
 
 contains
 
+  !> Plies have followed within the residual.
+  subroutine soften(self, model, equilibrium, norm, new, softened)
+    !> The problem
+    class(step_problem_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> Convergence asked for
+    type(equilibrium_t), intent(in) :: equilibrium
+    !> Size of the residual
+    real(wp), intent(in) :: norm
+    !> State at the end
+    type(state_t), intent(inout) :: new
+    !> True: plies have changed
+    logical, intent(out) :: softened
+
+    softened = .false.
+  end subroutine soften
+
   !> Tries a step. On return either `converged` and `new` is the state at its end, or nothing of it counts.
   subroutine solve_step(problem, model, equilibrium, operator, old, new, converged, error)
     !> The kind of step
@@ -179,12 +198,14 @@ contains
     type(error_t), allocatable, intent(out) :: error
     real(wp), allocatable :: residual(:, :), correction(:, :)
     real(wp) :: norm, energy
-    logical :: pressures_new
+    integer :: begun
+    logical :: pressures_new, softened
 
     new = old
     allocate (residual, correction, mold=old%motion%displacement)
     correction = 0
     pressures_new = .false.
+    begun = 0
     call problem%begin(model, operator, old, new)
     do
       call operator%timers%start('element forces')
@@ -194,6 +215,12 @@ contains
       call model%profile%leave()
       call operator%timers%stop('element forces')
       norm = problem%residual_norm(model, equilibrium, operator, residual, new)
+      call problem%soften(model, equilibrium, norm, new, softened)
+      if (softened) then
+        begun = new%iterations
+        call operator%anderson%forget()
+        cycle
+      end if
       converged = norm <= equilibrium%tolerance
       if (converged) converged = problem%may_stop(model, new, pressures_new)
       pressures_new = .false.
@@ -207,7 +234,7 @@ contains
         call operator%anderson%pause()
         if (new%contact_iterations < equilibrium%max_iterations) cycle
       end if
-      if (.not. norm <= huge(norm) .or. new%iterations >= equilibrium%max_iterations) exit
+      if (.not. norm <= huge(norm) .or. new%iterations - begun >= equilibrium%max_iterations) exit
       call problem%prepare_operator(model, operator, new, error)
       if (.not. allocated(error)) call operator%correct(model, residual, correction, error)
       if (allocated(error)) then

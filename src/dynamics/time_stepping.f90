@@ -240,11 +240,6 @@ contains
     self%solves_begun = self%operator%solves
     problem = new_dynamic_step(self%integrator, step, self%stepping%adapt%iterations)
     call solve_step(problem, model, self%stepping%equilibrium, self%operator, self%now, self%trial, converged, error)
-    if (.not. (converged .or. allocated(error)) .and. model%scene%has_crack_bands()) then
-      ! Cracks run on by themselves: they go one element further a step, so that there is equilibrium nearby.
-      problem%lagging = .true.
-      call solve_step(problem, model, self%stepping%equilibrium, self%operator, self%now, self%trial, converged, error)
-    end if
     if (converged .and. model%map%layered) then
       call model%profile%enter('fronts')
       call grow_in_step(problem, model, self%stepping%equilibrium, self%operator, self%now, self%trial, converged, &
@@ -252,7 +247,8 @@ contains
       call model%profile%leave()
     end if
     ! Steps of the smallest length are taken as they are: the energy watch tells what they create.
-    if (converged .and. self%trial%plies%leapt) converged = step <= self%smallest_step(model)*(1 + 1.0e-9_wp)
+    if (converged .and. (problem%rounds%leapt .or. self%trial%plies%leapt)) &
+      converged = step <= self%smallest_step(model)*(1 + 1.0e-9_wp)
   end subroutine try_step
 
   !> Tries one load step.

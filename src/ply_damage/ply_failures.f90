@@ -16,8 +16,9 @@ module ply_failures
   private
   public :: ply_failure_t, new_ply_failure
 
-  !> Energy that a step may create or lose, as a part of what is dissipated in it, and of all energy.
-  real(wp), parameter :: path_tolerance = 0.1_wp, noticed = 1.0e-4_wp
+  !> Energy that plies may create or lose as they follow a step, as a part of what they dissipate in it, and of all
+  !> energy.
+  real(wp), parameter :: path_tolerance = 0.1_wp, noticed = 3.0e-4_wp
 
   !> Failures of the plies of this rank's elements.
   type :: ply_failure_t
@@ -35,11 +36,15 @@ module ply_failures
     real(wp) :: dissipated(energy_modes) = 0
     !> True if the last step was too long to follow plies that soften
     logical :: leapt = .false.
-    !> True while plies that soften keep their stiffness until the step is done
+    !> True while plies that soften keep their stiffness until they are told to follow
     logical :: lagging = .false.
+    !> Strain energy of this rank's elements when forces were found last
+    real(wp), private :: energy = 0
   contains
     !> Internal forces of the plate, with the stiffness that softening leaves under this displacement.
     procedure :: find_forces
+    !> Lets plies that lag follow a displacement.
+    procedure :: follow
     !> Books what softening dissipates in a step, and judges whether the step has followed it.
     procedure :: book
     procedure :: judge
@@ -93,7 +98,31 @@ contains
     else
       call model%internal(self%stiffness, displacement, force, energy, free=self%free)
     end if
+    self%energy = energy
   end subroutine find_forces
+
+  !> Lets plies that lag follow the displacement at which forces were found last. Collective.
+  subroutine follow(self, model, displacement, lost, excess)
+    !> The failures
+    class(ply_failure_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> The displacement, ghosts up to date, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> Strain energy that goes, and what of it is not dissipated, of the whole plate, the same on every rank
+    real(wp), intent(out) :: lost, excess
+    real(wp), allocatable :: force(:, :)
+    real(wp) :: energies(2), energy
+
+    allocate (force, mold=displacement)
+    energies = [self%energy, sum(self%bands%dissipation())]
+    self%lagging = .false.
+    call self%find_forces(model, displacement, force, energy)
+    self%lagging = .true.
+    energies = [energies(1) - energy, sum(self%bands%dissipation()) - energies(2)]
+    call model%communicator%sum(energies)
+    lost = energies(1)*model%mesh%multiplicity
+    excess = lost - energies(2)*model%mesh%multiplicity
+  end subroutine follow
 
   !> Books what softening dissipates in a step. Collective.
   subroutine book(self, model, energy)
@@ -113,21 +142,19 @@ contains
     energy = sum(energies)
   end subroutine book
 
-  !> Judges whether a step has followed how plies soften: the work on the plate is then what it stores and what plies
-  !> and cohesive interfaces dissipate. A step over a jump would find the state behind it without the work that leads
-  !> there.
-  pure subroutine judge(self, dissipated, created, energy)
+  !> Judges whether a step has followed how plies soften: the work on them is then what they store and dissipate. A step
+  !> over a jump would find the state behind it without the work that leads there.
+  pure subroutine judge(self, dissipated, stored, energy)
     !> The failures
     class(ply_failure_t), intent(inout) :: self
-    !> Energy that plies, cohesive interfaces and friction dissipate in the step
+    !> Energy that plies dissipate in the step
     real(wp), intent(in) :: dissipated
-    !> Energy stored and dissipated in the step beyond the work
-    real(wp), intent(in) :: created
+    !> Energy that they store in it beyond the work on them
+    real(wp), intent(in) :: stored
     !> Energy of the whole run so far
     real(wp), intent(in) :: energy
 
-    self%leapt = allocated(self%bands) .and. .not. self%lagging .and. &
-                 abs(created) > max(path_tolerance*dissipated, noticed*energy)
+    self%leapt = allocated(self%bands) .and. abs(stored + dissipated) > max(path_tolerance*dissipated, noticed*energy)
   end subroutine judge
 
   !> Modes that have occurred in a ply; one that softens has failed where it bears nothing any more.

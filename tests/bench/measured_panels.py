@@ -1,0 +1,101 @@
+#!/usr/bin/env python3
+"""Drops on measured panels of T700/M21, held against the measurement (doc/manual/experiments.md).
+Usage: measured_panels.py IMPLAM 6.5J|25J FOLDER [GROUP%KEY=VALUE ...] [-GROUP ...]
+       measured_panels.py FOLDER 6.5J|25J
+
+Runs the deck of input/experiments in FOLDER, on cells of 2 mm unless keys say otherwise, without the groups named behind
+a dash (those of one line, such as -ply_damage), and prints peak force,
+largest displacement of the tup, end of contact, projected area, absorbed energy, for 25 J the relative L2 error of the
+force history, what plies and delaminations took, steps and cost. Without IMPLAM it reads what a run has left in
+FOLDER."""
+
+import csv
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+DECKS = Path(__file__).resolve().parents[2] / "input" / "experiments"
+KEYS = ["mesh%cell=2e-3", "time%step=20e-6", "solver%tolerance=1e-5", "solver%factorization='cholmod'"]
+MORE_KEYS = {"6.5J": ["mesh%elements=24,36", "time%end=3.5e-3"],
+             "25J": ["mesh%elements=26,40", "mesh%core=48e-3,48e-3", "delamination%zone=48e-3,48e-3", "time%end=4e-3"]}
+
+
+def rows_of(path):
+    """Rows of a table of numbers under names; comments left out."""
+    with path.open(encoding="utf-8") as file:
+        lines = [line for line in file if not line.startswith("#")]
+    return [{name.strip(): float(value) for name, value in row.items()} for row in csv.DictReader(lines)]
+
+
+def value_at(time, times, values):
+    """Value of a curve, straight between its points and zero beyond them."""
+    for i in range(1, len(times)):
+        if times[i - 1] <= time <= times[i]:
+            part = (time - times[i - 1]) / (times[i] - times[i - 1])
+            return values[i - 1] + part * (values[i] - values[i - 1])
+    return 0.0
+
+
+def history_error(rows):
+    """Relative L2 error of the force of 25 J over the measured time."""
+    measured = [list(row.values()) for row in rows_of(DECKS / "t700gc_m21_25J_force_time.csv")]
+    times, forces = [row[0] for row in measured], [row[1] for row in measured]
+    computed = [[row["time"] for row in rows], [row["force"] for row in rows]]
+    every = [times[0] + (times[-1] - times[0]) * i / 1000 for i in range(1001)]
+    wanted = [value_at(time, times, forces) for time in every]
+    off = [value_at(time, *computed) - force for time, force in zip(every, wanted)]
+    return (sum(x**2 for x in off) / sum(x**2 for x in wanted))**0.5
+
+
+def run(implam, name, folder, settings):
+    """Run a deck; its seconds of the processor."""
+    sys.path.insert(0, str(Path(__file__).parents[1] / "regress"))
+    from solver_runs import change_deck  # pylint: disable=import-outside-toplevel,import-error
+    folder.mkdir(parents=True, exist_ok=True)
+    dropped = tuple(f"&{setting[1:]} " for setting in settings if setting.startswith("-"))
+    lines = (DECKS / f"t700_m21_{name}.nml").read_text(encoding="utf-8").splitlines(keepends=True)
+    text = change_deck("".join(line for line in lines if not line.startswith(dropped)),
+                       KEYS + MORE_KEYS[name] + [setting for setting in settings if not setting.startswith("-")])
+    (folder / "deck.nml").write_text(text, encoding="utf-8")
+    before = os.times()
+    subprocess.run([implam, folder / "deck.nml", "--output", folder], check=True, stdout=subprocess.DEVNULL)
+    after = os.times()
+    return after.children_user + after.children_system - before.children_user - before.children_system
+
+
+def show(name, folder):
+    """Print the figures of a run."""
+    rows = rows_of(next(folder.glob("*_history.csv")))
+    summary = json.loads(next(folder.glob("*_summary.json")).read_text(encoding="utf-8"))
+    last = rows[-1]
+    begun = rows[0]["energy_impactor"] + rows[0]["energy_indentation"] + rows[0]["energy_kinetic"] \
+        + rows[0]["energy_strain"] + rows[0]["energy_algorithmic"]
+    figures = {"up to, ms": 1e3 * last["time"], "peak force, kN": max(row["force"] for row in rows) / 1e3,
+               "at, ms": 1e3 * max(rows, key=lambda row: row["force"])["time"],
+               "largest displacement, mm": 1e3 * max(row["impactor_displacement"] for row in rows),
+               "end of contact, ms": 1e3 * summary["contact_until"], "in contact": float(summary["in_contact"]),
+               "projected area, mm2": 1e6 * last["projected_area"], "absorbed, J": begun - last["energy_impactor"]}
+    if name == "25J":
+        figures["force history, relative L2, %"] = 100 * history_error(rows)
+    for key, value in last.items():
+        if key.startswith(("energy_", "area_below", "fibre_fail", "matrix_c", "total_it", "refact", "rejected", "step")):
+            figures[key] = 1e6 * value if key.startswith("area") else value
+    for key, value in figures.items():
+        print(f"{key:34} {value:12.5g}")
+
+
+def main(*arguments):
+    """Run a deck, or read its results."""
+    if Path(arguments[0]).is_dir():
+        show(arguments[1], Path(arguments[0]))
+        return
+    implam, name, folder, settings = os.path.abspath(arguments[0]), arguments[1], Path(arguments[2]), arguments[3:]
+    seconds = run(implam, name, folder, list(settings))
+    show(name, folder)
+    print(f"{'processor, s':34} {seconds:12.5g}")
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
