@@ -188,7 +188,7 @@ contains
     if (.not. allocated(self%cohesive)) return
     do i = 1, model%distribution%owned
       if (.not. self%cohesive(i)) cycle
-      faces = self%faces_of(model, model%zone(i))
+      faces = self%faces_of(model, model%zone(i), old%strength(i))
       start = old%points(i)
       call faces%traction(before(1:3, i), start, traction(:, 1), point)
       start%sliding%limit = self%points(i)%sliding%limit
