@@ -11,7 +11,7 @@ if [[ $task != run && $task != test ]] || (($# > 1)); then
 fi
 
 packages=(gfortran cmake ninja-build pkg-config git openmpi-bin libopenmpi-dev libpetsc-real-dev libmumps-dev
-  libmetis-dev libhdf5-openmpi-dev libopenblas0-pthread hdf5-tools python3-venv)
+  libsuitesparse-dev libmetis-dev libhdf5-openmpi-dev libopenblas0-pthread hdf5-tools python3-venv)
 
 # What happens now, since each stage may take a minute.
 stage() {
@@ -21,7 +21,7 @@ stage() {
 install_packages() {
   local missing=() package log
   if ! command -v apt-get >/dev/null; then
-    echo "No apt here: assuming that a Fortran compiler, CMake, Ninja, MPI, PETSc, METIS and parallel HDF5 are installed."
+    echo "No apt here: assuming that a Fortran compiler, CMake, Ninja, MPI, PETSc, CHOLMOD, METIS and parallel HDF5 are there."
     return
   fi
   for package in "${packages[@]}"; do

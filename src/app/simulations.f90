@@ -166,7 +166,8 @@ contains
     self%record = new_run_record(self%model)
     call self%log%note('Model: '//to_text(self%model%mesh%elements())//' elements, '// &
                        to_text(self%stepper%operator%numbering%total)//' unknowns, '// &
-                       to_text(communicator%size)//' rank(s).')
+                       to_text(communicator%size)//' rank(s), factored by '// &
+                       self%stepper%operator%solver%package_used()//'.')
     call self%progress%start(0.0_wp)
   end subroutine prepare
 

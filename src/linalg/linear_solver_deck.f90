@@ -6,7 +6,8 @@ module linear_solver_deck
   use deck_remarks, only: tell
   use deck_settings, only: settings_t
   use deck_vocabulary, only: key_row_length
-  use linear_solver_parameters, only: linear_solver_parameters_t, factorization_mumps, factorization_cholmod
+  use linear_solver_parameters, only: linear_solver_parameters_t, factorization_mumps, factorization_cholmod, &
+                                      factorization_automatic
   use text, only: line_t, words_of
   implicit none
   private
@@ -15,8 +16,8 @@ module linear_solver_deck
   character(len=*), parameter :: group = 'solver'
   !> Rows of the keys.
   character(len=key_row_length), parameter, public :: linear_solver_rows(*) = [character(len=key_row_length) :: &
-    'solver | factorization | choice | 1 | - | ''mumps'' | mumps cholmod | &
-      &Direct solver; cholmod on one rank only.', &
+    'solver | factorization | choice | 1 | - | ''automatic'' | automatic mumps cholmod | &
+      &Direct solver; cholmod on one rank only, which automatic takes there where nothing buckles or softens.', &
     'solver | petsc_options | text | 1 | - | '''' | any text | &
       &Options handed to PETSc as they are.']
 
@@ -32,8 +33,8 @@ contains
     !> Receives them
     type(linear_solver_parameters_t), intent(inout) :: solver
 
-    solver%factorization = code_of(settings%text_of(group, 'factorization'), 'mumps cholmod', &
-                                   [factorization_mumps, factorization_cholmod])
+    solver%factorization = code_of(settings%text_of(group, 'factorization'), 'automatic mumps cholmod', &
+                                   [factorization_automatic, factorization_mumps, factorization_cholmod])
     solver%petsc_options = settings%text_of(group, 'petsc_options')
   end subroutine fill_linear_solver
 

@@ -5,12 +5,13 @@ module linear_solver_parameters
   public :: linear_solver_parameters_t
 
   !> Factorizations.
-  integer, parameter, public :: factorization_mumps = 1, factorization_cholmod = 2
+  integer, parameter, public :: factorization_mumps = 1, factorization_cholmod = 2, &
+                                factorization_automatic = 3
 
   !> Factorization and options of the linear solver.
   type :: linear_solver_parameters_t
-    !> factorization_mumps or factorization_cholmod (one rank only)
-    integer :: factorization = factorization_mumps
+    !> factorization_mumps, factorization_cholmod (one rank only), or the quickest that suits ranks and operator
+    integer :: factorization = factorization_automatic
     !> Handed to PETSc as they are
     character(len=:), allocatable :: petsc_options
   end type linear_solver_parameters_t

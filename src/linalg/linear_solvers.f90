@@ -32,6 +32,8 @@ module linear_solvers
     procedure(solve_many), deferred :: solve_many
     !> Size of the factor, the same on every rank.
     procedure(statistics), deferred :: statistics
+    !> Name of what factors the matrix, and how often something else had to.
+    procedure(name_package), deferred :: package_used
     !> Frees matrix and factor.
     procedure(act), deferred :: release
   end type linear_solver_t
@@ -114,5 +116,13 @@ module linear_solvers
       !> Memory of the factorization on all ranks, in MB
       real(wp), intent(out) :: megabytes
     end subroutine statistics
+
+    !> Name of what factors the matrix.
+    function name_package(self) result(name)
+      import :: linear_solver_t
+      class(linear_solver_t), intent(in) :: self
+      !> The name
+      character(len=:), allocatable :: name
+    end function name_package
   end interface
 end module linear_solvers

@@ -22,6 +22,8 @@ module symmetric_rows
     procedure :: define
     !> Adds an element's matrix.
     procedure :: add
+    !> The pattern of both triangles.
+    procedure :: both_triangles
     !> Frees the lists.
     procedure :: release
     procedure, private :: find_alike
@@ -150,6 +152,41 @@ contains
       n = n + 1
     end do
   end subroutine sort_present
+
+  !> The pattern of both triangles, as `define` takes it.
+  pure subroutine both_triangles(self, row_start, columns)
+    class(symmetric_rows_t), intent(in) :: self
+    !> Where the columns of each row begin, from 1, shape (rows + 1)
+    integer, allocatable, intent(out) :: row_start(:)
+    !> Columns in both triangles, from 0, ascending within a row
+    integer, allocatable, intent(out) :: columns(:)
+    integer, allocatable :: next(:)
+    integer :: row, rows, k
+
+    rows = size(self%start) - 1
+    allocate (row_start(rows + 1))
+    row_start = [1, (self%start(row + 1) - self%start(row), row=1, rows)]
+    do row = 1, rows
+      do k = self%start(row) + 2, self%start(row + 1)
+        row_start(self%columns(k) + 2) = row_start(self%columns(k) + 2) + 1
+      end do
+    end do
+    do row = 1, rows
+      row_start(row + 1) = row_start(row) + row_start(row + 1)
+    end do
+    allocate (columns(row_start(rows + 1) - 1))
+    next = row_start(:rows)
+    do row = 1, rows
+      ! What stands left of the diagonal has come by now, in ascending order.
+      associate (mine => self%columns(self%start(row) + 1:self%start(row + 1)))
+        columns(next(row):next(row) + size(mine) - 1) = mine
+        do k = 2, size(mine)
+          columns(next(mine(k) + 1)) = row - 1
+          next(mine(k) + 1) = next(mine(k) + 1) + 1
+        end do
+      end associate
+    end do
+  end subroutine both_triangles
 
   !> Frees the lists.
   subroutine release(self)

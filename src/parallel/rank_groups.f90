@@ -1,8 +1,8 @@
 !> A group of ranks and the numbers that all of them combine: sums, extremes, flags. On one rank every procedure
 !> returns at once.
 module rank_groups
-  use mpi_f08, only: MPI_Comm, MPI_IN_PLACE, MPI_DOUBLE_PRECISION, MPI_INTEGER, MPI_INTEGER8, MPI_LOGICAL, MPI_SUM, &
-                     MPI_MAX, MPI_MIN, MPI_LOR, MPI_Allreduce, MPI_Exscan, MPI_Barrier
+  use mpi_f08, only: MPI_Comm, MPI_COMM_SELF, MPI_IN_PLACE, MPI_DOUBLE_PRECISION, MPI_INTEGER, MPI_INTEGER8, &
+                     MPI_LOGICAL, MPI_SUM, MPI_MAX, MPI_MIN, MPI_LOR, MPI_Allreduce, MPI_Exscan, MPI_Barrier
   use kinds, only: wp, long
   implicit none
   private
@@ -41,11 +41,12 @@ module rank_groups
 
 contains
 
-  !> The integer handle that PETSc and HDF5 ask for.
+  !> The integer handle that PETSc and HDF5 ask for. A single rank may not have had MPI when it was set up.
   pure integer function handle(self)
     class(rank_group_t), intent(in) :: self
 
-    handle = self%group%mpi_val
+    handle = MPI_COMM_SELF%mpi_val
+    if (self%size > 1) handle = self%group%mpi_val
   end function handle
 
   !> Whether this is rank 0, which writes.

@@ -1,5 +1,5 @@
-!> An HDF5 file shared by all ranks. Every routine is collective. Trouble is kept inside, agreed on
-!> by all ranks, and once there is some the routines do nothing: whoever owns the file asks at the end.
+!> An HDF5 file shared by all ranks, on one rank without MPI. Every routine is collective. Trouble is kept inside,
+!> agreed on by all ranks, and once there is some the routines do nothing: whoever owns the file asks at the end.
 module hdf5_file
   use communicators, only: communicator_t
   use hdf5, only: h5eset_auto_f, h5f_acc_rdonly_f, h5f_acc_rdwr_f, h5f_acc_trunc_f, h5f_obj_all_f, h5f_obj_file_f, &
@@ -160,14 +160,39 @@ contains
     if (.not. started) call h5open_f(status)
     call h5eset_auto_f(0, status)
     call h5pcreate_f(h5p_file_access_f, access_list, status)
-    call h5pset_fapl_mpio_f(access_list, self%communicator%handle(), mpi_info_null, status)
     call h5pcreate_f(h5p_dataset_xfer_f, self%together, status)
-    call h5pset_dxpl_mpio_f(self%together, h5fd_mpio_collective_f, status)
+    if (self%communicator%size > 1) then
+      call h5pset_fapl_mpio_f(access_list, self%communicator%handle(), mpi_info_null, status)
+      call h5pset_dxpl_mpio_f(self%together, h5fd_mpio_collective_f, status)
+    else
+      call leave_unlocked(access_list)
+    end if
     call h5pcreate_f(h5p_link_create_f, self%with_groups, status)
     call h5pset_create_inter_group_f(self%with_groups, 1, status)
     call h5pcreate_f(h5p_dataset_create_f, self%undated, status)
     call h5pset_obj_track_times_f(self%undated, .false., status)
   end subroutine prepare
+
+  !> Keeps the library from locking the file, as it does on several ranks: a program that reads results while they are
+  !> written would end the run.
+  subroutine leave_unlocked(access_list)
+    use, intrinsic :: iso_c_binding, only: c_bool, c_int, c_int64_t
+    !> Property list for opening the file
+    integer(hid_t), intent(in) :: access_list
+    interface
+      !> HDF5 in C.
+      integer(c_int) function set_locking(list, use_locks, ignore_when_disabled) bind(c, name='H5Pset_file_locking')
+        import :: c_bool, c_int, c_int64_t
+        !> Property list for opening the file
+        integer(c_int64_t), value :: list
+        !> Whether files are locked, and whether a file system that cannot lock is borne with
+        logical(c_bool), value :: use_locks, ignore_when_disabled
+      end function set_locking
+    end interface
+    integer(c_int) :: ignored
+
+    ignored = set_locking(int(access_list, c_int64_t), .false._c_bool, .true._c_bool)
+  end subroutine leave_unlocked
 
   !> Closes the file, if it was opened or that was tried.
   subroutine close (self)

@@ -7,14 +7,13 @@ module tangent_operators
   use archives, only: archive_t
   use timers, only: timer_set_t
   use linear_solvers, only: linear_solver_t
-  use petsc_solvers, only: petsc_solver_t
-  use linear_solver_parameters, only: factorization_cholmod
   use numberings, only: numbering_t, number_equations
   use models, only: model_t
   use section_stiffnesses, only: visit_stiffness
   use interface_states, only: interface_state_t
   use anderson_acceleration, only: anderson_t
   use operator_assembly, only: assemble_elements, assemble_diagonal, assemble_tangents, stays_positive
+  use operator_solvers, only: choose_solver
   use woodbury_updates, only: woodbury_updates_t, list_changes, gather_changes
   implicit none
   private
@@ -91,11 +90,10 @@ contains
     !> The operator
     class(tangent_operator_t), intent(out) :: self
     type(model_t), intent(in) :: model
-    !> factorization_mumps or factorization_cholmod
+    !> One of the factorization_* choices
     integer, intent(in) :: factorization
     !> Set if the solver cannot be set up
     type(error_t), allocatable, intent(out) :: error
-    type(petsc_solver_t) :: solver
     integer :: points
 
     points = size(model%distribution%points)
@@ -104,8 +102,8 @@ contains
     self%present = self%added
     self%stiffness = model%elements%stiffness
     call number_equations(model%mesh, model%distribution, model%held, self%numbering)
-    if (factorization == factorization_cholmod) solver%package = 'cholmod'
-    allocate (self%solver, source=solver)
+    call choose_solver(model%communicator, stays_positive(model), factorization, self%solver, error)
+    if (allocated(error)) return
     call self%solver%define(model%communicator, self%numbering%first_row, self%numbering%total, &
                             self%numbering%row_start, self%numbering%columns, stays_positive(model), error)
     ! The solver has its own copy of this large list.

@@ -29,6 +29,7 @@ module dense_solvers
     procedure :: solve
     procedure :: solve_many
     procedure :: statistics
+    procedure :: package_used
     procedure :: release
   end type dense_solver_t
 
@@ -217,6 +218,15 @@ contains
     factor_entries = size(self%pivots)*(size(self%pivots) + 1.0_wp)/2
     megabytes = real(storage_size(self%factor), wp)/8*size(self%factor)/2**20
   end subroutine statistics
+
+  !> What factors the matrix.
+  function package_used(self) result(name)
+    class(dense_solver_t), intent(in) :: self
+    !> Its name
+    character(len=:), allocatable :: name
+
+    name = 'LAPACK'
+  end function package_used
 
   !> Frees matrix and factor.
   subroutine release(self)

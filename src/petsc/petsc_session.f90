@@ -1,19 +1,15 @@
-!> Begin and end of PETSc within a run: our communicator, our command line, our error messages, one thread a rank.
+!> Begin and end of PETSc within a run: our communicator, our command line, our error messages.
 module petsc_session
   use, intrinsic :: iso_c_binding, only: c_int, c_ptr, c_null_ptr, c_char, c_null_char, c_funptr, c_funloc, &
-                                         c_associated, c_f_pointer, c_f_procpointer
+                                         c_associated, c_f_pointer
+  use blas_settings, only: settle_blas
   use communicators, only: communicator_t
   use errors, only: error_t, fail, exit_usage, exit_internal
-  use found_procedures, only: address_of
   implicit none
   private
   public :: start_petsc, finish_petsc, report_petsc
 
   interface
-    !> Lets OpenBLAS choose its kernels by the processor's instructions where it does not know its name.
-    subroutine choose_blas_kernels() bind(c, name='implam_choose_blas_kernels')
-    end subroutine choose_blas_kernels
-
     !> Starts PETSc. This is the C entry, as the Fortran one reads the command line in any case.
     integer(c_int) function initialize() bind(c, name='PetscInitializeNoArguments')
       import :: c_int
@@ -60,15 +56,6 @@ module petsc_session
     end function error_message
   end interface
 
-  abstract interface
-    !> Sets the number of threads of a library.
-    subroutine set_threads(count) bind(c)
-      import :: c_int
-      !> Number of threads
-      integer(c_int), value :: count
-    end subroutine set_threads
-  end interface
-
 contains
 
   !> Starts PETSc, unless it runs already. The command line stays ours.
@@ -85,8 +72,7 @@ contains
 
     call PetscInitialized(running, ierr)
     if (running) return
-    call use_one_thread()
-    call choose_blas_kernels()
+    call settle_blas()
     ! Options such as -log_view must be there when PETSc starts, and it looks for them in the environment.
     call get_environment_variable('PETSC_OPTIONS', length=length)
     allocate (character(len=length) :: all_options)
@@ -99,30 +85,6 @@ contains
     if (ierr /= 0) call fail(error, exit_usage, 'PETSc does not start with the options "'//trim(options)//'".')
     call communicator%agree(error)
   end subroutine start_petsc
-
-  !> Lets OpenBLAS work with one thread, unless the environment says how many; other libraries are left as they are.
-  !> Ranks share the work out already, and threads beside them wait more than they do.
-  subroutine use_one_thread()
-    procedure(set_threads), pointer :: set
-    type(c_funptr) :: address
-
-    if (is_set('OMP_NUM_THREADS')) return
-    if (is_set('OPENBLAS_NUM_THREADS')) return
-    address = address_of('openblas_set_num_threads')
-    if (.not. c_associated(address)) return
-    call c_f_procpointer(address, set)
-    call set(1_c_int)
-  end subroutine use_one_thread
-
-  !> True if a variable of the environment has a value.
-  logical function is_set(name)
-    !> Its name
-    character(len=*), intent(in) :: name
-    integer :: length
-
-    call get_environment_variable(name, length=length)
-    is_set = length > 0
-  end function is_set
 
   !> Ends PETSc; its objects must have been freed before.
   subroutine finish_petsc()

@@ -1,11 +1,10 @@
-!> What the packages that factor matrices behind PETSc must be told, and what they report: MUMPS on any
-!> number of ranks (Amestoy et al., SIAM J. Matrix Anal. Appl. 23, 2001), CHOLMOD on one (Chen et al.,
-!> ACM Trans. Math. Softw. 35, 2008).
+!> What the package that factors matrices behind PETSc must be told, and what it reports: MUMPS (Amestoy et al., SIAM J.
+!> Matrix Anal. Appl. 23, 2001).
 module factor_packages
-  use petscksp, only: tMat, tPC, PETSC_NULL_OPTIONS
+  use petscksp, only: tMat, tPC
   implicit none
   private
-  public :: prepare_mumps, prepare_cholmod, mumps_report, why_not_factored
+  public :: prepare_mumps, mumps_report, why_not_factored
 
   !> MUMPS' controls: room beyond the estimate in %, and whether the root of the elimination tree stays on
   !> one rank and is factored like the rest of it.
@@ -39,16 +38,6 @@ contains
     if (room >= 0) call MatMumpsSetIcntl(factor, control_room, room, codes(4))
     ierr = maxval(codes)
   end subroutine prepare_mumps
-
-  !> Makes CHOLMOD find out, without words, that a matrix is not positive definite.
-  subroutine prepare_cholmod(ierr)
-    !> PETSc's code
-    integer, intent(out) :: ierr
-
-    call PetscOptionsSetValue(PETSC_NULL_OPTIONS, '-mat_cholmod_print', '0', ierr)
-    ! Its other form, L D L^T, takes negative pivots without complaint.
-    if (ierr == 0) call PetscOptionsSetValue(PETSC_NULL_OPTIONS, '-mat_cholmod_factor', 'supernodal', ierr)
-  end subroutine prepare_cholmod
 
   !> One of MUMPS' reports on the factor, INFOG.
   integer function mumps_report(factorization, number)

@@ -1,14 +1,15 @@
-!> Direct solution of large symmetric equations by packages behind PETSc: MUMPS on any number of ranks
-!> (Amestoy et al., SIAM J. Matrix Anal. Appl. 23, 2001), CHOLMOD on one (Chen et al., ACM TOMS 35, 2008).
+!> Direct solution of large symmetric equations by MUMPS behind PETSc, on any number of ranks (Amestoy et al., SIAM J.
+!> Matrix Anal. Appl. 23, 2001).
 module petsc_solvers
-  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_quiet_nan, ieee_value
   use petscksp, only: tMat, tKSP, tPC, PETSC_DECIDE, PETSC_TRUE, PETSC_FALSE, PETSC_NULL_SCALAR, MAT_GLOBAL_SUM, &
                       MAT_INFO_SIZE, MAT_INFO_NZ_USED, MAT_INFO_MEMORY, KSPSetOperators, MatDenseGetArrayF90, &
                       MatDenseRestoreArrayF90
   use communicators, only: communicator_t
-  use errors, only: error_t, fail, exit_convergence, exit_internal, exit_usage
-  use factor_packages, only: prepare_mumps, prepare_cholmod, mumps_report, why_not_factored, mumps_outcome, &
-                             mumps_memory, mumps_entries, mumps_singular, mumps_short_of_room
+  use errors, only: error_t, fail, exit_convergence, exit_internal
+  use factor_packages, only: prepare_mumps, mumps_report, why_not_factored, mumps_outcome, mumps_memory, &
+                             mumps_entries, mumps_singular, mumps_short_of_room
+  use free_mechanisms, only: mechanism_t
   use freed_memory, only: give_back_freed, keep_freed
   use kinds, only: wp
   use linear_solvers, only: linear_solver_t
@@ -18,17 +19,13 @@ module petsc_solvers
   private
   public :: petsc_solver_t
 
-  !> PETSC_ERR_MAT_CH_ZRPVT, which CHOLMOD returns when a pivot is zero or negative
+  !> PETSC_ERR_MAT_CH_ZRPVT, which other packages than MUMPS return when a pivot is zero or negative
   integer, parameter :: petsc_zero_pivot = 81
-  !> Inverse of an eigenvalue that consists of rounding errors
-  real(wp), parameter :: largest_growth = 1e15_wp
   !> What is wrong with a solve that comes too early
   character(len=*), parameter :: no_factor = 'The linear equations were to be solved before they were factored.'
 
   !> A symmetric matrix in PETSc and its factor.
   type, extends(linear_solver_t) :: petsc_solver_t
-    !> What factors the matrix: `mumps`, or `cholmod` on one rank for positive definite matrices. Set before `define`.
-    character(len=8) :: package = 'mumps'
     !> All ranks
     type(communicator_t), private :: communicator
     !> True between `define` and `release`
@@ -43,8 +40,8 @@ module petsc_solvers
     integer, private :: usual_room = -1
     !> The matrix
     type(petsc_matrix_t), private :: matrix
-    !> Eigenvector of the least eigenvalue of the scaled matrix, roughly; its greatest item is 1
-    real(wp), allocatable, private :: mode(:)
+    !> Finds parts of the structure that can move freely
+    type(mechanism_t), private :: mechanism
     !> PETSc's solver, which applies the factor once
     type(tKSP), private :: solver
     !> What makes and keeps the factor
@@ -58,6 +55,7 @@ module petsc_solvers
     procedure :: solve
     procedure :: solve_many
     procedure :: statistics
+    procedure :: package_used
     procedure :: release
     procedure, private :: create_solver
     procedure, private :: renew_factor
@@ -83,15 +81,11 @@ contains
     integer, intent(in) :: columns(:)
     !> A promise that saves work
     logical, intent(in) :: positive_definite
-    !> Raised when PETSc fails or the package doesn't suit
+    !> Raised when PETSc fails
     type(error_t), allocatable, intent(inout) :: error
 
     call self%release()
     call give_back_freed()
-    if (self%package == 'cholmod' .and. (communicator%size > 1 .or. .not. positive_definite)) then
-      call fail(error, exit_usage, 'CHOLMOD works on one rank and positive definite matrices only: choose MUMPS.')
-      return
-    end if
     self%communicator = communicator
     self%rows = size(row_start) - 1
     self%defined = .true.
@@ -111,13 +105,12 @@ contains
     integer :: ierr(8), unasked
 
     ierr = 0
-    if (self%package == 'cholmod') call prepare_cholmod(ierr(1))
     call KSPCreate(self%communicator%handle(), self%solver, ierr(2))
     call KSPSetOperators(self%solver, self%matrix%object, self%matrix%object, ierr(3))
     call KSPSetType(self%solver, 'preonly', ierr(4))
     call KSPGetPC(self%solver, self%factorization, ierr(5))
     call PCSetType(self%factorization, 'cholesky', ierr(6))
-    call PCFactorSetMatSolverType(self%factorization, self%package, ierr(7))
+    call PCFactorSetMatSolverType(self%factorization, 'mumps', ierr(7))
     call KSPSetFromOptions(self%solver, ierr(8))
     call report_petsc(ierr, error)
     if (allocated(error)) return
@@ -227,39 +220,26 @@ contains
     if (failure == 0 .and. outcome >= 0) call self%find_mechanism(singular)
   end subroutine factorize_once
 
-  !> Finds out whether the matrix, scaled to a diagonal of ones, has an eigenvalue that consists of rounding
-  !> errors, by inverse iteration. The eigenvector found goes on serving later factors.
+  !> Finds out whether a part of the structure can move freely.
   subroutine find_mechanism(self, found)
     class(petsc_solver_t), intent(inout) :: self
-    !> Whether a part of the structure can move freely
+    !> Whether it can
     logical, intent(out) :: found
-    real(wp), allocatable :: scale(:)
-    real(wp) :: growth
-    integer :: ierr(4), pass, passes, i
+    real(wp), allocatable :: values(:)
+    integer :: ierr(4), pass
 
-    passes = 1
-    allocate (scale(self%rows))
-    if (.not. allocated(self%mode)) then
-      passes = 2
-      self%mode = [(cos(real(i, wp)), i=1, self%rows)]
-    end if
+    allocate (values(self%rows))
     call MatGetDiagonal(self%matrix%object, self%matrix%left, ierr(1))
-    call take(self%matrix%left, scale, ierr(2))
-    scale = sqrt(abs(scale))
-    do pass = 1, passes
-      call put(self%matrix%right, scale*self%mode, ierr(2))
+    call take(self%matrix%left, values, ierr(2))
+    call self%mechanism%begin(values)
+    do pass = 1, self%mechanism%passes
+      call put(self%matrix%right, self%mechanism%right_hand_side(), ierr(2))
       call KSPSolve(self%solver, self%matrix%right, self%matrix%left, ierr(3))
-      call take(self%matrix%left, self%mode, ierr(4))
-      found = self%communicator%any(any(ierr /= 0) .or. .not. all(ieee_is_finite(self%mode)))
+      call take(self%matrix%left, values, ierr(4))
+      if (any(ierr /= 0)) values = ieee_value(1.0_wp, ieee_quiet_nan)
+      call self%mechanism%judge(self%communicator, values, found)
       if (found) exit
-      self%mode = scale*self%mode
-      growth = maxval(abs(self%mode))
-      call self%communicator%maximum(growth)
-      found = growth > largest_growth .or. .not. growth > 0
-      if (found) exit
-      self%mode = self%mode/growth
     end do
-    if (found) deallocate (self%mode)
   end subroutine find_mechanism
 
   !> Solves for one right-hand side with the factor.
@@ -362,6 +342,16 @@ contains
     end if
   end subroutine statistics
 
+  !> What factors the matrix.
+  function package_used(self) result(name)
+    class(petsc_solver_t), intent(in) :: self
+    !> Its name
+    character(len=:), allocatable :: name
+
+    name = 'MUMPS'
+    if (self%defined .and. .not. self%by_mumps) name = 'a package of PETSc'
+  end function package_used
+
   !> Frees matrix and factor.
   subroutine release(self)
     class(petsc_solver_t), intent(inout) :: self
@@ -372,6 +362,6 @@ contains
     call self%matrix%release()
     self%defined = .false.
     self%factored = .false.
-    if (allocated(self%mode)) deallocate (self%mode)
+    call self%mechanism%forget()
   end subroutine release
 end module petsc_solvers

@@ -1,0 +1,359 @@
+!> Direct solution of symmetric positive definite equations on one rank by CHOLMOD (Chen et al., ACM Trans. Math. Softw.
+!> 35, 2008). Its solves with one right-hand side, which most of a run consists of, take half the time of MUMPS'.
+module cholmod_solvers
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+  use, intrinsic :: iso_c_binding, only: c_associated, c_double, c_int, c_null_ptr, c_ptr
+  use blas_settings, only: settle_blas
+  use communicators, only: communicator_t
+  use errors, only: error_t, fail, exit_convergence, exit_internal, exit_usage
+  use free_mechanisms, only: mechanism_t
+  use freed_memory, only: give_back_freed, keep_freed
+  use kinds, only: wp
+  use linear_solvers, only: linear_solver_t
+  use petsc_library, only: new_petsc_solver
+  use symmetric_rows, only: symmetric_rows_t
+  use text, only: to_text
+  implicit none
+  private
+  public :: cholmod_solver_t
+
+  !> What is wrong with a solve that comes too early
+  character(len=*), parameter :: no_factor = 'The linear equations were to be solved before they were factored.'
+  !> What is wrong with a matrix that has no factor
+  character(len=*), parameter :: singular = 'The stiffness matrix is singular: a part of the plate can move freely.', &
+                                 indefinite = 'The stiffness matrix is singular or not positive definite.', &
+                                 trouble = 'CHOLMOD could not factor the stiffness matrix, probably for lack of memory.'
+  !> Outcomes of a factorization, as in cholmod_factors.c
+  integer(c_int), parameter :: done = 0, not_positive = 1
+
+  !> A symmetric matrix and its factor. It has many components because a second solver may stand in.
+  type, extends(linear_solver_t) :: cholmod_solver_t
+    !> True: a matrix that is not positive definite is factored by MUMPS. Set before `define`.
+    logical :: falls_back = .false.
+    !> Factorizations that MUMPS did
+    integer, private :: fallen_back = 0
+    !> The matrix
+    type(symmetric_rows_t), private :: rows
+    !> CHOLMOD's side
+    type(c_ptr), private :: package = c_null_ptr
+    !> True while there is a factor
+    logical, private :: factored = .false.
+    !> Finds parts of the structure that can move freely
+    type(mechanism_t), private :: mechanism
+    !> The rank
+    type(communicator_t), private :: communicator
+    !> MUMPS with the present factor, if CHOLMOD could not make it
+    class(linear_solver_t), allocatable, private :: other
+  contains
+    procedure :: define
+    procedure :: clear
+    procedure :: add
+    procedure :: finish_assembly
+    procedure :: factorize
+    procedure :: solve
+    procedure :: solve_many
+    procedure :: statistics
+    procedure :: package_used
+    procedure :: release
+    procedure, private :: find_mechanism
+    procedure, private :: fall_back
+    procedure, private :: apply
+  end type cholmod_solver_t
+
+  interface
+    !> Takes a matrix, whose lists stay the caller's; null without memory.
+    function cholmod_new(rows, start, columns, values) result(package) bind(c, name='implam_cholmod_new')
+      import :: c_int, c_double, c_ptr
+      !> Number of rows
+      integer(c_int), value :: rows
+      !> Where rows begin, from 0, and the columns, of the upper triangle
+      integer(c_int), intent(in) :: start(*), columns(*)
+      !> Values there
+      real(c_double), intent(in) :: values(*)
+      !> CHOLMOD's side
+      type(c_ptr) :: package
+    end function cholmod_new
+
+    !> Factors the matrix as its values are now.
+    integer(c_int) function cholmod_factorize(package) bind(c, name='implam_cholmod_factorize')
+      import :: c_int, c_ptr
+      !> CHOLMOD's side
+      type(c_ptr), value :: package
+    end function cholmod_factorize
+
+    !> Solves for right-hand sides one behind the other; 0 for success.
+    integer(c_int) function cholmod_solve(package, number, right_hand_sides, solutions) &
+      bind(c, name='implam_cholmod_solve')
+      import :: c_int, c_double, c_ptr
+      !> CHOLMOD's side
+      type(c_ptr), value :: package
+      !> Number of right-hand sides
+      integer(c_int), value :: number
+      !> The right-hand sides
+      real(c_double), intent(in) :: right_hand_sides(*)
+      !> The solutions
+      real(c_double), intent(inout) :: solutions(*)
+    end function cholmod_solve
+
+    !> Size of the factor.
+    subroutine cholmod_size(package, entries, bytes) bind(c, name='implam_cholmod_size')
+      import :: c_double, c_ptr
+      !> CHOLMOD's side
+      type(c_ptr), value :: package
+      !> Entries stored, and most memory that was in use
+      real(c_double), intent(out) :: entries, bytes
+    end subroutine cholmod_size
+
+    !> Frees all but the matrix.
+    subroutine cholmod_free(package) bind(c, name='implam_cholmod_free')
+      import :: c_ptr
+      !> CHOLMOD's side; may be null
+      type(c_ptr), value :: package
+    end subroutine cholmod_free
+  end interface
+
+contains
+
+  !> Sets the pattern of the matrix, anew if there was one.
+  subroutine define(self, communicator, first_row, total_rows, row_start, columns, positive_definite, error)
+    class(cholmod_solver_t), intent(inout) :: self
+    !> The only rank
+    type(communicator_t), intent(in) :: communicator
+    !> 0
+    integer, intent(in) :: first_row
+    !> Number of rows
+    integer, intent(in) :: total_rows
+    !> Where the columns of each row begin, from 1, shape (rows + 1)
+    integer, intent(in) :: row_start(:)
+    !> Columns of the rows in both triangles, from 0, ascending within a row, diagonal included
+    integer, intent(in) :: columns(:)
+    !> Must be true
+    logical, intent(in) :: positive_definite
+    !> Raised where CHOLMOD doesn't suit, or memory is short
+    type(error_t), allocatable, intent(inout) :: error
+
+    call self%release()
+    call give_back_freed()
+    if (communicator%size > 1 .or. .not. positive_definite) then
+      call fail(error, exit_usage, 'CHOLMOD works on one rank and positive definite matrices only: choose MUMPS.')
+      return
+    end if
+    call settle_blas()
+    self%communicator = communicator
+    call self%rows%define(row_start, columns)
+    self%package = cholmod_new(int(total_rows, c_int), self%rows%start, self%rows%columns, self%rows%values)
+    if (.not. c_associated(self%package)) call fail(error, exit_internal, trouble)
+  end subroutine define
+
+  !> Zeroes the values of the matrix.
+  subroutine clear(self)
+    class(cholmod_solver_t), intent(inout) :: self
+
+    self%rows%values = 0
+    self%rows%complete = .true.
+  end subroutine clear
+
+  !> Adds an element's matrix.
+  subroutine add(self, equations, values)
+    class(cholmod_solver_t), intent(inout) :: self
+    !> Equation of each row of the element's matrix; -1 for a row left out
+    integer, intent(in) :: equations(:)
+    !> The symmetric matrix, shape (equations, equations)
+    real(wp), intent(in) :: values(:, :)
+
+    call self%rows%add(equations, values)
+  end subroutine add
+
+  !> Looks whether all entries had their places.
+  subroutine finish_assembly(self, error)
+    class(cholmod_solver_t), intent(inout) :: self
+    !> Raised when an entry falls outside the pattern
+    type(error_t), allocatable, intent(inout) :: error
+
+    if (.not. self%rows%complete) &
+      call fail(error, exit_internal, 'An element couples unknowns that the pattern of the matrix does not couple.')
+  end subroutine finish_assembly
+
+  !> Factors the matrix as it was assembled last. Which package does it follows from the matrix alone, so that a run
+  !> taken up again has the same factor.
+  subroutine factorize(self, error)
+    class(cholmod_solver_t), intent(inout) :: self
+    !> Raised when the matrix is singular, not positive definite without another solver, or memory is short
+    type(error_t), allocatable, intent(inout) :: error
+    integer(c_int) :: outcome
+    logical :: found
+
+    if (allocated(self%other)) then
+      call self%other%release()
+      deallocate (self%other)
+    end if
+    self%factorizations = self%factorizations + 1
+    outcome = cholmod_factorize(self%package)
+    self%factored = outcome == done
+    found = .false.
+    if (self%factored) call self%find_mechanism(found)
+    if (outcome == not_positive .and. self%falls_back) then
+      call self%fall_back(error)
+    else if (outcome == not_positive) then
+      call fail(error, exit_convergence, indefinite)
+    else if (found) then
+      call fail(error, exit_convergence, singular)
+    else if (outcome /= done) then
+      call fail(error, exit_convergence, trouble)
+    end if
+    self%factored = .not. allocated(error)
+    ! Ordering and pattern are done: the same blocks are needed from now on.
+    if (self%factored) call keep_freed()
+  end subroutine factorize
+
+  !> Finds out whether a part of the structure can move freely.
+  subroutine find_mechanism(self, found)
+    class(cholmod_solver_t), intent(inout) :: self
+    !> Whether it can
+    logical, intent(out) :: found
+    real(wp), allocatable :: values(:)
+    integer :: pass
+
+    values = self%rows%values(self%rows%start(:size(self%rows%start) - 1) + 1)
+    call self%mechanism%begin(values)
+    do pass = 1, self%mechanism%passes
+      found = cholmod_solve(self%package, 1_c_int, self%mechanism%right_hand_side(), values) /= 0
+      if (.not. found) call self%mechanism%judge(self%communicator, values, found)
+      if (found) exit
+    end do
+  end subroutine find_mechanism
+
+  !> Factors the matrix by MUMPS.
+  subroutine fall_back(self, error)
+    class(cholmod_solver_t), intent(inout) :: self
+    !> Raised when that fails, too
+    type(error_t), allocatable, intent(inout) :: error
+    integer, allocatable :: row_start(:), columns(:)
+    integer :: row, k
+
+    call new_petsc_solver(self%communicator, self%other, error)
+    if (allocated(error)) return
+    call self%rows%both_triangles(row_start, columns)
+    call self%other%define(self%communicator, 0, size(row_start) - 1, row_start, columns, .false., error)
+    if (allocated(error)) return
+    call self%other%clear()
+    do row = 1, size(self%rows%start) - 1
+      do k = self%rows%start(row) + 1, self%rows%start(row + 1)
+        associate (column => self%rows%columns(k), value => self%rows%values(k))
+          if (column == row - 1) then
+            call self%other%add([column], reshape([value], [1, 1]))
+          else
+            call self%other%add([row - 1, column], reshape([0.0_wp, value, value, 0.0_wp], [2, 2]))
+          end if
+        end associate
+      end do
+    end do
+    call self%other%finish_assembly(error)
+    if (.not. allocated(error)) call self%other%factorize(error)
+    self%fallen_back = self%fallen_back + 1
+  end subroutine fall_back
+
+  !> Solves for one right-hand side with the factor.
+  subroutine solve(self, right_hand_side, solution, error)
+    class(cholmod_solver_t), intent(inout) :: self
+    !> The right-hand side
+    real(wp), intent(in) :: right_hand_side(:)
+    !> The solution
+    real(wp), intent(out) :: solution(:)
+    !> Raised when there is no finite solution
+    type(error_t), allocatable, intent(inout) :: error
+
+    if (allocated(self%other)) then
+      call self%other%solve(right_hand_side, solution, error)
+      self%solves = self%solves + 1
+    else
+      call self%apply(1, right_hand_side, solution, error)
+    end if
+  end subroutine solve
+
+  !> Solves for several right-hand sides with the factor.
+  subroutine solve_many(self, right_hand_sides, solutions, error)
+    class(cholmod_solver_t), intent(inout) :: self
+    !> The right-hand sides, shape (rows, right-hand sides)
+    real(wp), intent(in) :: right_hand_sides(:, :)
+    !> The solutions, shape (rows, right-hand sides)
+    real(wp), intent(out) :: solutions(:, :)
+    !> Raised when there is no finite solution
+    type(error_t), allocatable, intent(inout) :: error
+
+    if (allocated(self%other)) then
+      call self%other%solve_many(right_hand_sides, solutions, error)
+      self%solves = self%solves + size(solutions, 2)
+    else
+      call self%apply(size(solutions, 2), right_hand_sides, solutions, error)
+    end if
+  end subroutine solve_many
+
+  !> Applies CHOLMOD's factor.
+  subroutine apply(self, number, right_hand_sides, solutions, error)
+    class(cholmod_solver_t), intent(inout) :: self
+    !> Number of right-hand sides
+    integer, intent(in) :: number
+    !> The right-hand sides one behind the other
+    real(wp), intent(in) :: right_hand_sides(*)
+    !> The solutions likewise
+    real(wp), intent(inout) :: solutions(*)
+    !> Raised when there is no finite solution
+    type(error_t), allocatable, intent(inout) :: error
+    integer(c_int) :: outcome
+    integer :: numbers
+
+    numbers = number*(size(self%rows%start) - 1)
+    solutions(:numbers) = 0
+    if (.not. self%factored) call fail(error, exit_internal, no_factor)
+    if (allocated(error)) return
+    outcome = cholmod_solve(self%package, int(number, c_int), right_hand_sides, solutions)
+    self%solves = self%solves + number
+    if (outcome /= done .or. .not. all(ieee_is_finite(solutions(:numbers)))) &
+      call fail(error, exit_convergence, 'The linear equations have no finite solution.')
+  end subroutine apply
+
+  !> Size of the factor.
+  subroutine statistics(self, factor_entries, megabytes)
+    class(cholmod_solver_t), intent(in) :: self
+    !> Numbers stored in the factor
+    real(wp), intent(out) :: factor_entries
+    !> Most memory that the package used, in MB
+    real(wp), intent(out) :: megabytes
+
+    if (allocated(self%other)) then
+      call self%other%statistics(factor_entries, megabytes)
+    else
+      factor_entries = 0
+      megabytes = 0
+      if (c_associated(self%package)) call cholmod_size(self%package, factor_entries, megabytes)
+      megabytes = megabytes/2**20
+    end if
+  end subroutine statistics
+
+  !> What factors the matrix.
+  function package_used(self) result(name)
+    class(cholmod_solver_t), intent(in) :: self
+    !> Its name
+    character(len=:), allocatable :: name
+
+    name = 'CHOLMOD'
+    if (self%fallen_back > 0) name = name//' ('//to_text(self%fallen_back)//' of '//to_text(self%factorizations)// &
+                                     ' factorizations by MUMPS, where the matrix was not positive definite)'
+  end function package_used
+
+  !> Frees matrix and factor.
+  subroutine release(self)
+    class(cholmod_solver_t), intent(inout) :: self
+
+    if (allocated(self%other)) then
+      call self%other%release()
+      deallocate (self%other)
+    end if
+    if (c_associated(self%package)) call cholmod_free(self%package)
+    self%package = c_null_ptr
+    call self%rows%release()
+    call self%mechanism%forget()
+    self%factored = .false.
+  end subroutine release
+end module cholmod_solvers

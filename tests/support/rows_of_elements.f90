@@ -1,0 +1,128 @@
+!> Matrices of elements in a row, for tests of linear solvers, and their solutions by the dense one.
+module rows_of_elements
+  use communicators, only: communicator_t
+  use dense_solvers, only: dense_solver_t
+  use errors, only: error_t
+  use kinds, only: wp
+  use linear_solvers, only: linear_solver_t
+  implicit none
+  private
+  public :: order_of, equations_of, element_matrix, define, first_row, assemble, right_hand_side, dense_solution, spring
+
+  !> Each element has this many equations and shares this many with the next
+  integer, parameter :: width = 7, shared = 3
+
+contains
+
+  !> Number of equations of elements in a row.
+  pure integer function order_of(elements)
+    integer, intent(in) :: elements
+
+    order_of = elements*(width - shared) + shared
+  end function order_of
+
+  !> Equations of an element, not in ascending order.
+  pure function equations_of(element) result(equations)
+    integer, intent(in) :: element
+    integer :: equations(width)
+    integer :: i
+
+    equations = [((element - 1)*(width - shared) + mod(3*i, width), i=1, width)]
+  end function equations_of
+
+  !> A symmetric matrix of an element, made of sines; positive definite for a shift above 4.
+  pure function element_matrix(element, shift) result(matrix)
+    integer, intent(in) :: element
+    real(wp), intent(in) :: shift
+    real(wp) :: matrix(width, width)
+    integer :: i, j
+
+    do j = 1, width
+      do i = 1, width
+        matrix(i, j) = sin(real(7*element + 3*i*j + i + j, wp))
+      end do
+      matrix(j, j) = matrix(j, j) + shift
+    end do
+  end function element_matrix
+
+  !> Defines a solver for the rows of one rank.
+  subroutine define(solver, communicator, elements, positive_definite, error)
+    class(linear_solver_t), intent(inout) :: solver
+    type(communicator_t), intent(in) :: communicator
+    integer, intent(in) :: elements
+    logical, intent(in) :: positive_definite
+    type(error_t), allocatable, intent(inout) :: error
+    logical :: coupled(0:order_of(elements) - 1, 0:order_of(elements) - 1)
+    integer, allocatable :: row_start(:), columns(:)
+    integer :: first, last, row, e, i
+
+    coupled = .false.
+    do e = 1, elements
+      coupled(equations_of(e), equations_of(e)) = .true.
+    end do
+    first = first_row(communicator%rank, communicator%size, elements)
+    last = first_row(communicator%rank + 1, communicator%size, elements) - 1
+    row_start = [1, (1 + count(coupled(:, first:row)), row=first, last)]
+    columns = [(pack([(i, i=0, order_of(elements) - 1)], coupled(:, row)), row=first, last)]
+    call solver%define(communicator, first, order_of(elements), row_start, columns, positive_definite, error)
+  end subroutine define
+
+  !> First row of a rank.
+  pure integer function first_row(rank, ranks, elements)
+    integer, intent(in) :: rank, ranks, elements
+
+    first_row = rank*order_of(elements)/ranks
+  end function first_row
+
+  !> Assembles the elements, dealt to the ranks like cards.
+  subroutine assemble(solver, communicator, elements, shift, scale, error)
+    class(linear_solver_t), intent(inout) :: solver
+    type(communicator_t), intent(in) :: communicator
+    integer, intent(in) :: elements
+    real(wp), intent(in) :: shift, scale
+    type(error_t), allocatable, intent(inout) :: error
+    integer :: e
+
+    call solver%clear()
+    do e = 1 + communicator%rank, elements, communicator%size
+      call solver%add(equations_of(e), scale*element_matrix(e, shift))
+    end do
+    call solver%finish_assembly(error)
+  end subroutine assemble
+
+  !> This rank's part of a right-hand side.
+  pure function right_hand_side(communicator, elements, number) result(part)
+    type(communicator_t), intent(in) :: communicator
+    integer, intent(in) :: elements, number
+    real(wp), allocatable :: part(:)
+    integer :: i
+
+    part = [(cos(real(number*i, wp)), i=first_row(communicator%rank, communicator%size, elements) + 1, &
+             first_row(communicator%rank + 1, communicator%size, elements))]
+  end function right_hand_side
+
+  !> Solution of the dense solver, for all rows.
+  subroutine dense_solution(elements, shift, number, solution)
+    integer, intent(in) :: elements, number
+    real(wp), intent(in) :: shift
+    real(wp), allocatable, intent(out) :: solution(:)
+    type(communicator_t) :: alone
+    type(dense_solver_t) :: solver
+    type(error_t), allocatable :: error
+
+    call define(solver, alone, elements, .false., error)
+    call assemble(solver, alone, elements, shift, 1.0_wp, error)
+    call solver%factorize(error)
+    allocate (solution(order_of(elements)))
+    call solver%solve(right_hand_side(alone, elements, number), solution, error)
+    if (allocated(error)) error stop 'The dense solver failed.'
+  end subroutine dense_solution
+
+  !> Matrix of a spring.
+  pure function spring(stiffness) result(matrix)
+    real(wp), intent(in) :: stiffness
+    real(wp) :: matrix(2, 2)
+
+    matrix = stiffness*reshape([1.0_wp, -1.0_wp, -1.0_wp, 1.0_wp], [2, 2])
+  end function spring
+end module rows_of_elements
