@@ -31,6 +31,8 @@ module command_lines
     logical :: chain = .false.
     !> True: the scene is run once more on a finer mesh with shorter steps
     logical :: verify = .false.
+    !> True: the log and the summary tell where time and memory went
+    logical :: profile = .false.
     !> Arguments for PETSc, in one string
     character(len=:), allocatable :: petsc_options
     !> True: explain as a Markdown table, for the manual
@@ -81,6 +83,8 @@ contains
     call require_target(command, error)
     if (command%verify .and. command%verb /= verb_run .and. .not. allocated(error)) &
       call fail(error, exit_usage, '--verify takes a deck to run.')
+    if (command%profile .and. all(command%verb /= [verb_run, verb_restart]) .and. .not. allocated(error)) &
+      call fail(error, exit_usage, '--profile takes a deck to run, or a checkpoint.')
   end subroutine read_command_line
 
   !> Reads an option that begins with two dashes.
@@ -103,6 +107,8 @@ contains
       command%markdown = .true.
     case ('--verify')
       command%verify = .true.
+    case ('--profile')
+      command%profile = .true.
     case ('--chain')
       command%chain = .true.
     case ('--ranks')

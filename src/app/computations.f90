@@ -11,14 +11,13 @@ module computations
   use deck_refinements, only: refined_text
   use errors, only: error_t, exit_done, exit_stopped, exit_usage, fail
   use files, only: is_directory
-  use kinds, only: wp
   use linear_solver_deck, only: check_ranks
   use linear_solver_parameters, only: factorization_automatic, factorization_mumps
   use petsc_library, only: start_petsc, finish_petsc
   use root_output, only: print_lines
   use simulations, only: simulation_t
   use text, only: line_t
-  use timers, only: wall_time
+  use profiles, only: new_profile, profile_t
   use verifications, only: stage_done, stage_stopped, stage_of, tell_changes
   implicit none
   private
@@ -39,9 +38,10 @@ contains
     type(deck_t) :: deck
     type(problems_t) :: problems
     character(len=:), allocatable :: checkpoint
-    real(wp) :: begun
+    type(profile_t) :: profile
 
-    begun = wall_time()
+    profile = new_profile(command%profile)
+    call profile%enter('deck')
     checkpoint = ''
     if (command%verb == verb_restart) then
       call find_checkpoint(command, communicator, checkpoint, error)
@@ -52,19 +52,23 @@ contains
       call read_deck_everywhere(command%target, communicator, deck, problems)
     end if
     call accept_deck(command, communicator, deck, problems, code)
+    call profile%leave()
     if (code /= exit_done) return
     if (command%verify .and. deck%refine > 0) then
       call fail(error, exit_usage, '--verify refines the scene itself; take refine out of &case.')
       return
     end if
+    call profile%enter('MPI and PETSc')
     call start_solver(communicator, command%petsc_options, deck, error)
+    call profile%leave()
     if (allocated(error)) return
     if (command%verify) then
-      call verify(command, communicator, deck, begun, code, error)
+      call verify(command, communicator, deck, profile, code, error)
     else
-      call simulate(deck, communicator, begun, checkpoint, error)
+      call simulate(deck, communicator, profile, checkpoint, error)
     end if
     call finish_petsc()
+    call profile%release()
   end subroutine compute
 
   !> Starts PETSc where options ask for it. Otherwise it is started, and MPI before it, by what cannot do without: a run
@@ -106,13 +110,13 @@ contains
   end subroutine accept_deck
 
   !> Runs the deck's scene to its end.
-  subroutine simulate(deck, communicator, begun, checkpoint, error)
+  subroutine simulate(deck, communicator, profile, checkpoint, error)
     !> The deck, checked
     type(deck_t), intent(in) :: deck
     !> The ranks
     type(communicator_t), intent(in) :: communicator
-    !> Clock at the program's start
-    real(wp), intent(in) :: begun
+    !> Clock at the program's start, and where time goes if somebody asked
+    type(profile_t), intent(in) :: profile
     !> Checkpoint to go on from; empty: from the start
     character(len=*), intent(in) :: checkpoint
     !> Set if the run fails
@@ -121,9 +125,9 @@ contains
 
     allocate (simulation)
     if (checkpoint /= '') then
-      call simulation%resume(deck, communicator, begun, checkpoint, error)
+      call simulation%resume(deck, communicator, profile, checkpoint, error)
     else
-      call simulation%initialize(deck, communicator, begun, error)
+      call simulation%initialize(deck, communicator, profile, error)
     end if
     if (.not. allocated(error)) call simulation%run(error)
     if (.not. allocated(error)) call simulation%finalize(error)
@@ -134,15 +138,15 @@ contains
 
   !> Runs a scene as it is and once more finer, and tells what its figures change by. What an earlier command has done
   !> of that isn't done again.
-  subroutine verify(command, communicator, deck, begun, code, error)
+  subroutine verify(command, communicator, deck, profile, code, error)
     !> What is asked
     type(command_t), intent(in) :: command
     !> The ranks
     type(communicator_t), intent(in) :: communicator
     !> The deck as it is
     type(deck_t), intent(in) :: deck
-    !> Clock at the program's start
-    real(wp), intent(in) :: begun
+    !> Clock at the program's start, and where time goes if somebody asked
+    type(profile_t), intent(in) :: profile
     !> Exit code
     integer, intent(inout) :: code
     !> Set if a run fails
@@ -153,8 +157,8 @@ contains
     call read_deck_text(refined_text(deck%text), command%target, finer, problems)
     call accept_deck(command, communicator, finer, problems, code)
     if (code /= exit_done) return
-    call go_on(deck, communicator, begun, error)
-    if (.not. allocated(error)) call go_on(finer, communicator, begun, error)
+    call go_on(deck, communicator, profile, error)
+    if (.not. allocated(error)) call go_on(finer, communicator, profile, error)
     if (allocated(error)) then
       if (error%code == exit_stopped) &
         error%message = error%message//', or do all that is left with the same command.'
@@ -164,13 +168,13 @@ contains
   end subroutine verify
 
   !> Runs a deck's scene from where an earlier command has left it.
-  subroutine go_on(deck, communicator, begun, error)
+  subroutine go_on(deck, communicator, profile, error)
     !> The deck
     type(deck_t), intent(in) :: deck
     !> The ranks
     type(communicator_t), intent(in) :: communicator
-    !> Clock at the program's start
-    real(wp), intent(in) :: begun
+    !> Clock at the program's start, and where time goes if somebody asked
+    type(profile_t), intent(in) :: profile
     !> Set if the run fails
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: base
@@ -180,9 +184,9 @@ contains
     case (stage_done)
       call print_lines(communicator, [line_t(deck%name//' has been run before.')])
     case (stage_stopped)
-      call simulate(deck, communicator, begun, base//checkpoint_ending, error)
+      call simulate(deck, communicator, profile, base//checkpoint_ending, error)
     case default
-      call simulate(deck, communicator, begun, '', error)
+      call simulate(deck, communicator, profile, '', error)
     end select
   end subroutine go_on
 

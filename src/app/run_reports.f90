@@ -2,6 +2,8 @@
 module run_reports
   use text, only: line_t, to_text
   use logger, only: log_t
+  use models, only: model_t
+  use profiles, only: part_length, profile_row_t
   use timers, only: timer_set_t
   use deck_contents, only: deck_t
   use deck_echo, only: echo
@@ -15,7 +17,7 @@ module run_reports
   use time_stepping, only: time_stepper_t
   implicit none
   private
-  public :: log_echo, log_costs, summary
+  public :: log_echo, log_model, log_costs, summary
 
 contains
 
@@ -39,6 +41,43 @@ contains
     end do
   end subroutine log_echo
 
+  !> Says in the log how large the model is, and what factors its operator.
+  subroutine log_model(model, operator, log)
+    type(model_t), intent(in) :: model
+    !> The factored operator
+    type(tangent_operator_t), intent(in) :: operator
+    !> The log
+    type(log_t), intent(inout) :: log
+
+    call log%note('Model: '//to_text(model%mesh%elements())//' elements, '//to_text(operator%numbering%total)// &
+                  ' unknowns, '//to_text(model%communicator%size)//' rank(s), factored by '// &
+                  operator%solver%package_used()//'.')
+  end subroutine log_model
+
+  !> Lists in the log what the profile has found, the parts that took longest first.
+  subroutine log_profile(rows, log)
+    !> The parts; none if nobody asked
+    type(profile_row_t), intent(in) :: rows(:)
+    !> The log
+    type(log_t), intent(inout) :: log
+    character(len=part_length + 48) :: line
+    logical :: left(size(rows))
+    integer :: i, k
+
+    if (size(rows) == 0) return
+    call log%detail('Profile: each part without those inside it     calls    on the wall    memory')
+    left = .true.
+    do k = 1, size(rows)
+      i = maxloc(rows%seconds, 1, left)
+      left(i) = .false.
+      write (line, '(a,i20,f13.4," s",f7.1," MB")') rows(i)%name, rows(i)%calls, rows(i)%seconds, rows(i)%megabytes
+      call log%detail(trim(line))
+    end do
+    write (line, '(a,f13.4," s",f7.1," MB")') 'all of this rank'//repeat(' ', part_length + 4), sum(rows%seconds), &
+      sum(rows%megabytes)
+    call log%detail(trim(line))
+  end subroutine log_profile
+
   !> Lists in the log where time and memory went; the second part of the list is contained in the steps.
   subroutine log_costs(timers, operator, log)
     !> Time spent in set-up, steps and results
@@ -60,6 +99,7 @@ contains
         call log%detail(lines(i))
       end do
     end associate
+    call log_profile(timers%profile%rows(), log)
   end subroutine log_costs
 
   !> What a run took, in one line.

@@ -5,7 +5,8 @@ module simulations
   use text, only: line_t, rounded_text, to_text
   use files, only: make_directory, remove_file
   use logger, only: log_t
-  use timers, only: timer_set_t, wall_time
+  use profiles, only: profile_t, wall_time
+  use timers, only: timer_set_t
   use communicators, only: communicator_t
   use launchers, only: launched
   use models, only: model_t
@@ -17,7 +18,7 @@ module simulations
   use run_provenance, only: provenance_t, this_run
   use run_progress, only: progress_t
   use run_records, only: run_record_t, new_run_record
-  use run_reports, only: log_echo, log_costs, summary
+  use run_reports, only: log_echo, log_model, log_costs, summary
   use run_warnings, only: find_warnings
   use run_summaries, only: summarise
   use summary_file, only: summary_ending
@@ -62,8 +63,6 @@ module simulations
     type(wall_limit_t), private :: wall_limit
     !> What the summary needs of the run's course
     type(run_record_t), private :: record
-    !> Clock at the program's start
-    real(wp), private :: begun = 0
     !> The run has been set up: it can tell what it has reached
     logical, private :: is_ready = .false.
     !> Looks after the energy that integrators create
@@ -86,20 +85,20 @@ module simulations
 contains
 
   !> Sets a run up from the start.
-  subroutine initialize(self, deck, communicator, begun, error)
+  subroutine initialize(self, deck, communicator, profile, error)
     !> The run
     class(simulation_t), intent(out) :: self
     !> The deck, checked
     type(deck_t), intent(in) :: deck
     !> The ranks
     type(communicator_t), intent(in) :: communicator
-    !> Clock at the program's start
-    real(wp), intent(in) :: begun
+    !> Clock at the program's start, and where time goes if somebody asked
+    type(profile_t), intent(in) :: profile
     !> Set if files cannot be written or the model cannot be set up
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: retired
 
-    call prepare(self, deck, communicator, begun, append=.false., error=error)
+    call prepare(self, deck, communicator, profile, append=.false., error=error)
     if (allocated(error)) return
     call retire_checkpoint(communicator, self%base//checkpoint_ending, retired, error)
     if (allocated(error)) return
@@ -123,26 +122,26 @@ contains
   end subroutine make_ready
 
   !> What initialise and resume have in common: log, model, state at rest.
-  subroutine prepare(self, deck, communicator, begun, append, error)
+  subroutine prepare(self, deck, communicator, profile, append, error)
     !> The run
     class(simulation_t), intent(inout) :: self
     !> The deck
     type(deck_t), intent(in) :: deck
     !> The ranks
     type(communicator_t), intent(in) :: communicator
-    !> Clock at the program's start
-    real(wp), intent(in) :: begun
+    !> Clock at the program's start, and where time goes if somebody asked
+    type(profile_t), intent(in) :: profile
     !> True: go on with the log that is there
     logical, intent(in) :: append
     !> Set if something cannot be set up
     type(error_t), allocatable, intent(out) :: error
 
+    self%timers%profile = profile
     call self%timers%start('set-up')
     self%deck = deck
     self%communicator = communicator
     self%base = deck%output%directory//'/'//deck%name
-    self%begun = begun
-    self%wall_limit = wall_limit_t(deck%stepping%time%wall_limit, begun)
+    self%wall_limit = wall_limit_t(deck%stepping%time%wall_limit, profile%begun)
     self%history_clock%interval = deck%output%history_every
     self%fields_clock%interval = deck%output%fields_every
     self%checkpoint_clock%interval = deck%output%checkpoint_every
@@ -159,28 +158,28 @@ contains
     self%provenance%case_name = deck%name
     call self%provenance%report(self%log)
     call log_echo(deck, self%log)
+    call self%timers%start('model')
     call create_model(deck%scene_t, communicator, self%model, error)
+    call self%timers%stop('model')
+    self%model%profile = profile
     if (allocated(error)) return
     call self%stepper%start(self%model, deck%stepping, deck%linear_solver, error)
     if (allocated(error)) return
     self%record = new_run_record(self%model)
-    call self%log%note('Model: '//to_text(self%model%mesh%elements())//' elements, '// &
-                       to_text(self%stepper%operator%numbering%total)//' unknowns, '// &
-                       to_text(communicator%size)//' rank(s), factored by '// &
-                       self%stepper%operator%solver%package_used()//'.')
+    call log_model(self%model, self%stepper%operator, self%log)
     call self%progress%start(0.0_wp)
   end subroutine prepare
 
   !> Sets a run up from a checkpoint that has been opened for loading.
-  subroutine resume(self, deck, communicator, begun, path, error)
+  subroutine resume(self, deck, communicator, profile, path, error)
     !> The run
     class(simulation_t), intent(out) :: self
     !> The deck that the checkpoint holds
     type(deck_t), intent(in) :: deck
     !> The ranks
     type(communicator_t), intent(in) :: communicator
-    !> Clock at the program's start
-    real(wp), intent(in) :: begun
+    !> Clock at the program's start, and where time goes if somebody asked
+    type(profile_t), intent(in) :: profile
     !> The checkpoint
     character(len=*), intent(in) :: path
     !> Set if the checkpoint cannot be used
@@ -189,7 +188,7 @@ contains
     real(wp), allocatable :: last_row(:)
     integer :: rows
 
-    call prepare(self, deck, communicator, begun, append=.true., error=error)
+    call prepare(self, deck, communicator, profile, append=.true., error=error)
     if (allocated(error)) return
     call archive%open_for_loading(communicator, path, error)
     if (allocated(error)) return
@@ -358,12 +357,14 @@ contains
 
     call self%history%flush(error)
     if (allocated(error)) return
+    call self%timers%start('checkpoint')
     rows = self%history%rows
     call archive%open_for_saving(self%communicator, self%base//checkpoint_ending, self%provenance, error)
     if (allocated(error)) return
     call visit(self, archive, rows, error)
     if (allocated(error)) return
     call archive%close(error)
+    call self%timers%stop('checkpoint')
   end subroutine save_checkpoint
 
   !> Writes the last fields, closes the files and says what the run took.
@@ -393,6 +394,7 @@ contains
     type(error_t), allocatable, intent(inout) :: error
 
     if (self%is_ready) call summarise(self%deck, self%model, self%stepper, self%record, self%provenance, &
-                                      wall_time() - self%begun, self%base//summary_ending, self%log, error)
+                                      wall_time() - self%timers%profile%begun, &
+                                      self%base//summary_ending, self%log, error)
   end subroutine conclude
 end module simulations

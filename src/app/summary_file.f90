@@ -8,6 +8,7 @@ module summary_file
   use json_text, only: json_t
   use kinds, only: wp
   use output_streams, only: output_stream_t
+  use profiles, only: profile_row_t
   use run_errors, only: run_errors_t
   use run_figures, only: ending_t, run_figures_t
   use run_provenance, only: provenance_t
@@ -67,6 +68,7 @@ contains
     call put_plies(json, deck, figures)
     call put_warnings(json, deck, record)
     call put_costs(json, stepper, seconds)
+    call put_profile(json, stepper%operator%timers%profile%rows())
     call put_provenance(json, provenance)
     call json%finished(content)
   end function summary_text
@@ -301,6 +303,27 @@ contains
     call json%put('wall_seconds', seconds)
     call json%close()
   end subroutine put_costs
+
+  !> Where time and memory went, if somebody asked.
+  subroutine put_profile(json, rows)
+    !> The summary
+    type(json_t), intent(inout) :: json
+    !> The parts; none if nobody asked
+    type(profile_row_t), intent(in) :: rows(:)
+    integer :: i
+
+    if (size(rows) == 0) return
+    call json%open_list('profile')
+    do i = 1, size(rows)
+      call json%open_object('')
+      call json%put('part', trim(rows(i)%name))
+      call json%put('calls', rows(i)%calls)
+      call json%put('wall_seconds', rows(i)%seconds)
+      call json%put('peak_megabytes_added', rows(i)%megabytes)
+      call json%close()
+    end do
+    call json%close()
+  end subroutine put_profile
 
   !> Where the result comes from.
   subroutine put_provenance(json, provenance)

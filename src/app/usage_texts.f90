@@ -26,18 +26,19 @@ module usage_texts
     'man', 'print this page and all keys as a manual page of Unix: implam man | man -l -', &
     'help [GROUP [KEY]]', 'this page, or the same as explain'], [2, 10])
   !> Options.
-  character(len=text_length), parameter, public :: option_rows(2, 10) = reshape([character(len=text_length) :: &
+  character(len=text_length), parameter, public :: option_rows(2, 11) = reshape([character(len=text_length) :: &
     '--output DIR', 'folder of the results, instead of the deck''s', &
     '--wall-limit SECONDS', 'end with a checkpoint before so many seconds have passed on the wall', &
     '--verify', 'run the deck, then once more with half the elements'' sides and half the steps, and tell what &
       &figures change by; the same command goes on where it was stopped', &
+    '--profile', 'tell in log and summary where time and memory of the run went, part by part', &
     '--ranks N', 'ranks of the job that queue writes, instead of what the deck''s size suggests', &
     '--time H:MM:SS', 'its limit on the wall; a day without', &
     '--chain', 'it comes again, from its checkpoint, until the run has ended', &
     '--markdown', 'explain as a table for the manual', &
     '--version', 'version, commit, compiler and PETSc', &
     '-h, --help', 'this page', &
-    '-mat_..., -ksp_..., -log_view', 'these and other words with one dash go to PETSc'], [2, 10])
+    '-mat_..., -ksp_..., -log_view', 'these and other words with one dash go to PETSc'], [2, 11])
   !> Exit codes.
   character(len=text_length), parameter, public :: code_rows(2, 7) = reshape([character(len=text_length) :: &
     '0', 'done', '1', 'usage', '2', 'deck', '3', 'no convergence at the smallest step', '4', 'files', '5', 'internal', &

@@ -12,7 +12,7 @@ module dynamic_steps
   use step_problems, only: step_problem_t
   use impact_coupling, only: impact_coupling_t, begin_coupling
   use tangent_operators, only: tangent_operator_t
-  use residual_norms, only: relative_residual, forces_to_round
+  use residual_norms, only: relative_residual
   use softening_corrections, only: softening_memory_t
   use condensed_steps, only: condense
   use energy_balance, only: book_step
@@ -36,6 +36,8 @@ module dynamic_steps
     type(plate_integrator_t) :: integrator
     !> Displacement to start from, (5, points); unallocated: the motion goes on as it was
     real(wp), allocatable :: guess(:, :)
+    !> True: the first guess has the acceleration, and so the inertia forces, of the start
+    logical :: keeps_acceleration = .false.
     !> Square of the patch's shares, of this rank's points
     real(wp) :: patch_square = 0
     !> The impactor's side of the step
@@ -72,8 +74,8 @@ contains
     self%renewal = renewal
   end function new_dynamic_step
 
-  !> First guess: the velocity stays what it is, touching faces stay together, and held jumps stay where they are,
-  !> also those glued in motion.
+  !> First guess. A single layer keeps its acceleration. Of stacked layers the velocity stays what it is, touching faces
+  !> stay together, and held jumps stay where they are, also those glued in motion.
   subroutine begin(self, model, operator, old, new)
     !> The problem
     class(dynamic_step_t), intent(inout) :: self
@@ -90,15 +92,21 @@ contains
     call new%interfaces%ties%fade(model, self%step)
     self%patch_square = sum((model%patch/model%mesh%multiplicity)**2)
     if (model%scene%has_impactor) self%coupling = begin_coupling(model, self%integrator, old, self%step)
+    self%keeps_acceleration = .not. (allocated(self%guess) .or. model%has_bonds)
     if (allocated(self%guess)) then
       new%motion%displacement = self%guess
+      call self%complete(old, new)
+    else if (self%keeps_acceleration) then
+      new%motion%displacement = old%motion%displacement + self%step*(old%motion%velocity &
+                                                                     + self%step/2*old%motion%acceleration)
+      new%motion%velocity = old%motion%velocity + self%step*old%motion%acceleration
     else
       new%motion%displacement = self%step*old%motion%velocity
       call new%interfaces%faces%hold(model, new%motion%displacement)
       new%motion%displacement = old%motion%displacement + new%motion%displacement
       call new%interfaces%keep_touching(model, new%motion%displacement)
+      call self%complete(old, new)
     end if
-    call self%complete(old, new)
     new%plies%lagging = self%lagging
     new%iterations = 0
     new%force_iterations = 0
@@ -125,7 +133,8 @@ contains
     real(wp) :: amplitude
 
     call new%find_internal(model, old, energy)
-    call model%inertia(new%motion%acceleration, new%motion%inertia)
+    if (new%iterations > 0 .or. .not. self%keeps_acceleration) &
+      call model%inertia(new%motion%acceleration, new%motion%inertia)
     associate (m => self%integrator%alpha_m, f => self%integrator%alpha_f)
       call weigh(size(residual), [1 - m, m, 1 - f, f], new%motion%inertia, old%motion%inertia, new%motion%internal, &
                  old%motion%internal, residual)
@@ -176,8 +185,9 @@ contains
 
     residual_norm = relative_residual(model%communicator, operator%numbering, residual, new%motion%internal, &
                                       new%motion%inertia, self%patch_square*self%coupling%load()**2, &
-                                      forces_to_round(operator%diagonal, new%motion%displacement), &
-                                      equilibrium%tolerance, model%thickness, new%largest_forces)
+                                      operator%diagonal, new%motion%displacement, &
+                                      self%may_stop(model, new, .false.), equilibrium%tolerance, model%thickness, &
+                                      new%largest_forces)
   end function residual_norm
 
   !> The force answers to the motion only within an iteration, so an impact needs one.
@@ -283,6 +293,8 @@ contains
       new%force = self%coupling%force_end
       call commit_indentation(model%scene%indentation, new%indentation, new%impactor%displacement - new%patch_mean)
     end if
+    call model%profile%enter('energy ledger')
     call book_step(model, self%integrator, old, self%step, self%coupling%load(), energy, new)
+    call model%profile%leave()
   end subroutine finish
 end module dynamic_steps

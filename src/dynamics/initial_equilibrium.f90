@@ -7,7 +7,7 @@ module initial_equilibrium
   use errors, only: error_t, fail, exit_convergence
   use kinds, only: wp
   use models, only: model_t
-  use residual_norms, only: relative_residual, forces_to_round
+  use residual_norms, only: relative_residual
   use states, only: state_t
   use tangent_operators, only: tangent_operator_t
   implicit none
@@ -48,7 +48,7 @@ contains
       call state%interfaces%act(model, state%motion%displacement, residual)
       if (iteration == 0) suppressing = state%motion%internal
       if (relative_residual(model%communicator, operator%numbering, residual, suppressing, suppressing, force_square, &
-                            forces_to_round(operator%diagonal, state%motion%displacement), tolerance, model%thickness, &
+                            operator%diagonal, state%motion%displacement, .true., tolerance, model%thickness, &
                             largest) <= tolerance) exit
       if (iteration == most_iterations) call fail(error, exit_convergence, &
         'No equilibrium under the residual stresses of &thermal.')

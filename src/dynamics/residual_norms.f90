@@ -7,27 +7,32 @@ module residual_norms
   use numberings, only: numbering_t
   implicit none
   private
-  public :: relative_residual, forces_to_round
+  public :: relative_residual
+
+  !> Points whose squares are summed together
+  integer, parameter :: together = 8
 
 contains
 
   !> Residual over the largest of the forces in play, the larger of translations and rotations; infinite if
   !> any number is not finite. The same on every rank.
-  real(wp) function relative_residual(communicator, numbering, residual, first, second, load, rounding, &
-                                         tolerance, length, largest) result(norm)
+  real(wp) function relative_residual(communicator, numbering, residual, first, second, load, diagonal, displacement, &
+                                      may_end, tolerance, length, largest) result(norm)
     !> The ranks
     type(communicator_t), intent(in) :: communicator
     !> Knows which unknowns are held
     type(numbering_t), intent(in) :: numbering
     !> Residual at the owned points, (5, points)
-    real(wp), intent(in) :: residual(:, :)
+    real(wp), contiguous, intent(in) :: residual(:, :)
     !> Two kinds of forces in play, (5, points)
-    real(wp), intent(in) :: first(:, :), second(:, :)
+    real(wp), contiguous, intent(in) :: first(:, :), second(:, :)
     !> This rank's share of the square of a further load on w
     real(wp), intent(in) :: load
-    !> Forces whose last digit the residual cannot fall below, however exact the solution, (5, points): a thin
-    !> plate's shear forces are small differences of large numbers
-    real(wp), intent(in) :: rounding(:, :)
+    !> Diagonal of the operator, and the unknowns: the residual cannot fall below the last digit of their products,
+    !> however exact the solution, (5, points): a thin plate's shear forces are small differences of large numbers
+    real(wp), intent(in) :: diagonal(:, :), displacement(:, :)
+    !> False: the iteration goes on whatever the residual is, so that limit is not asked for
+    logical, intent(in) :: may_end
     !> Relative residual that will be accepted
     real(wp), intent(in) :: tolerance
     !> Lever arm that makes moments of forces, the laminate's thickness: moments balance among themselves, so
@@ -35,19 +40,24 @@ contains
     real(wp), intent(in) :: length
     !> Largest forces so far, translations and rotations: judged by these once forces have faded
     real(wp), intent(inout) :: largest(2)
-    real(wp) :: squares(10), scale(2)
+    real(wp) :: squares(8), limits(2), scale(2)
     real(wp), parameter :: faded = 1.0e-6_wp, last_digits = 32*epsilon(1.0_wp)
 
     squares = [sums_of_squares(numbering, residual), sums_of_squares(numbering, first), &
-               sums_of_squares(numbering, second), sums_of_squares(numbering, rounding), load, 0.0_wp]
+               sums_of_squares(numbering, second), load, 0.0_wp]
     call communicator%sum(squares)
     norm = ieee_value(norm, ieee_positive_inf)
     if (.not. all(squares <= huge(norm))) return
     squares = sqrt(squares)
-    scale = max(squares(3:4), squares(5:6), squares(9:10), faded*largest)
+    scale = max(squares(3:4), squares(5:6), squares(7:8), faded*largest)
     scale(2) = max(scale(2), length*scale(1))
     largest = max(largest, scale)
-    norm = maxval(squares(1:2)/max(scale, last_digits/tolerance*squares(7:8), tiny(norm)))
+    scale = max(scale, tiny(norm))
+    norm = maxval(squares(1:2)/scale)
+    if (norm <= tolerance .or. .not. may_end) return
+    limits = sums_of_squares(numbering, forces_to_round(diagonal, displacement))
+    call communicator%sum(limits)
+    if (all(limits <= huge(norm))) norm = maxval(squares(1:2)/max(scale, last_digits/tolerance*sqrt(limits)))
   end function relative_residual
 
   !> Forces whose last digit a residual can't fall below. A moment is a sum of what rotation and deflection give, and
@@ -74,7 +84,7 @@ contains
     !> Knows which unknowns are held
     type(numbering_t), intent(in) :: numbering
     !> Nodal forces, (5, points)
-    real(wp), intent(in) :: force(:, :)
+    real(wp), contiguous, intent(in) :: force(:, :)
     !> Of u, v, w and of theta_x, theta_y
     real(wp) :: squares(2)
     real(wp), allocatable :: folded(:, :)
@@ -88,24 +98,41 @@ contains
     end if
   end function sums_of_squares
 
-  !> The same of points that give no other one its motion.
+  !> The same of points that give no other one its motion. Eight points at a time, each with its own sums, which the
+  !> processor takes together.
   pure function plain_sums(numbering, force) result(squares)
     !> Knows which unknowns are held
     type(numbering_t), intent(in) :: numbering
     !> Nodal forces, (5, points)
-    real(wp), intent(in) :: force(:, :)
+    real(wp), contiguous, intent(in) :: force(:, :)
     !> Of u, v, w and of theta_x, theta_y
     real(wp) :: squares(2)
-    integer :: point, component
+    real(wp) :: sums(5, together)
 
-    squares = 0
-    do point = 1, numbering%owned
-      do component = 1, 3
-        if (numbering%equation(component, point) >= 0) squares(1) = squares(1) + force(component, point)**2
-      end do
-      do component = 4, 5
-        if (numbering%equation(component, point) >= 0) squares(2) = squares(2) + force(component, point)**2
+    sums = 0
+    call add_squares(5*numbering%owned, numbering%equation, force, sums)
+    squares = [sum(sums(1:3, :)), sum(sums(4:5, :))]
+  end function plain_sums
+
+  !> Adds squares of a row of numbers in turn to so many sums.
+  pure subroutine add_squares(number, equation, values, sums)
+    !> How many
+    integer, intent(in) :: number
+    !> Negative where a number does not count
+    integer, intent(in) :: equation(number)
+    !> The numbers
+    real(wp), intent(in) :: values(number)
+    !> The sums
+    real(wp), intent(inout) :: sums(5*together)
+    integer :: start, i
+
+    do start = 0, number - 5*together, 5*together
+      do i = 1, 5*together
+        sums(i) = sums(i) + merge(values(start + i)**2, 0.0_wp, equation(start + i) >= 0)
       end do
     end do
-  end function plain_sums
+    do i = 1, number - start
+      sums(i) = sums(i) + merge(values(start + i)**2, 0.0_wp, equation(start + i) >= 0)
+    end do
+  end subroutine add_squares
 end module residual_norms

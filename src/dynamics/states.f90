@@ -91,9 +91,13 @@ contains
     real(wp), intent(out) :: energy
 
     call self%plies%find_forces(model, self%motion%displacement, self%motion%internal, energy)
+    call model%profile%enter('interface law')
     call self%interfaces%cohesive%add_forces(model, old%interfaces%cohesive, self%motion%displacement, &
                                              self%motion%internal, energy)
+    call model%profile%leave()
+    call model%profile%enter('contact and ties')
     call self%interfaces%rig%add_springs(model, self%motion%displacement, self%motion%internal, energy)
+    call model%profile%leave()
   end subroutine find_internal
 
   !> Counts a step and its iterations.

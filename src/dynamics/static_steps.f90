@@ -9,7 +9,7 @@ module static_steps
   use models, only: model_t
   use states, only: state_t
   use step_problems, only: step_problem_t
-  use residual_norms, only: relative_residual, forces_to_round
+  use residual_norms, only: relative_residual
   use slow_impactors, only: push_plate, find_push, push_unmet, follow_impactor
   use skew_corrections, only: follow_skew
   use tangent_operators, only: tangent_operator_t
@@ -116,7 +116,7 @@ contains
     call push_plate(model, new%force, loads)
     residual_norm = relative_residual(model%communicator, operator%numbering, residual, new%motion%internal, &
                                       loads, 0.0_wp, &
-                                      forces_to_round(operator%diagonal, new%motion%displacement), &
+                                      operator%diagonal, new%motion%displacement, .true., &
                                       equilibrium%tolerance, model%thickness, new%largest_forces)
     if (model%scene%has_impactor) residual_norm = max(residual_norm, push_unmet(model, new))
   end function residual_norm

@@ -189,15 +189,19 @@ contains
     do
       call operator%timers%start('element forces')
       call problem%find_residual(model, old, new, residual, energy)
+      call model%profile%enter('contact and ties')
       call new%interfaces%act(model, new%motion%displacement, residual)
+      call model%profile%leave()
       call operator%timers%stop('element forces')
       norm = problem%residual_norm(model, equilibrium, operator, residual, new)
       converged = norm <= equilibrium%tolerance
       if (converged) converged = problem%may_stop(model, new, pressures_new)
       pressures_new = .false.
       if (converged) then
+        call model%profile%enter('contact and ties')
         call new%interfaces%settle(model, new%motion%displacement, problem%contact_tolerance, &
                                    new%contact_iterations, converged)
+        call model%profile%leave()
         if (converged) exit
         pressures_new = .true.
         call operator%anderson%pause()

@@ -244,9 +244,12 @@ contains
       problem%lagging = .true.
       call solve_step(problem, model, self%stepping%equilibrium, self%operator, self%now, self%trial, converged, error)
     end if
-    if (converged .and. model%map%layered) &
+    if (converged .and. model%map%layered) then
+      call model%profile%enter('fronts')
       call grow_in_step(problem, model, self%stepping%equilibrium, self%operator, self%now, self%trial, converged, &
                         error)
+      call model%profile%leave()
+    end if
     ! Steps of the smallest length are taken as they are: the energy watch tells what they create.
     if (converged .and. self%trial%plies%leapt) converged = step <= self%smallest_step(model)*(1 + 1.0e-9_wp)
   end subroutine try_step
@@ -338,8 +341,10 @@ contains
     self%trial%largest_stress = max(self%now%largest_stress, self%trial%stress)
     change = 0
     if (self%trial%largest_stress > 0) change = abs(self%trial%stress - self%now%stress)/self%trial%largest_stress
+    call model%profile%enter('ply criteria')
     call self%trial%plies%grow(model, [self%now%time, self%trial%time], self%now%motion%displacement, &
                                self%trial%motion%displacement)
+    call model%profile%leave()
     if (self%trial%plies%softened) call book_failures(model, self%now, self%trial)
     if (model%scene%has_static) call find_release_ratio(model, self%trial%plies%stiffness, self%trial%motion, &
                                                         self%trial%interfaces)

@@ -1,5 +1,5 @@
-!> Settings of OpenBLAS, where that is the library of dense linear algebra: kernels for the processor at hand, one
-!> thread a rank.
+!> Settings of OpenBLAS, where that is the library of dense linear algebra: kernels for the processor at hand; and one
+!> thread a rank, of OpenMP too.
 module blas_settings
   use, intrinsic :: iso_c_binding, only: c_int, c_funptr, c_associated, c_f_procpointer
   use found_procedures, only: address_of
@@ -26,31 +26,33 @@ contains
 
   !> Settles threads and kernels; once more does no harm.
   subroutine settle_blas()
-    call use_one_thread()
+    call use_one_thread('openblas_set_num_threads', 1_c_int, ['OMP_NUM_THREADS     ', 'OPENBLAS_NUM_THREADS'])
+    ! CHOLMOD asks for four threads in loops that are over before these have begun.
+    call use_one_thread('omp_set_max_active_levels', 0_c_int, ['OMP_NUM_THREADS'])
     call choose_blas_kernels()
   end subroutine settle_blas
 
-  !> Lets OpenBLAS work with one thread, unless the environment says how many; other libraries are left as they are.
-  !> Ranks share the work out already, and threads beside them wait more than they do.
-  subroutine use_one_thread()
+  !> Lets a library work with one thread, unless the environment asks for more. Ranks share the work out already, and
+  !> threads beside them wait more than they do.
+  subroutine use_one_thread(setting, value, variables)
+    !> Procedure of the library that sets it; where there is none nothing happens
+    character(len=*), intent(in) :: setting
+    !> What it takes for one thread
+    integer(c_int), intent(in) :: value
+    !> Variables of the environment that ask for threads
+    character(len=*), intent(in) :: variables(:)
     procedure(set_threads), pointer :: set
     type(c_funptr) :: address
+    character(len=8) :: threads
+    integer :: i, length
 
-    if (is_set('OMP_NUM_THREADS')) return
-    if (is_set('OPENBLAS_NUM_THREADS')) return
-    address = address_of('openblas_set_num_threads')
+    do i = 1, size(variables)
+      call get_environment_variable(trim(variables(i)), threads, length=length)
+      if (length > 0 .and. threads /= '1') return
+    end do
+    address = address_of(setting)
     if (.not. c_associated(address)) return
     call c_f_procpointer(address, set)
-    call set(1_c_int)
+    call set(value)
   end subroutine use_one_thread
-
-  !> True if a variable of the environment has a value.
-  logical function is_set(name)
-    !> Its name
-    character(len=*), intent(in) :: name
-    integer :: length
-
-    call get_environment_variable(name, length=length)
-    is_set = length > 0
-  end function is_set
 end module blas_settings

@@ -5,11 +5,13 @@ module models
   use communicators, only: communicator_t
   use halos, only: halo_t
   use element_batches, only: element_batches_t
+  use bending_forces, only: add_bending_force, add_bending_inertia
   use internal_forces, only: add_internal_force
   use inertia_forces, only: add_inertia_force
   use section_laws, only: section_law_t
   use stacking, only: section_t
   use plies, only: ply_t
+  use profiles, only: profile_t
   use layered_meshes, only: layered_mesh_t
   use layer_maps, only: layer_map_t
   use face_contact, only: contact_law_t
@@ -32,6 +34,8 @@ module models
     type(communicator_t) :: communicator
     !> Mesh of the modelled part, whole on every rank
     type(layered_mesh_t) :: mesh
+    !> Where time and memory go, if somebody asked
+    type(profile_t) :: profile
     !> This rank's share
     type(distribution_t) :: distribution
     !> Exchange of ghost points
@@ -142,6 +146,8 @@ contains
       call add_internal_force(self%elements, stiffness, self%scene%kinematics, self%motion_of(displacement), force, &
                               energy, law, free)
       call self%map%to_unknowns(force)
+    else if (self%membrane_idle) then
+      call add_bending_force(self%elements, stiffness, displacement, force, energy)
     else
       call add_internal_force(self%elements, stiffness, self%scene%kinematics, displacement, force, energy, law, free)
     end if
@@ -217,6 +223,7 @@ contains
     real(wp), intent(inout) :: force(:, :)
     integer :: point
 
+    call self%profile%enter('inertia forces')
     force = 0
     if (allocated(self%lumped)) then
       force = self%motion_of(field)
@@ -231,11 +238,14 @@ contains
       if (self%map%layered) then
         call add_inertia_force(self%elements, self%motion_of(field), force)
         call self%map%to_unknowns(force)
+      else if (self%membrane_idle) then
+        call add_bending_inertia(self%elements, field, force)
       else
         call add_inertia_force(self%elements, field, force)
       end if
       call self%halo%accumulate(force)
     end if
+    call self%profile%leave()
   end subroutine inertia
 
   !> Mean deflection of the patch, the same on every rank.

@@ -1,6 +1,7 @@
 !> Named stopwatches, of the clock on the wall and of the processor.
 module timers
-  use kinds, only: wp, long
+  use kinds, only: wp
+  use profiles, only: profile_t, wall_time
   implicit none
   private
   public :: timer_set_t, wall_time
@@ -24,6 +25,8 @@ module timers
   type :: timer_set_t
     !> The stopwatches in the order of their first start
     type(timer_t), allocatable, private :: list(:)
+    !> What is timed is told to this profile, too
+    type(profile_t) :: profile
   contains
     !> Starts a stopwatch.
     procedure :: start
@@ -36,21 +39,20 @@ module timers
 
 contains
 
-  !> Seconds on the wall since some moment in the past.
-  real(wp) function wall_time()
-    integer(long) :: ticks, rate
-
-    call system_clock(ticks, rate)
-    wall_time = real(ticks, wp)/real(rate, wp)
-  end function wall_time
-
   !> Starts a stopwatch.
-  subroutine start(self, name)
+  subroutine start(self, name, part)
     class(timer_set_t), intent(inout) :: self
     !> What is timed
     character(len=*), intent(in) :: name
+    !> Part of the profile that it belongs to, if that has another name
+    character(len=*), intent(in), optional :: part
     integer :: i
 
+    if (present(part)) then
+      call self%profile%enter(part)
+    else
+      call self%profile%enter(name)
+    end if
     if (.not. allocated(self%list)) allocate (self%list(0))
     i = self%position(name)
     if (i == 0) then
@@ -69,6 +71,7 @@ contains
     real(wp) :: processor
     integer :: i
 
+    call self%profile%leave()
     i = self%position(name)
     if (i == 0) return
     call cpu_time(processor)

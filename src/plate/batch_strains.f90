@@ -8,7 +8,7 @@ module batch_strains
   use integrated_shear, only: integrated_shear_strains, add_integrated_shear_forces
   implicit none
   private
-  public :: in_plane_strains, add_in_plane_forces, shear_strains, add_shear_forces
+  public :: in_plane_strains, add_in_plane_forces, plane_strains, add_plane_forces, shear_strains, add_shear_forces
 
 contains
 

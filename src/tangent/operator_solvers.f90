@@ -1,10 +1,10 @@
 !> Which package factors the operator.
 module operator_solvers
   use cholmod_solvers, only: cholmod_solver_t
-  use communicators, only: communicator_t
   use errors, only: error_t
   use linear_solver_parameters, only: factorization_automatic, factorization_mumps
   use linear_solvers, only: linear_solver_t
+  use models, only: model_t
   use petsc_library, only: new_petsc_solver
   implicit none
   private
@@ -14,9 +14,8 @@ contains
 
   !> Chooses a solver: without a wish of the deck's CHOLMOD on one rank, where the operator stays positive definite, and
   !> MUMPS elsewhere.
-  subroutine choose_solver(communicator, stays_positive, factorization, solver, error)
-    !> The ranks
-    type(communicator_t), intent(in) :: communicator
+  subroutine choose_solver(model, stays_positive, factorization, solver, error)
+    type(model_t), intent(in) :: model
     !> True: no operator of the run has a negative pivot
     logical, intent(in) :: stays_positive
     !> One of the factorization_* choices
@@ -27,9 +26,11 @@ contains
     type(error_t), allocatable, intent(inout) :: error
     logical :: suits
 
-    suits = communicator%size == 1 .and. stays_positive
+    suits = model%communicator%size == 1 .and. stays_positive
     if (factorization == factorization_mumps .or. factorization == factorization_automatic .and. .not. suits) then
-      call new_petsc_solver(communicator, solver, error)
+      call model%profile%enter('MPI and PETSc')
+      call new_petsc_solver(model%communicator, solver, error)
+      call model%profile%leave()
     else
       allocate (solver, source=cholmod_solver_t(falls_back=factorization == factorization_automatic))
     end if

@@ -102,7 +102,8 @@ contains
     self%present = self%added
     self%stiffness = model%elements%stiffness
     call number_equations(model%mesh, model%distribution, model%held, self%numbering)
-    call choose_solver(model%communicator, stays_positive(model), factorization, self%solver, error)
+    self%timers%profile = model%profile
+    call choose_solver(model, stays_positive(model), factorization, self%solver, error)
     if (allocated(error)) return
     call self%solver%define(model%communicator, self%numbering%first_row, self%numbering%total, &
                             self%numbering%row_start, self%numbering%columns, stays_positive(model), error)
@@ -262,7 +263,7 @@ contains
     do k = 1, size(equations)
       if (self%numbering%owns(equations(k))) forces(equations(k) - self%numbering%first_row + 1, k) = 1
     end do
-    call self%timers%start('solve')
+    call self%timers%start('solve', part='answers to unit forces')
     call self%solver%solve_many(forces, values, error)
     call self%timers%stop('solve')
     if (allocated(error)) return

@@ -1,0 +1,180 @@
+!> Where time and memory of a run go, part by part. Parts may contain others; each is charged with what none of those
+!> inside it takes, so that all add up to the whole run.
+module profiles
+  use, intrinsic :: iso_c_binding, only: c_int, c_long
+  use kinds, only: wp, long
+  implicit none
+  private
+  public :: profile_t, profile_row_t, new_profile, wall_time
+
+  !> Longest name of a part.
+  integer, parameter, public :: part_length = 32
+  !> Parts that may lie inside each other.
+  integer, parameter :: most_deep = 32
+
+  !> One part of a run.
+  type :: profile_row_t
+    !> What it does
+    character(len=part_length) :: name = ''
+    !> Seconds on the wall
+    real(wp) :: seconds = 0
+    !> How often it was begun
+    integer :: calls = 0
+    !> By how much it raised the run's largest resident memory, in MB of 10^6 bytes
+    real(wp) :: megabytes = 0
+  end type profile_row_t
+
+  !> What has been found so far.
+  type :: record_t
+    !> The parts in the order of their first beginning
+    type(profile_row_t), allocatable :: rows(:)
+    !> Parts begun and not ended, the innermost last
+    integer :: open(most_deep) = 0, depth = 0
+    !> Clock and largest memory when the innermost part was last charged
+    real(wp) :: seconds = 0, megabytes = 0
+  end type record_t
+
+  !> A profile, or none. Copies share what they find, so that every part of the program can be handed one.
+  type :: profile_t
+    !> Clock at the program's start
+    real(wp) :: begun = 0
+    !> What has been found; null: nobody asked
+    type(record_t), pointer, private :: record => null()
+  contains
+    !> Whether somebody asked.
+    procedure :: is_on
+    !> Begins a part.
+    procedure :: enter
+    !> Ends the part begun last.
+    procedure :: leave
+    !> The parts so far.
+    procedure :: rows
+    !> Frees what copies share.
+    procedure :: release
+  end type profile_t
+
+  interface
+    !> C library: what a process has used.
+    integer(c_int) function get_usage(who, usage) bind(c, name='getrusage')
+      import :: c_int, c_long
+      !> 0: this process
+      integer(c_int), value :: who
+      !> Two times of two numbers, then fourteen numbers, the first the largest resident memory in KiB
+      integer(c_long), intent(out) :: usage(18)
+    end function get_usage
+  end interface
+
+contains
+
+  !> A profile from now on. What the processor did before, for the loader of libraries, is its first part.
+  function new_profile(wanted) result(self)
+    !> False: only the clock is read
+    logical, intent(in) :: wanted
+    !> The profile
+    type(profile_t) :: self
+
+    self%begun = wall_time()
+    if (.not. wanted) return
+    allocate (self%record)
+    associate (record => self%record)
+      record%rows = [profile_row_t('program and libraries', calls=1), profile_row_t('rest', calls=1)]
+      call cpu_time(record%rows(1)%seconds)
+      record%rows(1)%megabytes = peak_megabytes()
+      record%depth = 1
+      record%open(1) = 2
+      record%seconds = self%begun
+      record%megabytes = record%rows(1)%megabytes
+    end associate
+  end function new_profile
+
+  !> Whether somebody asked.
+  pure logical function is_on(self)
+    class(profile_t), intent(in) :: self
+
+    is_on = associated(self%record)
+  end function is_on
+
+  !> Begins a part.
+  subroutine enter(self, name)
+    class(profile_t), intent(in) :: self
+    !> What it does
+    character(len=*), intent(in) :: name
+    integer :: i
+
+    if (.not. associated(self%record)) return
+    associate (record => self%record)
+      call charge(record)
+      do i = size(record%rows), 1, -1
+        if (record%rows(i)%name == name) exit
+      end do
+      if (i == 0) then
+        record%rows = [record%rows, profile_row_t(name)]
+        i = size(record%rows)
+      end if
+      record%rows(i)%calls = record%rows(i)%calls + 1
+      record%depth = min(record%depth + 1, most_deep)
+      record%open(record%depth) = i
+    end associate
+  end subroutine enter
+
+  !> Ends the part begun last.
+  subroutine leave(self)
+    class(profile_t), intent(in) :: self
+
+    if (.not. associated(self%record)) return
+    call charge(self%record)
+    self%record%depth = max(1, self%record%depth - 1)
+  end subroutine leave
+
+  !> Charges the innermost part with what has gone since the last time.
+  subroutine charge(record)
+    !> What has been found
+    type(record_t), intent(inout) :: record
+    real(wp) :: seconds, megabytes
+
+    seconds = wall_time()
+    megabytes = peak_megabytes()
+    associate (row => record%rows(record%open(record%depth)))
+      row%seconds = row%seconds + seconds - record%seconds
+      row%megabytes = row%megabytes + megabytes - record%megabytes
+    end associate
+    record%seconds = seconds
+    record%megabytes = megabytes
+  end subroutine charge
+
+  !> The parts so far, up to now.
+  function rows(self)
+    class(profile_t), intent(in) :: self
+    !> They, empty if nobody asked
+    type(profile_row_t), allocatable :: rows(:)
+
+    allocate (rows(0))
+    if (.not. associated(self%record)) return
+    call charge(self%record)
+    rows = self%record%rows
+  end function rows
+
+  !> Frees what copies share; none of them may be used again.
+  subroutine release(self)
+    class(profile_t), intent(inout) :: self
+
+    if (associated(self%record)) deallocate (self%record)
+    self%record => null()
+  end subroutine release
+
+  !> Largest resident memory so far, in MB of 10^6 bytes; 0 where the system does not tell.
+  real(wp) function peak_megabytes()
+    integer(c_long) :: usage(18)
+
+    peak_megabytes = 0
+    if (get_usage(0_c_int, usage) == 0) peak_megabytes = usage(5)*1024.0e-6_wp
+  end function peak_megabytes
+
+  !> Seconds on the wall since some moment in the past.
+  real(wp) function wall_time()
+    integer(long) :: ticks, rate
+
+    call system_clock(ticks, rate)
+    wall_time = real(ticks, wp)/real(rate, wp)
+  end function wall_time
+end module profiles
