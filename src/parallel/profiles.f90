@@ -41,8 +41,6 @@ module profiles
     !> What has been found; null: nobody asked
     type(record_t), pointer, private :: record => null()
   contains
-    !> Whether somebody asked.
-    procedure :: is_on
     !> Begins a part.
     procedure :: enter
     !> Ends the part begun last.
@@ -87,13 +85,6 @@ contains
     end associate
   end function new_profile
 
-  !> Whether somebody asked.
-  pure logical function is_on(self)
-    class(profile_t), intent(in) :: self
-
-    is_on = associated(self%record)
-  end function is_on
-
   !> Begins a part.
   subroutine enter(self, name)
     class(profile_t), intent(in) :: self
@@ -126,14 +117,17 @@ contains
     self%record%depth = max(1, self%record%depth - 1)
   end subroutine leave
 
-  !> Charges the innermost part with what has gone since the last time.
+  !> Charges the innermost part with what has gone since the last time. Memory is asked for after a while only, as the
+  !> system takes longer to tell it than small parts take.
   subroutine charge(record)
     !> What has been found
     type(record_t), intent(inout) :: record
     real(wp) :: seconds, megabytes
+    real(wp), parameter :: a_while = 1.0e-4_wp
 
     seconds = wall_time()
-    megabytes = peak_megabytes()
+    megabytes = record%megabytes
+    if (seconds - record%seconds > a_while) megabytes = peak_megabytes()
     associate (row => record%rows(record%open(record%depth)))
       row%seconds = row%seconds + seconds - record%seconds
       row%megabytes = row%megabytes + megabytes - record%megabytes

@@ -26,6 +26,30 @@ DECK = """&case        name='bench'  kinematics='{kinematics}' /
 {more}
 """
 
+# A cross-ply of seven plies on 12 x 12 elements of a quarter, struck so softly that nothing fails; 100 steps.
+PANEL = """&case         name='panel'  kinematics='linear' /
+&plate        length=0.1, 0.1  edges='clamped'  symmetry='quarter' /
+&mesh         elements=12, 12  patch=4e-3 /
+&material     name='T300/976'  density=1580  E1=139e9  E2=9.4e9  G12=4.5e9  G13=4.5e9  G23=2.98e9  nu12=0.309
+              XT=1517e6  XC=1590e6  YT=46e6  YC=253e6  S12=105e6  Sf=500e6  Sm23=105e6 /
+&laminate     materials='T300/976'  angles=0, 90, 0, 90, 0, 90, 0  thicknesses=0.3e-3 /
+&impactor     mass=0.2  velocity=0.2  radius=10e-3 /
+&indentation  law='hertz' /
+&time         end=400e-6  step=4e-6 /
+"""
+INTERFACE = '&delamination below_ply={plies} G_Ic=280 G_IIc=790 zone=40e-3, 40e-3 {more} /\n'
+# What is changed in it, or added to it.
+GROUPS = {
+    'as it is: linear, Hertz': [],
+    'law of Tan and Sun': [("law='hertz'", "law='tan_sun' alpha_cr=80.3e-6 beta=0.094")],
+    "von Karman's strains": [("'linear'", "'von_karman'")],
+    'ply damage': [('&time', '&ply_damage /\n&time')],
+    'a cohesive interface': [('&time', INTERFACE.format(plies='3', more='') + '&time')],
+    'two': [('&time', INTERFACE.format(plies='2, 5', more='') + '&time')],
+    'six': [('&time', INTERFACE.format(plies='1, 2, 3, 4, 5, 6', more='') + '&time')],
+    'an interface with a front': [('&time', INTERFACE.format(plies='3', more="law='front' starter=8e-3") + '&time')],
+}
+
 SUN_CHEN = pathlib.Path(__file__).resolve().parents[2]/'input'/'sun_chen.nml'
 
 # One thread, so that processor time is comparable; Open MPI refuses root unless told twice.
@@ -79,7 +103,8 @@ def step_cost(program, arguments):
     """Cost of a step against that of a solve, share of set-up, and memory, on about 60 000 unknowns."""
     bare = Run(program, 'linear', 2, 1e-6, 1e-6).peak_megabytes
     for kinematics, elements, target in (('linear', 71, 2.5), ('von_karman', 55, 6.0)):
-        run = Run(program, kinematics, round(elements*arguments.finer), 1e-6, arguments.steps*1e-6)
+        run = Run(program, kinematics, round(elements*arguments.finer), 1e-6, arguments.steps*1e-6,
+                  f"&solver factorization='{arguments.factorization}' /")
         steps, seconds = run.phases['steps']
         solve = run.mean('solve')
         factors, factoring = run.phases['factorization']
@@ -195,6 +220,23 @@ def absent_physics(program, arguments):
               f'{statistics.median(new/before for before, new in pairs):.3f} | {counts} |', flush=True)
 
 
+def groups(program, arguments):
+    """What each group of a deck adds to a scene in which nothing fails: processor time, or instructions as well."""
+    print('| added | unknowns | iterations, factorizations | processor, s | instructions, 10^9 |')
+    print('|---|---|---|---|---|')
+    for name, changes in GROUPS.items():
+        deck = PANEL
+        for old, new in changes:
+            deck = deck.replace(old, new)
+        costs = [cost(program, deck) for _ in range(arguments.repeat)]
+        counted = f'{instructions(program, deck)/1e9:.2f}' if arguments.instructions else '-'
+        with tempfile.TemporaryDirectory() as folder:
+            run_deck(program, deck, pathlib.Path(folder))
+            unknowns = re.search(r'(\d+) unknowns', pathlib.Path(folder, 'panel.log').read_text())[1]
+        print(f'| {name} | {unknowns} | {", ".join(costs[0][1])} | {statistics.median(c[0] for c in costs):.3f} | '
+              f'{counted} |', flush=True)
+
+
 def run_deck(program, deck, folder):
     """Runs a deck given as text into a folder; seconds of the processor."""
     folder.joinpath('deck.nml').write_text(deck)
@@ -300,12 +342,13 @@ def main():
     part = parts.add_parser('step-cost', help=step_cost.__doc__)
     part.add_argument('--steps', type=int, default=500)
     part.add_argument('--finer', type=float, default=1, help='factor of the number of elements along a side')
+    part.add_argument('--factorization', default='automatic', help='of &solver')
     part.set_defaults(act=step_cost)
     part = parts.add_parser('memory', help=memory.__doc__)
     part.add_argument('--linear', type=int, nargs='*', default=[71, 100, 142, 205], help='elements along a side')
     part.add_argument('--von-karman', type=int, nargs='*', default=[55, 77, 110, 159], help='likewise')
     part.add_argument('--steps', type=int, default=5)
-    part.add_argument('--factorization', default='mumps')
+    part.add_argument('--factorization', default='automatic')
     part.add_argument('--petsc-options', default='')
     part.set_defaults(act=memory)
     part = parts.add_parser('speed', help=speed.__doc__)
@@ -328,6 +371,10 @@ def main():
     part.add_argument('--starter', type=float, nargs='+', default=[10, 20], help='mm')
     part.add_argument('--end', type=float, default=7.6e-3, help='s')
     part.set_defaults(act=fronts)
+    part = parts.add_parser('groups', help=groups.__doc__)
+    part.add_argument('--repeat', type=int, default=5)
+    part.add_argument('--instructions', action='store_true', help='count them by valgrind, too')
+    part.set_defaults(act=groups)
     part = parts.add_parser('deck', help=one_deck.__doc__)
     part.add_argument('deck', type=pathlib.Path)
     part.add_argument('--set', nargs='+', action='append', metavar='GROUP%%KEY=VALUE',
