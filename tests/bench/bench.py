@@ -348,7 +348,7 @@ def main():
     part.add_argument('--linear', type=int, nargs='*', default=[71, 100, 142, 205], help='elements along a side')
     part.add_argument('--von-karman', type=int, nargs='*', default=[55, 77, 110, 159], help='likewise')
     part.add_argument('--steps', type=int, default=5)
-    part.add_argument('--factorization', default='automatic')
+    part.add_argument('--factorization', default='mumps')
     part.add_argument('--petsc-options', default='')
     part.set_defaults(act=memory)
     part = parts.add_parser('speed', help=speed.__doc__)
