@@ -12,9 +12,11 @@ module model_sizes
 
   !> Unknowns that one rank takes in a script; a choice, since what is best depends on the machine.
   integer, parameter :: unknowns_a_rank = 25000
-  !> Megabytes of the libraries a process, and bytes for each pair of unknowns of a node times the doublings of the
-  !> number of nodes: nested dissection of a plane grid fills its factor so. Measured, doc/manual/queue.md.
-  real(wp), parameter :: megabytes_of_libraries = 55, bytes_whole = 56, bytes_layered = 93
+  !> Megabytes of the libraries a process, without and with MPI, PETSc and MUMPS.
+  real(wp), parameter :: megabytes_alone = 27, megabytes_with_petsc = 55
+  !> Bytes for each pair of unknowns of a node times the doublings of the number of nodes: nested dissection of a plane
+  !> grid fills its factor so. Measured, doc/manual/queue.md.
+  real(wp), parameter :: bytes_whole = 56, bytes_layered = 93
   !> What several ranks take together over what one does: MUMPS' buffers and the ghosts.
   real(wp), parameter :: more_on_ranks = 1.7_wp
 
@@ -78,7 +80,8 @@ contains
     !> Number of ranks
     integer, intent(in) :: ranks
 
-    megabytes = megabytes_of_libraries + self%megabytes*merge(1.0_wp, more_on_ranks/ranks, ranks == 1)
+    megabytes = merge(megabytes_alone, megabytes_with_petsc, ranks == 1) + &
+                self%megabytes*merge(1.0_wp, more_on_ranks/ranks, ranks == 1)
   end function megabytes_a_rank
 
   !> What `implam check` says.
