@@ -1,20 +1,22 @@
-!> Warns of cohesive interfaces whose process zone the mesh does not resolve.
+!> What the mesh resolves of the process zones of cohesive interfaces: a warning where that is too little, and the
+!> strength beside cracks.
 module deck_process_zones
   use cell_grids, only: cell_edges
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
-  use deck_remarks, only: remark
+  use deck_remarks, only: remark, remark_idle
   use delaminated_regions, only: cells_within
   use interface_places, only: delamination_group
+  use delamination_deck, only: key_flaws
   use delamination_parameters, only: delamination_t, law_cohesive, toughnesses
   use kinds, only: wp
   use laminate_parameters, only: shear_five_sixths
   use plies, only: ply_t
-  use process_zones, only: process_zone_t, process_zone_warning
+  use process_zones, only: process_zone_t, process_zone_warning, resolved_part
   use stacking, only: stacked_plies, section_stiffness
   implicit none
   private
-  public :: check_process_zones
+  public :: check_process_zones, settle_flaws
 
 contains
 
@@ -35,6 +37,30 @@ contains
                                      deck%delaminations(i)%group)
     end do
   end subroutine check_process_zones
+
+  !> Finds what strength interfaces have beside cracks, and tells where cracks make no difference.
+  subroutine settle_flaws(deck, problems)
+    !> The deck, filled and checked; its interfaces receive that strength
+    type(deck_t), intent(inout) :: deck
+    !> Receives the remarks
+    type(problems_t), intent(inout) :: problems
+    integer :: i
+
+    if (problems%errors() > 0) return
+    do i = 1, size(deck%delaminations)
+      associate (d => deck%delaminations(i))
+        if (.not. d%cracks_as_flaws .or. d%law /= law_cohesive) cycle
+        d%flaw_strength = resolved_part(process_zone(deck, d))
+        if (.not. deck%has_ply_damage) then
+          call remark_idle(deck%settings, problems, delamination_group, key_flaws, 'has no effect without '// &
+                           '&ply_damage.', d%group)
+        else if (.not. d%flaw_strength < 1) then
+          call remark_idle(deck%settings, problems, delamination_group, key_flaws, 'has no effect as the cells '// &
+                           'resolve the strengths.', d%group)
+        end if
+      end associate
+    end do
+  end subroutine settle_flaws
 
   !> What the process zone of an interface depends on.
   pure function process_zone(deck, delamination) result(zone)

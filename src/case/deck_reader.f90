@@ -7,7 +7,7 @@ module deck_reader
   use deck_crack_bands, only: check_crack_bands
   use deck_cross_checks, only: check_across_groups
   use deck_interface_remarks, only: check_interfaces
-  use deck_process_zones, only: check_process_zones
+  use deck_process_zones, only: check_process_zones, settle_flaws
   use deck_extents, only: check_sizes, check_extents
   use deck_problems, only: problems_t
   use deck_refinements, only: refine
@@ -104,6 +104,7 @@ contains
     call check_interfaces(deck, problems)
     if (deck%has_ply_damage) call check_crack_bands(deck, problems)
     call check_process_zones(deck, problems)
+    call settle_flaws(deck, problems)
     call check_scales(deck, problems)
     call check_units(deck, problems)
     deck%remarks = problems%remarks()

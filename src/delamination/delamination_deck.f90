@@ -22,7 +22,7 @@ module delamination_deck
   character(len=*), parameter, public :: key_zone = 'zone', key_starter = 'starter', key_toughness = 'G_c', &
                                          key_toughness_shear = 'G_IIc', key_strip = 'starter_strip', &
                                          key_starter_at = 'starter_at', &
-                                         key_smoothing = 'smoothing'
+                                         key_smoothing = 'smoothing', key_flaws = 'cracks_as_flaws'
   character(len=*), parameter :: group = delamination_group
   !> Keys that have no effect on a cohesive interface.
   character(len=*), parameter :: keys_of_fronts = &
@@ -63,6 +63,8 @@ module delamination_deck
       &Stiffness of the undamaged cohesive law in opening.', &
     'delamination | friction | real | 1 | - | 0 | >= 0, <= 10 | &
       &Coulomb''s coefficient of friction between separated faces, and the damaged part of others.', &
+    'delamination | cracks_as_flaws | logical | 1 | - | .false. | .true. .false. | &
+      &Damage starts beside matrix cracks of the neighbouring plies at what the cells resolve of the strengths.', &
     'delamination | energy_release | choice | 1 | - | ''vcct'' | two_state vcct | &
       &Energy release rate: Eq. 11 with its sign put right, or virtual crack closure.', &
     'delamination | growth | choice | 1 | - | ''equilibrium'' | equilibrium one_per_step | &
@@ -133,6 +135,7 @@ contains
       d%toughness_shear = s%real_of(group, 'G_IIc', place)
       d%mixing_exponent = s%real_of(group, 'eta', place)
       d%friction = s%real_of(group, 'friction', place)
+      d%cracks_as_flaws = s%logical_of(group, key_flaws, place)
       if (s%is_known(group, key_zone, place)) d%zone = s%reals_of(group, key_zone, place)
       if (s%is_given(group, key_starter, place)) d%starter = s%real_of(group, key_starter, place)
       if (s%is_given(group, key_strip, place)) d%starter_strip = s%reals_of(group, key_strip, place)
@@ -368,7 +371,7 @@ contains
     associate (d => delamination)
       if (d%law == law_cohesive) call idle(keys_of_fronts, 'with law = ''cohesive''')
       if (d%law /= law_cohesive) &
-        call idle('strength_opening strength_shear stiffness friction', 'without law = ''cohesive''')
+        call idle('strength_opening strength_shear stiffness friction '//key_flaws, 'without law = ''cohesive''')
       if (d%contact == contact_none) call idle('friction', 'as faces pass through each other')
       if (.not. d%starter > 0) call idle('starter_shape '//key_starter_at, 'without '//key_starter)
       if (d%toughness > 0) call idle('eta', 'as G_c is given')

@@ -52,6 +52,10 @@ module delamination_parameters
     real(wp) :: stiffness = 0
     !> Coulomb's coefficient of friction between separated faces
     real(wp) :: friction = 0
+    !> True: damage starts earlier beside cracks of the neighbouring plies
+    logical :: cracks_as_flaws = .false.
+    !> What is left there of the strengths: the part that the cells resolve
+    real(wp) :: flaw_strength = 1
     !> Growth of the cohesive law's shear strength with pressure, mu
     real(wp) :: pressure_strengthening = 0
     !> release_two_state or release_vcct

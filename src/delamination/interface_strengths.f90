@@ -1,4 +1,4 @@
-!> Shear strengths of all interfaces between plies.
+!> Shear strengths of all interfaces between plies, and blocks of plies that are alike.
 module interface_strengths
   use delamination_parameters, only: delamination_t
   use kinds, only: wp
@@ -6,7 +6,7 @@ module interface_strengths
   use plies, only: ply_t
   implicit none
   private
-  public :: shear_strengths
+  public :: shear_strengths, block_thickness
 
 contains
 
@@ -36,6 +36,27 @@ contains
       end associate
     end do
   end function shear_strengths
+
+  !> Thickness of the block of neighbouring plies that are alike.
+  pure real(wp) function block_thickness(plies, ply) result(thickness)
+    !> All plies, from the struck face
+    type(ply_t), intent(in) :: plies(:)
+    !> One of the block
+    integer, intent(in) :: ply
+    integer :: first, last
+
+    first = ply
+    do while (first > 1)
+      if (.not. are_alike(plies(first - 1), plies(ply))) exit
+      first = first - 1
+    end do
+    last = ply
+    do while (last < size(plies))
+      if (.not. are_alike(plies(last + 1), plies(ply))) exit
+      last = last + 1
+    end do
+    thickness = plies(last)%z_bottom - plies(first)%z_top
+  end function block_thickness
 
   !> True: one material at one angle.
   pure logical function are_alike(a, b)

@@ -12,7 +12,7 @@ module process_zones
   implicit none
   private
   public :: process_zone_t, shear_zone_length, opening_zone_length, resolved_shear_strength, &
-            resolved_opening_strength, resolving_cell, is_resolved, process_zone_warning
+            resolved_opening_strength, resolved_part, resolving_cell, is_resolved, process_zone_warning
 
   !> Cells in a process zone that resolve it.
   real(wp), parameter, public :: resolving_cells = 2.5_wp
@@ -69,6 +69,15 @@ contains
 
     strength = sqrt(zone%modulus*zone%toughness_opening*zone%thickness**3)/(resolving_cells*zone%cell)**2
   end function resolved_opening_strength
+
+  !> Part of the strengths that the cells resolve, of those that count, at most 1.
+  pure real(wp) function resolved_part(zone) result(part)
+    !> The interface
+    type(process_zone_t), intent(in) :: zone
+
+    part = min(1.0_wp, resolved_shear_strength(zone)/zone%strength_shear)
+    if (zone%is_pulled) part = min(part, resolved_opening_strength(zone)/zone%strength_opening)
+  end function resolved_part
 
   !> Longest side of cells that resolve the strengths, the process zones that count 2.5 cells long or longer.
   pure real(wp) function resolving_cell(zone) result(cell)

@@ -20,6 +20,7 @@ module time_stepping
   use dissipation_steps, only: dissipation_step_t, new_dissipation_step
   use energy_balance, only: book_failures
   use struck_stresses, only: struck_stress
+  use crack_flaws, only: note_flaws
   use front_growth, only: find_release_ratio
   use growth_in_steps, only: grow_in_step, grows_by_steps
   use plate_options, only: kinematics_von_karman
@@ -341,6 +342,7 @@ contains
     call self%trial%plies%grow(model, [self%now%time, self%trial%time], self%now%motion%displacement, &
                                self%trial%motion%displacement)
     if (self%trial%plies%softened) call book_failures(model, self%now, self%trial)
+    call note_flaws(model, self%trial%plies, self%trial%interfaces)
     if (model%scene%has_static) call find_release_ratio(model, self%trial%plies%stiffness, self%trial%motion, &
                                                         self%trial%interfaces)
     damaged = self%trial%interfaces%cohesive%border_reached(model)

@@ -7,7 +7,7 @@ module cohesive_interfaces
   use kinds, only: wp
   use archives, only: archive_t
   use delamination_parameters, only: law_cohesive, contact_none
-  use cohesive_laws, only: stiffness_of
+  use cohesive_laws, only: cohesive_law_t, stiffness_of, weakened
   use cohesive_faces, only: cohesive_faces_t
   use cohesive_points, only: cohesive_point_t, dissipated_share, mode_mixity
   use cohesive_tangents, only: dissipation_slopes
@@ -22,6 +22,8 @@ module cohesive_interfaces
     logical, allocatable :: cohesive(:)
     !> Damage and dissipated energy per area of each point, (local points)
     type(cohesive_point_t), allocatable :: points(:)
+    !> Part of the strengths that flaws leave at each point, (local points)
+    real(wp), allocatable :: strength(:)
     !> Stiffness of the jumps for the factored operator, (3, local points)
     real(wp), allocatable :: stiffness(:, :)
     !> Consistent tangents, which a static analysis takes instead, unsymmetric, (3, 3, local points)
@@ -43,8 +45,9 @@ module cohesive_interfaces
     procedure :: pressure
     !> True for zones whose border damage has reached.
     procedure :: border_reached
-    !> Faces of an interface.
+    !> Faces of an interface, and law of a point.
     procedure :: faces_of
+    procedure :: law_at
     !> How wrong the operator is about the forces of points.
     procedure :: mismatch
     !> Saves or loads.
@@ -66,6 +69,7 @@ contains
     if (.not. any(model%scene%delaminations%law == law_cohesive)) return
     allocate (self%cohesive(size(model%zone)), source=.false.)
     allocate (self%points(size(model%zone)))
+    allocate (self%strength(size(model%zone)), source=1.0_wp)
     allocate (self%stiffness(3, size(model%zone)), source=0.0_wp)
     if (model%scene%has_static) allocate (self%tangents(3, 3, size(model%zone)), source=0.0_wp)
     do i = 1, size(model%zone)
@@ -99,7 +103,7 @@ contains
     if (.not. allocated(self%cohesive)) return
     do i = 1, model%distribution%owned
       if (.not. self%cohesive(i)) cycle
-      faces = self%faces_of(model, model%zone(i))
+      faces = self%faces_of(model, model%zone(i), self%strength(i))
       associate (jumps => displacement(1:3, i), area => model%contact_area(i))
         start = old%points(i)
         start%sliding%limit = self%points(i)%sliding%limit
@@ -142,7 +146,7 @@ contains
     if (.not. allocated(self%cohesive)) return
     do i = 1, model%distribution%owned
       if (self%cohesive(i)) slopes(1:3, i) = slopes(1:3, i) + model%contact_area(i) &
-        *dissipation_slopes(model%cohesive_laws(model%zone(i)), displacement(1:3, i), 0.0_wp, old%points(i))
+        *dissipation_slopes(self%law_at(model, i), displacement(1:3, i), 0.0_wp, old%points(i))
     end do
   end subroutine add_dissipation_slopes
 
@@ -227,7 +231,7 @@ contains
     shares = 0
     if (.not. allocated(self%cohesive)) return
     do i = 1, model%distribution%owned
-      if (self%cohesive(i)) shares(i) = dissipated_share(model%cohesive_laws(model%zone(i)), self%points(i)%damage)
+      if (self%cohesive(i)) shares(i) = dissipated_share(self%law_at(model, i), self%points(i)%damage)
     end do
   end function shares
 
@@ -299,15 +303,28 @@ contains
     border_reached = reached > 0
   end function border_reached
 
+  !> Law of one of this rank's cohesive points.
+  pure type(cohesive_law_t) function law_at(self, model, i) result(law)
+    !> The interfaces
+    class(cohesive_interfaces_t), intent(in) :: self
+    type(model_t), intent(in) :: model
+    !> The point
+    integer, intent(in) :: i
+
+    law = weakened(model%cohesive_laws(model%zone(i)), self%strength(i))
+  end function law_at
+
   !> Faces of an interface.
-  pure type(cohesive_faces_t) function faces_of(self, model, zone) result(faces)
+  pure type(cohesive_faces_t) function faces_of(self, model, zone, strength) result(faces)
     !> The interfaces
     class(cohesive_interfaces_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> Index of the zone
     integer, intent(in) :: zone
+    !> Part of the strengths that flaws leave
+    real(wp), intent(in) :: strength
 
-    faces%law = model%cohesive_laws(zone)
+    faces%law = weakened(model%cohesive_laws(zone), strength)
     faces%closing = holds_closed(model, zone)
     faces%friction = model%scene%delaminations(zone)%friction
   end function faces_of
@@ -334,7 +351,7 @@ contains
     error = 0
     do i = 1, model%distribution%owned
       if (.not. self%cohesive(i)) cycle
-      faces = self%faces_of(model, model%zone(i))
+      faces = self%faces_of(model, model%zone(i), self%strength(i))
       call faces%traction(displacement(1:3, i), self%points(i), before, new)
       call faces%traction(displacement(1:3, i) + correction(1:3, i), self%points(i), after, new)
       associate (area => stiffness_factor*model%contact_area(i))

@@ -7,6 +7,7 @@ module interface_states
   use models, only: model_t
   use contact_and_ties, only: contact_and_ties_t, new_contact_and_ties
   use cohesive_interfaces, only: cohesive_interfaces_t, new_cohesive_interfaces
+  use interface_flaws, only: visit_flaws
   use cohesive_sliding, only: heat_since, settle_friction, visit_friction
   use tie_release, only: tie_release_t, new_tie_release
   use rig_contact, only: rig_contact_t, new_rig_contact
@@ -235,6 +236,7 @@ contains
     call self%ties%visit(archive, model)
     call self%cohesive%visit(archive, model)
     call visit_friction(self%cohesive, archive, model)
+    call visit_flaws(self%cohesive, archive, model)
     call self%rig%visit(archive, model)
   end subroutine visit
 end module interface_states

@@ -20,7 +20,7 @@ module condensed_corrections
   integer, parameter :: most_unknowns = 500, most_joining = 300
   real(wp), parameter :: most_numbers = 1.0e8_wp
   !> Numbers that tell of an unknown.
-  integer, parameter :: told = 17
+  integer, parameter :: told = 18
 
   !> A correction in the making.
   type :: condensed_correction_t
@@ -106,6 +106,7 @@ contains
       tale(12:13, k) = [old%points(i)%damage, old%points(i)%dissipated]
       tale(14, k) = 1
       tale(15:17, k) = [old%points(i)%sliding%slip, old%points(i)%sliding%limit]
+      tale(18, k) = old%strength(i)
     end do
     all = reshape(tale, [size(tale)])
     call model%communicator%sum(all)
@@ -140,7 +141,7 @@ contains
     do k = 1, size(tale, 2)
       if (point_of(k) == 0) cycle
       associate (point => system%points(point_of(k)))
-        point%faces = old%faces_of(model, nint(tale(2, k)))
+        point%faces = old%faces_of(model, nint(tale(2, k)), tale(18, k))
         point%area = tale(11, k)
         point%old = cohesive_point_t(damage=tale(12, k), dissipated=tale(13, k))
         point%old%sliding = sliding_t(slip=tale(15:16, k), limit=tale(17, k))

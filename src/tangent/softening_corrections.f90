@@ -140,7 +140,7 @@ contains
     do k = 1, size(self%places)
       i = self%places(k)
       associate (point => self%list(k))
-        point%faces = old%faces_of(model, model%zone(i))
+        point%faces = old%faces_of(model, model%zone(i), old%strength(i))
         point%old = old%points(i)
         point%area = model%contact_area(i)*operator%stiffness_factor
         point%jumps = displacement(1:3, i)
