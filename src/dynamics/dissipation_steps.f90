@@ -27,6 +27,8 @@ module dissipation_steps
   type, extends(static_step_t) :: dissipation_step_t
     !> Energy that the step is to dissipate
     real(wp) :: wanted = 0
+    !> Change of the load factor at most; farther away there are other branches of equilibrium, which no path leads to
+    real(wp) :: farthest = 0
   contains
     procedure :: begin
     procedure :: find_residual
@@ -37,18 +39,21 @@ module dissipation_steps
 contains
 
   !> The step to a time that dissipates an energy.
-  pure function new_dissipation_step(model, time, wanted) result(self)
+  pure function new_dissipation_step(model, time, wanted, farthest) result(self)
     type(model_t), intent(in) :: model
     !> Time at its end
     real(wp), intent(in) :: time
     !> Energy to dissipate, of the whole plate
     real(wp), intent(in) :: wanted
+    !> Change of the load factor at most
+    real(wp), intent(in) :: farthest
     !> The problem
     type(dissipation_step_t) :: self
 
     self%static_step_t = new_static_step(model, time, 0.0_wp)
     self%curable = .true.
     self%wanted = wanted
+    self%farthest = farthest
   end function new_dissipation_step
 
   !> First guess: on along the last step, as far as the energies compare.
@@ -134,7 +139,7 @@ contains
     !> Set if the solver fails
     type(error_t), allocatable, intent(inout) :: error
     real(wp), allocatable :: loads(:, :), answer(:, :), slopes(:, :)
-    real(wp) :: sums(2), change
+    real(wp) :: sums(2), change, factor
 
     allocate (loads, answer, slopes, mold=correction)
     answer = 0
@@ -158,7 +163,11 @@ contains
     if (model%scene%has_impactor) then
       new%force = new%force + part_taken(new%iterations)*change
     else
-      new%load_factor = new%load_factor + part_taken(new%iterations)*change
+      ! Beside a limit a correction may lead far away, from where none comes back.
+      factor = new%load_factor + part_taken(new%iterations)*change
+      factor = min(max(factor, old%load_factor - self%farthest), old%load_factor + self%farthest)
+      change = (factor - new%load_factor)/part_taken(new%iterations)
+      new%load_factor = factor
     end if
     correction = part_taken(new%iterations)*(correction + change*answer)
     call new%interfaces%faces%hold(model, correction)

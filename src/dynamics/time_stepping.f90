@@ -160,7 +160,7 @@ contains
       end if
       if (converged) exit
       self%rejected = self%rejected + 1
-      call self%controller%reject(step)
+      call self%controller%reject(step/self%step_scale())
       self%operator%ready = .false.
       if (self%stepping%dissipation > 0) self%now%path%by_dissipation = self%now%path%dissipated > 0
       if (step <= self%smallest_step(model)*self%step_scale()*(1 + 1.0e-9_wp)) then
@@ -274,11 +274,12 @@ contains
       if (now%path%by_dissipation) then
         wanted = self%energy_rate()*step
         if (wanted > most_growth*now%path%dissipated) step = step*most_growth*now%path%dissipated/wanted
-        by_dissipation = new_dissipation_step(model, now%time + step, self%energy_rate()*step)
+        by_dissipation = new_dissipation_step(model, now%time + step, self%energy_rate()*step, &
+                                              1.0_wp/self%stepping%static_steps)
         call solve_step(by_dissipation, model, self%stepping%equilibrium, self%operator, now, self%trial, converged, &
                         error)
         ! Farther away there are other branches of equilibrium, which no path leads to.
-        if (converged) converged = abs(self%trial%load_factor - now%load_factor) <= 1.0_wp/self%stepping%static_steps
+        if (converged) converged = abs(self%trial%load_factor - now%load_factor) <= by_dissipation%farthest
       else
         by_load = new_static_step(model, now%time + step, now%load_factor + step)
         call solve_step(by_load, model, self%stepping%equilibrium, self%operator, now, self%trial, converged, error)
