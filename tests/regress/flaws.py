@@ -1,0 +1,82 @@
+"""Cracks of plies as flaws of the interface beside them.
+Usage: flaws.py whole|ranks|restart IMPLAM FOLDER [LAUNCHER...]
+(LAUNCHER takes the number of ranks as its last word)
+
+whole    flaws bring damage, and a quarter, a half and a plate cut and turned stand for the whole: to 1e-6
+ranks    on 1 and 2 ranks: to 1e-6
+restart  from a checkpoint while cracks grow: bitwise"""
+
+import shutil
+import sys
+from pathlib import Path
+
+from solver_runs import (
+    checkpoint_of,
+    exit_code_of,
+    history_of,
+    largest_difference,
+    read_history,
+    require,
+    run,
+    run_deck,
+    write_deck,
+)
+
+DECK = "../small/cohesive.nml"
+CRACKS = ["ply_damage%d=100", "material%XT=1517e6", "material%XC=1590e6", "material%YC=253e6", "material%Sf=500e6",
+          "material%Sm23=105e6", "delamination%strength_opening=27e6", "delamination%strength_shear=60e6",
+          "material%YT=46e6", "material%S12=105e6", "time%end=200e-6"]
+SETTINGS = [*CRACKS, "delamination%cracks_as_flaws=.true."]
+PARTS = {"quarter": "6, 6", "half_x": "6, 12", "point": "6, 12", "none": "12, 12"}
+
+
+def check_whole(implam, folder, _):
+    """With flaws and without; on parts of the plate and on all of it."""
+    found = {}
+    for symmetry, elements in PARTS.items():
+        found[symmetry] = read_history(run_deck(implam, write_deck(
+            folder / symmetry, DECK, [*SETTINGS, f"plate%symmetry='{symmetry}'", f"mesh%elements={elements}"])))
+    without = read_history(run_deck(implam, write_deck(folder / "without", DECK, CRACKS)))
+    areas = [history["delaminated_area"][-1] for history in (without, found["quarter"])]
+    print(f"delaminated {1e6*areas[0]:.3f} mm2 without flaws, {1e6*areas[1]:.3f} mm2 with them")
+    require(areas[0] < 1e-6 and areas[1] > 20e-6, "Flaws make no difference.")
+    for symmetry, history in found.items():
+        for name in ("force", "delaminated_area", "energy_delamination", "energy_ply_damage"):
+            expected = found["none"][name]
+            worst = max(abs(a - b) for a, b in zip(history[name], expected, strict=True))/max(expected)
+            require(worst <= 1e-6, f"{name} of '{symmetry}' differs from the whole plate's by {worst:.2g}.")
+
+
+def check_ranks(implam, folder, launcher):
+    """One rank and two."""
+    # Cracks of one rank have the other's points beside them only in the middle of a whole plate.
+    settings = [*SETTINGS, "plate%symmetry='none'", "mesh%elements=12, 12", "time%end=160e-6"]
+    one, two = (read_history(run_deck(implam, write_deck(folder / name, DECK, settings), launch))
+                for name, launch in (("one", ()), ("two", (*launcher, "2"))))
+    left_out = [name for name in one if "iterations" in name or name in ("factorizations", "solves")]
+    require(one["delaminated_area"][-1] > 1e-6, "Nothing grows.")
+    difference, name = largest_difference(two, one, left_out)
+    require(difference <= 1e-6, f"{name} differs by {difference:.2g} of its largest value.")
+
+
+def check_restart(implam, folder, _):
+    """From the last checkpoint, while cracks grow."""
+    whole = run_deck(implam, write_deck(folder / "whole", DECK, [*SETTINGS, "output%checkpoint_every=160e-6"]))
+    copy = folder / "again"
+    shutil.rmtree(copy, ignore_errors=True)
+    shutil.copytree(whole.parent, copy)
+    run([implam, "restart", checkpoint_of(copy)], folder=copy)
+    area = read_history(whole)["delaminated_area"]
+    require(area[-1] > area[-4] > 0, "Nothing grows after the checkpoint.")
+    require(history_of(copy).read_bytes() == whole.read_bytes(),
+            "The history goes on otherwise than without a restart.")
+
+
+def trial(kind, implam, folder, *launcher):
+    """One of them."""
+    checks = {"whole": check_whole, "ranks": check_ranks, "restart": check_restart}
+    checks[kind](implam, Path(folder), launcher)
+
+
+if __name__ == "__main__":
+    raise SystemExit(exit_code_of(trial, *sys.argv[1:]))
