@@ -15,8 +15,8 @@ module skew_corrections
   private
   public :: follow_skew
 
-  !> Part of a solution that may be left wrong. Beside a limit two large solutions make a small correction: with 1e-3 its
-  !> error was 1.5 times what there was to correct, and no step however short converged (input/verify/dcb_ubm.nml).
+  !> Part of a solution that may be left wrong. Beside a limit two large solutions make a small correction: with 1e-3
+  !> its error was 1.5 times what there was to correct, and no step however short converged (input/verify/dcb_ubm.nml).
   real(wp), parameter :: left_over = 1.0e-6_wp
   !> Most directions.
   integer, parameter :: most = 20

@@ -1,7 +1,7 @@
 """Specimens whose crack grows: the load at each length of the crack against beam theory and published tables.
 Usage: specimens.py KIND IMPLAM FOLDER [LEVER | NUMBER | RATIO | TOUGHNESS]
-(KIND: buckled, dcb, dcb_ubm, enf, mmb, moment_opening, moment_shear or moment_unequal; LEVER: that of mmb in mm; NUMBER: of
-elements of moment_unequal; RATIO: of the moments of dcb_ubm; TOUGHNESS: of buckled, N/m)
+(KIND: buckled, dcb, dcb_ubm, enf, mmb, moment_opening, moment_shear or moment_unequal; LEVER: that of mmb in mm;
+NUMBER: of elements of moment_unequal; RATIO: of the moments of dcb_ubm; TOUGHNESS: of buckled, N/m)
 
 The length is that of the area dissipated over the width: an elastic crack of that length has dissipated as much. It is
 judged once the process zone has formed, some millimetres from the starter; before, the load is below that of an
@@ -160,8 +160,8 @@ def check_buckled(implam, folder, toughness):
     # Once the process zones have formed, a millimetre farther.
     ratios = [strain/buckled_strains(length, toughness)[1] for strain, length in grown if length > 20.9e-3]
     mean = sum(ratios)/len(ratios)
-    print(f"buckles at {1e6*found:.0f}e-6, {100*(found/buckling - 1):+.2f} %; growth at {mean:.4f} of the closed form's "
-          f"strain in the mean of {len(ratios)} steps, {min(ratios):.4f} to {max(ratios):.4f}")
+    print(f"buckles at {1e6*found:.0f}e-6, {100*(found/buckling - 1):+.2f} %; growth at {mean:.4f} of the closed "
+          f"form's strain in the mean of {len(ratios)} steps, {min(ratios):.4f} to {max(ratios):.4f}")
     require(abs(found/buckling - 1) <= 0.02, "It buckles at another strain.")
     require(abs(mean - 1) <= 0.03, "It grows at another strain.")
 
