@@ -37,8 +37,6 @@ module dynamic_steps
     type(plate_integrator_t) :: integrator
     !> Displacement to start from, (5, points); unallocated: the motion goes on as it was
     real(wp), allocatable :: guess(:, :)
-    !> True: the first guess has the acceleration, and so the inertia forces, of the start
-    logical :: keeps_acceleration = .false.
     !> Square of the patch's shares, of this rank's points
     real(wp) :: patch_square = 0
     !> The impactor's side of the step
@@ -94,21 +92,15 @@ contains
     call new%interfaces%ties%fade(model, self%step)
     self%patch_square = sum((model%patch/model%mesh%multiplicity)**2)
     if (model%scene%has_impactor) self%coupling = begin_coupling(model, self%integrator, old, self%step)
-    self%keeps_acceleration = .not. (allocated(self%guess) .or. model%has_bonds)
     if (allocated(self%guess)) then
       new%motion%displacement = self%guess
-      call self%complete(old, new)
-    else if (self%keeps_acceleration) then
-      new%motion%displacement = old%motion%displacement + self%step*(old%motion%velocity &
-                                                                     + self%step/2*old%motion%acceleration)
-      new%motion%velocity = old%motion%velocity + self%step*old%motion%acceleration
     else
       new%motion%displacement = self%step*old%motion%velocity
       call new%interfaces%faces%hold(model, new%motion%displacement)
       new%motion%displacement = old%motion%displacement + new%motion%displacement
       call new%interfaces%keep_touching(model, new%motion%displacement)
-      call self%complete(old, new)
     end if
+    call self%complete(old, new)
     new%plies%lagging = model%scene%has_crack_bands()
     self%rounds = ply_rounds_t()
     new%iterations = 0
@@ -136,8 +128,7 @@ contains
     real(wp) :: amplitude
 
     call new%find_internal(model, old, energy)
-    if (new%iterations > 0 .or. .not. self%keeps_acceleration) &
-      call model%inertia(new%motion%acceleration, new%motion%inertia)
+    call model%inertia(new%motion%acceleration, new%motion%inertia)
     associate (m => self%integrator%alpha_m, f => self%integrator%alpha_f)
       call weigh(size(residual), [1 - m, m, 1 - f, f], new%motion%inertia, old%motion%inertia, new%motion%internal, &
                  old%motion%internal, residual)

@@ -1,6 +1,7 @@
 !> Books the energies of a step. What the integrators take out of the motion is computed from their
 !> own algebra, not as the remainder, so that the ledger's error shows every other mistake.
 module energy_balance
+  use cohesive_energies, only: stored_beyond_work
   use kinds, only: wp
   use impactors, only: impactor_energy
   use motions, only: motion_t
@@ -149,8 +150,8 @@ contains
                                                                 new%motion%displacement - old%motion%displacement)
     if (size(model%lines) > 0) sums(11:12) = line_products(model, old, new)
     if (model%scene%has_crack_bands()) &
-      sums(13) = new%interfaces%cohesive%stored_beyond_work(model, old%interfaces%cohesive, old%motion%displacement, &
-                                                            new%motion%displacement)
+      sums(13) = stored_beyond_work(new%interfaces%cohesive, model, old%interfaces%cohesive, old%motion%displacement, &
+                                    new%motion%displacement)
     call model%communicator%sum(sums)
     sums = sums*model%mesh%multiplicity
     products = products_t(kinetic=sums(1), mean_internal=sums(2)/2, internal_change=sums(3), inertia_change=sums(4), &

@@ -33,8 +33,6 @@ module cohesive_interfaces
     procedure :: add_forces
     !> Energy dissipated since an earlier state.
     procedure :: dissipation
-    !> Energy stored in a step beyond the work done on the faces.
-    procedure :: stored_beyond_work
     !> Derivative of that energy.
     procedure :: add_dissipation_slopes
     !> Area and energy dissipated.
@@ -168,35 +166,6 @@ contains
     call model%communicator%sum(energy)
     energy = energy*model%mesh%multiplicity
   end function dissipation
-
-  !> Energy that the points store in a step beyond the work of the mean tractions, of this rank; less than nothing where
-  !> they dissipate.
-  pure real(wp) function stored_beyond_work(self, model, old, before, after) result(energy)
-    !> The interfaces at the end of the step
-    class(cohesive_interfaces_t), intent(in) :: self
-    type(model_t), intent(in) :: model
-    !> The interfaces at its start
-    type(cohesive_interfaces_t), intent(in) :: old
-    !> Unknowns before and after it, (5, points)
-    real(wp), intent(in) :: before(:, :), after(:, :)
-    type(cohesive_faces_t) :: faces
-    type(cohesive_point_t) :: start, point
-    real(wp) :: traction(3, 2)
-    integer :: i
-
-    energy = 0
-    if (.not. allocated(self%cohesive)) return
-    do i = 1, model%distribution%owned
-      if (.not. self%cohesive(i)) cycle
-      faces = self%faces_of(model, model%zone(i), old%strength(i))
-      start = old%points(i)
-      call faces%traction(before(1:3, i), start, traction(:, 1), point)
-      start%sliding%limit = self%points(i)%sliding%limit
-      call faces%traction(after(1:3, i), start, traction(:, 2), point)
-      energy = energy + model%contact_area(i)*(faces%stored(after(1:3, i), self%points(i)) - faces%stored( &
-        before(1:3, i), old%points(i)) - dot_product(sum(traction, 2)/2, after(1:3, i) - before(1:3, i)))
-    end do
-  end function stored_beyond_work
 
   !> Area dissipated in each zone of the whole plate: the sum of the points' areas times the part of their toughness
   !> that is gone. The same on every rank.

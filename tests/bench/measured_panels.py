@@ -3,11 +3,10 @@
 Usage: measured_panels.py IMPLAM 6.5J|25J FOLDER [GROUP%KEY=VALUE ...] [-GROUP ...]
        measured_panels.py FOLDER 6.5J|25J
 
-Runs the deck of input/experiments in FOLDER, on cells of 2 mm unless keys say otherwise, without the groups named behind
-a dash (those of one line, such as -ply_damage), and prints peak force,
-largest displacement of the tup, end of contact, projected area, absorbed energy, for 25 J the relative L2 error of the
-force history, what plies and delaminations took, steps and cost. Without IMPLAM it reads what a run has left in
-FOLDER."""
+Runs the deck of input/experiments in FOLDER, on cells of 2 mm unless keys say otherwise, without the groups
+named behind a dash (those of one line, such as -ply_damage), and prints peak force, largest displacement of
+the tup, end of contact, projected area, absorbed energy, for 25 J the relative L2 error of the force history,
+what plies and delaminations took, steps and cost. Without IMPLAM it reads what a run has left in FOLDER."""
 
 import csv
 import json
@@ -45,7 +44,7 @@ def history_error(rows):
     computed = [[row["time"] for row in rows], [row["force"] for row in rows]]
     every = [times[0] + (times[-1] - times[0]) * i / 1000 for i in range(1001)]
     wanted = [value_at(time, times, forces) for time in every]
-    off = [value_at(time, *computed) - force for time, force in zip(every, wanted)]
+    off = [value_at(time, *computed) - force for time, force in zip(every, wanted, strict=True)]
     return (sum(x**2 for x in off) / sum(x**2 for x in wanted))**0.5
 
 
@@ -80,7 +79,8 @@ def show(name, folder):
     if name == "25J":
         figures["force history, relative L2, %"] = 100 * history_error(rows)
     for key, value in last.items():
-        if key.startswith(("energy_", "area_below", "fibre_fail", "matrix_c", "total_it", "refact", "rejected", "step")):
+        if key.startswith(("energy_", "area_below", "fibre_fail", "matrix_c", "total_it", "refact", "rejected",
+                           "step")):
             figures[key] = 1e6 * value if key.startswith("area") else value
     for key, value in figures.items():
         print(f"{key:34} {value:12.5g}")

@@ -1,0 +1,42 @@
+!> Energy that cohesive points make or lose in a step because it follows their path by its ends only.
+module cohesive_energies
+  use cohesive_faces, only: cohesive_faces_t
+  use cohesive_interfaces, only: cohesive_interfaces_t
+  use cohesive_points, only: cohesive_point_t
+  use kinds, only: wp
+  use models, only: model_t
+  implicit none
+  private
+  public :: stored_beyond_work
+
+contains
+
+  !> Energy that the points store in a step beyond the work of the mean tractions, of this rank; less than nothing where
+  !> they dissipate.
+  pure real(wp) function stored_beyond_work(self, model, old, before, after) result(energy)
+    !> The interfaces at the end of the step
+    type(cohesive_interfaces_t), intent(in) :: self
+    type(model_t), intent(in) :: model
+    !> The interfaces at its start
+    type(cohesive_interfaces_t), intent(in) :: old
+    !> Unknowns before and after it, (5, points)
+    real(wp), intent(in) :: before(:, :), after(:, :)
+    type(cohesive_faces_t) :: faces
+    type(cohesive_point_t) :: start, point
+    real(wp) :: traction(3, 2)
+    integer :: i
+
+    energy = 0
+    if (.not. allocated(self%cohesive)) return
+    do i = 1, model%distribution%owned
+      if (.not. self%cohesive(i)) cycle
+      faces = self%faces_of(model, model%zone(i), old%strength(i))
+      start = old%points(i)
+      call faces%traction(before(1:3, i), start, traction(:, 1), point)
+      start%sliding%limit = self%points(i)%sliding%limit
+      call faces%traction(after(1:3, i), start, traction(:, 2), point)
+      energy = energy + model%contact_area(i)*(faces%stored(after(1:3, i), self%points(i)) - faces%stored( &
+        before(1:3, i), old%points(i)) - dot_product(sum(traction, 2)/2, after(1:3, i) - before(1:3, i)))
+    end do
+  end function stored_beyond_work
+end module cohesive_energies
