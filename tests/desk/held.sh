@@ -1,6 +1,6 @@
 #!/bin/bash
 # Runs a program that is held as soon as it has written a checkpoint, until it is told to stop (USR1): a job is then
-# stopped half-way on a machine of any speed. Usage: held.sh CHECKPOINT PROGRAM WORD...
+# stopped half-way on a machine of any speed, if the run takes seconds from there. Usage: held.sh CHECKPOINT PROGRAM WORD...
 checkpoint=$1
 shift
 state() { stat --format='%i %y' "$checkpoint" 2>&1; }

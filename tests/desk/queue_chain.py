@@ -48,6 +48,7 @@ SWEEP = """deck = "swept.nml"
 [grid]
 "impactor.velocity" = [1.5, 2.0, 2.5, 3.0]
 "time.end" = [2e-3]
+"time.step" = [2e-6]
 "output.checkpoint_every" = [0.5e-3]
 """
 
@@ -96,7 +97,8 @@ def main():
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     deck = change_deck(DECK.read_text(encoding="utf-8"), ["output%directory='results'", "case%name='deck'",
-                                                          "time%end=4e-3", "output%checkpoint_every=0.8e-3"])
+                                                          "time%end=4e-3", "time%step=2e-6",
+                                                          "output%checkpoint_every=0.8e-3"])
     (folder / "deck.nml").write_text(deck, encoding="utf-8")
     run([implam, folder / "deck.nml", "--output", folder / "whole"])
     expected = (folder / "whole/deck_history.csv").read_bytes()

@@ -69,7 +69,7 @@ def play(folder, name, code):
 
 def check_chain_of_pbs(implam, folder):
     """Each job ends ahead of its limit and submits the next; the last one none; the history is the undisturbed one."""
-    write_deck(folder, "time%end=2e-3", "output%checkpoint_every=0.5e-3")
+    write_deck(folder, "time%end=2e-3", "time%step=2e-6", "output%checkpoint_every=0.5e-3")
     run([implam, "deck.nml", "--output", "whole"], folder=folder)
     run([implam, "queue", "pbs", "deck.nml", "--chain"], folder=folder)
     # A limit of a few seconds, and a program that is held at each checkpoint: the time is over before the end.
