@@ -113,7 +113,7 @@ contains
       line = to_text(now%step)//' steps ('//to_text(stepper%rejected)//' rejected), '// &
              to_text(now%all_iterations)//' iterations of equilibrium, '//to_text(now%all_force_iterations)// &
              ' of the force, '//to_text(operator%factorizations)//' factorizations, '// &
-             to_text(operator%solves)//' solves.'
+             to_text(operator%solves)//' solves by '//operator%solver%package_used()//'.'
     end associate
   end function summary
 end module run_reports

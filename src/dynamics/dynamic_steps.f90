@@ -74,8 +74,8 @@ contains
     self%renewal = renewal
   end function new_dynamic_step
 
-  !> First guess. A single layer keeps its acceleration. Of stacked layers the velocity stays what it is, touching faces
-  !> stay together, and held jumps stay where they are, also those glued in motion.
+  !> First guess. The velocity stays what it is: a guess by the acceleration makes energy where the contact is stiff.
+  !> Touching faces stay together, and held jumps stay where they are, also those glued in motion.
   subroutine begin(self, model, operator, old, new)
     !> The problem
     class(dynamic_step_t), intent(inout) :: self

@@ -28,7 +28,7 @@ module cholmod_solvers
 
   !> A symmetric matrix and its factor. It has many components because a second solver may stand in.
   type, extends(linear_solver_t) :: cholmod_solver_t
-    !> True: a matrix that is not positive definite is factored by MUMPS. Set before `define`.
+    !> True: a matrix that CHOLMOD can't factor is factored by MUMPS. Set before `define`.
     logical :: falls_back = .false.
     !> Factorizations that MUMPS did
     integer, private :: fallen_back = 0
@@ -178,7 +178,7 @@ contains
   !> taken up again has the same factor.
   subroutine factorize(self, error)
     class(cholmod_solver_t), intent(inout) :: self
-    !> Raised when the matrix is singular, not positive definite without another solver, or memory is short
+    !> Raised when the matrix is singular, or has no factor and no other solver stands in
     type(error_t), allocatable, intent(inout) :: error
     integer(c_int) :: outcome
     logical :: found
@@ -192,7 +192,7 @@ contains
     self%factored = outcome == done
     found = .false.
     if (self%factored) call self%find_mechanism(found)
-    if (outcome == not_positive .and. self%falls_back) then
+    if (outcome /= done .and. self%falls_back) then
       call self%fall_back(error)
     else if (outcome == not_positive) then
       call fail(error, exit_convergence, indefinite)
@@ -339,7 +339,7 @@ contains
 
     name = 'CHOLMOD'
     if (self%fallen_back > 0) name = name//' ('//to_text(self%fallen_back)//' of '//to_text(self%factorizations)// &
-                                     ' factorizations by MUMPS, where the matrix was not positive definite)'
+                                     ' factorizations by MUMPS, where CHOLMOD found none)'
   end function package_used
 
   !> Frees matrix and factor.

@@ -37,8 +37,6 @@ module softening_equilibria
     real(wp), allocatable :: forces(:, :)
     !> Force from outside and its slope
     real(wp) :: load = 0, slope = 0
-    !> Force out of balance that may be left
-    real(wp) :: tolerated = 0
   contains
     !> What Newton's method asks for.
     procedure :: find_force
@@ -87,7 +85,7 @@ contains
       if (.not. added .and. i > 0) exit
       if (added) shares = [shares, 0.0_wp]
       call renew(small, kept, pattern, residual)
-      call balance(small, shares)
+      call small%bring_into_balance(shares)
       call kept%combine(shares, change, carried)
       imbalance = residual - carried + small%load*pattern
       do k = 1, size(points%places)
@@ -123,19 +121,6 @@ contains
     if (.not. allocated(self%forces)) allocate (self%forces(3, size(self%points%list)))
   end subroutine renew
 
-  !> Shares at equilibrium of the small system.
-  subroutine balance(self, shares)
-    !> The system
-    type(small_system_t), intent(inout) :: self
-    !> The shares, (unknowns)
-    real(wp), intent(inout) :: shares(:)
-    real(wp) :: force(size(shares))
-
-    call self%find_force(shares, force)
-    self%tolerated = settled_inside*norm2(force)
-    call self%bring_into_balance(shares)
-  end subroutine balance
-
   !> Force out of balance at some shares.
   subroutine find_force(self, x, force)
     !> The system; receives the forces of the points and that from outside
@@ -161,7 +146,7 @@ contains
     !> The force, (unknowns)
     real(wp), intent(in) :: force(:)
 
-    is_settled = .not. norm2(force) > self%tolerated
+    is_settled = .not. norm2(force) > settled_inside*self%first
   end function is_settled
 
   !> Jumps at some shares.

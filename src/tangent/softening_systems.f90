@@ -22,6 +22,8 @@ module softening_systems
   type, abstract :: softening_system_t
     !> Force from outside; null: none
     class(outside_force_t), pointer :: outside => null()
+    !> Norm of the force out of balance before the first iteration
+    real(wp) :: first = 0
   contains
     !> Force out of balance.
     procedure(force_at), deferred :: find_force
@@ -91,6 +93,7 @@ contains
     integer :: i
 
     call self%find_force(x, force)
+    self%first = norm2(force)
     do i = 1, most_iterations
       if (self%is_settled(force)) exit
       call factorize(self, x, tangent)

@@ -1,4 +1,4 @@
-"""What mesh, step, numerical keys and material figures make of input/peanut.nml: one row of a table each."""
+"""What mesh, step, damping, numerical keys and material figures make of input/peanut.nml: one row of a table each."""
 
 import argparse
 import csv
@@ -35,6 +35,14 @@ def steps(text):
         yield f'steps of {step} us', [f'time%step={step}e-6']
 
 
+def damping(text):
+    """Settings of each step with other spectral radii."""
+    del text
+    for rho in (0, 0.25, 0.75):
+        for step in (16, 8, 4):
+            yield f'rho_inf {rho}, steps of {step} us', [f'time%rho_inf={rho}', f'time%step={step}e-6']
+
+
 def numbers(text):
     """Numerical keys changed by half."""
     yield 'as it is', []
@@ -56,7 +64,7 @@ def materials(text):
         yield f'{key} +10 %', [f'{group}%{key}={1.1*value:g}']
 
 
-STUDIES = {'meshes': meshes, 'steps': steps, 'numbers': numbers, 'materials': materials}
+STUDIES = {'meshes': meshes, 'steps': steps, 'damping': damping, 'numbers': numbers, 'materials': materials}
 
 
 def run(program, text, name):

@@ -5,8 +5,9 @@ Usage: measured_panels.py IMPLAM 6.5J|25J FOLDER [GROUP%KEY=VALUE ...] [-GROUP .
 
 Runs the deck of input/experiments in FOLDER, on cells of 2 mm unless keys say otherwise, without the groups
 named behind a dash (those of one line, such as -ply_damage), and prints peak force, largest displacement of
-the tup, end of contact, projected area, absorbed energy, for 25 J the relative L2 error of the force history,
-what plies and delaminations took, steps and cost. Without IMPLAM it reads what a run has left in FOLDER."""
+the tup, end of contact, projected area, absorbed energy, for 25 J the relative L2 error of the force history and
+the forces at some times beside the measured ones, what plies and delaminations took, steps and cost. Without
+IMPLAM it reads what a run has left in FOLDER."""
 
 import csv
 import json
@@ -19,6 +20,7 @@ DECKS = Path(__file__).resolve().parents[2] / "input" / "experiments"
 KEYS = ["mesh%cell=2e-3", "time%step=20e-6", "solver%tolerance=1e-5", "solver%factorization='cholmod'"]
 MORE_KEYS = {"6.5J": ["mesh%elements=24,36", "time%end=3.5e-3"],
              "25J": ["mesh%elements=26,40", "mesh%core=48e-3,48e-3", "delamination%zone=48e-3,48e-3", "time%end=4e-3"]}
+TIMES = (0.4, 0.6, 0.8, 1.0, 1.1, 1.2, 1.6, 2.0, 2.5, 3.0)
 
 
 def rows_of(path):
@@ -37,10 +39,21 @@ def value_at(time, times, values):
     return 0.0
 
 
+def measured_force():
+    """Times and forces of the 25 J drop."""
+    measured = [list(row.values()) for row in rows_of(DECKS / "t700gc_m21_25J_force_time.csv")]
+    return [row[0] for row in measured], [row[1] for row in measured]
+
+
+def forces_at(rows):
+    """Computed and measured force, kN, at some times in ms."""
+    computed = [row["time"] for row in rows], [row["force"] for row in rows]
+    return {time: [value_at(1e-3*time, *curve)/1e3 for curve in (computed, measured_force())] for time in TIMES}
+
+
 def history_error(rows):
     """Relative L2 error of the force of 25 J over the measured time."""
-    measured = [list(row.values()) for row in rows_of(DECKS / "t700gc_m21_25J_force_time.csv")]
-    times, forces = [row[0] for row in measured], [row[1] for row in measured]
+    times, forces = measured_force()
     computed = [[row["time"] for row in rows], [row["force"] for row in rows]]
     every = [times[0] + (times[-1] - times[0]) * i / 1000 for i in range(1001)]
     wanted = [value_at(time, times, forces) for time in every]
@@ -78,6 +91,8 @@ def show(name, folder):
                "projected area, mm2": 1e6 * last["projected_area"], "absorbed, J": begun - last["energy_impactor"]}
     if name == "25J":
         figures["force history, relative L2, %"] = 100 * history_error(rows)
+        for time, (force, measured) in forces_at(rows).items():
+            figures[f"force at {time} ms, kN"], figures[f"measured at {time} ms, kN"] = force, measured
     for key, value in last.items():
         if key.startswith(("energy_", "area_below", "fibre_fail", "matrix_c", "total_it", "refact", "rejected",
                            "step")):

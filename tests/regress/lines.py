@@ -6,19 +6,16 @@ quarter  a strip and the quarter or half that stands for it: deflection and forc
 ranks    a notched strip that is taken by what it dissipates, on 1 and 2 ranks: to 1e-6
 restart  the same from a checkpoint while damage grows: bitwise"""
 
-import shutil
 import sys
 from pathlib import Path
 
+from restart import check_goes_on
 from solver_runs import (
     DECKS,
-    checkpoint_of,
     exit_code_of,
-    history_of,
     largest_difference,
     read_history,
     require,
-    run,
     run_deck,
     write_deck,
 )
@@ -57,16 +54,8 @@ def check_ranks(implam, folder, launcher):
 
 def check_restart(implam, folder, _):
     """From the last checkpoint, while damage grows."""
-    settings = [*NOTCHED, "output%checkpoint_every=0.7"]
-    whole = run_deck(implam, write_deck(folder / "whole", "enf.nml", settings))
-    copy = folder / "again"
-    shutil.rmtree(copy, ignore_errors=True)
-    shutil.copytree(whole.parent, copy)
-    run([implam, "restart", checkpoint_of(copy)], folder=copy)
-    rows = read_history(whole)
+    rows = check_goes_on(implam, folder, "enf.nml", [*NOTCHED, "output%checkpoint_every=0.7"])
     require(rows["load_factor"][-1] < max(rows["load_factor"]), "The load does not fall.")
-    require(history_of(copy).read_bytes() == whole.read_bytes(),
-            "The history goes on otherwise than without a restart.")
 
 
 def trial(kind, implam, folder, *launcher):

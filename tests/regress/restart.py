@@ -82,6 +82,13 @@ def require_same(path, reference, what):
     raise TrialError(f"{what}: the history differs from the uninterrupted one by {difference:.2e} ({column}).")
 
 
+def check_goes_on(implam, folder, deck, settings):
+    """Fail unless a run goes on to the last bit from its last checkpoint; return its history."""
+    reference, again = run_split(implam, folder / "whole", deck, settings)
+    require_same(again, reference, deck)
+    return read_history(reference)
+
+
 def require_close(path, reference, what):
     """Fail unless two histories agree to the tolerance; iterations may differ."""
     expected = read_history(reference)

@@ -7,11 +7,11 @@ grows    a clamped plate that delaminates: the force is that of the closed form,
          grows fourfold; the ledger closes to 1e-6
 restart  the same from a checkpoint while it grows: bitwise"""
 
-import shutil
 import sys
 from pathlib import Path
 
-from solver_runs import checkpoint_of, exit_code_of, history_of, read_history, require, run, run_deck, write_deck
+from restart import check_goes_on
+from solver_runs import exit_code_of, read_history, require, run_deck, write_deck
 
 STIFFNESS, TRAVEL, THRESHOLD = 1e9, 6e-3, 1756.0
 
@@ -51,13 +51,7 @@ def check_grows(implam, folder):
 
 def check_restart(implam, folder):
     """From the last checkpoint."""
-    whole = run_deck(implam, write_deck(folder / "whole", "indented.nml", ["output%checkpoint_every=0.6"]))
-    copy = folder / "again"
-    shutil.rmtree(copy, ignore_errors=True)
-    shutil.copytree(whole.parent, copy)
-    run([implam, "restart", checkpoint_of(copy)], folder=copy)
-    require(history_of(copy).read_bytes() == whole.read_bytes(),
-            "The history goes on otherwise than without a restart.")
+    check_goes_on(implam, folder, "indented.nml", ["output%checkpoint_every=0.6"])
 
 
 def trial(kind, implam, folder):
