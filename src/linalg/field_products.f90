@@ -3,7 +3,7 @@ module field_products
   use kinds, only: wp
   implicit none
   private
-  public :: products_with, add_combination
+  public :: products_with, products_of, add_combination
 
   interface
     !> BLAS: y = alpha A x + beta y, or with the transpose of A.
@@ -20,6 +20,21 @@ module field_products
       !> Result
       real(wp), intent(inout) :: y(*)
     end subroutine dgemv
+
+    !> BLAS: C = alpha A B + beta C, or with transposes.
+    subroutine dgemm(transa, transb, m, n, k, alpha, a, lda, b, ldb, beta, c, ldc)
+      import :: wp
+      !> 'N': the matrix itself, 'T': its transpose
+      character, intent(in) :: transa, transb
+      !> Rows and columns of C, length of the sums, leading dimensions
+      integer, intent(in) :: m, n, k, lda, ldb, ldc
+      !> Factors
+      real(wp), intent(in) :: alpha, beta
+      !> Matrices
+      real(wp), intent(in) :: a(lda, *), b(ldb, *)
+      !> Result
+      real(wp), intent(inout) :: c(ldc, *)
+    end subroutine dgemm
   end interface
 
 contains
@@ -41,6 +56,22 @@ contains
     if (rows > 0 .and. size(products) > 0) &
       call dgemv('T', rows, size(products), 1.0_wp, fields, length, field, 1, 0.0_wp, products, 1)
   end subroutine products_with
+
+  !> Products of several fields with several others.
+  subroutine products_of(number, length, fields, others, products)
+    !> How many fields there are of each
+    integer, intent(in) :: number
+    !> Values of a field
+    integer, intent(in) :: length
+    !> The fields, (length, number)
+    real(wp), intent(in) :: fields(length, *), others(length, *)
+    !> Sum over the values of field times other, field by field for each other, (number squared)
+    real(wp), intent(out) :: products(*)
+
+    products(:number**2) = 0
+    if (length > 0 .and. number > 0) &
+      call dgemm('T', 'N', number, number, length, 1.0_wp, fields, length, others, length, 0.0_wp, products, number)
+  end subroutine products_of
 
   !> Adds a combination of fields to one.
   subroutine add_combination(shares, length, fields, field)

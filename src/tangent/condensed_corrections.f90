@@ -18,6 +18,9 @@ module condensed_corrections
   real(wp), parameter :: noticed = 1.0e-4_wp
   !> Unknowns at most, those that join together at most, and numbers in the operator's answers to forces on them.
   integer, parameter :: most_unknowns = 500, most_joining = 300
+  !> Unknowns of failed points that join together at most. Their faces open or close, and do so again in the next step,
+  !> while answers to the forces of a front serve many steps.
+  integer, parameter :: most_clapping = 50
   real(wp), parameter :: most_numbers = 1.0e8_wp
   !> Numbers that tell of an unknown.
   integer, parameter :: told = 18
@@ -194,7 +197,7 @@ contains
     integer, allocatable, intent(out) :: equations(:)
     !> True: there is no room for all of them
     logical, intent(out) :: crowded
-    real(wp) :: error(3, model%distribution%owned)
+    real(wp) :: error(3, model%distribution%owned), clapping(1)
     integer :: i
 
     call old%mismatch(model, operator%stiffness_factor, operator%present, displacement, correction, error)
@@ -206,8 +209,12 @@ contains
     end do
     call model%communicator%allgather(pack(operator%numbering%equation(1:3, :size(error, 2)), error > noticed), &
                                       equations)
-    crowded = size(equations) > min(most_joining, min(most_unknowns, int(most_numbers/operator%numbering%total)) &
-                                    - self%columns)
+    clapping = sum([(count(error(:, i) > noticed), i=1, size(error, 2))], &
+                   mask=old%points(:size(error, 2))%damage >= 1)
+    call model%communicator%sum(clapping)
+    crowded = clapping(1) > most_clapping .or. &
+              size(equations) > min(most_joining, min(most_unknowns, int(most_numbers/operator%numbering%total)) &
+                                                      - self%columns)
   end subroutine wanting
 
   !> Leaves out what is an unknown already.

@@ -10,6 +10,8 @@ module plate_answers
 
   !> Work of a new motion over what it was before the kept ones were taken out of it below which it is one of them.
   real(wp), parameter :: dependent = 1.0e-10_wp
+  !> The same above which they need not be taken out again (Daniel et al., Math. Comp. 30, 1976).
+  real(wp), parameter :: free_enough = 0.5_wp
 
   !> A plate that answers to forces in proportion.
   type, abstract :: linear_plate_t
@@ -72,8 +74,10 @@ module plate_answers
     procedure :: works
     !> Work of forces on one motion.
     procedure, private :: work_on
-    !> A combination of motions, and of their forces.
-    procedure :: combine
+    !> A combination of motions.
+    procedure :: motion_of
+    !> The same of their forces.
+    procedure :: forces_of
   end type plate_answers_t
 
 contains
@@ -90,7 +94,7 @@ contains
     if (.not. allocated(self%motions)) allocate (self%motions(5, points, room), self%forces(5, points, room))
   end subroutine clear
 
-  !> Adds a motion and its forces, freed from those kept, twice for the digits.
+  !> Adds a motion and its forces, freed from those kept, twice where digits are lost.
   subroutine add(self, plate, motion, forces, added)
     !> The motions
     class(plate_answers_t), intent(inout) :: self
@@ -110,11 +114,12 @@ contains
     new_forces = forces
     first = self%work_on(plate, new_motion, new_forces)
     do pass = 1, 2
-      shares = -self%works(plate, new_forces)
+      shares = -self%works(plate, new_forces, 1)
       call add_combination(shares, size(new_motion), self%motions, new_motion)
       call add_combination(shares, size(new_forces), self%forces, new_forces)
+      work = self%work_on(plate, new_motion, new_forces)
+      if (work > free_enough*first) exit
     end do
-    work = self%work_on(plate, new_motion, new_forces)
     added = work > dependent*first
     if (.not. added) return
     self%kept = self%kept + 1
@@ -137,34 +142,48 @@ contains
     work = works(1)
   end function work_on
 
-  !> Work of forces on each motion, the same on every rank.
-  function works(self, plate, forces)
+  !> Work of forces on motions, the same on every rank.
+  function works(self, plate, forces, first)
     !> The motions
     class(plate_answers_t), intent(in) :: self
     !> The plate
     class(linear_plate_t), intent(in) :: plate
     !> Forces, (5, local points)
     real(wp), intent(in) :: forces(:, :)
-    !> Work, (kept)
+    !> The motion to begin with
+    integer, intent(in) :: first
+    !> Work, (motions from that on)
     real(wp), allocatable :: works(:)
 
-    allocate (works(self%kept))
-    call products_with(forces, 5*self%owned, size(self%motions(:, :, 1)), self%motions, works)
+    allocate (works(self%kept - first + 1))
+    if (size(works) == 0) return
+    call products_with(forces, 5*self%owned, size(self%motions(:, :, 1)), self%motions(:, :, first:), works)
     call plate%sum(works)
   end function works
 
-  !> A combination of the motions, and of their forces.
-  subroutine combine(self, shares, motion, forces)
+  !> A combination of the motions.
+  subroutine motion_of(self, shares, motion)
     !> The motions
     class(plate_answers_t), intent(in) :: self
     !> Share of each, (kept)
     real(wp), intent(in) :: shares(:)
-    !> The combinations, (5, local points)
-    real(wp), intent(out) :: motion(:, :), forces(:, :)
+    !> The combination, (5, local points)
+    real(wp), intent(out) :: motion(:, :)
 
     motion = 0
-    forces = 0
     call add_combination(shares, size(motion), self%motions, motion)
+  end subroutine motion_of
+
+  !> A combination of the forces.
+  subroutine forces_of(self, shares, forces)
+    !> The motions
+    class(plate_answers_t), intent(in) :: self
+    !> Share of each, (kept)
+    real(wp), intent(in) :: shares(:)
+    !> The combination, (5, local points)
+    real(wp), intent(out) :: forces(:, :)
+
+    forces = 0
     call add_combination(shares, size(forces), self%forces, forces)
-  end subroutine combine
+  end subroutine forces_of
 end module plate_answers

@@ -15,7 +15,7 @@ module softening_corrections
   public :: softening_memory_t
 
   !> Answers of one correction at most, and of a step until the operator is renewed, which costs about as much.
-  integer, parameter :: most_answers = 30, most_kept = 40
+  integer, parameter :: most_answers = 30, most_kept = 30
 
   !> What earlier corrections of a step have found.
   type :: softening_memory_t

@@ -7,7 +7,7 @@
 !> remembers earlier answers, so the iteration of equilibrium around it starts from what the last one found.
 module softening_equilibria
   use errors, only: error_t
-  use field_products, only: add_combination, products_with
+  use field_products, only: add_combination, products_of, products_with
   use kinds, only: wp
   use outside_forces, only: outside_force_t
   use plate_answers, only: linear_plate_t, plate_answers_t
@@ -86,7 +86,7 @@ contains
       if (added) shares = [shares, 0.0_wp]
       call renew(small, kept, pattern, residual)
       call small%bring_into_balance(shares)
-      call kept%combine(shares, change, carried)
+      call kept%forces_of(shares, carried)
       imbalance = residual - carried + small%load*pattern
       do k = 1, size(points%places)
         associate (place => points%places(k))
@@ -97,6 +97,7 @@ contains
       call plate%answer(imbalance, answer, error)
       if (allocated(error)) return
     end do
+    call kept%motion_of(shares, change)
   end subroutine find_equilibrium
 
   !> Renews the small system after answers have come.
@@ -110,15 +111,17 @@ contains
     real(wp), allocatable :: jumps(:, :, :)
     integer :: had
 
-    had = 0
-    if (allocated(self%jumps)) had = size(self%jumps, 3)
+    if (.not. allocated(self%jumps)) then
+      allocate (self%jumps(3, size(self%points%list), 0), self%forces(3, size(self%points%list)))
+      allocate (self%unit_works(0), self%works(0))
+    end if
+    had = size(self%jumps, 3)
     allocate (jumps(3, size(self%points%list), kept%kept))
-    if (had > 0) jumps(:, :, :had) = self%jumps
+    jumps(:, :, :had) = self%jumps
     jumps(:, :, had + 1:) = kept%motions(1:3, self%points%places, had + 1:kept%kept)
     call move_alloc(jumps, self%jumps)
-    self%unit_works = kept%works(self%plate, pattern)
-    self%works = kept%works(self%plate, residual)
-    if (.not. allocated(self%forces)) allocate (self%forces(3, size(self%points%list)))
+    self%unit_works = [self%unit_works, kept%works(self%plate, pattern, had + 1)]
+    self%works = [self%works, kept%works(self%plate, residual, had + 1)]
   end subroutine renew
 
   !> Force out of balance at some shares.
@@ -181,15 +184,14 @@ contains
     allocate (forces, mold=jumps)
     do k = 1, size(x)
       do i = 1, size(found)
-        forces(:, i, k) = matmul(slopes(:, :, i), jumps(:, i, k))
+        forces(:, i, k) = jumps(1, i, k)*slopes(:, 1, i) + jumps(2, i, k)*slopes(:, 2, i) + &
+                          jumps(3, i, k)*slopes(:, 3, i)
       end do
     end do
-    associate (rows => 3*size(found), unknowns => size(x))
-      sums = reshape(matmul(transpose(reshape(jumps, [rows, unknowns])), reshape(forces, [rows, unknowns])), &
-                     [unknowns**2])
-      call self%plate%sum(sums)
-      matrix = reshape(sums, [unknowns, unknowns])
-    end associate
+    allocate (sums(size(x)**2))
+    call products_of(size(x), 3*size(found), jumps, forces, sums)
+    call self%plate%sum(sums)
+    matrix = reshape(sums, [size(x), size(x)])
     do k = 1, size(x)
       matrix(:, k) = matrix(:, k) - self%slope*self%unit_works(k)*self%unit_works
       matrix(k, k) = matrix(k, k) + 1

@@ -21,9 +21,9 @@ MATERIAL = ('E1', 'E2', 'G12', 'G13', 'G23', 'YT', 'S12', 'G_Ic', 'G_IIc')
 
 
 def meshes(text):
-    """Settings of each mesh: cells of 1.6, .8 and .4 mm on the same patch, core and zone."""
+    """Settings of each mesh: cells from 1.6 to .4 mm on the same patch, core and zone."""
     del text
-    for cell in (1.6, 0.8, 0.4):
+    for cell in (1.6, 1.2, 0.8, 0.6, 0.48, 0.4):
         counts = [round(side/2/cell) + rest for side, rest in zip(SIDES, OUTSIDE, strict=True)]
         yield f'cells of {cell} mm', [f'mesh%cell={cell}e-3', 'mesh%elements={}, {}'.format(*counts)]
 
