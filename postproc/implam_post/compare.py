@@ -7,10 +7,11 @@ from functools import cache
 from pathlib import Path
 
 from implam_post.deck import read_deck
-from implam_post.errors import EXIT_DONE, EXIT_USAGE, CommandParser, run
+from implam_post.errors import EXIT_DONE, EXIT_USAGE, CommandParser, FileError, run
 from implam_post.expectations import FORMAT, Expectation, read_expectations
 from implam_post.history import History, read_history
-from implam_post.quantities import COLUMN_QUANTITIES, QUANTITIES, rms_force_difference
+from implam_post.look import add_options, look_of
+from implam_post.quantities import AGAINST_QUANTITIES, COLUMN_QUANTITIES, QUANTITIES
 from implam_post.semi_analytic import semi_analytic
 
 
@@ -44,8 +45,8 @@ def compare(history: History, expectations: Sequence[Expectation], folder: Path 
         return read_history(path) if path.suffix == ".csv" else semi_analytic(read_deck(path))
 
     def measure(expected: Expectation) -> float:
-        if expected.quantity == "rms_force":
-            return rms_force_difference(history, reference(expected.against))
+        if expected.quantity in AGAINST_QUANTITIES:
+            return AGAINST_QUANTITIES[expected.quantity](history, reference(expected.against))
         if expected.quantity == "at":
             return history.at(expected.column, expected.time)
         if expected.column:
@@ -67,10 +68,16 @@ def heading(width: int) -> str:
 
 
 def _command(options: argparse.Namespace) -> int:
-    """Compare and print."""
-    expected = read_expectations(options.expect).variant(options.variant).expectations
-    comparisons = compare(read_history(options.history), expected, options.expect.parent)
+    """Compare, print and draw."""
+    told, history = read_expectations(options.expect), read_history(options.history)
+    if options.plot and not told.curves:
+        raise FileError(f"--plot needs a [[curve]] in {options.expect}.")
+    comparisons = compare(history, told.variant(options.variant).expectations, options.expect.parent)
     print(table(comparisons))
+    if options.plot:
+        # matplotlib takes a while to load.
+        from implam_post.curves import plot_curves
+        print(plot_curves(history, told.curves, options.plot, look_of(options, [options.history])))
     return EXIT_DONE if all(comparison.passed for comparison in comparisons) else EXIT_USAGE
 
 
@@ -81,6 +88,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("history", type=Path, metavar="HISTORY.csv", help="history written by implam")
     parser.add_argument("expect", type=Path, metavar="EXPECT.toml", help="what is expected; the format is told below")
     parser.add_argument("--variant", metavar="NAME", help="the variant that was run, if the file has several")
+    parser.add_argument("--plot", type=Path, metavar="FILE",
+                        help="draw the history over each [[curve]] into a picture (PNG, PDF or SVG)")
+    add_options(parser)
     return run(_command, parser, arguments)
 
 

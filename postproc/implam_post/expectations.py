@@ -9,7 +9,7 @@ from pathlib import Path
 from implam_post.deck_text import KeyPath, key_path
 from implam_post.errors import FileError, ImplamError
 from implam_post.files import read_text
-from implam_post.quantities import COLUMN_QUANTITIES, QUANTITIES
+from implam_post.quantities import AGAINST_QUANTITIES, COLUMN_QUANTITIES, QUANTITIES
 
 FORMAT = """
 The file of expectations, of which at least one is needed:
@@ -38,7 +38,10 @@ The file of expectations, of which at least one is needed:
     quantity = "rms_force"           # over the first contact, as a fraction of the peak
     against = "deck.nml"             # a deck: its semi-analytic answer; else another history, beside this file or,
     value = 0.0                      # if it isn't there, beside the history; deck.nml there is the deck of the run
-    absolute = 0.01
+    absolute = 0.01                  # l2_force: relative L2 difference over the reference's time, as of a measured one
+
+    [[curve]]                        # if wanted: a measured curve for --plot, a CSV beside this file; its first two
+    file = "measured.csv"            # columns are columns of the history: time, force, deflection, ...
 
     [[variant]]                      # if wanted: runs of the deck with keys set anew
     name = "fast"
@@ -67,7 +70,7 @@ class Expectation:
 
     def __post_init__(self) -> None:
         """Refuse entries that could not be measured or could not fail."""
-        known = [*QUANTITIES, *COLUMN_QUANTITIES, "at", "rms_force"]
+        known = [*QUANTITIES, *COLUMN_QUANTITIES, "at", *AGAINST_QUANTITIES]
         tolerances = [tolerance for tolerance in (self.relative, self.absolute) if tolerance is not None]
         if self.quantity not in known:
             raise FileError(f"'{self.quantity}' is none of the quantities {', '.join(known)}.")
@@ -80,8 +83,8 @@ class Expectation:
             raise FileError(f"{self.label}: a column goes with {columns}, and with them only.")
         if (self.quantity == "at") != _is_number(self.time):
             raise FileError(f"{self.label}: a time goes with the quantity at, and with it only.")
-        if (self.quantity == "rms_force") == (not self.against):
-            raise FileError(f"{self.label}: against goes with the quantity rms_force, and with it only.")
+        if (self.quantity in AGAINST_QUANTITIES) == (not self.against):
+            raise FileError(f"{self.label}: against goes with {' and '.join(AGAINST_QUANTITIES)}, and with them only.")
 
     @property
     def label(self) -> str:
@@ -107,12 +110,13 @@ class Variant:
 
 @dataclass(frozen=True)
 class Expectations:
-    """A file of expectations; `common` are those at the top."""
+    """A file of expectations; `common` are those at the top, `curves` files of measured curves."""
 
     path: Path
     deck: str
     common: list[Expectation] = field(default_factory=list)
     variants: list[Variant] = field(default_factory=list)
+    curves: list[Path] = field(default_factory=list)
 
     def variant(self, name: str | None = None) -> Variant:
         """Return a variant by its name, which may be left out if there is only one."""
@@ -136,14 +140,14 @@ def read_expectations(path: Path | str) -> Expectations:
 def parse_expectations(path: Path, content: dict) -> Expectations:
     """Return what the content of a file means."""
     deck, common = content.pop("deck", f"{path.stem}.nml"), _entries(content.pop("expect", []))
-    tables = content.pop("variant", [{"name": AS_IT_IS}])
+    tables, curves = content.pop("variant", [{"name": AS_IT_IS}]), _curves(content.pop("curve", []), path.parent)
     if content or not isinstance(deck, str) or not isinstance(tables, list):
-        raise FileError("only deck, [[expect]] and [[variant]] entries are known.")
+        raise FileError("only deck, [[expect]], [[variant]] and [[curve]] entries are known.")
     variants = [_variant(table, common) for table in tables]
     names = [variant.name for variant in variants]
     if len(set(names)) < len(names) or not names:
         raise FileError("variants need names of their own.")
-    return Expectations(path, deck, common, variants)
+    return Expectations(path, deck, common, variants, curves)
 
 
 def _variant(table: dict, common: list[Expectation]) -> Variant:
@@ -163,6 +167,13 @@ def _variant(table: dict, common: list[Expectation]) -> Variant:
         raise FileError(f"nothing is expected{'' if name == AS_IT_IS else f' of the variant {name}'}: an [[expect]] "
                         "entry is needed.")
     return Variant(name, keys, expectations)
+
+
+def _curves(tables: object, folder: Path) -> list[Path]:
+    """Return the files of measured curves."""
+    if not isinstance(tables, list) or not all(isinstance(table, dict) and set(table) == {"file"} for table in tables):
+        raise FileError("curve is a list of tables with a file: [[curve]].")
+    return [folder / str(table["file"]) for table in tables]
 
 
 def _entries(tables: object) -> list[Expectation]:

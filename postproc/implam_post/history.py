@@ -46,6 +46,14 @@ class History:
 
 def read_history(path: Path | str) -> History:
     """Read a history from the solver's CSV; lines that begin with # are comments."""
+    history = read_columns(path)
+    if not np.all(np.diff(history.time) > 0):
+        raise FileError(f"the times of the history {path} do not increase.")
+    return history
+
+
+def read_columns(path: Path | str) -> History:
+    """Read columns of numbers under their names, in any order of the rows and with or without a time."""
     path = Path(path)
     try:
         lines = [line for line in path.read_text(encoding="utf-8").splitlines() if line.strip() and line[0] != "#"]
@@ -61,7 +69,4 @@ def read_history(path: Path | str) -> History:
         raise FileError(f"the history {path} has unequal rows or a cell that is no number ({error}).") from None
     if table.shape[1] != len(names):
         raise FileError(f"the history {path} has {table.shape[1]} columns under {len(names)} names.")
-    history = History(dict(zip(names, table.T, strict=True)), str(path))
-    if not np.all(np.diff(history.time) > 0):
-        raise FileError(f"the times of the history {path} do not increase.")
-    return history
+    return History(dict(zip(names, table.T, strict=True)), str(path))

@@ -48,11 +48,12 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def look_of(options: argparse.Namespace, results: Iterable[Path]) -> Look:
     """Return the look that the options ask for; the system of units is that of the first deck that tells one."""
-    dots = options.dpi or (80 if options.save else 150)
+    dots = options.dpi or (80 if getattr(options, "save", None) else 150)
     if not (10 <= dots <= 2400 and 3 <= options.font_size <= 60):
         raise ImplamError("--dpi takes 10 to 2400, --font-size 3 to 60.")
     system = options.units or next((name for path in results if (name := _system_in(path))), "")
-    return Look(system, dots, options.font_size, options.format, getattr(options, "projected", "depth"))
+    return Look(system, dots, options.font_size, getattr(options, "format", "png"),
+                getattr(options, "projected", "depth"))
 
 
 def deck_in(path: Path) -> Deck | None:

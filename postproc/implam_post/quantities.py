@@ -150,6 +150,18 @@ def rms_force_difference(history: History, reference: History) -> float:
     return float(np.sqrt(weights @ difference**2 / np.sum(weights)) / np.max(reference["force"]))
 
 
+def l2_force_difference(history: History, reference: History) -> float:
+    """Return the relative L2 difference of force over the reference's time; NaN if the history ends before it."""
+    grid = reference.time
+    if len(grid) < 2 or history.time[-1] * (1 + 1e-6) < grid[-1]:
+        return np.nan
+    weights = np.gradient(grid)
+    # A history begins with its first step, before which there is no force.
+    difference = np.interp(grid, history.time, history["force"], left=0) - reference["force"]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return float(np.sqrt(weights @ difference**2 / (weights @ reference["force"]**2)))
+
+
 QUANTITIES: dict[str, Callable[[History], float]] = {
     "peak_force": lambda history: peak(history, "force").value,
     "peak_force_time": lambda history: peak(history, "force").time,
@@ -176,4 +188,9 @@ COLUMN_QUANTITIES: dict[str, Callable[[np.ndarray], float]] = {
     "max": lambda values: float(np.max(values)),
     "min": lambda values: float(np.min(values)),
     "max_abs": lambda values: float(np.max(np.abs(values))),
+}
+
+AGAINST_QUANTITIES: dict[str, Callable[[History, History], float]] = {
+    "rms_force": rms_force_difference,
+    "l2_force": l2_force_difference,
 }

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from implam_post import check_impact, compare, plot
-from implam_post.history import ENERGIES
+from implam_post.history import ENERGIES, read_history
 from implam_post.semi_analytic import semi_analytic
 from tests.decks import SUN_CHEN, deck
 
@@ -128,6 +128,25 @@ class CommandTest(unittest.TestCase):
             with self.subTest(entry):
                 self.assertEqual(self.expect("[[expect]]\n" + entry)[0], 4)
         self.assertEqual(self.expect("")[0], 4)
+
+    def test_compare_draws_measured_curves(self) -> None:
+        """A picture of each curve; without one, or with columns that no axis is known of, a sentence."""
+        hit = '[[expect]]\nquantity="l2_force"\nagainst="measured.csv"\nvalue=0\nabsolute=0.01\n'
+        curve = '[[curve]]\nfile="measured.csv"\n'
+        picture, table, measured = (self.folder / name for name in ("over.png", "expect.toml", "measured.csv"))
+        sun_chen = read_history(self.history)
+        rows = zip(sun_chen.time[::2], sun_chen["force"][::2], strict=True)
+        measured.write_text("# rows\ntime,force\n" + "".join(f"{time:.6g},{force:.6g}\n" for time, force in rows))
+        table.write_text(hit + curve)
+        code, text = self.run_quietly(compare.main, self.history, table, "--plot", picture)
+        self.assertEqual((code, text.count(" pass")), (0, 1), text)
+        self.assertGreater(picture.stat().st_size, 10_000)
+        table.write_text(hit)
+        self.assertEqual(self.run_quietly(compare.main, self.history, table, "--plot", picture)[0], 4)
+        for columns in ("time,step", "force"):
+            (self.folder / "other.csv").write_text(f"{columns}\n" + "0" + ",0" * columns.count(",") + "\n")
+            table.write_text(hit + '[[curve]]\nfile="other.csv"\n')
+            self.assertEqual(self.run_quietly(compare.main, self.history, table, "--plot", picture)[0], 4, columns)
 
     def test_broken_histories(self) -> None:
         """A cut row, a word and times that run backwards are errors of the file."""

@@ -5,7 +5,14 @@ import unittest
 import numpy as np
 
 from implam_post.history import ENERGIES, History
-from implam_post.quantities import QUANTITIES, contacts, peak, rms_force_difference, second_peak
+from implam_post.quantities import (
+    QUANTITIES,
+    contacts,
+    l2_force_difference,
+    peak,
+    rms_force_difference,
+    second_peak,
+)
 
 
 def pulses(*forces: float) -> History:
@@ -90,6 +97,13 @@ class QuantitiesTest(unittest.TestCase):
         self.assertEqual(rms_force_difference(reference, reference), 0)
         self.assertAlmostEqual(rms_force_difference(pulses(1, 3, 5, 3, 1, 0), reference), 0.25, delta=1e-14)
         self.assertTrue(np.isnan(rms_force_difference(pulses(0, 2, 4), reference)))
+
+    def test_l2_force_difference(self) -> None:
+        """A tenth more force differs by a tenth; NaN if the history ends before the reference."""
+        reference = pulses(0, 2, 4, 2, 0, 0)
+        self.assertAlmostEqual(l2_force_difference(pulses(0, 2.2, 4.4, 2.2, 0, 0, 0), reference), 0.1, delta=1e-14)
+        self.assertAlmostEqual(l2_force_difference(pulses(0, 2, 4, 2, 1, 0), reference), 24**-0.5, delta=1e-14)
+        self.assertTrue(np.isnan(l2_force_difference(pulses(0, 2, 4), reference)))
 
     def test_nan_stays_nan(self) -> None:
         """One NaN among the forces spoils every number made from them."""

@@ -284,7 +284,7 @@ def growth(program, arguments):
     decks = pathlib.Path(__file__).parents[2]/'input'
     crossply = decks.joinpath('reference/crossply_2mm.nml').read_text()
     crossply = crossply.replace("'two_state'", "'vcct'").replace("'one_per_step'", "'equilibrium'")
-    runs = [('crossply_threshold', decks.joinpath('crossply_threshold.nml').read_text())]
+    runs = [('threshold_1mm', decks.joinpath('reference/threshold_1mm.nml').read_text())]
     runs += [('crossply_2mm', re.sub(r'step=\S+', f'step={step}e-6', crossply)) for step in arguments.step]
     print('| deck | step, us | force in steps with growth, N | area, mm^2 | released over booked | algorithmic, J |')
     print('|---|---|---|---|---|---|')

@@ -6,12 +6,14 @@ thresholds  a clamped isotropic plate on cells of 2, 1 and .5 mm, with and witho
             while the delamination grows over the closed form, its scatter, and the radius along x and a diagonal
 steps       the same with starter, steps of 20, 10 and 5 us
 crossply    the force when the area of reference/crossply_cohesive_2mm.nml passes a value, cells of 2 and 1 mm
+impact      input/crossply_threshold.nml, from nothing: cells of 2.5 and 1.25 mm, steps of 20 and 10 us, other strengths
 strips      pure end moments on strips of two arms, shear and opening, fine and coarse cells: moment over the exact one
 numbers     numerical keys of reference/crossply_cohesive_2mm.nml changed by half: what they make of its last row
 
 Fields are read with h5py."""
 
 import csv
+import itertools
 import math
 import os
 import pathlib
@@ -146,6 +148,24 @@ def numbers(program):
         crossply_row(program, name, settings)
 
 
+def impact(program):
+    """A drop weight: peak force, force while the area grows, area."""
+    text = (ROOT/'input/crossply_threshold.nml').read_text(encoding='utf-8')
+    print('| set | peak force, N | mean while growing, N | area, mm^2 | integrators over the impact | processor, s |\n'
+          + '|---'*6 + '|')
+    for name, settings in (('cells of 2.5 mm', ['mesh%cell=2.5e-3', 'mesh%elements=18, 18']), ('as it is', []),
+                           ('steps of 10 us', ['time%step=10e-6']), ('strengths of 40 MPa', [
+                               'material%S12=40e6', 'material%YT=40e6'])):
+        with tempfile.TemporaryDirectory() as folder:
+            rows, seconds = run(program, change_deck(text, settings), folder)
+        steps = [(later['force'], later['delaminated_area'] - row['delaminated_area'])
+                 for row, later in itertools.pairwise(rows) if row['delaminated_area'] > 100e-6]
+        mean = sum(force*area for force, area in steps)/sum(area for _, area in steps)
+        print(f'| {name} | {max(row["force"] for row in rows):.0f} | {mean:.0f} | '
+              f'{1e6*rows[-1]["delaminated_area"]:.0f} | {rows[-1]["energy_algorithmic"]/(2*1.4**2):.1e} | '
+              f'{seconds:.0f} |', flush=True)
+
+
 def strips(program):
     """Two modes, two kinds of cells."""
     print('| moments, strength, cells | mean over exact | largest |\n|---|---|---|')
@@ -163,7 +183,8 @@ def strips(program):
                   f'{max(grown):.4f} |', flush=True)
 
 
-STUDIES = {'thresholds': thresholds, 'steps': steps, 'crossply': crossply, 'strips': strips, 'numbers': numbers}
+STUDIES = {'thresholds': thresholds, 'steps': steps, 'crossply': crossply, 'impact': impact, 'strips': strips,
+           'numbers': numbers}
 
 
 def main(program, *studies):
