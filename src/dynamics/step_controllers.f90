@@ -26,6 +26,8 @@ module step_controllers
   integer, parameter, public :: equal_of_gear = 4
   !> Steps that must have gone well before the step grows: in an impact, where waves may come back, and after it.
   integer, parameter :: quiet_in_impact = 24, quiet_after = 8
+  !> Ratio from which a step counts as longer than another one.
+  real(wp), parameter :: longer_than = 1 + 1.0e-9_wp
   !> Parts of the time to the first event of which steps that follow the error are halves of halves, at most.
   integer, parameter :: most_parts = 8
 
@@ -46,9 +48,13 @@ module step_controllers
     real(wp) :: error = 0
     !> Doublings of the step that wait until they fit into what is left to the next event
     integer :: levels = 0
+    !> First of the steps that follow the error, below which none of them is shortened once anything has broken
+    real(wp) :: first = 0
   contains
     !> First step of those that follow the error.
     procedure :: begin
+    !> Shortest step that an error asks for.
+    procedure :: shortest
     !> Learns from the error of an accepted step.
     procedure :: follow_error
     !> Shortens the step after one with too large an error.
@@ -158,10 +164,26 @@ contains
       self%wanted = self%wanted/2
     end do
     self%wanted = self%wanted*remaining/max(1.0_wp, ceiling_of(parts*(1 - 1.0e-9_wp)))
+    self%first = self%wanted
   end subroutine begin
 
+  !> Shortest step that an error asks for: the smallest of the deck, or once anything has broken the first of the run.
+  !> What breaks at once sends out waves as short as the mesh allows, and no step gets their error below the tolerance
+  !> without following each of them.
+  pure real(wp) function shortest(self, stepping, broken)
+    !> The controller
+    class(step_controller_t), intent(in) :: self
+    !> How steps are taken
+    type(stepping_t), intent(in) :: stepping
+    !> True once plies have failed or delaminations have grown
+    logical, intent(in) :: broken
+
+    shortest = stepping%time%step_min
+    if (broken) shortest = max(shortest, self%first)
+  end function shortest
+
   !> Learns from the error of an accepted step: halves the step, or doubles it once that pays for a factorization.
-  pure subroutine follow_error(self, stepping, step, error, remaining, is_over, gear)
+  pure subroutine follow_error(self, stepping, step, error, remaining, is_over, gear, broken)
     !> The controller
     class(step_controller_t), intent(inout) :: self
     !> How steps are taken
@@ -174,8 +196,10 @@ contains
     logical, intent(in) :: is_over
     !> True: Gear's method moves the impactor
     logical, intent(in) :: gear
+    !> True once plies have failed or delaminations have grown
+    logical, intent(in) :: broken
     integer :: levels
-    real(wp) :: spare
+    real(wp) :: spare, shortest
 
     if (step > 1.5_wp*self%part*self%wanted) then
       self%wanted = step/self%part
@@ -183,12 +207,14 @@ contains
     end if
     self%quiet = self%quiet + 1
     self%error = max(self%error, error)
-    if (error > shrinks) then
-      call self%shorten(stepping, step, error)
+    shortest = self%shortest(stepping, broken)
+    if (error > shrinks .and. self%part*self%wanted > shortest*longer_than) then
+      call self%shorten(step, error, shortest)
     else if (self%levels == 0 .and. self%quiet >= merge(quiet_after, quiet_in_impact, is_over)) then
       spare = merge(spare_after, spare_in_impact, is_over)
       do levels = merge(most_levels_of_gear, most_levels, gear), 1, -1
-        if (self%error*8.0_wp**levels > spare .or. self%wanted*2.0_wp**levels > stepping%time%step_max) cycle
+        if (self%wanted*2.0_wp**levels > stepping%time%step_max) cycle
+        if (self%error*8.0_wp**levels > spare .and. self%wanted*2.0_wp**levels > shortest*longer_than) cycle
         if (remaining*(1 - 0.5_wp**levels) > stepping%adapt%iterations*step) exit
       end do
       call start_watch(self)
@@ -207,15 +233,15 @@ contains
   end subroutine start_watch
 
   !> Halves the step until the error is expected to be within the tolerance again.
-  pure subroutine shorten(self, stepping, step, error)
+  pure subroutine shorten(self, step, error, shortest)
     !> The controller
     class(step_controller_t), intent(inout) :: self
-    !> How steps are taken
-    type(stepping_t), intent(in) :: stepping
     !> Step taken or tried in vain, and its error over the tolerance
     real(wp), intent(in) :: step, error
+    !> Shortest step that an error asks for
+    real(wp), intent(in) :: shortest
 
-    self%wanted = max(stepping%time%step_min, step/self%part*0.5_wp**max(1, nint(log(error/shrinks)/log(8.0_wp) &
+    self%wanted = max(shortest, step/self%part*0.5_wp**max(1, nint(log(error/shrinks)/log(8.0_wp) &
                                                                                  + 0.2_wp)))
     call start_watch(self)
   end subroutine shorten
@@ -307,5 +333,6 @@ contains
     call archive%item('controller/quiet', self%quiet)
     call archive%item('controller/error', self%error)
     call archive%item('controller/levels', self%levels)
+    call archive%item('controller/first', self%first)
   end subroutine visit
 end module step_controllers

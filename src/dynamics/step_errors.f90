@@ -36,6 +36,8 @@ module step_errors
     procedure :: estimate
     !> Remembers a state that is about to be replaced.
     procedure :: note
+    !> Forgets the states before a sudden change.
+    procedure :: forget
     !> True: impactor and plate are not to meet again.
     procedure :: impact_is_over
     !> Saves or loads what is remembered.
@@ -176,6 +178,16 @@ contains
     self%force = max(self%force, next%force)
     self%stiffness = max(self%stiffness, stiffness_of(model, next))
   end subroutine note
+
+  !> Forgets the states before a sudden change: plies that failed or fronts that grew after a step change the forces at
+  !> its end at once. Divided differences across that see a third derivative that grows the more the shorter the step,
+  !> although the step, which ends there, has no such error.
+  pure subroutine forget(self)
+    !> The estimate
+    class(step_error_t), intent(inout) :: self
+
+    self%known = 0
+  end subroutine forget
 
   !> Saves or loads what is remembered.
   subroutine visit(self, archive, model)

@@ -137,7 +137,7 @@ contains
     real(wp), intent(in) :: event
     !> Set if the smallest step failed
     type(error_t), allocatable, intent(out) :: error
-    real(wp) :: step
+    real(wp) :: step, shortest
     logical :: converged, follows
 
     follows = follows_error(self%stepping%adapt) .and. .not. model%scene%has_static
@@ -152,9 +152,10 @@ contains
       if (converged .and. follows) then
         call self%step_error%estimate(model, self%integrator, self%stepping%outlook, self%now, self%trial, self%error)
         self%error = self%error/self%stepping%adapt%tolerance
-        if (self%error > retries .and. step > self%smallest_step(model)*(1 + 1.0e-9_wp)) then
+        shortest = self%controller%shortest(self%stepping, self%now%has_broken())
+        if (self%error > retries .and. step > shortest*(1 + 1.0e-9_wp)) then
           self%rejected = self%rejected + 1
-          call self%controller%shorten(self%stepping, step, self%error)
+          call self%controller%shorten(step, self%error, shortest)
           cycle
         end if
       end if
@@ -353,8 +354,10 @@ contains
                                         .not. model%scene%has_static .and. &
                                         self%trial%impactor%velocity <= 0 .and. self%trial%force < self%now%force
     extended = self%trial%ledger%delamination > self%now%ledger%delamination
-    if (follows_error(self%stepping%adapt) .and. .not. model%scene%has_static) &
+    if (follows_error(self%stepping%adapt) .and. .not. model%scene%has_static) then
       call self%step_error%note(model, self%now, self%trial)
+      if (extended .or. self%trial%plies%softened) call self%step_error%forget()
+    end if
     call move_alloc(self%now, before)
     call move_alloc(self%trial, self%now)
     call move_alloc(before, self%trial)
@@ -368,7 +371,7 @@ contains
       if (follows_error(self%stepping%adapt)) &
         call self%controller%follow_error(self%stepping, step, self%error, self%stepping%time%end - self%now%time, &
           .not. model%scene%has_impactor .or. self%step_error%impact_is_over(self%stepping%outlook, self%now), &
-                                          has_gear(model))
+                                          has_gear(model), self%now%has_broken())
       ! What a step took until it renewed the operator itself does not speak against the new one.
       if (self%operator%factorizations /= self%factorizations_begun) call self%controller%renewed()
       if (grows_by_steps(model)) &
