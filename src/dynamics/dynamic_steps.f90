@@ -37,6 +37,8 @@ module dynamic_steps
     type(plate_integrator_t) :: integrator
     !> Displacement to start from, (5, points); unallocated: the motion goes on as it was
     real(wp), allocatable :: guess(:, :)
+    !> True: the first guess goes on with the velocity of the start, so its inertia forces are known
+    logical :: coasts = .false.
     !> Square of the patch's shares, of this rank's points
     real(wp) :: patch_square = 0
     !> The impactor's side of the step
@@ -90,8 +92,9 @@ contains
     new%time = old%time + self%step
     new%load_factor = new%time/model%scene%ramp_time
     call new%interfaces%ties%fade(model, self%step)
-    self%patch_square = sum((model%patch/model%mesh%multiplicity)**2)
+    self%patch_square = sum((model%patch(model%patch_points)/model%mesh%multiplicity)**2)
     if (model%scene%has_impactor) self%coupling = begin_coupling(model, self%integrator, old, self%step)
+    self%coasts = model%scene%has_impactor .and. .not. (allocated(self%guess) .or. model%has_bonds)
     if (allocated(self%guess)) then
       new%motion%displacement = self%guess
     else
@@ -100,7 +103,7 @@ contains
       new%motion%displacement = old%motion%displacement + new%motion%displacement
       call new%interfaces%keep_touching(model, new%motion%displacement)
     end if
-    call self%complete(old, new)
+    if (.not. self%coasts) call self%complete(old, new)
     new%plies%lagging = model%scene%has_crack_bands()
     self%rounds = ply_rounds_t()
     new%iterations = 0
@@ -128,11 +131,16 @@ contains
     real(wp) :: amplitude
 
     call new%find_internal(model, old, energy)
-    call model%inertia(new%motion%acceleration, new%motion%inertia)
+    if (self%coasts .and. new%iterations == 0) then
+      ! Newmark's acceleration with the velocity of the start.
+      new%motion%inertia = (1 - 0.5_wp/self%integrator%beta)*old%motion%inertia
+    else
+      call model%inertia(new%motion%acceleration, new%motion%inertia)
+    end if
     associate (m => self%integrator%alpha_m, f => self%integrator%alpha_f)
       call weigh(size(residual), [1 - m, m, 1 - f, f], new%motion%inertia, old%motion%inertia, new%motion%internal, &
                  old%motion%internal, residual)
-      residual(3, :) = residual(3, :) + self%coupling%load()/model%mesh%multiplicity*model%patch
+      call model%push_patch(self%coupling%load(), residual)
       if (size(model%lines) > 0) then
         allocate (lines, lines_before, mold=residual)
         call model%line_forces(new%motion%displacement, new%load_factor, lines)
@@ -267,7 +275,6 @@ contains
       call self%coupling%solve(model, operator, old, new, correction, error)
       call new%interfaces%faces%hold(model, correction)
     end if
-    call operator%anderson%note(correction)
   end subroutine improve
 
   !> Velocity and acceleration at the end of the step.

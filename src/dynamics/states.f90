@@ -15,9 +15,9 @@ module states
   private
   public :: state_t, new_state
 
-  !> The state of plate, impactor and contact at one time. It has many components because a step that fails must leave
-  !> none of them changed.
-  type :: state_t
+  !> All of a state but the plate's motion and its plies, which are large. It has many components because a step that
+  !> fails must leave none of them changed.
+  type :: small_state_t
     !> Time, or load factor of a static analysis
     real(wp) :: time = 0
     !> Accepted steps
@@ -26,14 +26,10 @@ module states
     real(wp) :: load_factor = 0
     !> How a static analysis got here
     type(load_path_t) :: path
-    !> Motion of the plate
-    type(motion_t) :: motion
     !> The impactor
     type(impactor_t) :: impactor
     !> Memory of the indentation
     type(indentation_t) :: indentation
-    !> Failures of the plies and the stiffness they have left
-    type(ply_failure_t) :: plies
     !> The interfaces
     type(interface_state_t) :: interfaces
     !> Impact force at this time
@@ -50,9 +46,21 @@ module states
     integer :: all_iterations = 0, all_force_iterations = 0, all_contact_iterations = 0
     !> Largest forces so far, by which a residual is judged when forces fade: translations, rotations
     real(wp) :: largest_forces(2) = 0
+  end type small_state_t
+
+  !> The state of plate, impactor and contact at one time.
+  type, extends(small_state_t) :: state_t
+    !> Motion of the plate
+    type(motion_t) :: motion
+    !> Failures of the plies and the stiffness they have left
+    type(ply_failure_t) :: plies
   contains
+    !> Becomes the state from which a step starts, but for what the step finds anew.
+    procedure :: start_from
     !> Internal forces and the energy that goes with them.
     procedure :: find_internal
+    !> True once plies have failed or delaminations have grown.
+    procedure :: has_broken
     !> Counts a step and its iterations.
     procedure :: count_step
     !> Saves or loads the state.
@@ -80,6 +88,21 @@ contains
     self%ledger%initial = self%ledger%impactor
   end function new_state
 
+  !> Becomes the state from which a step starts. Of the motion that is the displacement: velocity, acceleration and
+  !> forces are found anew.
+  pure subroutine start_from(self, model, old)
+    !> The state
+    class(state_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> The state that is taken over
+    type(state_t), intent(in) :: old
+
+    self%small_state_t = old%small_state_t
+    self%motion%displacement = old%motion%displacement
+    ! Without damage no step changes them.
+    if (model%scene%has_ply_damage) self%plies = old%plies
+  end subroutine start_from
+
   !> Internal forces of layers and cohesive interfaces, and this rank's share of the energy that they store.
   subroutine find_internal(self, model, old, energy)
     !> The state, whose displacement is known; receives the forces
@@ -99,6 +122,14 @@ contains
     call self%interfaces%rig%add_springs(model, self%motion%displacement, self%motion%internal, energy)
     call model%profile%leave()
   end subroutine find_internal
+
+  !> True once plies have failed or delaminations have grown.
+  pure logical function has_broken(self)
+    !> The state
+    class(state_t), intent(in) :: self
+
+    has_broken = self%ledger%ply_damage > 0 .or. self%ledger%delamination > 0
+  end function has_broken
 
   !> Counts a step and its iterations.
   pure subroutine count_step(self, old)

@@ -201,9 +201,8 @@ contains
     integer :: begun
     logical :: pressures_new, softened
 
-    new = old
+    call new%start_from(model, old)
     allocate (residual, correction, mold=old%motion%displacement)
-    correction = 0
     pressures_new = .false.
     begun = 0
     call problem%begin(model, operator, old, new)
@@ -236,6 +235,8 @@ contains
       end if
       if (.not. norm <= huge(norm) .or. new%iterations - begun >= equilibrium%max_iterations) exit
       call problem%prepare_operator(model, operator, new, error)
+      ! Only a further iteration asks what the last one showed.
+      call operator%anderson%note(correction)
       if (.not. allocated(error)) call operator%correct(model, residual, correction, error)
       if (allocated(error)) then
         if (problem%curable .and. error%code == exit_convergence) deallocate (error)

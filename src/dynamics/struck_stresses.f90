@@ -16,14 +16,17 @@ contains
     !> Displacement, ghosts up to date, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     real(wp) :: curvature(3), moment(3), strains(lanes, 8)
-    real(wp), allocatable :: motion(:, :)
     integer :: i
 
     curvature = 0
-    motion = model%motion_of(displacement)
     do i = 1, size(model%struck_elements)
       associate (element => model%struck_elements(i))
-        call mean_strains(model%elements, batch_of(element), model%scene%kinematics, motion, strains)
+        if (model%map%layered) then
+          call mean_strains(model%elements, batch_of(element), model%scene%kinematics, model%motion_of(displacement), &
+                            strains)
+        else
+          call mean_strains(model%elements, batch_of(element), model%scene%kinematics, displacement, strains)
+        end if
         curvature = curvature + strains(lane_of(element), 4:6)/model%struck_count
       end associate
     end do

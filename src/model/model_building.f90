@@ -162,6 +162,7 @@ contains
     type(model_t), intent(inout) :: self
     real(wp), allocatable :: weights(:, :)
     real(wp) :: area
+    integer :: point
 
     allocate (weights(1, size(self%distribution%points)), source=0.0_wp)
     call add_patch_weights(self%elements, patch_elements(self), weights(1, :))
@@ -170,6 +171,7 @@ contains
     call self%communicator%sum(area)
     if (area > 0) weights = weights/area
     self%patch = weights(1, :)
+    self%patch_points = pack([(point, point=1, size(self%patch))], abs(self%patch) > 0)
     if (self%scene%has_pressure) then
       call build_pressure(self)
     else if (self%scene%has_static) then

@@ -55,6 +55,8 @@ module models
     logical, allocatable :: held(:, :)
     !> Weights whose product with w is the mean deflection of the patch, (local points); ghosts zero
     real(wp), allocatable :: patch(:)
+    !> Points that have one
+    integer, allocatable :: patch_points(:)
     !> Nodal forces of the deck's pressure, (5, local points); ghosts zero. Allocated only with a pressure
     real(wp), allocatable :: pressure(:, :)
     !> Lines that hold, move or press; empty: none
@@ -103,8 +105,9 @@ module models
     procedure :: load_slopes
     !> Mass times a field.
     procedure :: inertia
-    !> Mean deflection of the patch.
+    !> Mean deflection of the patch, and nodal forces of a force on it.
     procedure :: patch_mean
+    procedure :: push_patch
     !> Deflection at the struck point.
     procedure :: deflection
     !> Product of two fields over all points of the plate's modelled part.
@@ -117,7 +120,7 @@ contains
   pure function motion_of(self, unknowns) result(motion)
     class(model_t), intent(in) :: self
     !> Unknowns, (5, points)
-    real(wp), intent(in) :: unknowns(:, :)
+    real(wp), contiguous, intent(in) :: unknowns(:, :)
     !> Motion of each point's layer, (5, points)
     real(wp), allocatable :: motion(:, :)
 
@@ -131,9 +134,9 @@ contains
     !> Section stiffness left in the elements, (lanes, 21, batches)
     real(wp), contiguous, intent(in) :: stiffness(:, :, :)
     !> Displacement, ghosts up to date, (5, points)
-    real(wp), intent(in) :: displacement(:, :)
+    real(wp), contiguous, intent(in) :: displacement(:, :)
     !> Internal forces, (5, points); ghosts zero
-    real(wp), intent(inout) :: force(:, :)
+    real(wp), contiguous, intent(inout) :: force(:, :)
     !> Strain energy of this rank's elements
     real(wp), intent(out) :: energy
     !> Makes the stiffness follow the strains; absent: it is what it is
@@ -218,9 +221,9 @@ contains
   subroutine inertia(self, field, force)
     class(model_t), intent(in) :: self
     !> Acceleration or velocity, ghosts up to date, (5, points)
-    real(wp), intent(in) :: field(:, :)
+    real(wp), contiguous, intent(in) :: field(:, :)
     !> Product, (5, points); ghosts zero
-    real(wp), intent(inout) :: force(:, :)
+    real(wp), contiguous, intent(inout) :: force(:, :)
     integer :: point
 
     call self%profile%enter('inertia forces')
@@ -254,9 +257,30 @@ contains
     !> Displacement, (5, points)
     real(wp), intent(in) :: displacement(:, :)
 
-    mean = dot_product(self%patch, displacement(3, :))
+    integer :: i
+
+    mean = 0
+    do i = 1, size(self%patch_points)
+      mean = mean + self%patch(self%patch_points(i))*displacement(3, self%patch_points(i))
+    end do
     call self%communicator%sum(mean)
   end function patch_mean
+
+  !> Adds the nodal forces of a force on the whole plate's patch.
+  pure subroutine push_patch(self, force, forces)
+    class(model_t), intent(in) :: self
+    !> The force
+    real(wp), intent(in) :: force
+    !> Forces on the unknowns, (5, points)
+    real(wp), intent(inout) :: forces(:, :)
+    integer :: i
+
+    do i = 1, size(self%patch_points)
+      associate (point => self%patch_points(i))
+        forces(3, point) = forces(3, point) + force/self%mesh%multiplicity*self%patch(point)
+      end associate
+    end do
+  end subroutine push_patch
 
   !> Deflection at the struck point, the same on every rank.
   real(wp) function deflection(self, displacement) result(w)

@@ -84,9 +84,9 @@ contains
     class(ply_failure_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Displacement, ghosts up to date, (5, points)
-    real(wp), intent(in) :: displacement(:, :)
+    real(wp), contiguous, intent(in) :: displacement(:, :)
     !> Internal forces, (5, points); ghosts zero
-    real(wp), intent(inout) :: force(:, :)
+    real(wp), contiguous, intent(inout) :: force(:, :)
     !> Strain energy of this rank's elements
     real(wp), intent(out) :: energy
 

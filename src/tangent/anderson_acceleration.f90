@@ -33,6 +33,10 @@ module anderson_acceleration
     real(wp) :: force = 0
     !> Memories kept, and place of the latest
     integer :: kept = 0, latest = 0
+    !> True: that correction was the move, since there was nothing to better it by
+    logical :: plain = .false.
+    !> True: there is a correction whose move has not been noted
+    logical :: waiting = .false.
     !> True once the iteration before can be compared with
     logical :: comparable = .false.
   contains
@@ -42,7 +46,7 @@ module anderson_acceleration
     procedure :: pause
     !> Betters a correction and the force that goes with it.
     procedure :: accelerate
-    !> Takes note of the move that was made of it.
+    !> Takes note of the move that was made of it, before another correction is sought.
     procedure :: note
   end type anderson_t
 
@@ -55,7 +59,7 @@ contains
 
     self%kept = 0
     self%latest = 0
-    self%comparable = .false.
+    call self%pause()
   end subroutine forget
 
   !> Compares nothing with the iteration before, after the loads have changed.
@@ -64,6 +68,7 @@ contains
     class(anderson_t), intent(inout) :: self
 
     self%comparable = .false.
+    self%waiting = .false.
   end subroutine pause
 
   !> Betters a correction and the force that goes with it: the combination with earlier ones that would have left
@@ -116,7 +121,6 @@ contains
     !> Force found with it
     real(wp), intent(in) :: force
 
-    if (.not. allocated(self%correction)) allocate (self%correction, self%move, mold=correction)
     if (self%comparable) then
       self%kept = min(self%kept + 1, depth)
       self%latest = 1 + modulo(self%latest, depth)
@@ -126,8 +130,10 @@ contains
         memory%force_change = force - self%force
       end associate
     end if
-    self%correction = correction
     self%force = force
+    self%waiting = .true.
+    self%plain = self%kept == 0
+    if (.not. self%plain) self%correction = correction
   end subroutine remember
 
   !> Weighted product of two fields, over this rank's points.
@@ -146,13 +152,16 @@ contains
     end do
   end function weighted_product
 
-  !> Takes note of the move that was made of a correction.
+  !> Takes note of the move that was made of a correction, if that is to be compared with the next.
   pure subroutine note(self, move)
     !> The memory
     class(anderson_t), intent(inout) :: self
     !> Change of the displacement, (5, points)
     real(wp), intent(in) :: move(:, :)
 
+    if (.not. self%waiting) return
+    self%waiting = .false.
+    if (self%plain) self%correction = move
     self%move = move
     self%comparable = .true.
   end subroutine note
