@@ -6,8 +6,8 @@ from elastic_scenes import Run, deck_of
 from modal_impact import Scene, answer
 
 END, PATCH = 1e-3, 5e-3
-SUN_CHEN = Scene((0.2, 0.2), [0, 90, 0, 90, 0, 0, 90, 0, 90, 0], 0.269e-3, (120e9, 7.9e9, 5.5e9, 5.5e9, 5.5e9, 0.3), 1580,
-                 8.537e-3, 3, 6.35e-3, 8.112e8, law='hertz', name='sun_chen')
+SUN_CHEN = Scene((0.2, 0.2), [0, 90, 0, 90, 0, 0, 90, 0, 90, 0], 0.269e-3, (120e9, 7.9e9, 5.5e9, 5.5e9, 5.5e9, 0.3),
+                 1580, 8.537e-3, 3, 6.35e-3, 8.112e8, law='hertz', name='sun_chen')
 
 
 def main():
