@@ -11,6 +11,7 @@ module computations
   use deck_refinements, only: refined_text
   use errors, only: error_t, exit_done, exit_stopped, exit_usage, fail
   use files, only: is_directory
+  use layer_following, only: visit_zones
   use linear_solver_deck, only: check_ranks
   use linear_solver_parameters, only: factorization_automatic, factorization_mumps
   use petsc_library, only: start_petsc, finish_petsc
@@ -178,13 +179,20 @@ contains
     !> Set if the run fails
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: base
+    type(checkpoint_archive_t) :: archive
+    type(deck_t) :: left
 
     base = deck%output%directory//'/'//deck%name
     select case (stage_of(base, deck%text, commit, communicator))
     case (stage_done)
       call print_lines(communicator, [line_t(deck%name//' has been run before.')])
     case (stage_stopped)
-      call simulate(deck, communicator, profile, base//checkpoint_ending, error)
+      left = deck
+      call archive%open_for_loading(communicator, base//checkpoint_ending, error)
+      if (allocated(error)) return
+      call visit_zones(left%delaminations, archive)
+      call archive%close(error)
+      if (.not. allocated(error)) call simulate(left, communicator, profile, base//checkpoint_ending, error)
     case default
       call simulate(deck, communicator, profile, '', error)
     end select
@@ -256,6 +264,7 @@ contains
     ! A deck without a name has that of its file, which isn't the checkpoint's.
     deck%name = archive%provenance%case_name
     call deck%settings%derive(case_group, key_name, deck%name, .true.)
+    if (problems%errors() == 0) call visit_zones(deck%delaminations, archive)
     call archive%close(error)
     deck%output%directory = '.'
     slash = index(path, '/', back=.true.)

@@ -98,6 +98,7 @@ contains
     !> Set if the file cannot be written
     type(error_t), allocatable, intent(out) :: error
 
+    if (.not. fields%is_on(model%mesh%points())) call write_mesh(model, fields, error)
     associate (now => stepper%now)
       call fields%begin(shown_time(now%time), now%step, error)
       call write_motion_fields(model, now%motion, output, fields, error)

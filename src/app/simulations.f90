@@ -29,6 +29,7 @@ module simulations
   use queue_signals, only: stop_signal
   use output_clocks, only: clock_t, next_event, shown_time
   use energy_watches, only: energy_watch_t
+  use layer_following, only: advance, visit_zones
   use result_rows, only: row_of, column_names, column_whole
   use field_results, only: field_rows, part_of, write_fields, write_mesh
   implicit none
@@ -99,8 +100,7 @@ contains
     character(len=:), allocatable :: retired
 
     call prepare(self, deck, communicator, profile, append=.false., error=error)
-    if (allocated(error)) return
-    call retire_checkpoint(communicator, self%base//checkpoint_ending, retired, error)
+    if (.not. allocated(error)) call retire_checkpoint(communicator, self%base//checkpoint_ending, retired, error)
     if (allocated(error)) return
     if (retired /= '') call self%log%note('The checkpoint of an earlier run is now '//retired//'.')
     call self%history%create(communicator, self%base//'_history.csv', column_names(deck%delaminations, deck%lines), &
@@ -223,6 +223,7 @@ contains
     !> Set if the factored operator cannot be made again
     type(error_t), allocatable, intent(out) :: error
 
+    call visit_zones(self%model%scene%delaminations, archive)
     call self%stepper%visit(archive, self%model, error)
     call self%history_clock%visit(archive, 'history')
     call self%fields_clock%visit(archive, 'fields')
@@ -256,7 +257,7 @@ contains
       event = next_event([self%history_clock, self%fields_clock, self%checkpoint_clock], end_of(self), closest)
       step_begun = wall_time()
       call self%timers%start('steps')
-      call self%stepper%advance(self%model, event, error)
+      call advance(self%deck, self%model, self%stepper, event, self%log, error)
       call self%timers%stop('steps')
       if (allocated(error)) return
       call self%timers%start('results')
@@ -277,17 +278,15 @@ contains
     class(simulation_t), intent(inout) :: self
     !> Set if the run ends
     type(error_t), allocatable, intent(out) :: error
-    character(len=:), allocatable :: cause
+    character(len=*), parameter :: causes(*) = ['as the time on the wall is up', 'by a signal                  ']
     logical :: signalled, late
 
     signalled = self%communicator%any(stop_signal() /= 0)
     late = self%communicator%any(self%wall_limit%is_up(wall_time())) .and. self%stepper%now%time < end_of(self)
     if (.not. (signalled .or. late)) return
-    cause = 'as the time on the wall is up'
-    if (signalled) cause = 'by a signal'
     call save_checkpoint(self, error)
-    call fail(error, exit_stopped, 'Stopped '//cause//' at time '//rounded_text(self%stepper%now%time)// &
-              '; go on with: implam restart '//self%base//checkpoint_ending)
+    call fail(error, exit_stopped, 'Stopped '//trim(causes(merge(2, 1, signalled)))//' at time '// &
+              rounded_text(self%stepper%now%time)//'; go on with: implam restart '//self%base//checkpoint_ending)
   end subroutine stop_if_due
 
   !> Writes what is due after an accepted step. The clocks move before the checkpoint is saved, so that

@@ -194,13 +194,16 @@ contains
     end if
   end subroutine choose_elements
 
-  !> Smallest side of the zones.
+  !> Smallest side of the zones; that of the plate if none is given.
   pure real(wp) function smallest_zone(deck) result(side)
     !> The deck
     type(deck_t), intent(in) :: deck
     integer :: i
 
-    side = minval([(minval(deck%delaminations(i)%zone), i=1, size(deck%delaminations))])
+    side = minval(deck%plate%length)
+    do i = 1, size(deck%delaminations)
+      if (.not. deck%delaminations(i)%follows) side = min(side, minval(deck%delaminations(i)%zone))
+    end do
   end function smallest_zone
 
   !> The impactor's integrator: that of the pilot calculations, which bears long steps. gear4 would cut them.

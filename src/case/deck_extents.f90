@@ -205,6 +205,10 @@ contains
         if (any(d%zone > deck%plate%length) .and. are_clear(s, problems, plate_group, key_length) .and. &
             are_clear(s, problems, delamination_group, key_zone, place)) &
           call tell(s, problems, delamination_group, key_zone, 'the zone must not be larger than the plate.', place)
+        if (d%follows .and. any(d%starter + 2*abs(d%starter_at) >= deck%plate%length) .and. &
+            are_clear(s, problems, plate_group, key_length) .and. &
+            are_clear(s, problems, delamination_group, key_starter, place)) &
+          call tell(s, problems, delamination_group, key_starter, 'must lie within the plate.', place)
         if (deck%has_impactor .and. d%law == law_front .and. d%starter < least_starter*deck%mesh%patch .and. &
             are_clear(s, problems, delamination_group, key_starter, place)) &
           call remark(s, problems, delamination_group, key_starter, 'the starter is hardly larger than the loaded '// &
@@ -244,7 +248,7 @@ contains
       if (repeats(deck, i)) cycle
       associate (d => deck%delaminations(i), place => deck%delaminations(i)%group)
         call extents_of(x_edges, y_edges, d, zone, starter)
-        if (differs(zone, d%zone)) call remark(deck%settings, problems, delamination_group, key_zone, &
+        if (differs(zone, d%zone) .and. .not. d%follows) call remark(deck%settings, problems, delamination_group, key_zone, &
           'a zone is whole cells; this mesh makes it '//shown(zone)//'.', place)
         if (deck%settings%is_given(delamination_group, key_starter, place) .and. &
             differs(starter, [d%starter, d%starter])) &

@@ -71,7 +71,7 @@ contains
     !> Modulus and thickness of the thinner layer, toughness, strengths and cells
     type(process_zone_t) :: zone
     type(ply_t), allocatable :: plies(:), layer(:)
-    real(wp) :: toughness(2), bending(6), cells(2)
+    real(wp) :: toughness(2), bending(6), cells(2), extents(2)
 
     plies = stacked_plies(deck%laminate, deck%materials)
     layer = plies(:delamination%below_ply)
@@ -79,8 +79,11 @@ contains
     if (thickness_of(plies(delamination%below_ply + 1:)) < zone%thickness) layer = plies(delamination%below_ply + 1:)
     zone%thickness = thickness_of(layer)
     bending = bending_moduli(layer)
-    cells = [longest_cell(cell_edges(deck%plate, deck%mesh, 1) - deck%mesh%struck(1), delamination%zone(1)), &
-             longest_cell(cell_edges(deck%plate, deck%mesh, 2) - deck%mesh%struck(2), delamination%zone(2))]
+    extents = delamination%zone
+    ! Layers that follow are meant to stay within the core: the run tells if they don't.
+    if (delamination%follows) extents = merge(max(extents, deck%mesh%core), deck%plate%length, deck%mesh%cell > 0)
+    cells = [longest_cell(cell_edges(deck%plate, deck%mesh, 1) - deck%mesh%struck(1), extents(1)), &
+             longest_cell(cell_edges(deck%plate, deck%mesh, 2) - deck%mesh%struck(2), extents(2))]
     zone%modulus = largest_modulus(bending)
     zone%cell = maxval(cells)
     ! The front of a strip runs along y and moves along x.

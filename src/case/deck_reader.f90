@@ -9,6 +9,7 @@ module deck_reader
   use deck_interface_remarks, only: check_interfaces
   use deck_process_zones, only: check_process_zones, settle_flaws
   use deck_extents, only: check_sizes, check_extents
+  use deck_first_zones, only: check_left_out_zones, set_first_zones
   use deck_problems, only: problems_t
   use deck_refinements, only: refine
   use deck_rules, only: settle
@@ -100,6 +101,8 @@ contains
     call check_groups(deck, problems)
     call check_sizes(deck, problems)
     call check_across_groups(deck, problems)
+    call check_left_out_zones(deck, problems)
+    call set_first_zones(deck, problems)
     call check_extents(deck, problems)
     call check_interfaces(deck, problems)
     if (deck%has_ply_damage) call check_crack_bands(deck, problems)

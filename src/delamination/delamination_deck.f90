@@ -43,7 +43,7 @@ module delamination_deck
       &Critical energy release rate of pure shear.', &
     'delamination | eta | real | 1 | - | 1.75 | > 0, <= 10 | &
       &Exponent of Benzeggagh and Kenane between opening and shear.', &
-    'delamination | zone | real | 2 | length | required | > 0 | &
+    'delamination | zone | real | 2 | length | = as the damage needs it, with law = cohesive | > 0 | &
       &Full extents of the layered rectangle along x and y, centred on the struck point.', &
     'delamination | starter | real | 1 | length | = 0.05 % of the plate, with law = cohesive none | > 0 | &
       &Side of the square starter delamination, or diameter of the round one.', &
@@ -137,6 +137,7 @@ contains
       d%friction = s%real_of(group, 'friction', place)
       d%cracks_as_flaws = s%logical_of(group, key_flaws, place)
       if (s%is_known(group, key_zone, place)) d%zone = s%reals_of(group, key_zone, place)
+      d%follows = d%law == law_cohesive .and. .not. s%is_given(group, key_zone, place)
       if (s%is_given(group, key_starter, place)) d%starter = s%real_of(group, key_starter, place)
       if (s%is_given(group, key_strip, place)) d%starter_strip = s%reals_of(group, key_strip, place)
       d%starter_round = s%text_of(group, 'starter_shape', place) == 'round'
@@ -245,7 +246,7 @@ contains
       call check_strengths(settings, delaminations(i), place, problems)
       call remark_idle_keys(settings, delaminations(i), place, problems)
       call check_strip(settings, delaminations(i), place, problems)
-      if (delaminations(i)%starter > 0 .and. &
+      if (delaminations(i)%starter > 0 .and. .not. delaminations(i)%follows .and. &
           any(delaminations(i)%starter + 2*abs(delaminations(i)%starter_at) >= delaminations(i)%zone) .and. &
           are_clear(settings, problems, group, key_zone//' '//key_starter//' '//key_starter_at, place)) &
         call tell(settings, problems, group, '', 'the starter must be smaller than the zone and lie within it.', place)

@@ -34,8 +34,11 @@ module delamination_parameters
     real(wp) :: toughness_opening = 0, toughness_shear = 0
     !> Exponent eta of Benzeggagh and Kenane
     real(wp) :: mixing_exponent = 1.75_wp
-    !> Full extents of the layered rectangle along x and y, centred on the struck point
+    !> Full extents of the layered rectangle along x and y, centred on the struck point: of one that follows the damage
+    !> those of the present
     real(wp) :: zone(2) = 0
+    !> True: the layered rectangle grows as the damage needs it
+    logical :: follows = .false.
     !> Side of the square starter, or diameter of the round one
     real(wp) :: starter = 0
     !> True: the starter is round

@@ -20,6 +20,8 @@ module energy_ledgers
     real(wp) :: contact = 0, friction = 0
     !> Energy that the time integrators have taken out of the motion
     real(wp) :: algorithmic = 0
+    !> Strain and kinetic energy that the plate had and its layers, where they have appeared, have not
+    real(wp) :: layers = 0
     !> Work of the pressure
     real(wp) :: external_work = 0
     !> Energy at the start
@@ -39,7 +41,7 @@ contains
     class(ledger_t), intent(in) :: self
 
     error = self%impactor + self%kinetic + self%strain + self%indentation + self%delamination &
-            + self%ply_damage + self%contact + self%friction + self%algorithmic &
+            + self%ply_damage + self%contact + self%friction + self%algorithmic + self%layers &
             - self%external_work - self%initial
   end function error
 
@@ -59,6 +61,7 @@ contains
     call archive%item('ledger/contact', self%contact)
     call archive%item('ledger/friction', self%friction)
     call archive%item('ledger/algorithmic', self%algorithmic)
+    call archive%item('ledger/layers', self%layers)
     call archive%item('ledger/external_work', self%external_work)
     call archive%item('ledger/initial', self%initial)
   end subroutine visit

@@ -34,8 +34,8 @@ module step_columns
     'energy_contact | real | energy | Work done against contact of separated faces and against penalty ties.', &
     'energy_algorithmic | real | energy | Energy that integrators and fading ties took out of the motion, less &
       &energy_delamination.', &
-    'energy_error | real | energy | What the ledger fails to account for: the sum of the eight energies before and &
-      &energy_friction, less work_external and the energy at the start.']
+    'energy_error | real | energy | What the ledger fails to account for: the sum of the eight energies before, &
+      &energy_friction and energy_layers, less work_external and the energy at the start.']
 
   !> The rest of the state and the length of the step.
   character(len=result_row_length), parameter, public :: step_rows(*) = [character(len=result_row_length) :: &
@@ -60,7 +60,9 @@ module step_columns
 
   !> What joined the ledger later.
   character(len=result_row_length), parameter, public :: heat_rows(*) = [character(len=result_row_length) :: &
-    'energy_friction | real | energy | Energy that friction between faces has turned into heat.']
+    'energy_friction | real | energy | Energy that friction between faces has turned into heat.', &
+    'energy_layers | real | energy | Strain and kinetic energy that the plate had more than the layers that took its &
+      &place where a zone grew; rounding with shear_correction = ''5/6''.']
 
 contains
 
@@ -93,7 +95,7 @@ contains
     !> A value a column
     real(wp) :: values(size(heat_rows))
 
-    values = [ledger%friction]
+    values = [ledger%friction, ledger%layers]
   end function heat_values
 
   !> The rest of the state and the length of the step.

@@ -42,7 +42,8 @@ module interface_columns
     'energy_below_N | real | energy | Fracture energy taken by the interface below ply N.', &
     'extent_x_below_N | real | length | Length along x of what has delaminated below ply N, starter included: cells, &
       &or nodes where a cohesive law has failed.', &
-    'extent_y_below_N | real | length | The same along y.']
+    'extent_y_below_N | real | length | The same along y.', &
+    'layered_below_N | real | area | Area of the zone below ply N, where the plate has layers of its own.']
   !> Forces of the rigs.
   character(len=result_row_length), parameter, public :: rig_rows(*) = [character(len=result_row_length) :: &
     'reaction_1 | real | force | Force of the first &support on the plate, frame and clamps together, positive against &
@@ -118,7 +119,8 @@ contains
     do zone = 1, size(figures)
       associate (of => figures(zone), first => (zone - 1)*size(interface_rows))
         values(first + 1:first + size(interface_rows)) = &
-          [real(of%stage, wp), of%area, of%energy, of%bounds(2, :) - of%bounds(1, :)]
+          [real(of%stage, wp), of%area, of%energy, of%bounds(2, :) - of%bounds(1, :), &
+           model%mesh%zone_area(zone)*model%mesh%multiplicity]
       end associate
     end do
   end function interface_values

@@ -15,7 +15,7 @@ module interface_fields
   use result_tables, only: result_row_length
   implicit none
   private
-  public :: write_interface_fields
+  public :: delaminated_above, write_interface_fields
 
   !> The fields. A new one comes with its writing below, and touches no other folder but the choices of &output.
   character(len=result_row_length), parameter, public :: interface_field_rows(*) = &

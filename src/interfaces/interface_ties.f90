@@ -187,6 +187,8 @@ contains
     integer :: zone
 
     do zone = 1, size(self%regions)
+      ! That of a cohesive interface is its starter for ever.
+      if (model%scene%delaminations(zone)%law == law_cohesive) cycle
       call self%regions(zone)%visit(archive, 'zone'//achar(iachar('0') + zone))
     end do
     if (.not. model%map%layered) return

@@ -2,13 +2,13 @@
 module onset_index
   use element_batches, only: first_element, lanes
   use interface_strengths, only: shear_strengths
-  use interlaminar_shear, only: onset_indices
+  use interlaminar_shear, only: onset_indices, shear_under_unit_forces
   use kinds, only: wp
   use models, only: model_t
   use strain_recovery, only: mean_strains
   implicit none
   private
-  public :: onset_of_elements
+  public :: onset_of_elements, onset_of_joined_cells
 
 contains
 
@@ -27,19 +27,91 @@ contains
     !> Index and ply, (2, elements)
     real(wp), allocatable :: onset(:, :)
     real(wp), allocatable :: everywhere(:, :), strengths(:)
-    integer :: i, cell
+    integer :: i
 
     strengths = shear_strengths(model%plies, model%scene%materials, model%scene%delaminations)
     everywhere = gathered(model, stiffness, delaminated, displacement)
     allocate (onset(2, model%elements%elements), source=0.0_wp)
     do i = 1, size(onset, 2)
-      associate (mesh => model%mesh, element => model%distribution%elements(i))
-        cell = mesh%element_cell(element)
-        onset(:, i) = onset_in_stack(model, strengths, everywhere, element, &
-                                     [mesh%first_element(cell), mesh%first_element(cell + 1) - 1])
-      end associate
+      onset(:, i) = onset_in_stack(model, strengths, everywhere, model%distribution%elements(i))
     end do
   end function onset_of_elements
+
+  !> The index of each interface in the cells of the mesh whose layers it does not part, 0 in the others. All ranks must
+  !> call together and find the same.
+  function onset_of_joined_cells(model, stiffness, delaminated, displacement) result(onset)
+    type(model_t), intent(in) :: model
+    !> Section stiffness left in the elements, (lanes, 21, batches)
+    real(wp), intent(in) :: stiffness(:, :, :)
+    !> Part of each element's area that has delaminated above it, (1, elements)
+    real(wp), intent(in) :: delaminated(:, :)
+    !> Displacement, ghosts up to date, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> Shear stress over strength, (cells of the mesh, zones)
+    real(wp), allocatable :: onset(:, :)
+    real(wp), allocatable :: everywhere(:, :), strengths(:), undivided(:, :, :)
+    integer :: cell, zone, element
+
+    strengths = shear_strengths(model%plies, model%scene%materials, model%scene%delaminations)
+    everywhere = gathered(model, stiffness, delaminated, displacement)
+    undivided = shear_under_unit_forces(model%plies)
+    allocate (onset(product(model%mesh%cells), size(model%mesh%zones)), source=0.0_wp)
+    do zone = 1, size(onset, 2)
+      do cell = 1, size(onset, 1)
+        associate (mesh => model%mesh, below => model%mesh%zones(zone)%below_ply)
+          element = mesh%element_at(cell, below)
+          if (mesh%element_plies(2, element) == below .or. .not. strengths(below) > 0) cycle
+          if (all(mesh%element_plies(:, element) == [1, size(model%plies)])) then
+            onset(cell, zone) = norm2(matmul(undivided(:, :, below), everywhere(1:2, element)))/strengths(below)
+          else
+            onset(cell, zone) = onset_below(model, strengths, everywhere, element, below)
+          end if
+        end associate
+      end do
+    end do
+  end function onset_of_joined_cells
+
+  !> Index of the interface below a ply within an element, from the stack of joined layers that the element is in.
+  pure real(wp) function onset_below(model, strengths, everywhere, element, ply) result(onset)
+    type(model_t), intent(in) :: model
+    !> Strength of the interface below each ply
+    real(wp), intent(in) :: strengths(:)
+    !> What gathered returns
+    real(wp), intent(in) :: everywhere(:, :)
+    !> Element of the mesh, and the ply
+    integer, intent(in) :: element, ply
+    real(wp), allocatable :: indices(:)
+    integer :: stack(2), range(2)
+
+    stack = joined_elements(model, everywhere, element)
+    range = [model%mesh%element_plies(1, stack(1)), model%mesh%element_plies(2, stack(2))]
+    indices = onset_indices(model%plies(range(1):range(2)), strengths(range(1):range(2) - 1), &
+                            sum(everywhere(1:2, stack(1):stack(2)), 2))
+    onset = indices(ply - range(1) + 1)
+  end function onset_below
+
+  !> First and last element of the stack of joined layers that an element is in.
+  pure function joined_elements(model, everywhere, element) result(stack)
+    type(model_t), intent(in) :: model
+    !> What gathered returns
+    real(wp), intent(in) :: everywhere(:, :)
+    !> Element of the mesh
+    integer, intent(in) :: element
+    !> First and last
+    integer :: stack(2)
+
+    stack = element
+    associate (first => model%mesh%first_element, cell => model%mesh%element_cell(element))
+      do while (stack(1) > first(cell))
+        if (everywhere(3, stack(1)) >= 0.5_wp) exit
+        stack(1) = stack(1) - 1
+      end do
+      do while (stack(2) < first(cell + 1) - 1)
+        if (everywhere(3, stack(2) + 1) >= 0.5_wp) exit
+        stack(2) = stack(2) + 1
+      end do
+    end associate
+  end function joined_elements
 
   !> Shear forces and delaminated parts of all elements of the mesh. All ranks must call together.
   function gathered(model, stiffness, delaminated, displacement) result(everywhere)
@@ -74,7 +146,7 @@ contains
   end function gathered
 
   !> Index of an element from the stack of joined layers that it is in.
-  pure function onset_in_stack(model, strengths, everywhere, element, cell) result(onset)
+  pure function onset_in_stack(model, strengths, everywhere, element) result(onset)
     type(model_t), intent(in) :: model
     !> Strength of the interface below each ply
     real(wp), intent(in) :: strengths(:)
@@ -82,26 +154,15 @@ contains
     real(wp), intent(in) :: everywhere(:, :)
     !> Element of the mesh
     integer, intent(in) :: element
-    !> First and last element of its cell
-    integer, intent(in) :: cell(2)
     !> Index and ply above the interface; both 0 where no strength is known
     real(wp) :: onset(2)
     real(wp), allocatable :: indices(:)
-    integer :: first, last, range(2), within(2), place
+    integer :: stack(2), range(2), within(2), place
 
-    first = element
-    do while (first > cell(1))
-      if (everywhere(3, first) >= 0.5_wp) exit
-      first = first - 1
-    end do
-    last = element
-    do while (last < cell(2))
-      if (everywhere(3, last + 1) >= 0.5_wp) exit
-      last = last + 1
-    end do
-    range = [model%mesh%element_plies(1, first), model%mesh%element_plies(2, last)]
+    stack = joined_elements(model, everywhere, element)
+    range = [model%mesh%element_plies(1, stack(1)), model%mesh%element_plies(2, stack(2))]
     indices = onset_indices(model%plies(range(1):range(2)), strengths(range(1):range(2) - 1), &
-                            sum(everywhere(1:2, first:last), 2))
+                            sum(everywhere(1:2, stack(1):stack(2)), 2))
     ! From the interface on top of the element to the one above its last ply.
     within = [max(1, model%mesh%element_plies(1, element) - range(1)), model%mesh%element_plies(2, element) - range(1)]
     onset = 0

@@ -6,7 +6,7 @@ module interlaminar_shear
   use transverse_shear, only: shear_between_plies
   implicit none
   private
-  public :: onset_indices
+  public :: onset_indices, shear_under_unit_forces
 
 contains
 
@@ -21,16 +21,28 @@ contains
     real(wp), intent(in) :: force(2)
     !> 1: the strength is reached, (plies - 1)
     real(wp) :: indices(size(stack) - 1)
-    real(wp) :: in_plane(6, size(stack)), unit_stress(2, 2, size(stack) - 1)
+    real(wp) :: unit_stress(2, 2, size(stack) - 1)
     integer :: i
 
-    do i = 1, size(stack)
-      in_plane(:, i) = in_plane_stiffness(stack(i), stack(i)%elasticity)
-    end do
-    unit_stress = shear_between_plies([stack(1)%z_top, stack%z_bottom], in_plane)
+    unit_stress = shear_under_unit_forces(stack)
     indices = 0
     do i = 1, size(indices)
       if (strengths(i) > 0) indices(i) = norm2(matmul(unit_stress(:, :, i), force))/strengths(i)
     end do
   end function onset_indices
+
+  !> Shear stresses between the plies of a stack under unit shear forces.
+  pure function shear_under_unit_forces(stack) result(stress)
+    !> The plies, from the struck face
+    type(ply_t), intent(in) :: stack(:)
+    !> tau_xz and tau_yz below each ply but the last, for Qx = 1 and Qy = 1, (2, 2, plies - 1)
+    real(wp) :: stress(2, 2, size(stack) - 1)
+    real(wp) :: in_plane(6, size(stack))
+    integer :: i
+
+    do i = 1, size(stack)
+      in_plane(:, i) = in_plane_stiffness(stack(i), stack(i)%elasticity)
+    end do
+    stress = shear_between_plies([stack(1)%z_top, stack%z_bottom], in_plane)
+  end function shear_under_unit_forces
 end module interlaminar_shear

@@ -42,7 +42,8 @@ module layered_meshes
     !> Element of a cell that contains a ply, and point of a node below an interface.
     procedure :: element_at
     procedure :: lower_point
-    !> Length of the mean cell of a zone.
+    !> Area of a zone, and length of its mean cell.
+    procedure :: zone_area
     procedure :: mean_cell
     !> Point that gives a point its motion.
     procedure :: leader
@@ -246,6 +247,20 @@ contains
     class(layered_mesh_t), intent(in) :: self
     elements = size(self%element_cell)
   end function elements
+
+  !> Area of a zone in the modelled part.
+  pure real(wp) function zone_area(self, zone) result(area)
+    !> The mesh
+    class(layered_mesh_t), intent(in) :: self
+    !> Index of the zone
+    integer, intent(in) :: zone
+
+    associate (range => self%zones(zone))
+      area = (self%x_edges(range%columns(2) + 1) - self%x_edges(range%columns(1))) &
+             *(self%y_edges(range%rows(2) + 1) - self%y_edges(range%rows(1)))
+    end associate
+  end function zone_area
+
   !> Length of the mean cell of a zone: the root of its mean area.
   pure real(wp) function mean_cell(self, zone) result(length)
     !> The mesh
@@ -254,9 +269,7 @@ contains
     integer, intent(in) :: zone
 
     associate (range => self%zones(zone))
-      length = sqrt((self%x_edges(range%columns(2) + 1) - self%x_edges(range%columns(1))) &
-                    *(self%y_edges(range%rows(2) + 1) - self%y_edges(range%rows(1))) &
-                    /product([range%columns(2) - range%columns(1), range%rows(2) - range%rows(1)] + 1))
+      length = sqrt(self%zone_area(zone)/product([range%columns(2) - range%columns(1), range%rows(2) - range%rows(1)] + 1))
     end associate
   end function mean_cell
 end module layered_meshes

@@ -276,6 +276,9 @@ contains
       do ply = 1, size(self%plies)
         associate (values => table((ply - 1)*numbers + 1:ply*numbers, element))
           self%accepted(ply, element) = band_state_t(values(1:2), values(3:))
+          ! What is loaded may come from an element that had more plies.
+          if (ply < self%range(1, element) .or. ply > self%range(2, element)) &
+            self%accepted(ply, element) = band_state_t()
         end associate
       end do
       self%touched(element) = any([(any(self%accepted(ply, element)%damage > 0), ply=1, size(self%plies))])

@@ -7,7 +7,7 @@ module ply_failures
   use element_batches, only: batch_of, lane_of
   use plies, only: elasticity_t
   use ply_damage_parameters, only: failure_modes, fibre_failure, matrix_cracking, matrix_crushing, energy_modes
-  use stacking, only: section_stiffness
+  use stacking, only: in_plane_section, section_stiffness
   use section_stiffnesses, only: visit_stiffness
   use models, only: model_t
   use ply_onsets, only: ply_onset_t, new_ply_onset
@@ -54,6 +54,8 @@ module ply_failures
     procedure :: elasticities
     !> Finds new failures in an accepted state and takes stiffness away.
     procedure :: grow
+    !> Gives elements that have come to have fewer plies their stiffness.
+    procedure :: restack
     !> Number of ply elements failed in each mode, and area failed in each ply, of the whole plate.
     procedure :: counts
     procedure :: areas
@@ -255,6 +257,31 @@ contains
         free_resultants(model%plies(range(1):range(2)), self%elasticities(model, element))
     end associate
   end subroutine soften
+
+  !> Gives elements that have come to have fewer plies the stiffness that these have left.
+  subroutine restack(self, model, is_split)
+    !> The failures, loaded from elements with more plies
+    class(ply_failure_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> True for these elements, (elements)
+    logical, intent(in) :: is_split(:)
+    integer :: element
+
+    if (.not. model%scene%has_ply_damage) return
+    do element = 1, size(is_split)
+      if (.not. is_split(element)) cycle
+      associate (range => model%mesh%element_plies(:, model%distribution%elements(element)), &
+                 left => self%stiffness(lane_of(element), :, batch_of(element)))
+        left = model%elements%stiffness(lane_of(element), :, batch_of(element))
+        if (allocated(self%bands)) then
+          ! Softening takes nothing from the stiffness of transverse shear.
+          left(:18) = in_plane_section(model%plies(range(1):range(2)), self%elasticities(model, element))
+        else
+          call soften(self, model, element)
+        end if
+      end associate
+    end do
+  end subroutine restack
 
   !> Number of ply elements failed in each mode, of the whole plate.
   function counts(self, model)

@@ -225,11 +225,20 @@ contains
     !> First part of the items' names
     character(len=*), intent(in) :: path
     real(wp), allocatable :: start(:, :)
+    integer :: element, ply
 
     if (.not. allocated(self%start)) return
     start = reshape(self%start, [size(self%start, 1)*size(self%start, 2), size(self%start, 3)])
     call archive%field(path//'start', model%distribution%elements, model%mesh%elements(), start)
     self%start = reshape(start, shape(self%start))
+    ! What is loaded may come from an element that had more plies.
+    do element = 1, size(self%start, 3)
+      associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
+        do ply = 1, size(self%start, 2)
+          if (ply < range(1) .or. ply > range(2)) self%start(:, ply, element) = never
+        end do
+      end associate
+    end do
     call archive%item(path//'time', self%time)
   end subroutine visit
 end module ply_onsets

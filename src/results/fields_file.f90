@@ -59,6 +59,7 @@ module fields_file
     procedure, nopass :: check_deck
     procedure :: resume
     procedure :: write_mesh
+    procedure :: is_on
     procedure :: begin
     procedure :: write_point_field
     procedure :: write_cell_field
@@ -214,6 +215,16 @@ contains
     end do
     call self%close_file(error, group)
   end subroutine write_mesh
+
+  !> True if the mesh written last has so many points: layers only ever join a mesh.
+  pure logical function is_on(self, points)
+    !> The fields
+    class(fields_file_t), intent(in) :: self
+    !> Number of points on all ranks
+    integer, intent(in) :: points
+
+    is_on = self%global_points == points
+  end function is_on
 
   !> Starts a time.
   subroutine begin(self, time, step, error)

@@ -1,0 +1,68 @@
+!> Zones that grow in a run: layers where the damage needs them, said in the log, and kept with the checkpoint.
+module layer_following
+  use archives, only: archive_t
+  use deck_contents, only: deck_t
+  use delamination_parameters, only: delamination_t
+  use errors, only: error_t
+  use kinds, only: wp
+  use layer_switches, only: advance_with_layers
+  use logger, only: log_t
+  use models, only: model_t
+  use short_numbers, only: short_text
+  use text, only: rounded_text, to_text
+  use time_stepping, only: time_stepper_t
+  implicit none
+  private
+  public :: advance, visit_zones
+
+contains
+
+  !> Takes a step, with more layers after it if it has shown that they are needed. Collective.
+  subroutine advance(deck, model, stepper, event, log, error)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> The model
+    type(model_t), intent(inout) :: model
+    !> What evolves
+    type(time_stepper_t), intent(inout) :: stepper
+    !> Time, or load factor, not to be passed
+    real(wp), intent(in) :: event
+    !> Receives a note of new layers
+    type(log_t), intent(inout) :: log
+    !> Set if the smallest step fails or the model cannot be built
+    type(error_t), allocatable, intent(out) :: error
+    logical :: switched
+    integer :: zone
+
+    call advance_with_layers(model, stepper, deck%linear_solver, event, switched, error)
+    if (allocated(error) .or. .not. switched) return
+    do zone = 1, size(model%mesh%zones)
+      associate (interface => model%scene%delaminations(zone))
+        if (interface%follows) call log%note('Layers below ply '//to_text(interface%below_ply)//': '// &
+                                             short_text(interface%zone(1))//' x '//short_text(interface%zone(2))// &
+                                             ' from time '//rounded_text(stepper%now%time)//' on.')
+      end associate
+    end do
+  end subroutine advance
+
+  !> Saves the zones that follow their damage, or loads them: a model has to be built with them.
+  subroutine visit_zones(delaminations, archive)
+    !> The interfaces
+    type(delamination_t), intent(inout) :: delaminations(:)
+    !> Where to or where from
+    class(archive_t), intent(inout) :: archive
+    real(wp), allocatable :: extents(:)
+    integer :: zone
+
+    if (.not. any(delaminations%follows)) return
+    allocate (extents(2*size(delaminations)))
+    do zone = 1, size(delaminations)
+      extents(2*zone - 1:2*zone) = delaminations(zone)%zone
+    end do
+    call archive%item('layers/zones', extents)
+    if (.not. archive%loading .or. size(extents) /= 2*size(delaminations)) return
+    do zone = 1, size(delaminations)
+      delaminations(zone)%zone = extents(2*zone - 1:2*zone)
+    end do
+  end subroutine visit_zones
+end module layer_following

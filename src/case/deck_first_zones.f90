@@ -1,0 +1,77 @@
+!> Where interfaces whose layers follow their damage have layers at the start: under the loaded patch or the starter, and
+!> some cells around it.
+module deck_first_zones
+  use cell_grids, only: cell_edges
+  use deck_contents, only: deck_t
+  use deck_problems, only: problems_t
+  use deck_remarks, only: are_clear, tell
+  use delamination_deck, only: key_strip, key_zone
+  use delamination_parameters, only: law_front
+  use interface_places, only: delamination_group
+  use kinds, only: wp
+  use layer_extents, only: cells_ahead, cells_at_once, widened_extent
+  implicit none
+  private
+  public :: check_left_out_zones, set_first_zones
+
+contains
+
+  !> Layers can follow the damage of a cohesive law. A front has no damage ahead of it, a strip runs across the whole width
+  !> of a zone, and lines act on the layers that there are at the start.
+  subroutine check_left_out_zones(deck, problems)
+    !> The deck, filled
+    type(deck_t), intent(in) :: deck
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    integer :: i, place
+
+    do i = 1, size(deck%delaminations)
+      place = deck%delaminations(i)%group
+      if (i > 1) then
+        if (deck%delaminations(i - 1)%group == place) cycle
+      end if
+      if (deck%settings%is_given(delamination_group, key_zone, place)) cycle
+      if (deck%delaminations(i)%law == law_front) then
+        call want('a front needs it, and layers follow the damage of law = ''cohesive'' only')
+      else if (deck%settings%is_given(delamination_group, key_strip, place)) then
+        call want(key_strip//' runs across its whole width')
+      else if (size(deck%lines) > 0) then
+        call want('a &line acts on layers that are there from the start')
+      end if
+    end do
+
+  contains
+
+    !> Tells of a zone that is missing.
+    subroutine want(reason)
+      !> Why it is needed
+      character(len=*), intent(in) :: reason
+
+      if (are_clear(deck%settings, problems, delamination_group, key_zone, place)) &
+        call tell(deck%settings, problems, delamination_group, key_zone, 'is missing; '//reason//'.', place)
+    end subroutine want
+  end subroutine check_left_out_zones
+
+  !> Sets the zones that the deck leaves to the damage.
+  subroutine set_first_zones(deck, problems)
+    !> The deck, filled; its interfaces receive the zones
+    type(deck_t), intent(inout) :: deck
+    !> Faults found so far; with any nothing is done
+    type(problems_t), intent(in) :: problems
+    real(wp) :: least
+    integer :: i, direction
+
+    if (problems%errors() > 0) return
+    do direction = 1, 2
+      associate (edges => cell_edges(deck%plate, deck%mesh, direction) - deck%mesh%struck(direction))
+        do i = 1, size(deck%delaminations)
+          associate (d => deck%delaminations(i))
+            if (.not. d%follows) cycle
+            least = max(deck%mesh%patch, d%starter + 2*abs(d%starter_at(direction)))
+            d%zone(direction) = widened_extent(edges, least, cells_ahead + cells_at_once)
+          end associate
+        end do
+      end associate
+    end do
+  end subroutine set_first_zones
+end module deck_first_zones

@@ -1,0 +1,46 @@
+!> Extents of a layered rectangle that follows its damage: full extents along x and y, centred on the struck point, as
+!> the deck would give them. Centred, so that a quarter and the whole plate are layered alike.
+module layer_extents
+  use delaminated_regions, only: cells_within
+  use kinds, only: wp
+  implicit none
+  private
+  public :: widened_extent
+
+  !> Onset index from which a cell is layered: layers have twice the shear strength's room to settle in before it counts
+  !> what they do.
+  real(wp), parameter, public :: onset_of_layers = 0.5_wp
+  !> Cells of layers kept ahead of damage, and cells by which layers then grow beyond what is needed, so that they grow
+  !> seldom. What other numbers change: doc/manual/delamination.md.
+  integer, parameter, public :: cells_ahead = 3, cells_at_once = 4
+  !> Part of a cell that rounding may take away or add.
+  real(wp), parameter :: rounding = 1.0e-6_wp
+
+contains
+
+  !> Extent that reaches so many cells farther than another, of the size of its outermost ones: where cells grow with the
+  !> distance, a few go the same way. At least one more cell, if there is one.
+  pure real(wp) function widened_extent(edges, extent, cells) result(wider)
+    !> Edges of the cells along one direction, the struck point at 0
+    real(wp), intent(in) :: edges(:)
+    !> The other extent
+    real(wp), intent(in) :: extent
+    !> Cells on each side
+    integer, intent(in) :: cells
+    real(wp) :: reach
+    integer :: range(2), last
+
+    last = size(edges) - 1
+    range = cells_within(edges, extent)
+    reach = extent/2 + (cells - rounding)*min(edges(range(1) + 1) - edges(range(1)), &
+                                              edges(range(2) + 1) - edges(range(2)))
+    range = [max(1, range(1) - 1), min(last, range(2) + 1)]
+    do while (range(1) > 1 .and. edges(range(1)) > -reach)
+      range(1) = range(1) - 1
+    end do
+    do while (range(2) < last .and. edges(range(2) + 1) < reach)
+      range(2) = range(2) + 1
+    end do
+    wider = 2*max(-edges(range(1)), edges(range(2) + 1))
+  end function widened_extent
+end module layer_extents

@@ -1,0 +1,210 @@
+!> Layers appear where a plate was one: the model is built again with larger zones, and all that evolves is carried over.
+!>
+!> The new layers move as the plate did, without jumps and with its rotations, so that displacement, velocity and
+!> acceleration of every ply stay what they are, and with them strains and energies. What the energies differ by is
+!> booked: rounding, or with an energy-consistent shear correction that of the sections.
+module layer_switches
+  use errors, only: error_t
+  use kinds, only: wp
+  use layer_demand, only: demanded_extents
+  use layer_transfers, only: layer_transfer_t
+  use layered_meshes, only: layered_mesh_t
+  use linear_solver_parameters, only: linear_solver_parameters_t
+  use model_building, only: create_model
+  use models, only: model_t
+  use profiles, only: profile_t
+  use scenes, only: scene_t
+  use states, only: state_t
+  use step_memories, only: remember, step_memory_t
+  use stepping_parameters, only: stepping_t
+  use time_stepping, only: time_stepper_t
+  use timers, only: timer_set_t
+  implicit none
+  private
+  public :: advance_with_layers
+
+contains
+
+  !> Takes a step, and gives the plate the layers that its damage then needs. A step in which damage has come to the
+  !> border of a zone that could be larger is taken again with more layers. Collective.
+  subroutine advance_with_layers(model, stepper, linear_solver, event, switched, error)
+    !> The model; receives larger zones
+    type(model_t), intent(inout) :: model
+    !> What evolves
+    type(time_stepper_t), intent(inout) :: stepper
+    !> The linear solver
+    type(linear_solver_parameters_t), intent(in) :: linear_solver
+    !> Time, or load factor, not to be passed
+    real(wp), intent(in) :: event
+    !> True if layers have appeared
+    logical, intent(out) :: switched
+    !> Set if the smallest step fails or the model cannot be built
+    type(error_t), allocatable, intent(out) :: error
+    type(step_memory_t) :: memory
+    real(wp) :: extents(2, size(model%mesh%zones))
+    logical :: again, more
+
+    switched = .false.
+    again = follows(model)
+    if (.not. again) call stepper%advance(model, event, error)
+    do while (again)
+      memory = remember(stepper)
+      call stepper%advance(model, event, error)
+      if (allocated(error)) return
+      call model%profile%enter('layers')
+      associate (now => stepper%now)
+        extents = demanded_extents(model, now%plies%stiffness, now%interfaces, now%motion%displacement)
+        more = any(extents > present_extents(model%scene))
+        again = more .and. any(now%interfaces%border_reached .and. model%scene%delaminations%follows)
+      end associate
+      if (again) call memory%take_back(stepper)
+      if (more) call switch(model, stepper, linear_solver, extents, error)
+      switched = switched .or. more
+      call model%profile%leave()
+      if (allocated(error)) return
+    end do
+  end subroutine advance_with_layers
+
+  !> True if layers follow their damage somewhere.
+  pure logical function follows(model)
+    type(model_t), intent(in) :: model
+
+    follows = model%map%layered
+    if (follows) follows = any(model%scene%delaminations%follows)
+  end function follows
+
+  !> Extents of the zones.
+  pure function present_extents(scene) result(extents)
+    !> The scene
+    type(scene_t), intent(in) :: scene
+    !> Full extents along x and y, (2, zones)
+    real(wp) :: extents(2, size(scene%delaminations))
+    integer :: zone
+
+    do zone = 1, size(extents, 2)
+      extents(:, zone) = scene%delaminations(zone)%zone
+    end do
+  end function present_extents
+
+  !> Builds the model with larger zones and carries all that evolves over to it.
+  subroutine switch(model, stepper, linear_solver, extents, error)
+    !> The model
+    type(model_t), intent(inout) :: model
+    !> What evolves
+    type(time_stepper_t), intent(inout) :: stepper
+    !> The linear solver
+    type(linear_solver_parameters_t), intent(in) :: linear_solver
+    !> Full extents of the zones along x and y, (2, zones)
+    real(wp), intent(in) :: extents(:, :)
+    !> Set if the model cannot be built
+    type(error_t), allocatable, intent(out) :: error
+    type(layer_transfer_t) :: transfer
+    type(timer_set_t) :: timers
+    type(profile_t) :: profile
+    type(layered_mesh_t) :: mesh
+    type(scene_t) :: scene
+    type(stepping_t) :: stepping
+    integer :: zone
+
+    transfer%communicator = model%communicator
+    stepper%operator%ready = .false.
+    call stepper%visit(transfer, model, error)
+    if (allocated(error)) return
+    timers = stepper%operator%timers
+    call stepper%operator%solver%release()
+    scene = model%scene
+    do zone = 1, size(extents, 2)
+      scene%delaminations(zone)%zone = extents(:, zone)
+    end do
+    mesh = model%mesh
+    profile = model%profile
+    call create_model(scene, transfer%communicator, model, error)
+    model%profile = profile
+    if (allocated(error)) return
+    stepping = stepper%stepping
+    call stepper%start(model, stepping, linear_solver, error)
+    if (allocated(error)) return
+    call transfer%turn_to(mesh, model%mesh)
+    call stepper%visit(transfer, model, error)
+    if (allocated(error)) return
+    stepper%operator%timers = timers
+    call settle(model, transfer, stepper%now)
+    if (allocated(stepper%now%path%change)) call move_with_plate(model, transfer, stepper%now%path%change)
+  end subroutine switch
+
+  !> Lets the new layers move with the plate that they were, and finds forces and energies anew.
+  subroutine settle(model, transfer, now)
+    type(model_t), intent(in) :: model
+    !> Where points and elements come from
+    type(layer_transfer_t), intent(in) :: transfer
+    !> The state, loaded
+    type(state_t), intent(inout) :: now
+    type(state_t), allocatable :: before
+    real(wp), allocatable :: momentum(:, :)
+    real(wp) :: energies(2)
+
+    associate (motion => now%motion)
+      call move_with_plate(model, transfer, motion%displacement)
+      call move_with_plate(model, transfer, motion%velocity)
+      call move_with_plate(model, transfer, motion%acceleration)
+      call now%plies%restack(model, transfer%is_split(model%distribution%elements))
+      allocate (before, source=now)
+      now%plies%lagging = allocated(now%plies%bands)
+      call now%find_internal(model, before, energies(1))
+      now%plies%lagging = .false.
+      now%interfaces%cohesive%points = before%interfaces%cohesive%points
+      call model%inertia(motion%acceleration, motion%inertia)
+      allocate (momentum, mold=motion%velocity)
+      call model%inertia(motion%velocity, momentum)
+      energies(2) = model%product(motion%velocity, momentum)/2
+      call model%communicator%sum(energies)
+      energies = energies*model%mesh%multiplicity
+      if (model%scene%has_static) energies(2) = now%ledger%kinetic
+      now%ledger%layers = now%ledger%layers + now%ledger%strain + now%ledger%kinetic - sum(energies)
+      now%ledger%strain = energies(1)
+      now%ledger%kinetic = energies(2)
+      if (.not. model%scene%has_static) call hold_joined(model, transfer, now)
+    end associate
+  end subroutine settle
+
+  !> Gives the new layers the rotations of the layer above, and no jumps.
+  subroutine move_with_plate(model, transfer, field)
+    type(model_t), intent(in) :: model
+    !> Where points come from
+    type(layer_transfer_t), intent(in) :: transfer
+    !> Displacement or a rate of it, (5, points)
+    real(wp), intent(inout) :: field(:, :)
+    integer :: i
+
+    do i = 1, model%distribution%owned
+      if (transfer%point_origin(model%distribution%points(i)) > 0) cycle
+      field(1:3, i) = 0
+      field(4:5, i) = field(4:5, model%map%above(i))
+    end do
+    call model%halo%update(field)
+  end subroutine move_with_plate
+
+  !> Adds to the internal forces those that held the new layers together: the plate was in equilibrium with them. They
+  !> are gone at the end of the next step, and without a blow: with the internal forces alone, an integrator that weighs
+  !> the old ones would throw the jumps to 1 + alpha_f/(1 - alpha_f) of what they settle at.
+  pure subroutine hold_joined(model, transfer, now)
+    type(model_t), intent(in) :: model
+    !> Where points come from
+    type(layer_transfer_t), intent(in) :: transfer
+    !> The state
+    type(state_t), intent(inout) :: now
+    real(wp) :: held(5)
+    integer :: i
+
+    associate (internal => now%motion%internal)
+      do i = model%distribution%owned, 1, -1
+        if (transfer%point_origin(model%distribution%points(i)) > 0) cycle
+        held = -(internal(:, i) + now%motion%inertia(:, i))
+        internal(:, i) = internal(:, i) + held
+        associate (above => internal(:, model%map%above(i)))
+          above(4:5) = above(4:5) - held(4:5)
+        end associate
+      end do
+    end associate
+  end subroutine hold_joined
+end module layer_switches

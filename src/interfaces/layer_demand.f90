@@ -1,0 +1,124 @@
+!> How far layers have to reach that follow their damage: over cells where half of an interface's strength is reached by
+!> equilibrium through the thickness, and some cells ahead of its damage.
+module layer_demand
+  use interface_fields, only: delaminated_above
+  use interface_states, only: interface_state_t
+  use kinds, only: wp
+  use layer_extents, only: cells_ahead, cells_at_once, onset_of_layers, widened_extent
+  use models, only: model_t
+  use onset_index, only: onset_of_joined_cells
+  implicit none
+  private
+  public :: demanded_extents
+
+  !> Part by which rounding may carry a length beyond another.
+  real(wp), parameter :: rounded_off = 1.0e-9_wp
+
+contains
+
+  !> Extents that the zones have to have from now on. What has to grow gets cells in store. Collective; the same on every
+  !> rank.
+  function demanded_extents(model, stiffness, interfaces, displacement) result(extents)
+    type(model_t), intent(in) :: model
+    !> Section stiffness left in the elements, (lanes, 21, batches)
+    real(wp), intent(in) :: stiffness(:, :, :)
+    !> The interfaces
+    type(interface_state_t), intent(in) :: interfaces
+    !> Displacement, ghosts up to date, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> Full extents along x and y, (2, zones)
+    real(wp) :: extents(2, size(model%mesh%zones))
+    real(wp) :: needed(2, size(extents, 2))
+    integer :: zone
+
+    do zone = 1, size(extents, 2)
+      extents(:, zone) = model%scene%delaminations(zone)%zone
+    end do
+    associate (follows => spread(model%scene%delaminations%follows, 1, 2))
+      if (.not. any(follows)) return
+      needed = max(around_onset(model, stiffness, interfaces, displacement), &
+                   with_margin(model, around_damage(model, interfaces), cells_ahead))
+      if (.not. any(follows .and. needed > extents*(1 + rounded_off))) return
+      where (follows .and. needed > extents*(1 + rounded_off)) extents = with_margin(model, needed, cells_at_once)
+    end associate
+  end function demanded_extents
+
+  !> Extents of the joined cells where the onset index has reached what layers are for.
+  function around_onset(model, stiffness, interfaces, displacement) result(extents)
+    type(model_t), intent(in) :: model
+    !> Section stiffness left in the elements, (lanes, 21, batches)
+    real(wp), intent(in) :: stiffness(:, :, :)
+    !> The interfaces
+    type(interface_state_t), intent(in) :: interfaces
+    !> Displacement, ghosts up to date, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> Full extents along x and y, (2, zones)
+    real(wp) :: extents(2, size(model%mesh%zones))
+    real(wp), allocatable :: onset(:, :)
+    integer :: zone, cell
+
+    onset = onset_of_joined_cells(model, stiffness, delaminated_above(model, interfaces), displacement)
+    extents = 0
+    do zone = 1, size(extents, 2)
+      do cell = 1, size(onset, 1)
+        if (onset(cell, zone) >= onset_of_layers) extents(:, zone) = max(extents(:, zone), extents_to(model, cell))
+      end do
+    end do
+  end function around_onset
+
+  !> Full extents that reach over a cell.
+  pure function extents_to(model, cell) result(extents)
+    type(model_t), intent(in) :: model
+    !> The cell
+    integer, intent(in) :: cell
+    !> Along x and y
+    real(wp) :: extents(2)
+
+    associate (mesh => model%mesh, place => model%mesh%place_of(cell))
+      extents = 2*[maxval(abs(mesh%x_edges(place(1):place(1) + 1) - mesh%struck(1))), &
+                   maxval(abs(mesh%y_edges(place(2):place(2) + 1) - mesh%struck(2)))]
+    end associate
+  end function extents_to
+
+  !> Extents of the damaged points. Collective.
+  function around_damage(model, interfaces) result(extents)
+    type(model_t), intent(in) :: model
+    !> The interfaces
+    type(interface_state_t), intent(in) :: interfaces
+    !> Full extents along x and y, (2, zones)
+    real(wp) :: extents(2, size(model%mesh%zones))
+    real(wp) :: list(size(extents)), damage(size(model%zone))
+    integer :: i
+
+    extents = 0
+    damage = interfaces%cohesive%damage(model)
+    do i = 1, model%distribution%owned
+      if (.not. damage(i) > 0) cycle
+      associate (place => model%mesh%node_coordinates(:, model%mesh%point_node(model%distribution%points(i))))
+        extents(:, model%zone(i)) = max(extents(:, model%zone(i)), 2*abs(place - model%mesh%struck))
+      end associate
+    end do
+    list = reshape(extents, [size(extents)])
+    call model%communicator%maximum(list)
+    extents = reshape(list, shape(extents))
+  end function around_damage
+
+  !> Extents with some more cells on each side; none stays none.
+  pure function with_margin(model, extents, cells) result(wider)
+    type(model_t), intent(in) :: model
+    !> Full extents along x and y, (2, zones)
+    real(wp), intent(in) :: extents(:, :)
+    !> Cells
+    integer, intent(in) :: cells
+    !> (2, zones)
+    real(wp) :: wider(2, size(extents, 2))
+    integer :: zone
+
+    wider = 0
+    do zone = 1, size(extents, 2)
+      if (.not. any(extents(:, zone) > 0)) cycle
+      wider(:, zone) = [widened_extent(model%mesh%x_edges - model%mesh%struck(1), extents(1, zone), cells), &
+                        widened_extent(model%mesh%y_edges - model%mesh%struck(2), extents(2, zone), cells)]
+    end do
+  end function with_margin
+end module layer_demand

@@ -1,0 +1,224 @@
+!> Carries all that evolves from a model to one of the same scene with more layers: an archive in memory, whose fields
+!> find their points and elements again. What has no origin keeps the value that it has where it is loaded.
+module layer_transfers
+  use archives, only: archive_t
+  use communicators, only: communicator_t
+  use kinds, only: wp
+  use layered_meshes, only: layered_mesh_t
+  implicit none
+  private
+  public :: layer_transfer_t
+
+  !> One item, of whatever kind, as a table of reals, which hold every integer.
+  type :: kept_t
+    !> Its name
+    character(len=:), allocatable :: name
+    !> Its values; a field is in global order
+    real(wp), allocatable :: values(:, :)
+  end type kept_t
+
+  !> The archive: saved to, then turned to another mesh and loaded from.
+  type, extends(archive_t) :: layer_transfer_t
+    !> The ranks
+    type(communicator_t) :: communicator
+    !> Point of the mesh saved for each point, and element for each element, of the mesh loaded; 0: none
+    integer, allocatable :: point_origin(:), element_origin(:)
+    !> True for elements of the mesh loaded that have fewer plies than their origin
+    logical, allocatable :: is_split(:)
+    !> The items, the first `items` of the list
+    type(kept_t), allocatable, private :: kept(:)
+    integer, private :: items = 0
+  contains
+    !> Turns from saving to loading.
+    procedure :: turn_to
+    procedure :: real_item
+    procedure :: integer_item
+    procedure :: logical_item
+    procedure :: reals_item
+    procedure :: integers_item
+    procedure :: table_item
+    procedure :: field
+    procedure, private :: keep
+    procedure, private :: find
+  end type layer_transfer_t
+
+contains
+
+  !> Turns from saving to loading, and finds where points and elements come from. A zone only ever grows, so every point
+  !> of the mesh saved is found again.
+  subroutine turn_to(self, old, new)
+    !> The archive
+    class(layer_transfer_t), intent(inout) :: self
+    !> The mesh saved, and the one to load
+    type(layered_mesh_t), intent(in) :: old, new
+    integer :: point, element
+
+    self%loading = .true.
+    allocate (self%point_origin(new%points()), self%element_origin(new%elements()), self%is_split(new%elements()))
+    do point = 1, size(self%point_origin)
+      associate (node => new%point_node(point), zone => new%point_zone(point))
+        self%point_origin(point) = old%first_point(node)
+        if (zone > 0) self%point_origin(point) = old%lower_point(node, zone)
+      end associate
+    end do
+    do element = 1, size(self%element_origin)
+      associate (plies => new%element_plies(:, element), origin => self%element_origin(element))
+        origin = old%element_at(new%element_cell(element), plies(1))
+        self%is_split(element) = any(old%element_plies(:, origin) /= plies)
+      end associate
+    end do
+  end subroutine turn_to
+
+  !> Keeps an item.
+  subroutine keep(self, name, values)
+    !> The archive
+    class(layer_transfer_t), intent(inout) :: self
+    !> Its name
+    character(len=*), intent(in) :: name
+    !> Its values
+    real(wp), intent(in) :: values(:, :)
+    type(kept_t), allocatable :: longer(:)
+
+    if (.not. allocated(self%kept)) allocate (self%kept(64))
+    if (self%items == size(self%kept)) then
+      allocate (longer(2*self%items))
+      longer(:self%items) = self%kept
+      call move_alloc(longer, self%kept)
+    end if
+    self%items = self%items + 1
+    self%kept(self%items)%name = name
+    self%kept(self%items)%values = values
+  end subroutine keep
+
+  !> Number of an item. States of one scene consist of the same items, so it is there.
+  pure integer function find(self, name) result(item)
+    !> The archive
+    class(layer_transfer_t), intent(in) :: self
+    !> Its name
+    character(len=*), intent(in) :: name
+
+    do item = 1, self%items
+      if (self%kept(item)%name == name) return
+    end do
+  end function find
+
+  !> Visits one real.
+  subroutine real_item(self, name, value)
+    class(layer_transfer_t), intent(inout) :: self
+    !> Its name
+    character(len=*), intent(in) :: name
+    !> The item
+    real(wp), intent(inout) :: value
+
+    if (self%loading) then
+      value = self%kept(self%find(name))%values(1, 1)
+    else
+      call self%keep(name, reshape([value], [1, 1]))
+    end if
+  end subroutine real_item
+
+  !> Visits one integer.
+  subroutine integer_item(self, name, value)
+    class(layer_transfer_t), intent(inout) :: self
+    !> Its name
+    character(len=*), intent(in) :: name
+    !> The item
+    integer, intent(inout) :: value
+    real(wp) :: number
+
+    number = value
+    call self%real_item(name, number)
+    value = nint(number)
+  end subroutine integer_item
+
+  !> Visits one logical.
+  subroutine logical_item(self, name, value)
+    class(layer_transfer_t), intent(inout) :: self
+    !> Its name
+    character(len=*), intent(in) :: name
+    !> The item
+    logical, intent(inout) :: value
+    integer :: number
+
+    number = merge(1, 0, value)
+    call self%integer_item(name, number)
+    value = number == 1
+  end subroutine logical_item
+
+  !> Visits a list of reals.
+  subroutine reals_item(self, name, value)
+    class(layer_transfer_t), intent(inout) :: self
+    !> Its name
+    character(len=*), intent(in) :: name
+    !> The item
+    real(wp), allocatable, intent(inout) :: value(:)
+
+    if (self%loading) then
+      value = self%kept(self%find(name))%values(:, 1)
+    else
+      call self%keep(name, reshape(value, [size(value), 1]))
+    end if
+  end subroutine reals_item
+
+  !> Visits a list of integers.
+  subroutine integers_item(self, name, value)
+    class(layer_transfer_t), intent(inout) :: self
+    !> Its name
+    character(len=*), intent(in) :: name
+    !> The item
+    integer, allocatable, intent(inout) :: value(:)
+    real(wp), allocatable :: numbers(:)
+
+    if (.not. self%loading) numbers = value
+    call self%reals_item(name, numbers)
+    value = nint(numbers)
+  end subroutine integers_item
+
+  !> Visits a table of reals.
+  subroutine table_item(self, name, value)
+    class(layer_transfer_t), intent(inout) :: self
+    !> Its name
+    character(len=*), intent(in) :: name
+    !> The item
+    real(wp), allocatable, intent(inout) :: value(:, :)
+
+    if (self%loading) then
+      value = self%kept(self%find(name))%values
+    else
+      call self%keep(name, value)
+    end if
+  end subroutine table_item
+
+  !> Visits a field over points or elements; there are always more points, so that its length tells which. Collective
+  !> when saving.
+  subroutine field(self, name, columns, global_columns, value)
+    class(layer_transfer_t), intent(inout) :: self
+    !> Its name
+    character(len=*), intent(in) :: name
+    !> Global columns of the leading columns of `value`, which this rank owns
+    integer, intent(in) :: columns(:)
+    !> Number of columns of the whole field
+    integer, intent(in) :: global_columns
+    !> The field
+    real(wp), intent(inout) :: value(:, :)
+    real(wp), allocatable :: list(:), whole(:, :)
+    integer, allocatable :: origins(:)
+    integer :: i
+
+    if (self%loading) then
+      origins = self%element_origin
+      if (global_columns == size(self%point_origin)) origins = self%point_origin
+      associate (values => self%kept(self%find(name))%values)
+        do i = 1, size(columns)
+          if (origins(columns(i)) > 0) value(:, i) = values(:, origins(columns(i)))
+        end do
+      end associate
+    else
+      allocate (whole(size(value, 1), global_columns), source=0.0_wp)
+      whole(:, columns) = value(:, :size(columns))
+      list = reshape(whole, [size(whole)])
+      call self%communicator%sum(list)
+      call self%keep(name, reshape(list, shape(whole)))
+    end if
+  end subroutine field
+end module layer_transfers
