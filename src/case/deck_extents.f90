@@ -248,8 +248,9 @@ contains
       if (repeats(deck, i)) cycle
       associate (d => deck%delaminations(i), place => deck%delaminations(i)%group)
         call extents_of(x_edges, y_edges, d, zone, starter)
-        if (differs(zone, d%zone) .and. .not. d%follows) call remark(deck%settings, problems, delamination_group, key_zone, &
-          'a zone is whole cells; this mesh makes it '//shown(zone)//'.', place)
+        if (differs(zone, d%zone) .and. .not. d%follows) &
+          call remark(deck%settings, problems, delamination_group, key_zone, 'a zone is whole cells; this '// &
+                      'mesh makes it '//shown(zone)//'.', place)
         if (deck%settings%is_given(delamination_group, key_starter, place) .and. &
             differs(starter, [d%starter, d%starter])) &
           call remark(deck%settings, problems, delamination_group, key_starter, &

@@ -1,5 +1,5 @@
-!> Where interfaces whose layers follow their damage have layers at the start: under the loaded patch or the starter, and
-!> some cells around it.
+!> Where interfaces whose layers follow their damage have them at the start: under the loaded patch or the starter, and
+!> in some cells around it.
 module deck_first_zones
   use cell_grids, only: cell_edges
   use deck_contents, only: deck_t
@@ -9,15 +9,15 @@ module deck_first_zones
   use delamination_parameters, only: law_front
   use interface_places, only: delamination_group
   use kinds, only: wp
-  use layer_extents, only: cells_ahead, cells_at_once, widened_extent
+  use layer_extents, only: cells_at_once, widened_extent
   implicit none
   private
   public :: check_left_out_zones, set_first_zones
 
 contains
 
-  !> Layers can follow the damage of a cohesive law. A front has no damage ahead of it, a strip runs across the whole width
-  !> of a zone, and lines act on the layers that there are at the start.
+  !> Layers can follow the damage of a cohesive law. A front has no damage ahead of it, a strip runs across the whole
+  !> width of a zone, and lines act on the layers that there are at the start.
   subroutine check_left_out_zones(deck, problems)
     !> The deck, filled
     type(deck_t), intent(in) :: deck
@@ -68,7 +68,7 @@ contains
           associate (d => deck%delaminations(i))
             if (.not. d%follows) cycle
             least = max(deck%mesh%patch, d%starter + 2*abs(d%starter_at(direction)))
-            d%zone(direction) = widened_extent(edges, least, cells_ahead + cells_at_once)
+            d%zone(direction) = widened_extent(edges, least, cells_at_once)
           end associate
         end do
       end associate

@@ -246,7 +246,7 @@ contains
       call check_strengths(settings, delaminations(i), place, problems)
       call remark_idle_keys(settings, delaminations(i), place, problems)
       call check_strip(settings, delaminations(i), place, problems)
-      if (delaminations(i)%starter > 0 .and. .not. delaminations(i)%follows .and. &
+      if (delaminations(i)%starter > 0 .and. settings%is_given(group, key_zone, place) .and. &
           any(delaminations(i)%starter + 2*abs(delaminations(i)%starter_at) >= delaminations(i)%zone) .and. &
           are_clear(settings, problems, group, key_zone//' '//key_starter//' '//key_starter_at, place)) &
         call tell(settings, problems, group, '', 'the starter must be smaller than the zone and lie within it.', place)

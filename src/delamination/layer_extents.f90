@@ -18,8 +18,8 @@ module layer_extents
 
 contains
 
-  !> Extent that reaches so many cells farther than another, of the size of its outermost ones: where cells grow with the
-  !> distance, a few go the same way. At least one more cell, if there is one.
+  !> Extent that reaches so many cells farther than another, of the size of its outermost ones: where cells grow with
+  !> the distance, a few go the same way. At least one more cell, if there is one.
   pure real(wp) function widened_extent(edges, extent, cells) result(wider)
     !> Edges of the cells along one direction, the struck point at 0
     real(wp), intent(in) :: edges(:)

@@ -1,4 +1,5 @@
-!> Layers appear where a plate was one: the model is built again with larger zones, and all that evolves is carried over.
+!> Layers appear where a plate was one: the model is built again with larger zones, and all that evolves is carried
+!> over.
 !>
 !> The new layers move as the plate did, without jumps and with its rotations, so that displacement, velocity and
 !> acceleration of every ply stay what they are, and with them strains and energies. What the energies differ by is

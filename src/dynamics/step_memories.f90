@@ -13,8 +13,9 @@ module step_memories
     private
     !> The state
     type(state_t) :: now
-    !> Controller and estimate of the error
+    !> The controller
     type(step_controller_t) :: controller
+    !> The estimate of the error
     type(step_error_t) :: step_error
   contains
     !> Takes an accepted step back.

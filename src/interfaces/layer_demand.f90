@@ -1,5 +1,5 @@
-!> How far layers have to reach that follow their damage: over cells where half of an interface's strength is reached by
-!> equilibrium through the thickness, and some cells ahead of its damage.
+!> How far layers have to reach that follow their damage: some cells ahead of it, over the cells next to them where half
+!> of the interface's strength is reached by equilibrium through the thickness, and to any cell where all of it is.
 module layer_demand
   use interface_fields, only: delaminated_above
   use interface_states, only: interface_state_t
@@ -16,8 +16,8 @@ module layer_demand
 
 contains
 
-  !> Extents that the zones have to have from now on. What has to grow gets cells in store. Collective; the same on every
-  !> rank.
+  !> Extents that the zones have to have from now on. What has to grow gets cells in store. Collective; the same on
+  !> every rank.
   function demanded_extents(model, stiffness, interfaces, displacement) result(extents)
     type(model_t), intent(in) :: model
     !> Section stiffness left in the elements, (lanes, 21, batches)
@@ -43,7 +43,7 @@ contains
     end associate
   end function demanded_extents
 
-  !> Extents of the joined cells where the onset index has reached what layers are for.
+  !> Extents over the joined cells that the onset index asks for.
   function around_onset(model, stiffness, interfaces, displacement) result(extents)
     type(model_t), intent(in) :: model
     !> Section stiffness left in the elements, (lanes, 21, batches)
@@ -55,16 +55,39 @@ contains
     !> Full extents along x and y, (2, zones)
     real(wp) :: extents(2, size(model%mesh%zones))
     real(wp), allocatable :: onset(:, :)
-    integer :: zone, cell
+    integer :: zone
 
     onset = onset_of_joined_cells(model, stiffness, delaminated_above(model, interfaces), displacement)
-    extents = 0
     do zone = 1, size(extents, 2)
-      do cell = 1, size(onset, 1)
-        if (onset(cell, zone) >= onset_of_layers) extents(:, zone) = max(extents(:, zone), extents_to(model, cell))
-      end do
+      extents(:, zone) = model%scene%delaminations(zone)%zone
+      call extend(model, onset(:, zone), extents(:, zone))
     end do
   end function around_onset
+
+  !> Extends a rectangle over cells beside it as long as there are any that ask for it. Far away layers without damage
+  !> would only cost: at a clamped edge half of the strength may be reached and no more.
+  pure subroutine extend(model, onset, extents)
+    type(model_t), intent(in) :: model
+    !> Onset index of the joined cells, (cells)
+    real(wp), intent(in) :: onset(:)
+    !> Full extents along x and y
+    real(wp), intent(inout) :: extents(2)
+    real(wp) :: before(2), near(2)
+    integer :: cell
+
+    do
+      before = extents
+      near = [widened_extent(model%mesh%x_edges - model%mesh%struck(1), extents(1), 1), &
+              widened_extent(model%mesh%y_edges - model%mesh%struck(2), extents(2), 1)]*(1 + rounded_off)
+      do cell = 1, size(onset)
+        if (onset(cell) < onset_of_layers) cycle
+        associate (reach => extents_to(model, cell))
+          if (onset(cell) >= 1 .or. all(reach <= near)) extents = max(extents, reach)
+        end associate
+      end do
+      if (.not. any(extents > before)) return
+    end do
+  end subroutine extend
 
   !> Full extents that reach over a cell.
   pure function extents_to(model, cell) result(extents)

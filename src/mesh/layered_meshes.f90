@@ -269,7 +269,8 @@ contains
     integer, intent(in) :: zone
 
     associate (range => self%zones(zone))
-      length = sqrt(self%zone_area(zone)/product([range%columns(2) - range%columns(1), range%rows(2) - range%rows(1)] + 1))
+      length = sqrt(self%zone_area(zone) &
+                    /product([range%columns(2) - range%columns(1), range%rows(2) - range%rows(1)] + 1))
     end associate
   end function mean_cell
 end module layered_meshes

@@ -25,8 +25,9 @@ module layer_transfers
     integer, allocatable :: point_origin(:), element_origin(:)
     !> True for elements of the mesh loaded that have fewer plies than their origin
     logical, allocatable :: is_split(:)
-    !> The items, the first `items` of the list
+    !> The items, the first ones of the list
     type(kept_t), allocatable, private :: kept(:)
+    !> Their number
     integer, private :: items = 0
   contains
     !> Turns from saving to loading.
