@@ -5,11 +5,12 @@ module run_warnings
   use delamination_parameters, only: delamination_t
   use energy_watches, only: energy_watch_t
   use kinds, only: wp
+  use layer_extents, only: cells_ahead, cells_at_once
   use mesh_parameters, only: edge_clamped
   use models, only: model_t
   use ply_damage_parameters, only: failure_modes, fibre_failure
-  use run_records, only: run_record_t, warning_border, warning_energy, warning_hole, warning_indentation, &
-                         warning_loss, warning_slopes, warning_torn
+  use run_records, only: run_record_t, warning_border, warning_core, warning_energy, warning_hole, &
+                         warning_indentation, warning_loss, warning_slopes, warning_torn
   use short_numbers, only: short_text
   use states, only: state_t
   use text, only: line_t, append, rounded_text, to_text
@@ -48,6 +49,7 @@ contains
     thickness = deck%outlook%scales%thickness
     do zone = 1, size(now%interfaces%border_reached)
       if (now%interfaces%border_reached(zone)) call tell(warning_border, zone)
+      if (leaves_core(deck, model%scene%delaminations(zone))) call tell(warning_core, zone)
     end do
     if (now%indentation%alpha > thickness) call tell(warning_indentation, 0)
     if (.not. record%has_warned(warning_slopes, 0)) then
@@ -77,6 +79,17 @@ contains
       call append(told, warning_text(kind, zone, now%time, deck%delaminations))
     end subroutine tell
   end subroutine find_warnings
+
+  !> True: layers that follow their damage reach so far beyond the core that what they follow does too.
+  pure logical function leaves_core(deck, interface) result(leaves)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> The interface, with its present zone
+    type(delamination_t), intent(in) :: interface
+
+    leaves = interface%follows .and. deck%mesh%cell > 0 .and. &
+             any(interface%zone > deck%mesh%core + 2*(cells_ahead + cells_at_once)*deck%mesh%cell)
+  end function leaves_core
 
   !> True: somewhere the plate's section turns beyond small rotations. Collective.
   logical function is_steep(model, now)
@@ -137,6 +150,10 @@ contains
       text = 'The delamination below ply '//to_text(delaminations(zone)%below_ply)// &
              ' has reached the border of its zone at time '//rounded_text(time)// &
              ' and cannot grow on there: if it would, make the zone larger.'
+    case (warning_core)
+      text = 'The layers below ply '//to_text(delaminations(zone)%below_ply)// &
+             ' follow their damage beyond the core of the mesh since time '//rounded_text(time)// &
+             ', where its cells grow: make the core larger.'
     case (warning_energy)
       text = 'The time integrators have created more than 1 % of the energy by time '//rounded_text(time)// &
              ': take smaller steps, &impactor integrator=''conserving'', or more damping (rho_inf) with delamination.'

@@ -153,6 +153,7 @@ contains
     call json%put('energy_ply_damage', ledger%ply_damage)
     call json%put('energy_contact', ledger%contact)
     call json%put('energy_friction', ledger%friction)
+    call json%put('energy_layers', ledger%layers)
     call json%put('energy_algorithmic', ledger%algorithmic)
     call json%put('energy_error', ledger%error())
   end subroutine put_energies

@@ -45,7 +45,7 @@ contains
     integer :: cells(2), i, j
     real(wp) :: nodes, inside, pairs
 
-    zones = zones_of(scene)
+    zones = zones_of(with_largest_zones(scene))
     cells = [size(cell_edges(scene%plate, scene%mesh, 1)) - 1, size(cell_edges(scene%plate, scene%mesh, 2)) - 1]
     nodes = product(2*real(cells, wp) + 1)
     pairs = nodes
@@ -59,6 +59,23 @@ contains
     size_found%ranks = max(1, nint(real(size_found%unknowns, wp)/unknowns_a_rank))
     size_found%megabytes = 1.0e-6_wp*merge(bytes_layered, bytes_whole, size(zones) > 0)*25*pairs*log(nodes)/log(2.0_wp)
   end function size_of_model
+
+  !> The scene with the largest zones that layers may come to which follow their damage: they are meant to stay within
+  !> the core, or else the plate.
+  pure function with_largest_zones(scene) result(largest)
+    !> The scene
+    type(scene_t), intent(in) :: scene
+    !> The same with other zones
+    type(scene_t) :: largest
+    integer :: i
+
+    largest = scene
+    if (.not. allocated(scene%delaminations)) return
+    do i = 1, size(scene%delaminations)
+      if (scene%delaminations(i)%follows) &
+        largest%delaminations(i)%zone = merge(scene%mesh%core, scene%plate%length, scene%mesh%cell > 0)
+    end do
+  end function with_largest_zones
 
   !> Number of nodes inside of two zones; the model's own border counts as inside.
   pure real(wp) function nodes_in_both(a, b, cells) result(nodes)

@@ -7,6 +7,7 @@ moments  SIGTERM and SIGKILL while a step with several releases is being compute
 ranks    from 2 ranks to 1, from 1 to 2: to 1e-9
 rejected from checkpoints next to rejected steps, while delaminations grow: bitwise
 cohesive from the checkpoint after each step of a run whose interface is cohesive: bitwise
+layers   from the checkpoint after each step of a run whose layers follow their damage: bitwise
 softening from the checkpoint after each step of a run whose plies soften: bitwise
 fading   while failed plies lose their stiffness, with an operator factored before: bitwise"""
 
@@ -78,6 +79,13 @@ def check_every(implam, folder, _):
 def check_cohesive(implam, folder, _):
     """From every checkpoint of a run whose interface is cohesive."""
     check_all_checkpoints(implam, folder, "../small/cohesive.nml", [])
+
+
+def check_layers(implam, folder, _):
+    """From every checkpoint of a run in which layers appear."""
+    check_all_checkpoints(implam, folder, "../small/layers.nml", [])
+    layered = read_history(history_of(folder / "uninterrupted"))["layered_below_2"]
+    require(len(set(layered)) > 2, "Layers grew less than twice: the trial proves nothing.")
 
 
 def check_softening(implam, folder, _):
@@ -229,7 +237,7 @@ def check_rejected(implam, folder, _):
 
 
 TRIALS = {"every": check_every, "splits": check_splits, "moments": check_moments, "ranks": check_ranks,
-          "rejected": check_rejected, "fading": check_fading, "averages": check_averages, "cohesive": check_cohesive,
+          "rejected": check_rejected, "fading": check_fading, "averages": check_averages, "cohesive": check_cohesive, "layers": check_layers,
           "softening": check_softening}
 
 

@@ -115,7 +115,7 @@ def largest_difference(history, reference, leave_out=()):
         if name in leave_out:
             continue
         scale = max(map(abs, reference[name]))
-        if name in ("energy_error", "energy_algorithmic", "energy_contact"):
+        if name in ("energy_error", "energy_algorithmic", "energy_contact", "energy_layers"):
             scale = max(scale, total)
         if name == "penetration":
             scale = max(scale, *reference["deflection"])
