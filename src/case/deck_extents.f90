@@ -347,6 +347,7 @@ contains
       call extents_of(x_edges, y_edges, deck%delaminations(place), zone, starter)
       lines(place)%text = 'Interface below ply '//to_text(deck%delaminations(place)%below_ply)//': the mesh makes '// &
                           'the zone '//shown(zone)//' and the starter '//shown(starter)//'.'
+      if (deck%delaminations(place)%follows) lines(place)%text = lines(place)%text//' The zone follows the damage.'
     end do
   end function extent_lines
 

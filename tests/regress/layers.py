@@ -19,6 +19,8 @@ ROUNDING = 1e-12
 WIDE = "88e-3, 64e-3"
 CRACKS = ["ply_damage%criteria='hou'", "ply_damage%d=2", "ply_damage%e=0.1", "material%XT=1500e6", "material%XC=1200e6",
           "material%YC=200e6", "material%Sf=90e6", "material%Sm23=60e6"]
+BRITTLE = ["delamination%G_Ic=100", "delamination%G_IIc=120", "time%end=360e-6", "time%step=20e-6",
+           "time%step_min=20e-6"]
 
 
 def without_zone(folder):
@@ -90,8 +92,7 @@ def check_plies(implam, folder):
 
 def check_again(implam, folder):
     """Steps so long that damage runs to the border within one."""
-    history = read_history(run_deck(implam, write_deck(folder / "again", SMALL, [
-        "delamination%G_Ic=100", "delamination%G_IIc=120", "time%end=360e-6", "time%step=20e-6", "time%step_min=20e-6"])))
+    history = read_history(run_deck(implam, write_deck(folder / "again", SMALL, BRITTLE)))
     print(f"{history['rejected'][-1]:.0f} steps taken again, {len(sizes(history, 2))} sizes of layers")
     require(history["rejected"][-1] > 0, "No step was taken again: the trial proves nothing.")
     require(not any(history["border_reached"]), "Damage has reached the border of the layers.")

@@ -237,7 +237,8 @@ def check_rejected(implam, folder, _):
 
 
 TRIALS = {"every": check_every, "splits": check_splits, "moments": check_moments, "ranks": check_ranks,
-          "rejected": check_rejected, "fading": check_fading, "averages": check_averages, "cohesive": check_cohesive, "layers": check_layers,
+          "rejected": check_rejected, "fading": check_fading, "averages": check_averages, "cohesive": check_cohesive,
+          "layers": check_layers,
           "softening": check_softening}
 
 
