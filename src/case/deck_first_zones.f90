@@ -64,12 +64,15 @@ contains
     if (problems%errors() > 0) return
     do direction = 1, 2
       associate (edges => cell_edges(deck%plate, deck%mesh, direction) - deck%mesh%struck(direction))
+        least = deck%mesh%patch
         do i = 1, size(deck%delaminations)
           associate (d => deck%delaminations(i))
-            if (.not. d%follows) cycle
-            least = max(deck%mesh%patch, d%starter + 2*abs(d%starter_at(direction)))
-            d%zone(direction) = widened_extent(edges, least, cells_at_once)
+            if (d%follows) least = max(least, d%starter + 2*abs(d%starter_at(direction)))
           end associate
+        end do
+        do i = 1, size(deck%delaminations)
+          if (deck%delaminations(i)%follows) &
+            deck%delaminations(i)%zone(direction) = widened_extent(edges, least, cells_at_once)
         end do
       end associate
     end do

@@ -16,8 +16,9 @@ module layer_demand
 
 contains
 
-  !> Extents that the zones have to have from now on. What has to grow gets cells in store. Collective; the same on
-  !> every rank.
+  !> Extents that the zones have to have from now on: what any that follows needs all have, as intact layers beside a
+  !> damaged interface yield otherwise than plies that are joined. What has to grow gets cells in store. Collective; the
+  !> same on every rank.
   function demanded_extents(model, stiffness, interfaces, displacement) result(extents)
     type(model_t), intent(in) :: model
     !> Section stiffness left in the elements, (lanes, 21, batches)
@@ -38,6 +39,7 @@ contains
       if (.not. any(follows)) return
       needed = max(around_onset(model, stiffness, interfaces, displacement), &
                    with_margin(model, around_damage(model, interfaces), cells_ahead))
+      needed = spread(maxval(merge(needed, 0.0_wp, follows), 2), 2, size(needed, 2))
       if (.not. any(follows .and. needed > extents*(1 + rounded_off))) return
       where (follows .and. needed > extents*(1 + rounded_off)) extents = with_margin(model, needed, cells_at_once)
     end associate
