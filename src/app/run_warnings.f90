@@ -5,7 +5,7 @@ module run_warnings
   use delamination_parameters, only: delamination_t
   use energy_watches, only: energy_watch_t
   use kinds, only: wp
-  use layer_extents, only: cells_ahead, cells_at_once
+  use layer_extents, only: cells_ahead, cells_at_once, thicknesses_ahead
   use mesh_parameters, only: edge_clamped
   use models, only: model_t
   use ply_damage_parameters, only: failure_modes, fibre_failure
@@ -88,7 +88,8 @@ contains
     type(delamination_t), intent(in) :: interface
 
     leaves = interface%follows .and. deck%mesh%cell > 0 .and. &
-             any(interface%zone > deck%mesh%core + 2*(cells_ahead + cells_at_once)*deck%mesh%cell)
+             any(interface%zone > deck%mesh%core + 2*((cells_ahead + cells_at_once)*deck%mesh%cell + &
+                                                      thicknesses_ahead*deck%outlook%scales%thickness))
   end function leaves_core
 
   !> True: somewhere the plate's section turns beyond small rotations. Collective.

@@ -9,7 +9,7 @@ module deck_first_zones
   use delamination_parameters, only: law_front
   use interface_places, only: delamination_group
   use kinds, only: wp
-  use layer_extents, only: cells_at_once, widened_extent
+  use layer_extents, only: cells_at_once, thicknesses_ahead, widened_extent
   implicit none
   private
   public :: check_left_out_zones, set_first_zones
@@ -58,10 +58,11 @@ contains
     type(deck_t), intent(inout) :: deck
     !> Faults found so far; with any nothing is done
     type(problems_t), intent(in) :: problems
-    real(wp) :: least
+    real(wp) :: least, thickness
     integer :: i, direction
 
     if (problems%errors() > 0) return
+    thickness = thicknesses_ahead*sum(deck%laminate%thickness)
     do direction = 1, 2
       associate (edges => cell_edges(deck%plate, deck%mesh, direction) - deck%mesh%struck(direction))
         least = deck%mesh%patch
@@ -72,7 +73,8 @@ contains
         end do
         do i = 1, size(deck%delaminations)
           if (deck%delaminations(i)%follows) &
-            deck%delaminations(i)%zone(direction) = widened_extent(edges, least, cells_at_once)
+            deck%delaminations(i)%zone(direction) = widened_extent(edges, least, cells_at_once, &
+                                                                           thickness)
         end do
       end associate
     end do

@@ -13,6 +13,9 @@ module layer_extents
   !> Cells of layers kept ahead of damage, and cells by which layers then grow beyond what is needed, so that they grow
   !> seldom. What other numbers change: doc/manual/delamination.md.
   integer, parameter, public :: cells_ahead = 3, cells_at_once = 4
+  !> Thicknesses of the laminate that the layers reach at least beyond damage, patch and starter: the shear that they
+  !> take otherwise than the plate does settles within that.
+  real(wp), parameter, public :: thicknesses_ahead = 2
   !> Part of a cell that rounding may take away or add.
   real(wp), parameter :: rounding = 1.0e-6_wp
 
@@ -20,13 +23,15 @@ contains
 
   !> Extent that reaches so many cells farther than another, of the size of its outermost ones: where cells grow with
   !> the distance, a few go the same way. At least one more cell, if there is one.
-  pure real(wp) function widened_extent(edges, extent, cells) result(wider)
+  pure real(wp) function widened_extent(edges, extent, cells, least) result(wider)
     !> Edges of the cells along one direction, the struck point at 0
     real(wp), intent(in) :: edges(:)
     !> The other extent
     real(wp), intent(in) :: extent
     !> Cells on each side
     integer, intent(in) :: cells
+    !> Length that it reaches farther at least, to whole cells
+    real(wp), intent(in), optional :: least
     real(wp) :: reach
     integer :: range(2), last
 
@@ -34,6 +39,7 @@ contains
     range = cells_within(edges, extent)
     reach = extent/2 + (cells - rounding)*min(edges(range(1) + 1) - edges(range(1)), &
                                               edges(range(2) + 1) - edges(range(2)))
+    if (present(least)) reach = max(reach, extent/2 + least*(1 - rounding))
     range = [max(1, range(1) - 1), min(last, range(2) + 1)]
     do while (range(1) > 1 .and. edges(range(1)) > -reach)
       range(1) = range(1) - 1

@@ -4,7 +4,7 @@ module layer_demand
   use interface_fields, only: delaminated_above
   use interface_states, only: interface_state_t
   use kinds, only: wp
-  use layer_extents, only: cells_ahead, cells_at_once, onset_of_layers, widened_extent
+  use layer_extents, only: cells_ahead, cells_at_once, onset_of_layers, thicknesses_ahead, widened_extent
   use models, only: model_t
   use onset_index, only: onset_of_joined_cells
   implicit none
@@ -38,10 +38,12 @@ contains
     associate (follows => spread(model%scene%delaminations%follows, 1, 2))
       if (.not. any(follows)) return
       needed = max(around_onset(model, stiffness, interfaces, displacement), &
-                   with_margin(model, around_damage(model, interfaces), cells_ahead))
+                   with_margin(model, around_damage(model, interfaces), cells_ahead, &
+                               thicknesses_ahead*model%thickness))
       needed = spread(maxval(merge(needed, 0.0_wp, follows), 2), 2, size(needed, 2))
       if (.not. any(follows .and. needed > extents*(1 + rounded_off))) return
-      where (follows .and. needed > extents*(1 + rounded_off)) extents = with_margin(model, needed, cells_at_once)
+      where (follows .and. needed > extents*(1 + rounded_off)) &
+        extents = with_margin(model, needed, cells_at_once, 0.0_wp)
     end associate
   end function demanded_extents
 
@@ -129,12 +131,14 @@ contains
   end function around_damage
 
   !> Extents with some more cells on each side; none stays none.
-  pure function with_margin(model, extents, cells) result(wider)
+  pure function with_margin(model, extents, cells, least) result(wider)
     type(model_t), intent(in) :: model
     !> Full extents along x and y, (2, zones)
     real(wp), intent(in) :: extents(:, :)
     !> Cells
     integer, intent(in) :: cells
+    !> Length that they have at least
+    real(wp), intent(in) :: least
     !> (2, zones)
     real(wp) :: wider(2, size(extents, 2))
     integer :: zone
@@ -142,8 +146,8 @@ contains
     wider = 0
     do zone = 1, size(extents, 2)
       if (.not. any(extents(:, zone) > 0)) cycle
-      wider(:, zone) = [widened_extent(model%mesh%x_edges - model%mesh%struck(1), extents(1, zone), cells), &
-                        widened_extent(model%mesh%y_edges - model%mesh%struck(2), extents(2, zone), cells)]
+      wider(:, zone) = [widened_extent(model%mesh%x_edges - model%mesh%struck(1), extents(1, zone), cells, least), &
+                        widened_extent(model%mesh%y_edges - model%mesh%struck(2), extents(2, zone), cells, least)]
     end do
   end function with_margin
 end module layer_demand
