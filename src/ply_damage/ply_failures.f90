@@ -18,7 +18,7 @@ module ply_failures
 
   !> Energy that plies may create or lose as they follow a step, as a part of what they dissipate in it, and of all
   !> energy.
-  real(wp), parameter :: path_tolerance = 0.1_wp, noticed = 1.0e-3_wp
+  real(wp), parameter :: path_tolerance = 0.1_wp, noticed = 3.0e-4_wp
 
   !> Failures of the plies of this rank's elements.
   type :: ply_failure_t
