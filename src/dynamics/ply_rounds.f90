@@ -16,8 +16,8 @@ module ply_rounds
 
   ! What each of these numbers does to two scenes is measured by tests/bench/ply_constants.py; figures stand in
   ! doc/manual/accuracy.md.
-  !> Rounds of a step at most: fewer leave forces too high, more cost time.
-  integer, parameter :: most_rounds = 8
+  !> Rounds of a step at most. A few suffice where fibres crack one after the other; it takes tens where they snap.
+  integer, parameter :: most_rounds = 30
   !> Residual over the forces in play at which damage follows, if equilibrium asks for less: damage that follows a break
   !> brings a hundred times as much out of balance. It hangs on no count of iterations, so that ranks, symmetric parts
   !> and turned plates find the same.
