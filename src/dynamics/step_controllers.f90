@@ -26,8 +26,8 @@ module step_controllers
   integer, parameter, public :: equal_of_gear = 4
   !> Steps that must have gone well before the step grows: in an impact, where waves may come back, and after it.
   integer, parameter :: quiet_in_impact = 24, quiet_after = 8
-  !> What a step misses of how plies break, over the most it may, from which the next is not twice as long. It grows with
-  !> the square of the step: an onset passed within a step costs half the fall of the force times the way beyond it.
+  !> What a step misses of how plies break, over the most it may, from which the next is not twice as long. It grows
+  !> with the square of the step: an onset passed in a step costs half the fall of the force times the way beyond it.
   real(wp), parameter :: spare_in_breaking = 0.25_wp
   !> Parts of the time to the first event of which steps that follow the error are halves of halves, at most.
   integer, parameter :: most_parts = 8

@@ -4,8 +4,8 @@ Usage: ply_constants.py BUILD [NAME ...]     (BUILD: a built preset of this chec
 
 Changes one constant of the sources at a time, builds, runs, and puts the sources back; about two minutes a row. The
 scenes are input/small/crack_bands.nml, without damping, and scene 5 of damaging_scenes.py up to .394 ms, where fibres
-have just broken below the patch, with it. Prints peak force in N, energy of plies and of integrators in % of the impact,
-fibre failures, steps, steps tried again and iterations of each."""
+have just broken below the patch, with it. Prints of each peak force in N, energy of plies and of integrators in % of
+the impact, fibre failures, steps, steps tried again and iterations."""
 
 import csv
 import re
