@@ -66,7 +66,7 @@ contains
     new%ledger%friction = new%ledger%friction + heat
     new%ledger%algorithmic = new%ledger%algorithmic - (damage + fracture + heat)
     call new%plies%judge(damage, products%strain - old%ledger%strain - products%mean_internal - products%cohesive, &
-                         max(new%ledger%initial + new%ledger%external_work, products%strain), integrator%damps())
+                         max(new%ledger%initial + new%ledger%external_work, products%strain))
     if (model%map%layered) then
       ! What fracture takes has been booked, and taken off here, when the ties were released.
       call new%interfaces%ties%book(model, old%interfaces%ties, &

@@ -21,8 +21,6 @@ module newmark_integrators
     procedure :: mass_factor
     !> Factor of the tangent stiffness in that operator.
     procedure :: stiffness_factor
-    !> True: it takes energy from the highest frequencies.
-    procedure :: damps
   end type plate_integrator_t
 
 contains
@@ -111,14 +109,4 @@ contains
 
     factor = 1 - self%alpha_f
   end function stiffness_factor
-
-  !> True: it takes energy from the highest frequencies. Without weights of the old state it is Newmark's method, which
-  !> does so by gamma, else by a spectral radius below 1.
-  elemental logical function damps(self)
-    !> Coefficients
-    class(plate_integrator_t), intent(in) :: self
-
-    damps = self%alpha_f < 0.5_wp
-    if (abs(self%alpha_m) + abs(self%alpha_f) <= 0) damps = self%gamma > 0.5_wp
-  end function damps
 end module newmark_integrators

@@ -17,8 +17,8 @@ module ply_failures
   public :: ply_failure_t, new_ply_failure
 
   !> Energy that plies may create or lose as they follow a step, as a part of what they dissipate in it, and of all
-  !> energy. An integrator that damps takes what a leap sets free; one that does not keeps it, and it breaks more plies.
-  real(wp), parameter :: path_tolerance = 0.1_wp, noticed = 3.0e-4_wp, noticed_if_damped = 1.0e-3_wp
+  !> energy. What a leap makes breaks more plies.
+  real(wp), parameter :: path_tolerance = 0.1_wp, noticed = 3.0e-4_wp
 
   !> Failures of the plies of this rank's elements.
   type :: ply_failure_t
@@ -144,7 +144,7 @@ contains
 
   !> Judges whether a step has followed how plies soften: the work on them is then what they store and dissipate. A step
   !> over a jump would find the state behind it without the work that leads there.
-  pure subroutine judge(self, dissipated, stored, energy, damped)
+  pure subroutine judge(self, dissipated, stored, energy)
     !> The failures
     class(ply_failure_t), intent(inout) :: self
     !> Energy that plies dissipate in the step
@@ -153,13 +153,10 @@ contains
     real(wp), intent(in) :: stored
     !> Energy of the whole run so far
     real(wp), intent(in) :: energy
-    !> True: the integrator damps the highest frequencies
-    logical, intent(in) :: damped
 
     self%haste = 0
     if (allocated(self%bands)) &
-      self%haste = abs(stored + dissipated)/max(path_tolerance*dissipated, tiny(energy)**0.5_wp, &
-                                                energy*merge(noticed_if_damped, noticed, damped))
+      self%haste = abs(stored + dissipated)/max(path_tolerance*dissipated, noticed*energy, tiny(energy)**0.5_wp)
   end subroutine judge
 
   !> Modes that have occurred in a ply; one that softens has failed where it bears nothing any more.
