@@ -14,12 +14,14 @@ module ply_rounds
   private
   public :: ply_rounds_t
 
-  !> Rounds of a step at most. On crack_bands.nml none at all, 3 and 10 leave the peak force 13, 6 and 1 % above that of
-  !> short steps.
-  integer, parameter :: most_rounds = 4
-  !> Residual over that of equilibrium at which damage follows: it asks for fewer digits than the motion. It hangs on no
-  !> count of iterations, so that ranks, symmetric parts and turned plates find the same.
-  real(wp), parameter :: nearly = 100
+  ! What each of these numbers does to two scenes is measured by tests/bench/ply_constants.py; figures stand in
+  ! doc/manual/accuracy.md.
+  !> Rounds of a step at most. A few suffice where fibres crack one after the other; it takes tens where they snap.
+  integer, parameter :: most_rounds = 30
+  !> Residual over the forces in play at which damage follows, if equilibrium asks for less: damage that follows a break
+  !> brings a hundred times as much out of balance. It hangs on no count of iterations, so that ranks, symmetric parts
+  !> and turned plates find the same.
+  real(wp), parameter :: nearly = 1.0e-3_wp
   !> Energy over all energy that plies lose in a round which is not worth another one.
   real(wp), parameter :: noticed = 1.0e-4_wp
   !> Energy over all energy that may go beyond what is dissipated as damage follows the end of a step: a step that
@@ -30,8 +32,8 @@ module ply_rounds
   type :: ply_rounds_t
     !> Rounds taken
     integer, private :: taken = 0
-    !> True: at the end of the step they lose too much
-    logical :: leapt = .false.
+    !> What they lose at the end of the step, over the most that a step may lose
+    real(wp) :: haste = 0
   contains
     procedure :: go_on
   end type ply_rounds_t
@@ -56,7 +58,7 @@ contains
     real(wp) :: lost, excess, energy
 
     softened = .false.
-    if (.not. new%plies%lagging .or. norm > nearly*equilibrium%tolerance) return
+    if (.not. new%plies%lagging .or. norm > max(nearly, equilibrium%tolerance)) return
     energy = max(new%ledger%initial + new%ledger%external_work, new%ledger%strain)
     if (self%taken < most_rounds) then
       call new%plies%follow(model, new%motion%displacement, lost, excess)
@@ -66,7 +68,7 @@ contains
     else if (norm <= equilibrium%tolerance) then
       later = new%plies
       call later%follow(model, new%motion%displacement, lost, excess)
-      self%leapt = excess > most_lost*energy
+      self%haste = max(0.0_wp, excess)/(most_lost*max(energy, tiny(energy)**0.5_wp))
     end if
   end subroutine go_on
 end module ply_rounds

@@ -28,6 +28,9 @@ module step_controllers
   integer, parameter :: quiet_in_impact = 24, quiet_after = 8
   !> Ratio from which a step counts as longer than another one.
   real(wp), parameter :: longer_than = 1 + 1.0e-9_wp
+  !> What a step misses of how plies break, over the most it may, from which the next is not twice as long. It grows
+  !> with the square of the step: an onset passed in a step costs half the fall of the force times the way beyond it.
+  real(wp), parameter :: spare_in_breaking = 0.25_wp
   !> Parts of the time to the first event of which steps that follow the error are halves of halves, at most.
   integer, parameter :: most_parts = 8
 
@@ -65,6 +68,8 @@ module step_controllers
     procedure :: accept
     !> Shortens the step where fronts are about to grow or have grown.
     procedure :: heed_fronts
+    !> Lengthens the step after it was cut because plies break.
+    procedure :: heed_plies
     !> Learns from a rejected step.
     procedure :: reject
     !> True if the operator should be renewed before a step.
@@ -272,6 +277,20 @@ contains
       self%part = min(allowed, max(smallest, 2*self%part))
     end if
   end subroutine heed_fronts
+
+  !> Doubles a step that was cut because plies break, once it follows them with ease.
+  pure subroutine heed_plies(self, stepping, haste)
+    !> The controller, after `accept`
+    class(step_controller_t), intent(inout) :: self
+    !> How steps are taken
+    type(stepping_t), intent(in) :: stepping
+    !> What the last step missed, over the most that it may
+    real(wp), intent(in) :: haste
+
+    if (stepping%adapt%on) return
+    self%wanted = self%last/self%part
+    if (haste < spare_in_breaking) self%wanted = min(2*self%wanted, stepping%time%step_max)
+  end subroutine heed_plies
 
   !> Learns from a rejected step: half of it is tried next.
   pure subroutine reject(self, step)

@@ -39,7 +39,7 @@ contains
     type(step_controller_t), intent(in) :: controller
 
     ratio = largest_growth_ratio
-    if (.not. follows_error(adapt)) return
+    if (.not. (follows_error(adapt) .or. model%scene%has_crack_bands() .and. .not. adapt%on)) return
     ratio = 1024
     if (has_gear(model)) ratio = merge(2, 1, controller%equal >= equal_of_gear)
   end function growth_limit

@@ -50,6 +50,8 @@ module time_stepping
     type(plate_integrator_t) :: integrator
     !> How steps are taken
     type(stepping_t) :: stepping
+    !> What the last step missed of how plies break, over the most that it may
+    real(wp), private :: haste = 0
     !> Factorizations and solves when the present step was begun
     integer, private :: factorizations_begun = 0, solves_begun = 0
     !> Steps that were tried in vain
@@ -248,8 +250,8 @@ contains
       call model%profile%leave()
     end if
     ! Steps of the smallest length are taken as they are: the energy watch tells what they create.
-    if (converged .and. (problem%rounds%leapt .or. self%trial%plies%leapt)) &
-      converged = step <= self%smallest_step(model)*(1 + 1.0e-9_wp)
+    self%haste = max(problem%rounds%haste, self%trial%plies%haste)
+    if (converged .and. self%haste > 1) converged = step <= self%smallest_step(model)*(1 + 1.0e-9_wp)
   end subroutine try_step
 
   !> Tries one load step.
@@ -368,6 +370,7 @@ contains
       lasting = self%now%iterations
       if (self%operator%condenses) lasting = self%operator%solves - self%solves_begun
       call self%controller%accept(self%stepping, step, self%now%iterations, lasting - self%operator%switches, change)
+      if (model%scene%has_crack_bands()) call self%controller%heed_plies(self%stepping, self%haste)
       if (follows_error(self%stepping%adapt)) &
         call self%controller%follow_error(self%stepping, step, self%error, self%stepping%time%end - self%now%time, &
           .not. model%scene%has_impactor .or. self%step_error%impact_is_over(self%stepping%outlook, self%now), &

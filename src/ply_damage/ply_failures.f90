@@ -17,7 +17,7 @@ module ply_failures
   public :: ply_failure_t, new_ply_failure
 
   !> Energy that plies may create or lose as they follow a step, as a part of what they dissipate in it, and of all
-  !> energy.
+  !> energy. What a leap makes breaks more plies.
   real(wp), parameter :: path_tolerance = 0.1_wp, noticed = 3.0e-4_wp
 
   !> Failures of the plies of this rank's elements.
@@ -34,8 +34,8 @@ module ply_failures
     logical :: softened = .false.
     !> Energy dissipated in each mode by plies that soften, of the whole plate
     real(wp) :: dissipated(energy_modes) = 0
-    !> True if the last step was too long to follow plies that soften
-    logical :: leapt = .false.
+    !> Energy that the last step missed as it followed plies that soften, over the most that it may
+    real(wp) :: haste = 0
     !> True while plies that soften keep their stiffness until they are told to follow
     logical :: lagging = .false.
     !> Strain energy of this rank's elements when forces were found last
@@ -156,7 +156,9 @@ contains
     !> Energy of the whole run so far
     real(wp), intent(in) :: energy
 
-    self%leapt = allocated(self%bands) .and. abs(stored + dissipated) > max(path_tolerance*dissipated, noticed*energy)
+    self%haste = 0
+    if (allocated(self%bands)) &
+      self%haste = abs(stored + dissipated)/max(path_tolerance*dissipated, noticed*energy, tiny(energy)**0.5_wp)
   end subroutine judge
 
   !> Modes that have occurred in a ply; one that softens has failed where it bears nothing any more.
