@@ -230,9 +230,9 @@ contains
                                    growth_limit(model, self%stepping%adapt, self%controller))
     mass_factor = self%integrator%mass_factor(step)
     due = .not. self%operator%ready .or. self%operator%changes%kept > most_answers .and. self%operator%condenses
-    if (.not. due) due = self%controller%renewal_due(self%stepping%adapt, &
-      model%scene%kinematics == kinematics_von_karman, mass_factor/self%operator%mass_factor, &
-                                                     self%now%deflection - self%operator%deflection, model%thickness)
+    if (.not. due) &
+      due = self%controller%renewal_due(self%stepping%adapt, model%scene%kinematics == kinematics_von_karman, &
+        mass_factor/self%operator%mass_factor, self%now%deflection - self%operator%deflection, model%thickness)
     if (due) then
       call self%operator%renew(model, self%now%plies%stiffness, self%now%interfaces, &
                                self%now%motion%displacement, self%integrator%stiffness_factor(), mass_factor, error)
@@ -332,7 +332,6 @@ contains
     !> Step taken
     real(wp), intent(in) :: step
     type(state_t), allocatable :: before
-    logical :: damaged(size(model%mesh%zones))
     real(wp) :: change
     logical :: extended
     integer :: lasting
@@ -350,8 +349,8 @@ contains
     call note_flaws(model, self%trial%plies, self%trial%interfaces)
     if (model%scene%has_static) call find_release_ratio(model, self%trial%plies%stiffness, self%trial%motion, &
                                                         self%trial%interfaces)
-    damaged = self%trial%interfaces%cohesive%border_reached(model)
-    self%trial%interfaces%border_reached = self%trial%interfaces%border_reached .or. damaged
+    self%trial%interfaces%border_reached = self%trial%interfaces%border_reached .or. &
+                                           self%trial%interfaces%cohesive%border_reached(model)
     self%trial%interfaces%faces%glued = self%trial%interfaces%faces%glued .or. model%scene%has_impactor .and. &
                                         .not. model%scene%has_static .and. &
                                         self%trial%impactor%velocity <= 0 .and. self%trial%force < self%now%force
