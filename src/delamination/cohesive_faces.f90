@@ -1,9 +1,11 @@
 !> Two faces at a point of a cohesive interface: the law while they part, the stiffness of the undamaged interface while
-!> they are pressed together, and friction between the damaged parts of faces that press on each other.
+!> they are pressed together, and friction between the damaged parts of faces that press on each other. Faces without
+!> contact pass through each other as far as they are damaged; what is intact holds them in both directions.
 module cohesive_faces
   use cohesive_laws, only: cohesive_law_t, stiffness_of
-  use cohesive_points, only: cohesive_point_t, cohesive_reach, cohesive_traction, grown_damage, stored_energy
-  use cohesive_tangents, only: operator_stiffness, traction_slopes
+  use cohesive_points, only: cohesive_point_t, cohesive_reach, cohesive_reach_t, cohesive_traction, grown_damage, &
+                             stored_energy
+  use cohesive_tangents, only: damage_growth, operator_stiffness, traction_slopes
   use face_friction, only: friction_energy, friction_slopes, friction_traction
   use kinds, only: wp
   implicit none
@@ -14,7 +16,7 @@ module cohesive_faces
   type :: cohesive_faces_t
     !> The law that holds them together
     type(cohesive_law_t) :: law
-    !> True: they do not pass through each other
+    !> True: they do not pass through each other where they are damaged
     logical :: closing = .true.
     !> Coulomb's coefficient of friction; 0: they slide freely
     real(wp) :: friction = 0
@@ -50,7 +52,7 @@ contains
     real(wp) :: friction(2)
 
     call cohesive_traction(self%law, jumps, 0.0_wp, old, force, new)
-    if (pressed(self, jumps)) force(3) = self%law%stiffness_opening*jumps(3)
+    if (jumps(3) < 0) force(3) = closing_stiffness(self, new)*jumps(3)
     if (.not. self%friction > 0) return
     call friction_traction(self%law%stiffness_shear, jumps(:2), old%sliding, friction, new%sliding)
     force(:2) = force(:2) + friction
@@ -66,7 +68,7 @@ contains
     type(cohesive_point_t), intent(in) :: point
 
     stored = stored_energy(self%law, jumps, point)
-    if (pressed(self, jumps)) stored = stored + self%law%stiffness_opening*jumps(3)**2/2
+    if (jumps(3) < 0) stored = stored + closing_stiffness(self, point)*jumps(3)**2/2
     if (self%friction > 0) stored = stored + friction_energy(self%law%stiffness_shear, jumps(:2), point%sliding)
   end function stored
 
@@ -81,8 +83,17 @@ contains
     !> Derivatives of each traction (row) by each jump (column)
     real(wp) :: slopes(3, 3)
 
-    slopes = traction_slopes(self%law, jumps, cohesive_reach(self%law, jumps, 0.0_wp), old)
-    if (pressed(self, jumps)) slopes(3, 3) = self%law%stiffness_opening
+    type(cohesive_reach_t) :: reach
+    type(cohesive_point_t) :: new
+
+    reach = cohesive_reach(self%law, jumps, 0.0_wp)
+    slopes = traction_slopes(self%law, jumps, reach, old)
+    if (jumps(3) < 0) then
+      new%damage = grown_damage(self%law, reach, old)
+      slopes(3, 3) = closing_stiffness(self, new)
+      if (.not. self%closing) &
+        slopes(3, :) = slopes(3, :) - self%law%stiffness_opening*jumps(3)*damage_growth(self%law, reach, old)
+    end if
     if (self%friction > 0) slopes(:2, :2) = slopes(:2, :2) + sticking(self, jumps, old)
   end function slopes
 
@@ -149,6 +160,17 @@ contains
 
     slopes = friction_slopes(self%law%stiffness_shear, jumps(:2), old%sliding)
   end function sticking
+
+  !> Stiffness of faces that close: that of the interface, without contact that of what is left of it.
+  pure real(wp) function closing_stiffness(self, point) result(stiffness)
+    !> The faces
+    type(cohesive_faces_t), intent(in) :: self
+    !> The point with its jumps
+    type(cohesive_point_t), intent(in) :: point
+
+    stiffness = self%law%stiffness_opening
+    if (.not. self%closing) stiffness = (1 - point%damage)*stiffness
+  end function closing_stiffness
 
   !> True where the faces press on each other.
   pure logical function pressed(self, jumps)
