@@ -10,6 +10,7 @@ module deck_process_zones
   use delamination_deck, only: key_flaws
   use delamination_parameters, only: delamination_t, law_cohesive, toughnesses
   use kinds, only: wp
+  use layer_extents, only: largest_extents
   use laminate_parameters, only: shear_five_sixths
   use plies, only: ply_t
   use process_zones, only: process_zone_t, process_zone_warning, resolved_part
@@ -80,8 +81,7 @@ contains
     zone%thickness = thickness_of(layer)
     bending = bending_moduli(layer)
     extents = delamination%zone
-    ! Layers that follow are meant to stay within the core: the run tells if they don't.
-    if (delamination%follows) extents = merge(max(extents, deck%mesh%core), deck%plate%length, deck%mesh%cell > 0)
+    if (delamination%follows) extents = largest_extents(extents, deck%mesh%core, deck%mesh%cell, deck%plate%length)
     cells = [longest_cell(cell_edges(deck%plate, deck%mesh, 1) - deck%mesh%struck(1), extents(1)), &
              longest_cell(cell_edges(deck%plate, deck%mesh, 2) - deck%mesh%struck(2), extents(2))]
     zone%modulus = largest_modulus(bending)

@@ -1,6 +1,7 @@
 !> Two faces at a point of a cohesive interface: the law while they part, the stiffness of the undamaged interface while
 !> they are pressed together, and friction between the damaged parts of faces that press on each other. Faces without
-!> contact pass through each other as far as they are damaged; what is intact holds them in both directions.
+!> contact pass through each other as far as they are damaged; what is intact holds them in both directions. What it
+!> stores as they close is let go as damage grows, and is found again in what the integrators take.
 module cohesive_faces
   use cohesive_laws, only: cohesive_law_t, stiffness_of
   use cohesive_points, only: cohesive_point_t, cohesive_reach, cohesive_reach_t, cohesive_traction, grown_damage, &
@@ -82,17 +83,17 @@ contains
     type(cohesive_point_t), intent(in) :: old
     !> Derivatives of each traction (row) by each jump (column)
     real(wp) :: slopes(3, 3)
-
     type(cohesive_reach_t) :: reach
     type(cohesive_point_t) :: new
 
     reach = cohesive_reach(self%law, jumps, 0.0_wp)
     slopes = traction_slopes(self%law, jumps, reach, old)
-    if (jumps(3) < 0) then
+    if (pressed(self, jumps)) then
+      slopes(3, 3) = self%law%stiffness_opening
+    else if (jumps(3) < 0) then
       new%damage = grown_damage(self%law, reach, old)
       slopes(3, 3) = closing_stiffness(self, new)
-      if (.not. self%closing) &
-        slopes(3, :) = slopes(3, :) - self%law%stiffness_opening*jumps(3)*damage_growth(self%law, reach, old)
+      slopes(3, :) = slopes(3, :) - self%law%stiffness_opening*jumps(3)*damage_growth(self%law, reach, old)
     end if
     if (self%friction > 0) slopes(:2, :2) = slopes(:2, :2) + sticking(self, jumps, old)
   end function slopes

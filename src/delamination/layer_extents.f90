@@ -5,7 +5,7 @@ module layer_extents
   use kinds, only: wp
   implicit none
   private
-  public :: widened_extent
+  public :: largest_extents, widened_extent
 
   !> Onset index from which a cell is layered: layers have twice the shear strength's room to settle in before it counts
   !> what they do.
@@ -20,6 +20,19 @@ module layer_extents
   real(wp), parameter :: rounding = 1.0e-6_wp
 
 contains
+
+  !> Extents that layers may come to: they are meant to stay within the core, or else the plate; a run tells if they
+  !> leave the core.
+  pure function largest_extents(extents, core, cell, length) result(largest)
+    !> Those of the present, of the core, and the plate's lengths
+    real(wp), intent(in) :: extents(2), core(2), length(2)
+    !> Side of the core's cells; 0: there is no core
+    real(wp), intent(in) :: cell
+    !> Along x and y
+    real(wp) :: largest(2)
+
+    largest = merge(max(extents, core), length, cell > 0)
+  end function largest_extents
 
   !> Extent that reaches so many cells farther than another, of the size of its outermost ones: where cells grow with
   !> the distance, a few go the same way. At least one more cell, if there is one.

@@ -81,14 +81,33 @@ contains
     !> Element of the mesh, and the ply
     integer, intent(in) :: element, ply
     real(wp), allocatable :: indices(:)
-    integer :: stack(2), range(2)
+    integer :: first
+
+    call find_stack_indices(model, strengths, everywhere, element, first, indices)
+    onset = indices(ply - first + 1)
+  end function onset_below
+
+  !> Indices of all interfaces in the stack of joined layers that an element is in.
+  pure subroutine find_stack_indices(model, strengths, everywhere, element, first, indices)
+    type(model_t), intent(in) :: model
+    !> Strength of the interface below each ply
+    real(wp), intent(in) :: strengths(:)
+    !> What gathered returns
+    real(wp), intent(in) :: everywhere(:, :)
+    !> Element of the mesh
+    integer, intent(in) :: element
+    !> First ply of the stack
+    integer, intent(out) :: first
+    !> Index below each of its plies but the last
+    real(wp), allocatable, intent(out) :: indices(:)
+    integer :: stack(2), last
 
     stack = joined_elements(model, everywhere, element)
-    range = [model%mesh%element_plies(1, stack(1)), model%mesh%element_plies(2, stack(2))]
-    indices = onset_indices(model%plies(range(1):range(2)), strengths(range(1):range(2) - 1), &
+    first = model%mesh%element_plies(1, stack(1))
+    last = model%mesh%element_plies(2, stack(2))
+    indices = onset_indices(model%plies(first:last), strengths(first:last - 1), &
                             sum(everywhere(1:2, stack(1):stack(2)), 2))
-    onset = indices(ply - range(1) + 1)
-  end function onset_below
+  end subroutine find_stack_indices
 
   !> First and last element of the stack of joined layers that an element is in.
   pure function joined_elements(model, everywhere, element) result(stack)
@@ -157,17 +176,14 @@ contains
     !> Index and ply above the interface; both 0 where no strength is known
     real(wp) :: onset(2)
     real(wp), allocatable :: indices(:)
-    integer :: stack(2), range(2), within(2), place
+    integer :: first, within(2), place
 
-    stack = joined_elements(model, everywhere, element)
-    range = [model%mesh%element_plies(1, stack(1)), model%mesh%element_plies(2, stack(2))]
-    indices = onset_indices(model%plies(range(1):range(2)), strengths(range(1):range(2) - 1), &
-                            sum(everywhere(1:2, stack(1):stack(2)), 2))
+    call find_stack_indices(model, strengths, everywhere, element, first, indices)
     ! From the interface on top of the element to the one above its last ply.
-    within = [max(1, model%mesh%element_plies(1, element) - range(1)), model%mesh%element_plies(2, element) - range(1)]
+    within = [max(1, model%mesh%element_plies(1, element) - first), model%mesh%element_plies(2, element) - first]
     onset = 0
     if (within(2) < within(1)) return
     place = within(1) + maxloc(indices(within(1):within(2)), 1) - 1
-    if (indices(place) > 0) onset = [indices(place), real(range(1) + place - 1, wp)]
+    if (indices(place) > 0) onset = [indices(place), real(first + place - 1, wp)]
   end function onset_in_stack
 end module onset_index

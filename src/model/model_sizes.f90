@@ -1,6 +1,7 @@
 !> How large a model is before it is built: unknowns and memory, for `implam check` and the scripts of queues.
 module model_sizes
   use kinds, only: wp
+  use layer_extents, only: largest_extents
   use layered_meshes, only: zone_t
   use model_building, only: zones_of
   use cell_grids, only: cell_edges
@@ -60,8 +61,7 @@ contains
     size_found%megabytes = 1.0e-6_wp*merge(bytes_layered, bytes_whole, size(zones) > 0)*25*pairs*log(nodes)/log(2.0_wp)
   end function size_of_model
 
-  !> The scene with the largest zones that layers may come to which follow their damage: they are meant to stay within
-  !> the core, or else the plate.
+  !> The scene with the largest zones that layers may come to which follow their damage.
   pure function with_largest_zones(scene) result(largest)
     !> The scene
     type(scene_t), intent(in) :: scene
@@ -73,7 +73,8 @@ contains
     if (.not. allocated(scene%delaminations)) return
     do i = 1, size(scene%delaminations)
       if (scene%delaminations(i)%follows) &
-        largest%delaminations(i)%zone = merge(scene%mesh%core, scene%plate%length, scene%mesh%cell > 0)
+        largest%delaminations(i)%zone = largest_extents(scene%delaminations(i)%zone, scene%mesh%core, scene%mesh%cell, &
+                                                        scene%plate%length)
     end do
   end function with_largest_zones
 

@@ -256,7 +256,6 @@ contains
     class(model_t), intent(in) :: self
     !> Displacement, (5, points)
     real(wp), intent(in) :: displacement(:, :)
-
     integer :: i
 
     mean = 0

@@ -19,7 +19,8 @@ module condensed_corrections
   !> Unknowns at most, those that join together at most, and numbers in the operator's answers to forces on them.
   integer, parameter :: most_unknowns = 500, most_joining = 300
   !> Unknowns of failed points that join together at most. Their faces open or close, and do so again in the next step,
-  !> while answers to the forces of a front serve many steps.
+  !> while answers to the forces of a front serve many steps. It decides on cost alone: with 50 the free flight of
+  !> peanut.nml takes .84 of the time that it takes with 300, and has the same energies to nine digits.
   integer, parameter :: most_clapping = 50
   real(wp), parameter :: most_numbers = 1.0e8_wp
   !> Numbers that tell of an unknown.

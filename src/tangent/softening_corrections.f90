@@ -14,7 +14,8 @@ module softening_corrections
   private
   public :: softening_memory_t
 
-  !> Answers of one correction at most, and of a step until the operator is renewed, which costs about as much.
+  !> Answers of one correction at most, and of a step until the operator is renewed, which costs about as much: with
+  !> 12, 20, 30 and 40 the whole of peanut.nml takes .85, .79, .80 and 1 of the time.
   integer, parameter :: most_answers = 30, most_kept = 30
 
   !> What earlier corrections of a step have found.

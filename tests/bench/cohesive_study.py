@@ -8,7 +8,6 @@ steps       the same with starter, steps of 20, 10 and 5 us
 crossply    the force when the area of reference/crossply_cohesive_2mm.nml passes a value, cells of 2 and 1 mm
 impact      input/crossply_threshold.nml, from nothing: cells of 2.5 and 1.25 mm, steps of 20 and 10 us, other strengths
 strips      pure end moments on strips of two arms, shear and opening, fine and coarse cells: moment over the exact one
-numbers     numerical keys of reference/crossply_cohesive_2mm.nml changed by half: what they make of its last row
 
 Fields are read with h5py."""
 
@@ -139,15 +138,6 @@ def crossply(program):
     crossply_row(program, 'cells of 1 mm', ['mesh%elements=50, 50'])
 
 
-def numbers(program):
-    """Numerical keys."""
-    crossply_head()
-    for name, settings in (('steps of 10 us', ['time%step=10e-6']), ('steps of 30 us', ['time%step=30e-6']),
-                           ('stiffness 2e14', ['delamination%stiffness=2e14']),
-                           ('stiffness 6e14', ['delamination%stiffness=6e14']), ('rho_inf .5', ['time%rho_inf=.5'])):
-        crossply_row(program, name, settings)
-
-
 def impact(program):
     """A drop weight: peak force, force while the area grows, area."""
     text = (ROOT/'input/crossply_threshold.nml').read_text(encoding='utf-8')
@@ -183,8 +173,7 @@ def strips(program):
                   f'{max(grown):.4f} |', flush=True)
 
 
-STUDIES = {'thresholds': thresholds, 'steps': steps, 'crossply': crossply, 'impact': impact, 'strips': strips,
-           'numbers': numbers}
+STUDIES = {'thresholds': thresholds, 'steps': steps, 'crossply': crossply, 'impact': impact, 'strips': strips}
 
 
 def main(program, *studies):
