@@ -101,7 +101,7 @@ contains
     is_steep = model%communicator%any(maxval(abs(now%motion%displacement(4:5, :))) > steepest)
   end function is_steep
 
-  !> True: fibres of every ply have broken over an area as large as the patch, so nothing bears what presses on it any
+  !> True: fibres of every ply have broken over an area as large as the contact, so nothing bears what presses on it any
   !> more. Collective.
   logical function has_hole(model, now)
     type(model_t), intent(in) :: model
@@ -109,12 +109,15 @@ contains
     type(state_t), intent(in) :: now
     integer :: counts(failure_modes)
     real(wp), allocatable :: areas(:, :)
+    real(wp) :: touched
 
     has_hole = .false.
     counts = now%plies%counts(model)
     if (counts(fibre_failure) < size(model%scene%laminate%angle)) return
     areas = now%plies%areas(model)
-    has_hole = all(areas(fibre_failure, :) >= model%scene%mesh%patch**2*(1 - rounded_off))
+    touched = model%scene%mesh%patch**2
+    if (allocated(model%nose)) touched = model%nose%touched(model%communicator, model%patch)*model%mesh%multiplicity
+    has_hole = all(areas(fibre_failure, :) >= touched*(1 - rounded_off))
   end function has_hole
 
   !> True: a clamped plate has lost fibres. Collective.

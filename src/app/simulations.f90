@@ -8,6 +8,7 @@ module simulations
   use profiles, only: profile_t, wall_time
   use timers, only: timer_set_t
   use communicators, only: communicator_t
+  use contact_following, only: take_contact
   use launchers, only: launched
   use models, only: model_t
   use model_building, only: create_model
@@ -225,6 +226,8 @@ contains
 
     call visit_zones(self%model%scene%delaminations, archive)
     call self%stepper%visit(archive, self%model, error)
+    if (archive%loading .and. .not. allocated(error)) &
+      call take_contact(self%model, self%stepper%now, self%stepper%operator, error)
     call self%history_clock%visit(archive, 'history')
     call self%fields_clock%visit(archive, 'fields')
     call self%checkpoint_clock%visit(archive, 'checkpoint')

@@ -159,7 +159,7 @@ contains
     if (.not. model%scene%has_impactor) return
     allocate (outside, source=impactor_force_t(coupling=coupling, law=model%scene%indentation, &
                                                indentation=old%indentation, before=coupling%load(), &
-                                               patch_mean=model%patch_mean(new%motion%displacement), &
+                                               patch_mean=model%contact_deflection(new%motion%displacement), &
                                                parts=real(model%mesh%multiplicity, wp)))
   end subroutine follow_impactor
 

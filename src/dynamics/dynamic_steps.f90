@@ -304,7 +304,7 @@ contains
 
     call new%count_step(old)
     new%deflection = model%deflection(new%motion%displacement)
-    new%patch_mean = model%patch_mean(new%motion%displacement)
+    new%patch_mean = model%contact_deflection(new%motion%displacement)
     if (model%scene%has_impactor) then
       new%impactor = advance(model%scene%impactor, old%impactor, self%step, self%coupling%unknown, &
                              self%coupling%force_end)

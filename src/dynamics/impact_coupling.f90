@@ -89,7 +89,7 @@ contains
     integer :: iterations
 
     before = self%unknown
-    new%patch_mean = model%patch_mean(new%motion%displacement) + model%patch_mean(correction)
+    new%patch_mean = model%contact_deflection(new%motion%displacement) + model%patch_mean(correction)
     call self%find_force(model%scene%indentation, old%indentation, new%patch_mean, operator%compliance, iterations, &
                          error)
     correction = correction + (self%share*(self%unknown - before))*operator%response

@@ -66,7 +66,7 @@ contains
     state%ledger%ply_damage = damage
     state%ledger%initial = state%ledger%initial + state%ledger%strain + damage
     state%deflection = model%deflection(state%motion%displacement)
-    state%patch_mean = model%patch_mean(state%motion%displacement)
+    state%patch_mean = model%contact_deflection(state%motion%displacement)
     operator%ready = .false.
   end subroutine find_initial_equilibrium
 

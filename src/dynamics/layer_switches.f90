@@ -5,6 +5,7 @@
 !> acceleration of every ply stay what they are, and with them strains and energies. What the energies differ by is
 !> booked: rounding, or with an energy-consistent shear correction that of the sections.
 module layer_switches
+  use contact_following, only: follow_contact, take_contact
   use errors, only: error_t
   use kinds, only: wp
   use layer_demand, only: demanded_extents
@@ -64,6 +65,7 @@ contains
       call model%profile%leave()
       if (allocated(error)) return
     end do
+    if (.not. allocated(error)) call follow_contact(model, stepper%now, stepper%operator, error)
   end subroutine advance_with_layers
 
   !> True if layers follow their damage somewhere.
@@ -127,6 +129,7 @@ contains
     if (allocated(error)) return
     call transfer%turn_to(mesh, model%mesh)
     call stepper%visit(transfer, model, error)
+    if (.not. allocated(error)) call take_contact(model, stepper%now, stepper%operator, error)
     if (allocated(error)) return
     stepper%operator%timers = timers
     call settle(model, transfer, stepper%now)

@@ -48,7 +48,7 @@ contains
     call follow_skew(operator, model, new%interfaces%cohesive, response, error)
     if (allocated(error)) return
     compliance = model%patch_mean(response)
-    mean = model%patch_mean(new%motion%displacement) + model%patch_mean(correction)
+    mean = model%contact_deflection(new%motion%displacement) + model%patch_mean(correction)
     ! A plate that gives way backwards would pull at the impactor: this step is for a shorter one.
     call solve_impact_force(model%scene%indentation, new%indentation, new%indentation%alpha, &
                             new%load_factor*model%scene%impactor%travel - mean + new%force*compliance, compliance, &
@@ -67,7 +67,7 @@ contains
     real(wp) :: force
 
     force = indentation_force(model%scene%indentation, new%indentation, new%load_factor*model%scene%impactor%travel - &
-                              model%patch_mean(new%motion%displacement))
+                              model%contact_deflection(new%motion%displacement))
     unmet = abs(force - new%force)/max(force, new%force, tiny(force))
   end function push_unmet
 
@@ -78,7 +78,7 @@ contains
     type(state_t), intent(in) :: new
 
     travel = indentation_of(model%scene%indentation, new%indentation, new%force) + &
-             model%patch_mean(new%motion%displacement)
+             model%contact_deflection(new%motion%displacement)
   end function travel_for
 
   !> Completes an accepted load step: the impactor's place, the indentation, and the work of what moves it.

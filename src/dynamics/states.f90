@@ -34,6 +34,10 @@ module states
     type(interface_state_t) :: interfaces
     !> Impact force at this time
     real(wp) :: force = 0
+    !> How the impactor's force is spread if that follows its nose, (local points), and what the mean deflection of the
+    !> patch had more before
+    real(wp), allocatable :: patch(:)
+    real(wp) :: patch_offset = 0
     !> Mean deflection of the patch, and deflection of the struck point
     real(wp) :: patch_mean = 0, deflection = 0
     !> Bending stress at the struck point, and its largest value so far
@@ -82,6 +86,7 @@ contains
               self%motion%inertia(5, points), source=0.0_wp)
     self%plies = new_ply_failure(model)
     self%interfaces = new_interface_state(model)
+    if (allocated(model%nose)) self%patch = model%patch
     if (.not. model%scene%has_impactor .or. model%scene%has_static) return
     self%impactor = new_impactor(model%scene%impactor)
     self%ledger%impactor = impactor_energy(model%scene%impactor, self%impactor)
@@ -161,6 +166,7 @@ contains
     call self%indentation%visit(archive)
     call archive%item('force', self%force)
     call archive%item('patch_mean', self%patch_mean)
+    call visit_patch(self, archive, model)
     call archive%item('deflection', self%deflection)
     call archive%item('stress', self%stress)
     call archive%item('largest_stress', self%largest_stress)
@@ -176,6 +182,24 @@ contains
     call archive%item('largest_forces/translation', self%largest_forces(1))
     call archive%item('largest_forces/rotation', self%largest_forces(2))
   end subroutine visit
+
+  !> Saves or loads how the impactor's force is spread.
+  subroutine visit_patch(self, archive, model)
+    !> The state
+    type(state_t), intent(inout) :: self
+    !> Where to or where from
+    class(archive_t), intent(inout) :: archive
+    type(model_t), intent(in) :: model
+    real(wp), allocatable :: weights(:, :)
+
+    if (.not. allocated(self%patch)) return
+    call archive%item('patch_offset', self%patch_offset)
+    weights = reshape(self%patch, [1, size(self%patch)])
+    associate (share => model%distribution)
+      call archive%field('patch', share%points(:share%owned), model%mesh%points(), weights)
+    end associate
+    self%patch = weights(1, :)
+  end subroutine visit_patch
 
   !> Saves or loads the motion of the plate.
   subroutine visit_motion(motion, archive, model)

@@ -245,7 +245,7 @@ contains
     sums = sums*model%mesh%multiplicity
     call new%count_step(old)
     new%deflection = model%deflection(new%motion%displacement)
-    new%patch_mean = model%patch_mean(new%motion%displacement)
+    new%patch_mean = model%contact_deflection(new%motion%displacement)
     new%ledger%strain = sums(1)
     new%ledger%external_work = old%ledger%external_work + sums(3)
     new%ledger%contact = old%ledger%contact - sums(4)

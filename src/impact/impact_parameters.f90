@@ -21,10 +21,12 @@ module impact_parameters
     real(wp) :: velocity = 0
     !> Travel from first touch in a static analysis
     real(wp) :: travel = 0
-    !> Radius of the nose; only Sun's formula for k uses it
+    !> Radius of the nose, for Sun's formula for k and the area of contact
     real(wp) :: radius = 0
     !> Acceleration of gravity along the impact direction; 0: none
     real(wp) :: gravity = 0
+    !> True: its force is spread over where the nose touches; false: over the patch
+    logical :: spreads = .false.
     !> The struck point, from the plate's centre
     real(wp) :: at(2) = 0
     !> One of the integrators above

@@ -16,7 +16,7 @@ module impactor_deck
   character(len=*), parameter, public :: impactor_group = 'impactor', key_velocity = 'velocity', &
                                          key_radius = 'radius', key_gravity = 'gravity', key_at = 'at', &
                                          key_mass = 'mass', key_integrator = 'integrator', &
-                                         key_travel = 'travel'
+                                         key_travel = 'travel', key_contact_area = 'contact_area'
   !> Name used here more than once.
   character(len=*), parameter :: key_energy = 'energy'
   !> Row of the group.
@@ -36,6 +36,8 @@ module impactor_deck
       &Travel from first touch on at the end of a static analysis, which moves the impactor slowly.', &
     'impactor | radius | real | 1 | length | none | > 0 | &
       &Radius of the nose; needed if the contact stiffness k isn''t given.', &
+    'impactor | contact_area | choice | 1 | - | ''patch'' | patch sphere | &
+      &Where its force presses: on the patch, or also beside it where the plate has come near a spherical nose.', &
     'impactor | gravity | real | 1 | length/time^2 | 0 | any | &
       &Acceleration of gravity along the impact, positive towards the plate.', &
     'impactor | integrator | choice | 1 | - | ''gear4'' | gear4 trapezoidal central conserving | &
@@ -59,6 +61,10 @@ contains
     impactor%velocity = settings%real_of(impactor_group, key_velocity)
     impactor%radius = settings%real_of(impactor_group, key_radius)
     if (settings%is_known(impactor_group, key_at)) impactor%at = settings%reals_of(impactor_group, key_at)
+    impactor%spreads = settings%text_of(impactor_group, key_contact_area) == 'sphere'
+    if (impactor%spreads .and. .not. impactor%radius > 0 .and. &
+        are_clear(settings, problems, impactor_group, key_radius)) &
+      call tell(settings, problems, impactor_group, key_radius, 'is missing; contact_area = ''sphere'' needs it.')
     impactor%gravity = settings%real_of(impactor_group, key_gravity)
     impactor%integrator = code_of(settings%text_of(impactor_group, key_integrator), &
                                   'gear4 trapezoidal central conserving', &

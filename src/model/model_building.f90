@@ -3,6 +3,7 @@ module model_building
   use kinds, only: wp
   use errors, only: error_t
   use communicators, only: communicator_t
+  use contact_areas, only: new_contact_area
   use element_batches, only: lanes, lane_of, batch_of
   use free_strains, only: free_resultants
   use plate_options, only: kinematics_linear, mass_lumped
@@ -162,16 +163,15 @@ contains
     type(model_t), intent(inout) :: self
     real(wp), allocatable :: weights(:, :)
     real(wp) :: area
-    integer :: point
 
     allocate (weights(1, size(self%distribution%points)), source=0.0_wp)
-    call add_patch_weights(self%elements, patch_elements(self), weights(1, :))
+    call add_patch_weights(self%elements, patch_elements(self, .true.), weights(1, :))
     call self%halo%accumulate(weights)
     area = sum(weights)
     call self%communicator%sum(area)
     if (area > 0) weights = weights/area
-    self%patch = weights(1, :)
-    self%patch_points = pack([(point, point=1, size(self%patch))], abs(self%patch) > 0)
+    call self%spread_force(weights(1, :), 0.0_wp)
+    if (self%scene%impactor%spreads) call build_nose(self, area)
     if (self%scene%has_pressure) then
       call build_pressure(self)
     else if (self%scene%has_static) then
@@ -183,18 +183,40 @@ contains
     end if
   end subroutine build_loads
 
-  !> This rank's elements under the patch, of the struck layer only.
-  pure function patch_elements(self) result(elements)
+  !> This rank's elements under the patch, or beside it, of the struck layer only.
+  pure function patch_elements(self, under) result(elements)
     type(model_t), intent(in) :: self
+    !> True for those under it
+    logical, intent(in) :: under
     !> Positions among this rank's elements
     integer, allocatable :: elements(:)
     integer :: i
 
     associate (mesh => self%mesh, mine => self%distribution%elements)
-      elements = pack([(i, i=1, size(mine))], [(mesh%in_patch(mesh%element_cell(mine(i)), self%scene%mesh%patch) &
-                                                .and. mesh%element_plies(1, mine(i)) == 1, i=1, size(mine))])
+      elements = pack([(i, i=1, size(mine))], &
+                      [((mesh%in_patch(mesh%element_cell(mine(i)), self%scene%mesh%patch) .eqv. under) &
+                        .and. mesh%element_plies(1, mine(i)) == 1, i=1, size(mine))])
     end associate
   end function patch_elements
+
+  !> The nose whose contact the patch follows.
+  subroutine build_nose(self, area)
+    !> The model, with its patch
+    type(model_t), intent(inout) :: self
+    !> Area of the patch's modelled part
+    real(wp), intent(in) :: area
+    real(wp), allocatable :: beside(:, :)
+    integer :: i
+
+    allocate (beside(1, size(self%distribution%points)), source=0.0_wp)
+    call add_patch_weights(self%elements, patch_elements(self, .false.), beside(1, :))
+    call self%halo%accumulate(beside)
+    associate (mesh => self%mesh, points => self%distribution%points)
+      self%nose = new_contact_area(self%patch, area, beside(1, :), &
+                                   [(norm2(mesh%node_coordinates(:, mesh%point_node(points(i))) - self%scene%mesh%struck), &
+                                     i=1, size(points))], self%scene%impactor%radius)
+    end associate
+  end subroutine build_nose
 
   !> Nodal forces of the pressure on the struck face.
   subroutine build_pressure(self)

@@ -3,6 +3,7 @@
 module models
   use kinds, only: wp
   use communicators, only: communicator_t
+  use contact_areas, only: contact_area_t
   use halos, only: halo_t
   use element_batches, only: element_batches_t
   use bending_forces, only: add_bending_force, add_bending_inertia
@@ -57,6 +58,10 @@ module models
     real(wp), allocatable :: patch(:)
     !> Points that have one
     integer, allocatable :: patch_points(:)
+    !> Nose that the patch follows from step to step; unallocated: the patch stays what it is
+    type(contact_area_t), allocatable :: nose
+    !> What the mean deflection had more when the patch was another, so that it goes on from what it was
+    real(wp) :: patch_offset = 0
     !> Nodal forces of the deck's pressure, (5, local points); ghosts zero. Allocated only with a pressure
     real(wp), allocatable :: pressure(:, :)
     !> Lines that hold, move or press; empty: none
@@ -108,6 +113,9 @@ module models
     !> Mean deflection of the patch, and nodal forces of a force on it.
     procedure :: patch_mean
     procedure :: push_patch
+    !> Deflection under the impactor, and how its force is spread from now on.
+    procedure :: contact_deflection
+    procedure :: spread_force
     !> Deflection at the struck point.
     procedure :: deflection
     !> Product of two fields over all points of the plate's modelled part.
@@ -264,6 +272,29 @@ contains
     end do
     call self%communicator%sum(mean)
   end function patch_mean
+
+  !> Deflection of the plate under the impactor, the same on every rank.
+  real(wp) function contact_deflection(self, displacement) result(w)
+    class(model_t), intent(in) :: self
+    !> Displacement, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+
+    w = self%patch_mean(displacement) + self%patch_offset
+  end function contact_deflection
+
+  !> Spreads the impactor's force in another way.
+  pure subroutine spread_force(self, weights, offset)
+    class(model_t), intent(inout) :: self
+    !> Weights, (local points); ghosts zero
+    real(wp), intent(in) :: weights(:)
+    !> What the mean deflection had more before
+    real(wp), intent(in) :: offset
+    integer :: point
+
+    self%patch = weights
+    self%patch_points = pack([(point, point=1, size(weights))], abs(weights) > 0)
+    self%patch_offset = offset
+  end subroutine spread_force
 
   !> Adds the nodal forces of a force on the whole plate's patch.
   pure subroutine push_patch(self, force, forces)

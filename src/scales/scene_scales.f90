@@ -4,11 +4,13 @@ module scene_scales
   use interface_strengths, only: shear_strengths
   use interlaminar_shear, only: onset_indices
   use kinds, only: wp
+  use mesh_parameters, only: edge_simple
   use modal_plates, only: modal_plate_t, modal_plate_of
   use packed_matrices, only: unpacked, inverse
   use plies, only: ply_t
   use scenes, only: scene_t
   use stacking, only: section_t, stacked_plies, section_of
+  use support_parameters, only: window_none, window_rectangle, window_circle
   use threshold_forces, only: effective_bending_stiffness, threshold_force
   implicit none
   private
@@ -61,7 +63,7 @@ contains
     scales%area_mass = section%mass(1)
     scales%bending = (section%stiffness(13) + section%stiffness(16))/2
     scales%plate_mass = section%mass(1)*product(scene%plate%length)
-    plate = modal_plate_of(scene%plate%length, scene%plate%edges, section%stiffness, [1.0_wp, 0.0_wp, 0.0_wp], &
+    plate = modal_plate_of(free_span(scene), free_edges(scene), section%stiffness, [1.0_wp, 0.0_wp, 0.0_wp], &
                            loaded_side(scene), all_modes)
     bent = minval(plate%frequency, mask=plate%frequency > 1.0e-6_wp*maxval(plate%frequency))
     if (section%mass(1) > 0) scales%first_period = 2*pi*sqrt(section%mass(1))/bent
@@ -115,9 +117,41 @@ contains
     type(section_t) :: section
 
     section = bending_section(scene)
-    plate = modal_plate_of(scene%plate%length, scene%plate%edges, section%stiffness, section%mass, &
+    plate = modal_plate_of(free_span(scene), free_edges(scene), section%stiffness, section%mass, &
                            loaded_side(scene), cutoff)
   end function plate_modes
+
+  !> Lengths of what bends of the plate: all of it, or the window of its frame. A circular window counts as the square
+  !> with the same first frequency, simply supported: 4.977/(radius)**2 for nu = .3 (Leissa, Vibration of Plates, NASA
+  !> SP-160, 1969, table 2.4) and 2 pi**2/side**2.
+  pure function free_span(scene) result(length)
+    !> The scene
+    type(scene_t), intent(in) :: scene
+    !> Along x and y
+    real(wp) :: length(2)
+    integer :: i
+
+    length = scene%plate%length
+    if (.not. allocated(scene%supports)) return
+    do i = 1, size(scene%supports)
+      associate (support => scene%supports(i))
+        if (support%shape == window_rectangle) length = min(length, support%window)
+        if (support%shape == window_circle) length = min(length, sqrt(2/4.977_wp)*pi*support%radius)
+      end associate
+    end do
+  end function free_span
+
+  !> Supports of its edges: a frame bears it simply.
+  pure function free_edges(scene) result(edges)
+    !> The scene
+    type(scene_t), intent(in) :: scene
+    !> In the order of the deck
+    integer :: edges(4)
+
+    edges = scene%plate%edges
+    if (.not. allocated(scene%supports)) return
+    if (any(scene%supports%shape /= window_none)) edges = edge_simple
+  end function free_edges
 
   !> Side of the loaded square; where the deck has none, as small as plate theory can tell.
   pure real(wp) function loaded_side(scene) result(side)

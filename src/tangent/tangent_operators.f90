@@ -76,8 +76,9 @@ module tangent_operators
     procedure :: follow
     !> Correction of the displacement for a residual.
     procedure :: correct
-    !> Answers to unit forces, and what changes since the factorization make of an answer.
+    !> Answers to unit forces, and to one of the impactor, and what changes since the factorization make of an answer.
     procedure :: find_columns
+    procedure :: find_response
     procedure :: follow_changes
     !> Saves what is needed to make the same factor again, or loads it and makes it.
     procedure :: visit
@@ -165,14 +166,14 @@ contains
     call self%anderson%forget()
     self%response = 0
     self%compliance = 0
-    if (model%scene%has_impactor) call find_response(self, model, error)
+    if (model%scene%has_impactor) call self%find_response(model, error)
     self%fresh_response = self%response
   end subroutine factorize
 
   !> Finds the response to a unit force of the impactor.
   subroutine find_response(self, model, error)
     !> The operator
-    type(tangent_operator_t), intent(inout) :: self
+    class(tangent_operator_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Set if the solve fails
     type(error_t), allocatable, intent(inout) :: error

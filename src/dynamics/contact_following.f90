@@ -1,0 +1,70 @@
+!> The impactor's force spreads as the plate bends about its nose.
+!>
+!> How it is spread is found from the last accepted state and holds through the next step, so force and deflection
+!> under the impactor do the same work. As the spreading changes, the deflection and with it the indentation go on from
+!> what they were: no energy appears.
+module contact_following
+  use errors, only: error_t
+  use kinds, only: wp
+  use models, only: model_t
+  use states, only: state_t
+  use tangent_operators, only: tangent_operator_t
+  implicit none
+  private
+  public :: follow_contact, take_contact
+
+  !> Part of the way to what the last state asks for that a step goes: the plate answers to the change, and a whole
+  !> way would overshoot where it gives way more than the nose is indented.
+  real(wp), parameter :: relaxation = 0.5_wp
+  !> Sum of the changes of weights, of one, that are not worth a solve.
+  real(wp), parameter :: negligible = 1.0e-6_wp
+
+contains
+
+  !> Spreads the force as a new state asks for. Collective.
+  subroutine follow_contact(model, now, operator, error)
+    !> The model; receives how the force is spread
+    type(model_t), intent(inout) :: model
+    !> The state reached; remembers it
+    type(state_t), intent(inout) :: now
+    !> The factored operator; receives its response to the force
+    type(tangent_operator_t), intent(inout) :: operator
+    !> Set if a solve fails
+    type(error_t), allocatable, intent(inout) :: error
+    real(wp), allocatable :: change(:)
+    real(wp) :: sums(2)
+
+    if (.not. allocated(model%nose)) return
+    associate (w => now%motion%displacement(3, :))
+      change = relaxation*(model%nose%weights(model%communicator, w, now%indentation%alpha) - model%patch)
+      sums = [sum(abs(change)), dot_product(change, w)]
+    end associate
+    call model%communicator%sum(sums)
+    if (.not. sums(1) > negligible) return
+    now%patch = model%patch + change
+    now%patch_offset = now%patch_offset - sums(2)
+    call take_contact(model, now, operator, error)
+  end subroutine follow_contact
+
+  !> Spreads the force as a state has it. Collective.
+  subroutine take_contact(model, now, operator, error)
+    !> The model; receives how the force is spread
+    type(model_t), intent(inout) :: model
+    !> The state
+    type(state_t), intent(in) :: now
+    !> The factored operator; receives its response to the force
+    type(tangent_operator_t), intent(inout) :: operator
+    !> Set if a solve fails
+    type(error_t), allocatable, intent(inout) :: error
+
+    if (.not. allocated(now%patch)) return
+    call model%spread_force(now%patch, now%patch_offset)
+    if (.not. operator%ready) return
+    call operator%find_response(model, error)
+    if (allocated(error)) return
+    operator%fresh_response = operator%response
+    if (operator%condenses) return
+    call operator%follow_changes(model, operator%response)
+    operator%compliance = model%patch_mean(operator%response)
+  end subroutine take_contact
+end module contact_following

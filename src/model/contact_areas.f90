@@ -1,0 +1,93 @@
+!> Where a spherical nose presses on the plate: on the deck's patch, and beside it where the plate has come near the
+!> nose's surface.
+!>
+!> At the edge of a Hertzian contact the undeformed surfaces are half the indentation farther apart than where they
+!> met first (K. L. Johnson, Contact Mechanics, 1985, section 4.2). So pressure is in proportion to what a place lacks
+!> of that distance, as on an elastic foundation (section 4.3): on a flat plate out to Hertz's radius, farther where the
+!> plate bends about the nose. Under the patch it is even, and the patch has its mean.
+module contact_areas
+  use communicators, only: communicator_t
+  use kinds, only: wp
+  implicit none
+  private
+  public :: contact_area_t, new_contact_area
+
+  !> Part of the indentation by which surfaces are farther apart at the edge of a Hertzian contact.
+  real(wp), parameter :: edge_gap = 0.5_wp
+
+  !> Struck face and nose.
+  type :: contact_area_t
+    !> Weights of the deck's patch, whose product with w is its mean deflection, (local points); ghosts zero
+    real(wp), allocatable :: under(:)
+    !> Area beside the patch that belongs to each point within reach of the nose, (local points); ghosts zero
+    real(wp), allocatable, private :: beside(:)
+    !> Height of the nose's surface above its tip, (local points)
+    real(wp), allocatable, private :: rise(:)
+    !> Area of the modelled part of the patch
+    real(wp), private :: area = 0
+  contains
+    !> Weights by which the force is spread.
+    procedure :: weights
+    !> Area that has pressure.
+    procedure :: touched
+  end type contact_area_t
+
+contains
+
+  !> A nose over a patch.
+  pure function new_contact_area(under, area, beside, distance, radius) result(self)
+    !> Weights of the patch, (local points), and area of its modelled part
+    real(wp), intent(in) :: under(:), area
+    !> Area beside the patch that belongs to each point, and its distance from the struck point, (local points)
+    real(wp), intent(in) :: beside(:), distance(:)
+    !> Radius of the nose
+    real(wp), intent(in) :: radius
+    !> The nose
+    type(contact_area_t) :: self
+
+    self%under = under
+    self%area = area
+    self%beside = merge(beside, 0.0_wp, distance < radius)
+    self%rise = radius - sqrt(max(0.0_wp, radius**2 - distance**2))
+  end function new_contact_area
+
+  !> Weights by which the force is spread, whose sum over the modelled part is one. Collective.
+  function weights(self, communicator, deflection, indentation)
+    !> The nose
+    class(contact_area_t), intent(in) :: self
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> Deflection of the struck face, (local points)
+    real(wp), intent(in) :: deflection(:)
+    !> Indentation; without it the patch alone is pressed
+    real(wp), intent(in) :: indentation
+    !> (local points); ghosts zero
+    real(wp), allocatable :: weights(:)
+    real(wp), allocatable :: apart(:), pressure(:)
+    real(wp) :: least, sums(2)
+
+    weights = self%under
+    if (.not. indentation > 0) return
+    apart = deflection + self%rise
+    least = -minval(apart, mask=self%under > 0 .or. self%beside > 0)
+    call communicator%maximum(least)
+    pressure = max(0.0_wp, edge_gap*indentation - least - apart)
+    sums = [self%area*dot_product(self%under, pressure), dot_product(self%beside, pressure)]
+    call communicator%sum(sums)
+    weights = (sums(1)*self%under + self%beside*pressure)/sum(sums)
+  end function weights
+
+  !> Area of the modelled part that has pressure. Collective.
+  real(wp) function touched(self, communicator, weights)
+    !> The nose
+    class(contact_area_t), intent(in) :: self
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> How the force is spread, (local points)
+    real(wp), intent(in) :: weights(:)
+
+    touched = sum(self%beside, mask=weights > 0)
+    call communicator%sum(touched)
+    touched = self%area + touched
+  end function touched
+end module contact_areas
