@@ -1,6 +1,7 @@
 !> Zones that grow in a run: layers where the damage needs them, said in the log, and kept with the checkpoint.
 module layer_following
   use archives, only: archive_t
+  use contact_following, only: take_contact
   use deck_contents, only: deck_t
   use delamination_parameters, only: delamination_t
   use errors, only: error_t
@@ -13,7 +14,7 @@ module layer_following
   use time_stepping, only: time_stepper_t
   implicit none
   private
-  public :: advance, visit_zones
+  public :: advance, visit_evolving, visit_zones
 
 contains
 
@@ -44,6 +45,22 @@ contains
       end associate
     end do
   end subroutine advance
+
+  !> Saves or loads what evolves, and what of the model follows it.
+  subroutine visit_evolving(model, stepper, archive, error)
+    !> The model, built with the zones of the archive
+    type(model_t), intent(inout) :: model
+    !> What evolves
+    type(time_stepper_t), intent(inout) :: stepper
+    !> Where to or where from
+    class(archive_t), intent(inout) :: archive
+    !> Set if the factored operator cannot be made again
+    type(error_t), allocatable, intent(out) :: error
+
+    call visit_zones(model%scene%delaminations, archive)
+    call stepper%visit(archive, model, error)
+    if (archive%loading .and. .not. allocated(error)) call take_contact(model, stepper%now, stepper%operator, error)
+  end subroutine visit_evolving
 
   !> Saves the zones that follow their damage, or loads them: a model has to be built with them.
   subroutine visit_zones(delaminations, archive)

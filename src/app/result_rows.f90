@@ -12,8 +12,8 @@ module result_rows
   use output_clocks, only: shown_time
   use ply_columns, only: ply_rows, ply_values
   use result_tables, only: cell, column_name, column_type, name_with_number, result_name_length, result_row_length
-  use step_columns, only: heat_rows, heat_values, iteration_rows, iteration_values, ledger_rows, ledger_values, &
-                          motion_rows, motion_values, step_rows, step_values
+  use step_columns, only: contact_rows, heat_rows, heat_values, iteration_rows, iteration_values, ledger_rows, &
+                          ledger_values, motion_rows, motion_values, step_rows, step_values
   use states, only: state_t
   use time_stepping, only: time_stepper_t
   implicit none
@@ -27,7 +27,7 @@ module result_rows
   !> Columns that every history has, of which the first seventeen are the public interface.
   character(len=*), parameter :: plate_rows(*) = [character(len=result_row_length) :: &
     motion_rows, area_rows, ledger_rows, step_rows, release_rows, iteration_rows, operator_rows, ply_rows, &
-    border_rows, rig_rows, heat_rows, limit_rows]
+    border_rows, rig_rows, heat_rows, limit_rows, contact_rows]
   !> The table of columns in their order.
   character(len=*), parameter, public :: column_rows(*) = [character(len=result_row_length) :: &
     plate_rows, interface_rows, line_column_rows]
@@ -142,7 +142,7 @@ contains
              release_values(model, now%interfaces, now%motion%displacement), iteration_values(now, stepper%rejected), &
              operator_values(stepper%operator), ply_values(model, now%plies), border_values(model, now%interfaces), &
              rig_values(model, now%interfaces, now%motion, loads), heat_values(now%ledger), &
-             real(limits, wp), interface_values(model, now%interfaces), line_values(model, now)]
+             real(limits, wp), model%pressed_area(), interface_values(model, now%interfaces), line_values(model, now)]
     end associate
     row(1) = shown_time(row(1))
   end function row_of

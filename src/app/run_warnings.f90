@@ -109,15 +109,12 @@ contains
     type(state_t), intent(in) :: now
     integer :: counts(failure_modes)
     real(wp), allocatable :: areas(:, :)
-    real(wp) :: touched
 
     has_hole = .false.
     counts = now%plies%counts(model)
     if (counts(fibre_failure) < size(model%scene%laminate%angle)) return
     areas = now%plies%areas(model)
-    touched = model%scene%mesh%patch**2
-    if (allocated(model%nose)) touched = model%nose%touched(model%communicator, model%patch)*model%mesh%multiplicity
-    has_hole = all(areas(fibre_failure, :) >= touched*(1 - rounded_off))
+    has_hole = all(areas(fibre_failure, :) >= model%pressed_area()*(1 - rounded_off))
   end function has_hole
 
   !> True: a clamped plate has lost fibres. Collective.

@@ -8,7 +8,6 @@ module simulations
   use profiles, only: profile_t, wall_time
   use timers, only: timer_set_t
   use communicators, only: communicator_t
-  use contact_following, only: take_contact
   use launchers, only: launched
   use models, only: model_t
   use model_building, only: create_model
@@ -30,7 +29,7 @@ module simulations
   use queue_signals, only: stop_signal
   use output_clocks, only: clock_t, next_event, shown_time
   use energy_watches, only: energy_watch_t
-  use layer_following, only: advance, visit_zones
+  use layer_following, only: advance, visit_evolving
   use result_rows, only: row_of, column_names, column_whole
   use field_results, only: field_rows, part_of, write_fields, write_mesh
   implicit none
@@ -224,10 +223,7 @@ contains
     !> Set if the factored operator cannot be made again
     type(error_t), allocatable, intent(out) :: error
 
-    call visit_zones(self%model%scene%delaminations, archive)
-    call self%stepper%visit(archive, self%model, error)
-    if (archive%loading .and. .not. allocated(error)) &
-      call take_contact(self%model, self%stepper%now, self%stepper%operator, error)
+    call visit_evolving(self%model, self%stepper, archive, error)
     call self%history_clock%visit(archive, 'history')
     call self%fields_clock%visit(archive, 'fields')
     call self%checkpoint_clock%visit(archive, 'checkpoint')

@@ -14,8 +14,8 @@ module contact_following
   public :: follow_contact, take_contact
 
   !> Part of the way to what the last state asks for that a step goes: the plate answers to the change, and a whole
-  !> way would overshoot where it gives way more than the nose is indented.
-  real(wp), parameter :: relaxation = 0.5_wp
+  !> way would overshoot where it gives way more than the nose is indented. doc/theory/impact.md has figures.
+  real(wp), parameter :: relaxation = 0.2_wp
   !> Sum of the changes of weights, of one, that are not worth a solve.
   real(wp), parameter :: negligible = 1.0e-6_wp
 

@@ -34,9 +34,9 @@ module states
     type(interface_state_t) :: interfaces
     !> Impact force at this time
     real(wp) :: force = 0
-    !> How the impactor's force is spread if that follows its nose, (local points), and what the mean deflection of the
-    !> patch had more before
+    !> How the impactor's force is spread if that follows its nose, (local points)
     real(wp), allocatable :: patch(:)
+    !> What the mean deflection of the patch had more when the patch was another
     real(wp) :: patch_offset = 0
     !> Mean deflection of the patch, and deflection of the struck point
     real(wp) :: patch_mean = 0, deflection = 0
@@ -193,10 +193,10 @@ contains
     real(wp), allocatable :: weights(:, :)
 
     if (.not. allocated(self%patch)) return
-    call archive%item('patch_offset', self%patch_offset)
+    call archive%item('contact/offset', self%patch_offset)
     weights = reshape(self%patch, [1, size(self%patch)])
     associate (share => model%distribution)
-      call archive%field('patch', share%points(:share%owned), model%mesh%points(), weights)
+      call archive%field('contact/weights', share%points(:share%owned), model%mesh%points(), weights)
     end associate
     self%patch = weights(1, :)
   end subroutine visit_patch

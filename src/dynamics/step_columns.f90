@@ -64,6 +64,11 @@ module step_columns
     'energy_layers | real | energy | Strain and kinetic energy that the plate had more than the layers that took its &
       &place where a zone grew; rounding with shear_correction = ''5/6''.']
 
+  !> Contact with the impactor.
+  character(len=result_row_length), parameter, public :: contact_rows(*) = [character(len=result_row_length) :: &
+    'contact_area | real | area | Area that the impactor presses on when it does: the patch, and what its nose has &
+      &come to touch beside it.']
+
 contains
 
   !> Motion of impactor and plate.

@@ -14,6 +14,8 @@ module contact_areas
 
   !> Part of the indentation by which surfaces are farther apart at the edge of a Hertzian contact.
   real(wp), parameter :: edge_gap = 0.5_wp
+  !> Weight over the largest from which a place counts as touched: as contact ends, weights fade.
+  real(wp), parameter :: noticed = 1.0e-3_wp
 
   !> Struck face and nose.
   type :: contact_area_t
@@ -85,8 +87,11 @@ contains
     type(communicator_t), intent(in) :: communicator
     !> How the force is spread, (local points)
     real(wp), intent(in) :: weights(:)
+    real(wp) :: largest
 
-    touched = sum(self%beside, mask=weights > 0)
+    largest = maxval(weights)
+    call communicator%maximum(largest)
+    touched = sum(self%beside, mask=weights > noticed*largest)
     call communicator%sum(touched)
     touched = self%area + touched
   end function touched

@@ -211,9 +211,9 @@ contains
     allocate (beside(1, size(self%distribution%points)), source=0.0_wp)
     call add_patch_weights(self%elements, patch_elements(self, .false.), beside(1, :))
     call self%halo%accumulate(beside)
-    associate (mesh => self%mesh, points => self%distribution%points)
+    associate (mesh => self%mesh, points => self%distribution%points, struck => self%scene%mesh%struck)
       self%nose = new_contact_area(self%patch, area, beside(1, :), &
-                                   [(norm2(mesh%node_coordinates(:, mesh%point_node(points(i))) - self%scene%mesh%struck), &
+                                   [(norm2(mesh%node_coordinates(:, mesh%point_node(points(i))) - struck), &
                                      i=1, size(points))], self%scene%impactor%radius)
     end associate
   end subroutine build_nose

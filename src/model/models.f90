@@ -113,8 +113,9 @@ module models
     !> Mean deflection of the patch, and nodal forces of a force on it.
     procedure :: patch_mean
     procedure :: push_patch
-    !> Deflection under the impactor, and how its force is spread from now on.
+    !> Deflection under the impactor, the area that it presses on, and how its force is spread from now on.
     procedure :: contact_deflection
+    procedure :: pressed_area
     procedure :: spread_force
     !> Deflection at the struck point.
     procedure :: deflection
@@ -281,6 +282,14 @@ contains
 
     w = self%patch_mean(displacement) + self%patch_offset
   end function contact_deflection
+
+  !> Area of the whole plate that the impactor presses on, the same on every rank.
+  real(wp) function pressed_area(self) result(area)
+    class(model_t), intent(in) :: self
+
+    area = self%scene%mesh%patch**2
+    if (allocated(self%nose)) area = self%nose%touched(self%communicator, self%patch)*self%mesh%multiplicity
+  end function pressed_area
 
   !> Spreads the impactor's force in another way.
   pure subroutine spread_force(self, weights, offset)

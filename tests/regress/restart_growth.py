@@ -9,6 +9,7 @@ rejected from checkpoints next to rejected steps, while delaminations grow: bitw
 cohesive from the checkpoint after each step of a run whose interface is cohesive: bitwise
 layers   from the checkpoint after each step of a run whose layers follow their damage: bitwise
 softening from the checkpoint after each step of a run whose plies soften: bitwise
+nose     the same under a nose that presses where it touches: bitwise
 fading   while failed plies lose their stiffness, with an operator factored before: bitwise"""
 
 import signal
@@ -49,6 +50,7 @@ GROWING = ["mesh%elements=10,10", "impactor%velocity=3", "delamination%G_c=200",
 AVERAGES = ["ply_damage%average=2e-3", f"ply_damage%fade={4 * STEP!r}"]
 # Up to the first cracks, cooled from the cure.
 SOFTENING = ["time%end=120e-6", "thermal%delta_T=-150", "material%alpha1=-0.3e-6", "material%alpha2=28e-6"]
+NOSE = ["impactor%contact_area='sphere'", "time%step=16e-6", "time%end=400e-6"]
 # Steps of a second, with several releases each.
 RUNNING = ["mesh%elements=20,20", "impactor%velocity=3", "delamination%G_c=100", f"time%end={11 * STEP!r}",
            f"output%checkpoint_every={STEP!r}", f"output%fields_every={STEP!r}"]
@@ -91,6 +93,13 @@ def check_layers(implam, folder, _):
 def check_softening(implam, folder, _):
     """From every checkpoint of a run whose plies soften, with residual stress."""
     check_all_checkpoints(implam, folder, "../small/crack_bands.nml", SOFTENING, "energy_ply_damage")
+
+
+def check_nose(implam, folder, _):
+    """From every checkpoint of a run in which the area of contact follows the nose."""
+    check_all_checkpoints(implam, folder, "../small/crack_bands.nml", NOSE, "energy_ply_damage")
+    areas = read_history(history_of(folder / "uninterrupted"))["contact_area"]
+    require(len(set(areas)) > 2, "The area of contact changed less than twice: the trial proves nothing.")
 
 
 def check_all_checkpoints(implam, folder, source, settings, grows="delaminated_area"):
@@ -239,7 +248,7 @@ def check_rejected(implam, folder, _):
 TRIALS = {"every": check_every, "splits": check_splits, "moments": check_moments, "ranks": check_ranks,
           "rejected": check_rejected, "fading": check_fading, "averages": check_averages, "cohesive": check_cohesive,
           "layers": check_layers,
-          "softening": check_softening}
+          "softening": check_softening, "nose": check_nose}
 
 
 if __name__ == "__main__":
