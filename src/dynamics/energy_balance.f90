@@ -49,6 +49,7 @@ contains
     type(products_t) :: products
     real(wp) :: amplitudes(2), gain, impactor, taken, fracture, heat, damage
 
+    call model%inertia(new%motion%velocity, new%motion%momentum)
     products = step_products(model, old, energy, new)
     amplitudes = model%scene%pressure%amplitude([old%time, new%time])
     new%ledger%kinetic = products%kinetic/2
@@ -136,13 +137,10 @@ contains
     type(state_t), intent(in) :: new
     !> The products
     type(products_t) :: products
-    real(wp), allocatable :: momentum(:, :)
     real(wp) :: sums(13)
 
-    allocate (momentum, mold=old%motion%displacement)
-    call model%inertia(new%motion%velocity, momentum)
     sums = 0
-    sums(:7) = field_products(model%distribution%owned, old%motion, new%motion, momentum)
+    sums(:7) = field_products(model%distribution%owned, old%motion, new%motion)
     sums(8) = energy
     if (allocated(model%pressure)) &
       sums(9) = model%product(new%motion%displacement - old%motion%displacement, model%pressure)
@@ -180,13 +178,11 @@ contains
   !> Products of fields over this rank's points, in one pass over them: v.Mv at the end; change of displacement times
   !> sum and change of internal force and times change of inertia force; a.Ma at the end and at the start; change of a
   !> times change of Ma.
-  pure function field_products(owned, old, new, momentum) result(sums)
+  pure function field_products(owned, old, new) result(sums)
     !> Number of points that this rank owns
     integer, intent(in) :: owned
     !> Motion at the start and at the end of the step
     type(motion_t), intent(in) :: old, new
-    !> Mass times velocity at the end, (5, points)
-    real(wp), intent(in) :: momentum(:, :)
     !> The products
     real(wp) :: sums(7)
     real(wp) :: change(5), inertia(5)
@@ -196,7 +192,7 @@ contains
     do i = 1, owned
       change = new%displacement(:, i) - old%displacement(:, i)
       inertia = new%inertia(:, i) - old%inertia(:, i)
-      sums = sums + [dot_product(new%velocity(:, i), momentum(:, i)), &
+      sums = sums + [dot_product(new%velocity(:, i), new%momentum(:, i)), &
                      dot_product(change, new%internal(:, i) + old%internal(:, i)), &
                      dot_product(change, new%internal(:, i) - old%internal(:, i)), &
                      dot_product(change, inertia), &
