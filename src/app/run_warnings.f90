@@ -10,7 +10,7 @@ module run_warnings
   use models, only: model_t
   use ply_damage_parameters, only: failure_modes, fibre_failure
   use run_records, only: run_record_t, warning_border, warning_core, warning_energy, warning_hole, &
-                         warning_indentation, warning_loss, warning_slopes, warning_torn
+                         warning_indentation, warning_loss, warning_slopes, warning_steps, warning_torn
   use short_numbers, only: short_text
   use states, only: state_t
   use text, only: line_t, append, rounded_text, to_text
@@ -30,12 +30,14 @@ module run_warnings
 contains
 
   !> Finds the warnings that an accepted step calls for and notes them. Collective.
-  subroutine find_warnings(deck, model, now, record, watch, told)
+  subroutine find_warnings(deck, model, now, step_errs, record, watch, told)
     !> The deck
     type(deck_t), intent(in) :: deck
     type(model_t), intent(in) :: model
     !> The state reached
     type(state_t), intent(in) :: now
+    !> True: the step to it errs beyond the tolerance of those that follow their error, and none is to be shorter
+    logical, intent(in) :: step_errs
     !> Receives what is told
     type(run_record_t), intent(inout) :: record
     !> Looks after the energy that integrators create
@@ -52,6 +54,7 @@ contains
       if (leaves_core(deck, model%scene%delaminations(zone))) call tell(warning_core, zone)
     end do
     if (now%indentation%alpha > thickness) call tell(warning_indentation, 0)
+    if (step_errs) call tell(warning_steps, 0)
     if (.not. record%has_warned(warning_slopes, 0)) then
       if (is_steep(model, now)) call tell(warning_slopes, 0)
     end if
@@ -168,6 +171,10 @@ contains
     case (warning_slopes)
       text = 'The plate is steeper than '//to_text(steepest)//' since time '//rounded_text(time)// &
              ': its strains are those of small rotations, so distrust what follows.'
+    case (warning_steps)
+      text = 'Steps err by more than the tolerance of &adapt since time '//rounded_text(time)// &
+             ' and get no shorter, as no step follows all waves of what breaks: an eighth of that tolerance halves '// &
+             'them and shows what that changes.'
     case (warning_torn)
       text = 'The clamped plate deflects by more than '//to_text(deepest)// &
              ' thicknesses with broken fibres since time '//rounded_text(time)// &

@@ -334,7 +334,7 @@ contains
     type(line_t), allocatable :: told(:)
     integer :: i
 
-    call find_warnings(self%deck, self%model, self%stepper%now, self%record, self%energy_watch, told)
+    call find_warnings(self%deck, self%model, self%stepper%now, self%stepper%errs, self%record, self%energy_watch, told)
     do i = 1, size(told)
       if (self%deck%strict) then
         call fail(error, exit_convergence, told(i)%text)

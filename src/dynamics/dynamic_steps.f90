@@ -7,6 +7,7 @@ module dynamic_steps
   use tan_sun_indentation, only: commit_indentation
   use stepping_parameters, only: equilibrium_t
   use newmark_integrators, only: plate_integrator_t
+  use plate_options, only: kinematics_linear
   use models, only: model_t
   use states, only: state_t
   use step_problems, only: step_problem_t
@@ -37,8 +38,9 @@ module dynamic_steps
     type(plate_integrator_t) :: integrator
     !> Displacement to start from, (5, points); unallocated: the motion goes on as it was
     real(wp), allocatable :: guess(:, :)
-    !> True: the first guess goes on with the velocity of the start, so its inertia forces are known
-    logical :: coasts = .false.
+    !> True: the first guess is the displacement of the start, so all of its forces are known; or it goes on with the
+    !> velocity of the start, so its inertia forces are
+    logical :: stays = .false., coasts = .false.
     !> Square of the patch's shares, of this rank's points
     real(wp) :: patch_square = 0
     !> The impactor's side of the step
@@ -46,6 +48,8 @@ module dynamic_steps
     !> What corrections have found about softening points
     type(softening_memory_t) :: memory
   contains
+    !> True: one correction finds equilibrium.
+    procedure, private :: is_solved_at_once
     procedure :: begin
     procedure :: find_residual
     procedure :: residual_norm
@@ -76,7 +80,8 @@ contains
     self%renewal = renewal
   end function new_dynamic_step
 
-  !> First guess. The velocity stays what it is: a guess by the acceleration makes energy where the contact is stiff.
+  !> First guess. Where the operator is exact any guess will do, and the plate stays where it is: that spares sums over
+  !> elements. Else the velocity stays what it is: a guess by the acceleration makes energy where the contact is stiff.
   !> Touching faces stay together, and held jumps stay where they are, also those glued in motion.
   subroutine begin(self, model, operator, old, new)
     !> The problem
@@ -95,9 +100,10 @@ contains
     self%patch_square = sum((model%patch(model%patch_points)/model%mesh%multiplicity)**2)
     if (model%scene%has_impactor) self%coupling = begin_coupling(model, self%integrator, old, self%step)
     self%coasts = model%scene%has_impactor .and. .not. (allocated(self%guess) .or. model%has_bonds)
+    self%stays = self%coasts .and. self%is_solved_at_once(model, operator)
     if (allocated(self%guess)) then
       new%motion%displacement = self%guess
-    else
+    else if (.not. self%stays) then
       new%motion%displacement = self%step*old%motion%velocity
       call new%interfaces%faces%hold(model, new%motion%displacement)
       new%motion%displacement = old%motion%displacement + new%motion%displacement
@@ -113,6 +119,18 @@ contains
     operator%switches = 0
     call self%memory%forget()
   end subroutine begin
+
+  !> True: forces are linear in the motion but for the impactor's, and the operator knows all of them.
+  pure logical function is_solved_at_once(self, model, operator) result(solved)
+    !> The problem
+    class(dynamic_step_t), intent(in) :: self
+    type(model_t), intent(in) :: model
+    !> The factored operator
+    type(tangent_operator_t), intent(in) :: operator
+
+    solved = model%scene%kinematics == kinematics_linear .and. .not. model%scene%has_ply_damage
+    if (solved) solved = abs(operator%mass_factor/self%integrator%mass_factor(self%step) - 1) < 1.0e-9_wp
+  end function is_solved_at_once
 
   !> Residual of the equation of motion (Eq. 1 with the exact internal force).
   subroutine find_residual(self, model, old, new, residual, energy)
@@ -130,16 +148,23 @@ contains
     real(wp), allocatable :: lines(:, :), lines_before(:, :)
     real(wp) :: amplitude
 
-    call new%find_internal(model, old, energy)
-    if (self%coasts .and. new%iterations == 0) then
-      ! Newmark's acceleration with the velocity of the start.
-      new%motion%inertia = (1 - 0.5_wp/self%integrator%beta)*old%motion%inertia
-    else
-      call model%inertia(new%motion%acceleration, new%motion%inertia)
-    end if
     associate (m => self%integrator%alpha_m, f => self%integrator%alpha_f)
-      call weigh(size(residual), [1 - m, m, 1 - f, f], new%motion%inertia, old%motion%inertia, new%motion%internal, &
-                 old%motion%internal, residual)
+      if (self%stays .and. new%iterations == 0) then
+        energy = 0
+        call weigh_start(size(residual), [(1 - m)/(self%integrator%beta*self%step), &
+          (1 - m)*0.5_wp/self%integrator%beta - 1], old%motion%momentum, old%motion%inertia, old%motion%internal, &
+                         residual)
+      else
+        call new%find_internal(model, old, energy)
+        if (self%coasts .and. new%iterations == 0) then
+          ! Newmark's acceleration with the velocity of the start.
+          new%motion%inertia = (1 - 0.5_wp/self%integrator%beta)*old%motion%inertia
+        else
+          call model%inertia(new%motion%acceleration, new%motion%inertia)
+        end if
+        call weigh(size(residual), [1 - m, m, 1 - f, f], new%motion%inertia, old%motion%inertia, new%motion%internal, &
+                   old%motion%internal, residual)
+      end if
       call model%push_patch(self%coupling%load(), residual)
       if (size(model%lines) > 0) then
         allocate (lines, lines_before, mold=residual)
@@ -171,6 +196,23 @@ contains
     end do
   end subroutine weigh
 
+  !> Forces against a plate that stays where it is, with Newmark's acceleration for that.
+  pure subroutine weigh_start(number, weights, momentum, inertia, internal, residual)
+    !> Number of unknowns
+    integer, intent(in) :: number
+    !> Weights of the first two
+    real(wp), intent(in) :: weights(2)
+    !> Mass times velocity and acceleration, and internal forces, at the start of the step
+    real(wp), intent(in) :: momentum(number), inertia(number), internal(number)
+    !> Their sum with the sign that a residual has
+    real(wp), intent(inout) :: residual(number)
+    integer :: i
+
+    do i = 1, number
+      residual(i) = weights(1)*momentum(i) + weights(2)*inertia(i) - internal(i)
+    end do
+  end subroutine weigh_start
+
   !> Residual relative to internal, inertia and impact forces.
   real(wp) function residual_norm(self, model, equilibrium, operator, residual, new)
     !> The problem
@@ -185,6 +227,11 @@ contains
     !> State at the end; remembers its largest forces
     type(state_t), intent(inout) :: new
 
+    if (self%stays .and. new%iterations == 0) then
+      ! An iteration follows in any case.
+      residual_norm = huge(residual_norm)
+      return
+    end if
     residual_norm = relative_residual(model%communicator, operator%numbering, residual, new%motion%internal, &
                                       new%motion%inertia, self%patch_square*self%coupling%load()**2, &
                                       operator%diagonal, new%motion%displacement, &

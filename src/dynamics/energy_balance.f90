@@ -12,6 +12,9 @@ module energy_balance
   private
   public :: book_step, book_failures
 
+  !> Numbers whose products are summed together: a multiple of what the processor takes at once, as in residual_norms
+  integer, parameter :: together = 8
+
   !> Products of the step's fields that the energies are made of, summed over the modelled part.
   type :: products_t
     !> v.Mv at the end; strain energy at the end
@@ -49,6 +52,7 @@ contains
     type(products_t) :: products
     real(wp) :: amplitudes(2), gain, impactor, taken, fracture, heat, damage
 
+    call model%inertia(new%motion%velocity, new%motion%momentum)
     products = step_products(model, old, energy, new)
     amplitudes = model%scene%pressure%amplitude([old%time, new%time])
     new%ledger%kinetic = products%kinetic/2
@@ -136,13 +140,10 @@ contains
     type(state_t), intent(in) :: new
     !> The products
     type(products_t) :: products
-    real(wp), allocatable :: momentum(:, :)
     real(wp) :: sums(13)
 
-    allocate (momentum, mold=old%motion%displacement)
-    call model%inertia(new%motion%velocity, momentum)
     sums = 0
-    sums(:7) = field_products(model%distribution%owned, old%motion, new%motion, momentum)
+    sums(:7) = field_products(model%distribution%owned, old%motion, new%motion)
     sums(8) = energy
     if (allocated(model%pressure)) &
       sums(9) = model%product(new%motion%displacement - old%motion%displacement, model%pressure)
@@ -180,29 +181,44 @@ contains
   !> Products of fields over this rank's points, in one pass over them: v.Mv at the end; change of displacement times
   !> sum and change of internal force and times change of inertia force; a.Ma at the end and at the start; change of a
   !> times change of Ma.
-  pure function field_products(owned, old, new, momentum) result(sums)
+  pure function field_products(owned, old, new) result(sums)
     !> Number of points that this rank owns
     integer, intent(in) :: owned
     !> Motion at the start and at the end of the step
     type(motion_t), intent(in) :: old, new
-    !> Mass times velocity at the end, (5, points)
-    real(wp), intent(in) :: momentum(:, :)
     !> The products
     real(wp) :: sums(7)
-    real(wp) :: change(5), inertia(5)
-    integer :: i
+    real(wp) :: parts(together, 7)
 
-    sums = 0
-    do i = 1, owned
-      change = new%displacement(:, i) - old%displacement(:, i)
-      inertia = new%inertia(:, i) - old%inertia(:, i)
-      sums = sums + [dot_product(new%velocity(:, i), momentum(:, i)), &
-                     dot_product(change, new%internal(:, i) + old%internal(:, i)), &
-                     dot_product(change, new%internal(:, i) - old%internal(:, i)), &
-                     dot_product(change, inertia), &
-                     dot_product(new%acceleration(:, i), new%inertia(:, i)), &
-                     dot_product(old%acceleration(:, i), old%inertia(:, i)), &
-                     dot_product(new%acceleration(:, i) - old%acceleration(:, i), inertia)]
-    end do
+    parts = 0
+    call add_products(5*owned, old%displacement, old%acceleration, old%internal, old%inertia, new%displacement, &
+                      new%velocity, new%acceleration, new%internal, new%inertia, new%momentum, parts)
+    sums = sum(parts, 1)
   end function field_products
+
+  !> Adds the products of numbers in turn to so many sums each, which the processor takes together.
+  pure subroutine add_products(number, u, a, f, i, u_new, v_new, a_new, f_new, i_new, momentum, sums)
+    !> How many
+    integer, intent(in) :: number
+    !> Displacement, acceleration, internal and inertia force at the start
+    real(wp), intent(in) :: u(number), a(number), f(number), i(number)
+    !> The same, velocity and mass times velocity at the end
+    real(wp), intent(in) :: u_new(number), v_new(number), a_new(number), f_new(number), i_new(number), momentum(number)
+    !> Sums of the seven products
+    real(wp), intent(inout) :: sums(together, 7)
+    integer :: start, k, n
+
+    do start = 0, number - 1, together
+      do k = 1, min(together, number - start)
+        n = start + k
+        sums(k, 1) = sums(k, 1) + v_new(n)*momentum(n)
+        sums(k, 2) = sums(k, 2) + (u_new(n) - u(n))*(f_new(n) + f(n))
+        sums(k, 3) = sums(k, 3) + (u_new(n) - u(n))*(f_new(n) - f(n))
+        sums(k, 4) = sums(k, 4) + (u_new(n) - u(n))*(i_new(n) - i(n))
+        sums(k, 5) = sums(k, 5) + a_new(n)*i_new(n)
+        sums(k, 6) = sums(k, 6) + a(n)*i(n)
+        sums(k, 7) = sums(k, 7) + (a_new(n) - a(n))*(i_new(n) - i(n))
+      end do
+    end do
+  end subroutine add_products
 end module energy_balance

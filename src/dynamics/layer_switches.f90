@@ -144,7 +144,6 @@ contains
     !> The state, loaded
     type(state_t), intent(inout) :: now
     type(state_t), allocatable :: before
-    real(wp), allocatable :: momentum(:, :)
     real(wp) :: energies(2)
 
     associate (motion => now%motion)
@@ -158,9 +157,8 @@ contains
       now%plies%lagging = .false.
       now%interfaces%cohesive%points = before%interfaces%cohesive%points
       call model%inertia(motion%acceleration, motion%inertia)
-      allocate (momentum, mold=motion%velocity)
-      call model%inertia(motion%velocity, momentum)
-      energies(2) = model%product(motion%velocity, momentum)/2
+      call model%inertia(motion%velocity, motion%momentum)
+      energies(2) = model%product(motion%velocity, motion%momentum)/2
       call model%communicator%sum(energies)
       energies = energies*model%mesh%multiplicity
       if (model%scene%has_static) energies(2) = now%ledger%kinetic

@@ -83,7 +83,7 @@ contains
     points = size(model%distribution%points)
     allocate (self%motion%displacement(5, points), self%motion%velocity(5, points), &
               self%motion%acceleration(5, points), self%motion%internal(5, points), &
-              self%motion%inertia(5, points), source=0.0_wp)
+              self%motion%inertia(5, points), self%motion%momentum(5, points), source=0.0_wp)
     self%plies = new_ply_failure(model)
     self%interfaces = new_interface_state(model)
     if (allocated(model%nose)) self%patch = model%patch
@@ -222,5 +222,6 @@ contains
     call model%halo%update(motion%displacement)
     call model%halo%update(motion%velocity)
     call model%halo%update(motion%acceleration)
+    call model%inertia(motion%velocity, motion%momentum)
   end subroutine visit_motion
 end module states

@@ -12,7 +12,7 @@ module time_stepping
   use models, only: model_t
   use states, only: state_t, new_state
   use tangent_operators, only: tangent_operator_t
-  use step_controllers, only: step_controller_t, retries
+  use step_controllers, only: step_controller_t, retries, shrinks
   use step_limits, only: impactor_limit, growth_limit, has_gear
   use step_problems, only: solve_step
   use dynamic_steps, only: dynamic_step_t, new_dynamic_step
@@ -44,14 +44,14 @@ module time_stepping
     type(step_controller_t) :: controller
     !> Error that each step adds
     type(step_error_t) :: step_error
-    !> The last one over its tolerance
-    real(wp), private :: error = 0
+    !> The last one over its tolerance; and what the last step missed of how plies break, over the most that it may
+    real(wp), private :: error = 0, haste = 0
+    !> True: the last step errs beyond the tolerance, and none is to be shorter
+    logical :: errs = .false.
     !> Integrator of the plate
     type(plate_integrator_t) :: integrator
     !> How steps are taken
     type(stepping_t) :: stepping
-    !> What the last step missed of how plies break, over the most that it may
-    real(wp), private :: haste = 0
     !> Factorizations and solves when the present step was begun
     integer, private :: factorizations_begun = 0, solves_begun = 0
     !> Steps that were tried in vain
@@ -172,6 +172,7 @@ contains
         return
       end if
     end do
+    if (follows) self%errs = self%error > shrinks .and. step <= shortest*(1 + 1.0e-9_wp)
     if (abs(self%trial%time - event) <= 1.0e-9_wp*step) self%trial%time = event
     call accept(self, model, step)
     if (model%scene%has_static .and. self%now%plies%softened) call settle(self, model, error)
@@ -205,8 +206,7 @@ contains
     class(time_stepper_t), intent(in) :: self
     type(model_t), intent(in) :: model
 
-    step = self%stepping%time%step_min
-    if (model%scene%has_static) step = 1.0_wp/(1024*self%stepping%static_steps)
+    step = merge(1.0_wp/(1024*self%stepping%static_steps), self%stepping%time%step_min, model%scene%has_static)
   end function smallest_step
 
   !> Tries one time step.

@@ -8,6 +8,9 @@ typedef struct {
   cholmod_common common;
   cholmod_sparse matrix;
   cholmod_factor *factor;
+  /* The matrix in the order of the factor, and where each of its values goes there. */
+  cholmod_sparse *ordered;
+  int *places;
   /* What solves leave for the next: solution and work space. */
   cholmod_dense *solution, *work, *spare;
 } implam_cholmod;
@@ -39,13 +42,56 @@ implam_cholmod *implam_cholmod_new(int rows, int *start, int *columns, double *v
   return self;
 }
 
+/* Finds once where the values go: cholmod_factorize would transpose the matrix twice each time, which takes up to 40 % of
+   what the numbers take. Lower triangle by columns; a column's rows need no order. 0 without memory. */
+static int order_matrix(implam_cholmod *self)
+{
+  const int n = (int)self->matrix.nrow, *start = self->matrix.p, *rows = self->matrix.i;
+  const int *order = self->factor->Perm;
+  int *place_of = malloc((size_t)(n + 1)*sizeof(int));
+  self->places = malloc((self->matrix.nzmax + 1)*sizeof(int));
+  self->ordered = cholmod_allocate_sparse((size_t)n, (size_t)n, self->matrix.nzmax, 0, 1, -1, CHOLMOD_REAL,
+                                          &self->common);
+  if (place_of && self->places && self->ordered) {
+    int *first = self->ordered->p, *its_rows = self->ordered->i;
+    for (int k = 0; k < n; k++) place_of[order[k]] = k;
+    for (int j = 0; j <= n; j++) first[j] = 0;
+    for (int j = 0; j < n; j++)
+      for (int k = start[j]; k < start[j + 1]; k++) {
+        const int a = place_of[rows[k]], b = place_of[j];
+        first[(a < b ? a : b) + 1]++;
+      }
+    for (int j = 0; j < n; j++) first[j + 1] += first[j];
+    for (int j = 0; j < n; j++)
+      for (int k = start[j]; k < start[j + 1]; k++) {
+        const int a = place_of[rows[k]], b = place_of[j];
+        const int place = first[a < b ? a : b]++;
+        its_rows[place] = a < b ? b : a;
+        self->places[k] = place;
+      }
+    for (int j = n; j > 0; j--) first[j] = first[j - 1];
+    first[0] = 0;
+  } else {
+    free(self->places);
+    self->places = 0;
+    cholmod_free_sparse(&self->ordered, &self->common);
+  }
+  free(place_of);
+  return self->places != 0;
+}
+
 /* Factors the matrix as its values are now; orders it the first time. */
 int implam_cholmod_factorize(implam_cholmod *self)
 {
+  double none[2] = {0, 0};
   self->common.status = CHOLMOD_OK;
   if (!self->factor) self->factor = cholmod_analyze(&self->matrix, &self->common);
   if (!self->factor) return failed;
-  if (!cholmod_factorize(&self->matrix, self->factor, &self->common)) return failed;
+  if (!self->places && !order_matrix(self)) return failed;
+  const double *values = self->matrix.x;
+  double *ordered = self->ordered->x;
+  for (size_t k = 0; k < self->matrix.nzmax; k++) ordered[self->places[k]] = values[k];
+  if (!cholmod_super_numeric(self->ordered, 0, none, self->factor, &self->common)) return failed;
   if (self->common.status == CHOLMOD_NOT_POSDEF || self->factor->minor < self->factor->n) return not_positive;
   return self->common.status == CHOLMOD_OK ? factored : failed;
 }
@@ -74,6 +120,8 @@ void implam_cholmod_free(implam_cholmod *self)
 {
   if (!self) return;
   cholmod_free_factor(&self->factor, &self->common);
+  cholmod_free_sparse(&self->ordered, &self->common);
+  free(self->places);
   cholmod_free_dense(&self->solution, &self->common);
   cholmod_free_dense(&self->work, &self->common);
   cholmod_free_dense(&self->spare, &self->common);

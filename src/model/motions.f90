@@ -9,7 +9,7 @@ module motions
   type :: motion_t
     !> Displacement, velocity and acceleration
     real(wp), allocatable :: displacement(:, :), velocity(:, :), acceleration(:, :)
-    !> Internal forces and mass times acceleration, summed at the owned points
-    real(wp), allocatable :: internal(:, :), inertia(:, :)
+    !> Internal forces, mass times acceleration and mass times velocity, summed at the owned points
+    real(wp), allocatable :: internal(:, :), inertia(:, :), momentum(:, :)
   end type motion_t
 end module motions

@@ -36,6 +36,8 @@ SCENES = {
                                                  "&time end=1e-3  step=10e-6 /\n",
     "deflects by more than 3 thicknesses with broken fibres": "&impactor mass=2  velocity=5  radius=10e-3 /\n"
                                                               "&time end=1e-3  step=10e-6 /\n",
+    "Steps err by more than the tolerance": ZONE + "&impactor mass=2  velocity=5  radius=10e-3 /\n"
+                                            "&time end=0.1e-3  step=10e-6 /\n&adapt /\n",
 }
 
 
@@ -50,7 +52,7 @@ def main(implam, folder):
         here = Path(folder) / str(number)
         here.mkdir(parents=True, exist_ok=True)
         deck = here / "deck.nml"
-        plate = WEAK if "broken" in sentence else BEGINNING
+        plate = WEAK if "broken" in sentence or "&adapt" in rest else BEGINNING
         deck.write_text("&case name='limits' /\n" + plate + rest, "utf-8")
         said = run([implam, deck, "--output", here])
         told = [line for line in said.splitlines() if line.startswith("implam: warning:") and sentence in line]
