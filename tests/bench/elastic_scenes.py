@@ -135,7 +135,7 @@ def compare(program, scene, case, seconds=60):
 
 
 def named_by(said, summary, bound):
-    """What tells a user that a scene may miss: a warning of the check, or the run's own estimate beyond the bound, %."""
+    """What tells a user that a scene may miss: a warning of the check, or the run's estimate beyond the bound, %."""
     estimate = summary.get('estimated_errors', {}).get('peak_force') or 0
     beyond = summary and 100*estimate > bound*summary['peak_force']
     return [name for name, tells in (('check', ': warning:' in said), ('estimate', beyond)) if tells]
