@@ -249,6 +249,7 @@ contains
         return
       end if
       new%motion%displacement = new%motion%displacement + correction
+      call model%keep_symmetric(new%motion%displacement)
       call problem%complete(old, new)
       new%iterations = new%iterations + 1
     end do
