@@ -8,6 +8,7 @@ module numberings
   use layered_meshes, only: layered_mesh_t
   use distributions, only: distribution_t
   use matrix_patterns, only: find_pattern
+  use symmetry_images, only: symmetry_images_t
   implicit none
   private
   public :: numbering_t, number_equations
@@ -49,7 +50,7 @@ module numberings
 contains
 
   !> Numbers the unknowns that are not held and finds the pattern of this rank's rows.
-  subroutine number_equations(mesh, distribution, held, self, images, image_signs)
+  subroutine number_equations(mesh, distribution, held, self, images)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Owners of the points
@@ -58,17 +59,18 @@ contains
     logical, intent(in) :: held(:, :)
     !> The numbering
     type(numbering_t), intent(out) :: self
-    !> Images of each point of a plate that keeps its symmetry, all on this rank, (points, images); left out: none
-    integer, intent(in), optional :: images(:, :)
-    !> Signs of their motion, (5, images)
-    real(wp), intent(in), optional :: image_signs(:, :)
+    !> Images of the points; left out: none
+    type(symmetry_images_t), intent(in), optional :: images
     real(wp) :: signs(5, mesh%points())
     integer :: equation(5, mesh%points()), leader(mesh%points()), point, i
-    logical :: free(5, mesh%points())
+    logical :: free(5, mesh%points()), folded
 
     leader = [(mesh%leader(point), point=1, size(leader))]
     signs = reshape([(turned, point=1, size(leader))], shape(signs))
-    if (present(images)) call follow_images(images, image_signs, leader, signs)
+    folded = .false.
+    ! Several ranks deal points out with the elements around them, and images lie far apart.
+    if (present(images) .and. size(distribution%first) == 2) folded = allocated(images%points)
+    if (folded) call follow_images(images, leader, signs)
     free = .not. held
     do point = 1, size(leader)
       if (leader(point) > 0) free(:, point) = .false.
@@ -97,15 +99,13 @@ contains
     end do
     call find_places(self)
     call find_pattern(mesh, equation, mesh%point_node(distribution%points(self%places(1, :))), &
-                      self%row_start, self%columns, present(images))
+                      self%row_start, self%columns, folded)
   end subroutine number_equations
 
   !> Has each point follow the first of its images, if that comes before it.
-  pure subroutine follow_images(images, image_signs, leader, signs)
-    !> The images, (points, images)
-    integer, intent(in) :: images(:, :)
-    !> Signs of their motion, (5, images)
-    real(wp), intent(in) :: image_signs(:, :)
+  pure subroutine follow_images(images, leader, signs)
+    !> The images
+    type(symmetry_images_t), intent(in) :: images
     !> Receives the leaders, (points)
     integer, intent(inout) :: leader(:)
     !> Receives the signs of the points' motion, (5, points)
@@ -113,10 +113,10 @@ contains
     integer :: point, k
 
     do point = 1, size(leader)
-      k = minloc(images(point, :), dim=1)
-      if (images(point, k) >= point) cycle
-      leader(point) = images(point, k)
-      signs(:, point) = image_signs(:, k)
+      k = minloc(images%points(point, :), dim=1)
+      if (images%points(point, k) >= point) cycle
+      leader(point) = images%points(point, k)
+      signs(:, point) = images%signs(:, k)
     end do
   end subroutine follow_images
 

@@ -26,8 +26,6 @@ module symmetry_images
     !> Signs of their motion, (5, images)
     real(wp), allocatable :: signs(:, :)
   contains
-    !> True if points may have the equations of their images.
-    procedure :: fold
     !> Makes a motion symmetric.
     procedure :: impose
   end type symmetry_images_t
@@ -90,17 +88,6 @@ contains
       end associate
     end do
   end function image_of_points
-
-  !> True if points may have the equations of their images. Several ranks deal points out with the elements around them,
-  !> and images lie far apart.
-  pure logical function fold(self, communicator)
-    !> The images
-    class(symmetry_images_t), intent(in) :: self
-    !> The ranks
-    type(communicator_t), intent(in) :: communicator
-
-    fold = allocated(self%points) .and. communicator%size == 1
-  end function fold
 
   !> Makes a motion symmetric: to the last digit, so that nothing is left that could grow. Collective.
   subroutine impose(self, communicator, distribution, motion)

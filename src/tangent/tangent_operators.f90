@@ -101,12 +101,7 @@ contains
     allocate (self%added(3, points), source=0.0_wp)
     self%present = self%added
     self%stiffness = model%elements%stiffness
-    if (model%images%fold(model%communicator)) then
-      call number_equations(model%mesh, model%distribution, model%held, self%numbering, model%images%points, &
-                            model%images%signs)
-    else
-      call number_equations(model%mesh, model%distribution, model%held, self%numbering)
-    end if
+    call number_equations(model%mesh, model%distribution, model%held, self%numbering, model%images)
     self%timers%profile = model%profile
     call choose_solver(model, stays_positive(model), factorization, self%solver, error)
     if (allocated(error)) return
