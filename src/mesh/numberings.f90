@@ -59,7 +59,7 @@ contains
     logical, intent(in) :: held(:, :)
     !> The numbering
     type(numbering_t), intent(out) :: self
-    !> Images of the points; left out: none
+    !> Images of the points, each with all of its own on one rank; left out: none
     type(symmetry_images_t), intent(in), optional :: images
     real(wp) :: signs(5, mesh%points())
     integer :: equation(5, mesh%points()), leader(mesh%points()), point, i
@@ -68,8 +68,7 @@ contains
     leader = [(mesh%leader(point), point=1, size(leader))]
     signs = reshape([(turned, point=1, size(leader))], shape(signs))
     folded = .false.
-    ! Several ranks deal points out with the elements around them, and images lie far apart.
-    if (present(images) .and. size(distribution%first) == 2) folded = allocated(images%points)
+    if (present(images)) folded = allocated(images%points)
     if (folded) call follow_images(images, leader, signs)
     free = .not. held
     do point = 1, size(leader)

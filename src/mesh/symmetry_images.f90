@@ -9,7 +9,7 @@ module symmetry_images
   use kinds, only: wp
   use layered_meshes, only: layered_mesh_t
   use mesh_parameters, only: is_mirrored, symmetry_none, symmetry_point
-  use nine_node_grids, only: last_line
+  use nine_node_grids, only: last_line, middle_line
   implicit none
   private
   public :: symmetry_images_t, find_images
@@ -26,6 +26,8 @@ module symmetry_images
     !> Signs of their motion, (5, images)
     real(wp), allocatable :: signs(:, :)
   contains
+    !> First of the images of each cell.
+    procedure :: first_cells
     !> Makes a motion symmetric.
     procedure :: impose
   end type symmetry_images_t
@@ -88,6 +90,29 @@ contains
       end associate
     end do
   end function image_of_points
+
+  !> First of the images of each cell, itself among them.
+  pure function first_cells(self, mesh) result(first)
+    !> The images
+    class(symmetry_images_t), intent(in) :: self
+    !> The mesh
+    type(layered_mesh_t), intent(in) :: mesh
+    !> Cells, (cells)
+    integer :: first(product(mesh%cells))
+    integer :: cell, k, point, lines(2)
+
+    first = [(cell, cell=1, size(first))]
+    if (.not. allocated(self%points)) return
+    do cell = 1, size(first)
+      lines = middle_line(mesh%place_of(cell))
+      point = mesh%first_point(mesh%node_at(lines(1), lines(2)))
+      do k = 1, size(self%points, 2)
+        ! The middle of a cell lies between two lines of nodes each way.
+        lines = mesh%lines_of(mesh%point_node(self%points(point, k)))/2 + 1
+        first(cell) = min(first(cell), mesh%cell_at(lines(1), lines(2)))
+      end do
+    end do
+  end function first_cells
 
   !> Makes a motion symmetric: to the last digit, so that nothing is left that could grow. Collective.
   subroutine impose(self, communicator, distribution, motion)

@@ -67,7 +67,7 @@ contains
     self%held = held_unknowns(self%mesh, scene%plate, self%membrane_idle, adrift(scene))
     if (allocated(scene%supports)) call hold_by_rigs(self%mesh, scene%plate, scene%supports, self%held)
     self%images = find_images(self%mesh, scene%plate%kept, self%held)
-    call distribute(self%mesh, communicator, self%distribution, error)
+    call distribute(self%mesh, communicator, self%distribution, error, self%images%first_cells(self%mesh))
     if (.not. allocated(error)) call build_elements(self, error)
     call communicator%agree(error)
     if (allocated(error)) return
