@@ -15,6 +15,7 @@ module deck_reader
   use deck_rules, only: settle
   use deck_scales, only: check_scales
   use deck_scanner, only: scan_t, scan_deck, most_bytes
+  use deck_symmetries, only: note_symmetry
   use deck_table, only: load_deck_table
   use deck_units, only: check_units
   use deck_vocabulary, only: vocabulary_t
@@ -110,6 +111,7 @@ contains
     call settle_flaws(deck, problems)
     call check_scales(deck, problems)
     call check_units(deck, problems)
+    if (problems%errors() == 0) call note_symmetry(deck)
     deck%remarks = problems%remarks()
   end subroutine read_deck_text
 

@@ -20,7 +20,7 @@ module deck_symmetries
   use text, only: lower_case
   implicit none
   private
-  public :: check_symmetry, symmetry_sentence
+  public :: check_symmetry, note_symmetry, symmetry_sentence
 
   !> Coupling stiffness that counts as none, relative to the stiffness it couples.
   real(wp), parameter :: no_coupling = 1.0e-9_wp
@@ -97,23 +97,37 @@ contains
     type(deck_t), intent(in) :: deck
     !> The sentence
     character(len=:), allocatable :: sentence
+    character(len=*), parameter :: names(5) = [character(len=7) :: 'none', 'quarter', 'half_x', 'half_y', 'point']
+    integer :: part
 
     sentence = ''
-    if (deck%plate%symmetry == symmetry_quarter) return
-    if (suits(deck, symmetry_quarter)) then
-      sentence = 'quarter'
-    else if (deck%plate%symmetry /= symmetry_none) then
-      return
-    else if (suits(deck, symmetry_half_x)) then
-      sentence = 'half_x'
-    else if (suits(deck, symmetry_half_y)) then
-      sentence = 'half_y'
-    else if (suits(deck, symmetry_point)) then
-      sentence = 'point'
-    end if
-    if (sentence /= '') sentence = 'Laminate, supports and struck point allow symmetry = '''//sentence// &
-                                   ''', which computes less of the plate.'
+    part = smallest_part(deck)
+    if (part /= deck%plate%symmetry) sentence = 'Laminate, supports and struck point allow symmetry = '''// &
+                                                trim(names(part))//''', which computes less of the plate.'
   end function symmetry_sentence
+
+  !> The smallest part of the plate that could stand for the whole; that of the deck if there is none smaller.
+  integer function smallest_part(deck) result(part)
+    !> The deck, checked
+    type(deck_t), intent(in) :: deck
+    integer, parameter :: parts(4) = [symmetry_quarter, symmetry_half_x, symmetry_half_y, symmetry_point]
+    integer :: i
+
+    part = deck%plate%symmetry
+    do i = 1, size(parts)
+      if (part == symmetry_quarter .or. part /= symmetry_none .and. i > 1) return
+      if (suits(deck, parts(i))) part = parts(i)
+    end do
+  end function smallest_part
+
+  !> Notes the symmetry that a whole plate is to keep as it breaks. Without anything that breaks it does so by itself.
+  subroutine note_symmetry(deck)
+    !> The deck, checked
+    type(deck_t), intent(inout) :: deck
+
+    if (deck%plate%symmetry == symmetry_none .and. (deck%has_ply_damage .or. size(deck%delaminations) > 0)) &
+      deck%plate%kept = smallest_part(deck)
+  end subroutine note_symmetry
 
   !> True if a part of the plate can stand for the whole.
   logical function suits(deck, symmetry)

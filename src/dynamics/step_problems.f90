@@ -197,7 +197,7 @@ contains
     !> Set if the solver fails for good
     type(error_t), allocatable, intent(out) :: error
     real(wp), allocatable :: residual(:, :), correction(:, :)
-    real(wp) :: norm, energy
+    real(wp) :: norm, before, energy
     integer :: begun
     logical :: pressures_new, softened
 
@@ -205,6 +205,7 @@ contains
     allocate (residual, correction, mold=old%motion%displacement)
     pressures_new = .false.
     begun = 0
+    before = huge(before)
     call problem%begin(model, operator, old, new)
     do
       call operator%timers%start('element forces')
@@ -217,9 +218,13 @@ contains
       call problem%soften(model, equilibrium, norm, new, softened)
       if (softened) then
         begun = new%iterations
+        before = huge(before)
         call operator%anderson%forget()
         cycle
       end if
+      ! What it has seen of points on one side of a kink leads astray beyond it.
+      if (operator%condenses .and. norm > before) call operator%anderson%forget()
+      before = norm
       converged = norm <= equilibrium%tolerance
       if (converged) converged = problem%may_stop(model, new, pressures_new)
       pressures_new = .false.
@@ -249,6 +254,7 @@ contains
         return
       end if
       new%motion%displacement = new%motion%displacement + correction
+      call model%keep_symmetric(new%motion%displacement)
       call problem%complete(old, new)
       new%iterations = new%iterations + 1
     end do

@@ -32,7 +32,7 @@ module distributions
 contains
 
   !> Deals the mesh out to the ranks of a communicator. Every rank finds the same distribution.
-  subroutine distribute(mesh, communicator, self, error)
+  subroutine distribute(mesh, communicator, self, error, first_image)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> The ranks
@@ -41,12 +41,15 @@ contains
     type(distribution_t), intent(out) :: self
     !> Set if METIS fails
     type(error_t), allocatable, intent(out) :: error
-    integer :: owner(mesh%points())
-    integer, allocatable :: row_start(:), neighbours(:), part(:)
+    !> First of the images of each cell, itself among them, which all go to one rank; left out: cells have none
+    integer, intent(in), optional :: first_image(:)
+    integer :: owner(mesh%points()), first(product(mesh%cells))
+    integer, allocatable :: part(:)
     integer :: element
 
-    call cell_graph(mesh, row_start, neighbours)
-    call partition_graph(row_start, neighbours, communicator%size, part, error)
+    first = [(element, element=1, size(first))]
+    if (present(first_image)) first = first_image
+    call deal_out_cells(mesh, communicator%size, first, part, error)
     if (allocated(error)) return
     call own_points(mesh, part, owner)
     call number_points(owner, communicator%size, self)
@@ -59,6 +62,44 @@ contains
       self%connectivity(:, element) = self%local(mesh%connectivity(:, self%elements(element)))
     end do
   end subroutine distribute
+
+  !> Deals cells out to ranks, those that are images of each other to one.
+  subroutine deal_out_cells(mesh, ranks, first, part, error)
+    !> The mesh
+    type(layered_mesh_t), intent(in) :: mesh
+    !> Number of ranks
+    integer, intent(in) :: ranks
+    !> First of the images of each cell, itself among them
+    integer, intent(in) :: first(:)
+    !> Rank of each cell
+    integer, allocatable, intent(out) :: part(:)
+    !> Set if METIS fails
+    type(error_t), allocatable, intent(out) :: error
+    integer, allocatable :: row_start(:), neighbours(:), folded_start(:), folded(:), part_of_first(:)
+    integer :: cell, firsts, place(size(first))
+
+    call cell_graph(mesh, row_start, neighbours)
+    place = 0
+    allocate (folded_start(count(first == [(cell, cell=1, size(first))]) + 1), folded(size(neighbours)))
+    folded_start(1) = 1
+    firsts = 0
+    do cell = 1, size(first)
+      if (first(cell) /= cell) cycle
+      firsts = firsts + 1
+      place(cell) = firsts
+    end do
+    do cell = 1, size(first)
+      if (first(cell) /= cell) cycle
+      associate (around => place(neighbours(row_start(cell):row_start(cell + 1) - 1)), &
+                 here => folded_start(place(cell)), next => folded_start(place(cell) + 1))
+        next = here + count(around > 0)
+        folded(here:next - 1) = pack(around, around > 0)
+      end associate
+    end do
+    folded = folded(:folded_start(firsts + 1) - 1)
+    call partition_graph(folded_start, folded, ranks, part_of_first, error)
+    if (.not. allocated(error)) part = part_of_first(place(first))
+  end subroutine deal_out_cells
 
   !> Graph of the cells that share an edge, compressed rows.
   pure subroutine cell_graph(mesh, row_start, neighbours)

@@ -10,7 +10,7 @@ module matrix_patterns
 contains
 
   !> Columns of some rows.
-  pure subroutine find_pattern(mesh, equation, nodes, row_start, columns)
+  pure subroutine find_pattern(mesh, equation, nodes, row_start, columns, folded)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Equation (from 0) of every unknown of the mesh; -1: held, (5, points)
@@ -21,6 +21,8 @@ contains
     integer, allocatable, intent(out) :: row_start(:)
     !> Columns, from 0, ascending in each row
     integer, allocatable, intent(out) :: columns(:)
+    !> True: points anywhere have the equations of their images
+    logical, intent(in) :: folded
     integer, allocatable :: around(:)
     integer :: row, node, width
 
@@ -28,32 +30,34 @@ contains
     row_start(1) = 1
     node = 0
     do row = 1, size(nodes)
-      if (nodes(row) /= node) width = columns_around(mesh, equation, nodes(row))
+      if (nodes(row) /= node) width = columns_around(mesh, equation, nodes(row), folded)
       node = nodes(row)
       row_start(row + 1) = row_start(row) + width
     end do
     allocate (columns(row_start(size(row_start)) - 1))
     node = 0
     do row = 1, size(nodes)
-      if (nodes(row) /= node) call list_columns(mesh, equation, nodes(row), around)
+      if (nodes(row) /= node) call list_columns(mesh, equation, nodes(row), folded, around)
       columns(row_start(row):row_start(row + 1) - 1) = around
       node = nodes(row)
     end do
   end subroutine find_pattern
 
   !> Number of equations that a node is coupled to.
-  pure integer function columns_around(mesh, equation, node) result(columns)
+  pure integer function columns_around(mesh, equation, node, folded) result(columns)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Equations of every point
     integer, intent(in) :: equation(:, :)
     !> The node
     integer, intent(in) :: node
+    !> True: points anywhere have the equations of their images
+    logical, intent(in) :: folded
     integer, allocatable :: list(:)
     integer :: lines, first(5), last(5), line
 
-    if (near_cut(mesh, node)) then
-      call list_columns(mesh, equation, node, list)
+    if (folded .or. near_cut(mesh, node)) then
+      call list_columns(mesh, equation, node, folded, list)
       columns = size(list)
       return
     end if
@@ -78,13 +82,15 @@ contains
   end function near_cut
 
   !> The equations that a node is coupled to, ascending.
-  pure subroutine list_columns(mesh, equation, node, columns)
+  pure subroutine list_columns(mesh, equation, node, folded, columns)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Equations of every point
     integer, intent(in) :: equation(:, :)
     !> The node
     integer, intent(in) :: node
+    !> True: points anywhere have the equations of their images
+    logical, intent(in) :: folded
     !> Equations, from 0, (`columns_around` of them)
     integer, allocatable, intent(out) :: columns(:)
     integer :: image
@@ -93,7 +99,7 @@ contains
     image = mesh%turned_node(node)
     if (image > 0 .and. image /= node) columns = [columns, equations_around(mesh, equation, image)]
     call sort(columns)
-    if (near_cut(mesh, node)) columns = pack(columns, [.true., columns(2:) > columns(:size(columns) - 1)])
+    if (folded .or. near_cut(mesh, node)) columns = pack(columns, [.true., columns(2:) > columns(:size(columns) - 1)])
   end subroutine list_columns
 
   !> Equations of all points at the nodes that share a cell with a node.

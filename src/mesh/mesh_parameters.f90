@@ -25,6 +25,8 @@ module mesh_parameters
     logical :: in_plane_fixed = .true.
     !> Part that is modelled, one of the constants above
     integer :: symmetry = symmetry_none
+    !> Part that could stand for the whole where all is modelled and something may break; symmetry_none: no part could
+    integer :: kept = symmetry_none
   end type plate_t
 
   !> The rectangle of elements.

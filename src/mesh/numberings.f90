@@ -1,18 +1,19 @@
 !> Equations: one for every unknown that is not held, numbered rank by rank, and the pattern of the
 !> matrix that couples them. Renewed as a whole when unknowns are released.
 !>
-!> Points that follow others, on the line at which a turned plate is cut, have the equations of these; `turned` is the
-!> sign of each component of their motion. So a vector holds every free motion once, and a field all of it.
+!> Points that follow others have the equations of these, but for signs: on the line at which a turned plate is cut, and
+!> on all of a whole plate that keeps its symmetry. So a vector holds every free motion once, and a field all of it.
 module numberings
   use kinds, only: wp
   use layered_meshes, only: layered_mesh_t
   use distributions, only: distribution_t
   use matrix_patterns, only: find_pattern
+  use symmetry_images, only: symmetry_images_t
   implicit none
   private
-  public :: numbering_t, number_equations, turned
+  public :: numbering_t, number_equations
 
-  !> Sign of u, v, w, theta_x, theta_y of a point that follows another one.
+  !> Sign of u, v, w, theta_x, theta_y of a point at which a turned plate is cut that follows another one.
   real(wp), parameter :: turned(5) = [-1.0_wp, -1.0_wp, 1.0_wp, -1.0_wp, -1.0_wp]
 
   !> Equation numbers and the rows of this rank.
@@ -25,6 +26,8 @@ module numberings
     integer :: owned = 0
     !> Point of this rank that gives a point its motion, or itself if another rank has it; 0: none, (local points)
     integer, allocatable :: leader(:)
+    !> Signs of its motion, (5, local points)
+    real(wp), allocatable :: signs(:, :)
     !> Points that have the same equations, itself among them, (local points)
     integer, allocatable :: sharers(:)
     !> Pattern of this rank's rows: start of each row (from 1) and columns (from 0, ascending)
@@ -47,7 +50,7 @@ module numberings
 contains
 
   !> Numbers the unknowns that are not held and finds the pattern of this rank's rows.
-  subroutine number_equations(mesh, distribution, held, self)
+  subroutine number_equations(mesh, distribution, held, self, images)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Owners of the points
@@ -56,10 +59,17 @@ contains
     logical, intent(in) :: held(:, :)
     !> The numbering
     type(numbering_t), intent(out) :: self
+    !> Images of the points, each with all of its own on one rank; left out: none
+    type(symmetry_images_t), intent(in), optional :: images
+    real(wp) :: signs(5, mesh%points())
     integer :: equation(5, mesh%points()), leader(mesh%points()), point, i
-    logical :: free(5, mesh%points())
+    logical :: free(5, mesh%points()), folded
 
     leader = [(mesh%leader(point), point=1, size(leader))]
+    signs = reshape([(turned, point=1, size(leader))], shape(signs))
+    folded = .false.
+    if (present(images)) folded = allocated(images%points)
+    if (folded) call follow_images(images, leader, signs)
     free = .not. held
     do point = 1, size(leader)
       if (leader(point) > 0) free(:, point) = .false.
@@ -74,18 +84,40 @@ contains
     end do
     self%equation = equation(:, distribution%points)
     self%leader = leader(distribution%points)
+    self%signs = signs(:, distribution%points)
     do i = 1, size(self%leader)
       if (self%leader(i) > 0) self%leader(i) = merge(distribution%local(self%leader(i)), i, &
                                                      distribution%local(self%leader(i)) > 0)
     end do
     allocate (self%sharers(size(self%leader)), source=1)
     do i = 1, distribution%owned
-      if (self%leader(i) > 0) self%sharers([i, self%leader(i)]) = 2
+      if (self%leader(i) > 0) self%sharers(self%leader(i)) = self%sharers(self%leader(i)) + 1
+    end do
+    do i = 1, distribution%owned
+      if (self%leader(i) > 0) self%sharers(i) = self%sharers(self%leader(i))
     end do
     call find_places(self)
     call find_pattern(mesh, equation, mesh%point_node(distribution%points(self%places(1, :))), &
-                      self%row_start, self%columns)
+                      self%row_start, self%columns, folded)
   end subroutine number_equations
+
+  !> Has each point follow the first of its images, if that comes before it.
+  pure subroutine follow_images(images, leader, signs)
+    !> The images
+    type(symmetry_images_t), intent(in) :: images
+    !> Receives the leaders, (points)
+    integer, intent(inout) :: leader(:)
+    !> Receives the signs of the points' motion, (5, points)
+    real(wp), intent(inout) :: signs(:, :)
+    integer :: point, k
+
+    do point = 1, size(leader)
+      k = minloc(images%points(point, :), dim=1)
+      if (images%points(point, k) >= point) cycle
+      leader(point) = images%points(point, k)
+      signs(:, point) = images%signs(:, k)
+    end do
+  end subroutine follow_images
 
   !> Point and component of each row.
   pure subroutine find_places(self)
@@ -188,7 +220,7 @@ contains
       do component = 1, 5
         if (self%equation(component, point) < 0) cycle
         row = self%equation(component, point) - self%first_row + 1
-        vector(row) = vector(row) + turned(component)*field(component, point)
+        vector(row) = vector(row) + self%signs(component, point)*field(component, point)
       end do
     end do
   end subroutine gather
@@ -228,7 +260,7 @@ contains
 
     do point = 1, self%owned
       if (self%leader(point) == 0) cycle
-      field(:, self%leader(point)) = field(:, self%leader(point)) + turned(:size(field, 1))*field(:, point)
+      field(:, self%leader(point)) = field(:, self%leader(point)) + self%signs(:size(field, 1), point)*field(:, point)
       field(:, point) = 0
     end do
   end subroutine fold
@@ -242,7 +274,7 @@ contains
     integer :: point
 
     do point = 1, self%owned
-      if (self%leader(point) > 0) field(:, point) = turned*field(:, self%leader(point))
+      if (self%leader(point) > 0) field(:, point) = self%signs(:, point)*field(:, self%leader(point))
     end do
   end subroutine spread
 end module numberings

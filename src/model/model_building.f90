@@ -27,6 +27,7 @@ module model_building
   use placed_lines, only: place_line
   use models, only: model_t
   use scenes, only: scene_t
+  use symmetry_images, only: find_images
   implicit none
   private
   public :: create_model, zones_of
@@ -66,7 +67,8 @@ contains
                          .not. any(lines_in_plane(scene))
     self%held = held_unknowns(self%mesh, scene%plate, self%membrane_idle, adrift(scene))
     if (allocated(scene%supports)) call hold_by_rigs(self%mesh, scene%plate, scene%supports, self%held)
-    call distribute(self%mesh, communicator, self%distribution, error)
+    self%images = find_images(self%mesh, scene%plate%kept, self%held)
+    call distribute(self%mesh, communicator, self%distribution, error, self%images%first_cells(self%mesh))
     if (.not. allocated(error)) call build_elements(self, error)
     call communicator%agree(error)
     if (allocated(error)) return

@@ -22,6 +22,7 @@ module models
   use placed_lines, only: placed_line_t
   use rig_models, only: rig_model_t
   use scenes, only: scene_t
+  use symmetry_images, only: symmetry_images_t
   implicit none
   private
   public :: model_t
@@ -54,6 +55,8 @@ module models
     real(wp), allocatable :: free(:, :, :)
     !> Held unknowns of every point of the mesh, (5, points of the mesh)
     logical, allocatable :: held(:, :)
+    !> Images of the points, where a whole plate is to keep its symmetry as it breaks
+    type(symmetry_images_t) :: images
     !> Weights whose product with w is the mean deflection of the patch, (local points); ghosts zero
     real(wp), allocatable :: patch(:)
     !> Points that have one
@@ -119,6 +122,8 @@ module models
     procedure :: spread_force
     !> Deflection at the struck point.
     procedure :: deflection
+    !> Makes a motion symmetric where it has to be.
+    procedure :: keep_symmetric
     !> Product of two fields over all points of the plate's modelled part.
     procedure :: product => field_product
   end type model_t
@@ -331,6 +336,15 @@ contains
     if (self%struck > 0) w = displacement(3, self%struck)
     call self%communicator%sum(w)
   end function deflection
+
+  !> Makes a motion symmetric where a whole plate is to keep its symmetry. Collective.
+  subroutine keep_symmetric(self, motion)
+    class(model_t), intent(in) :: self
+    !> The motion, ghosts up to date, (5, points)
+    real(wp), intent(inout) :: motion(:, :)
+
+    call self%images%impose(self%communicator, self%distribution, motion)
+  end subroutine keep_symmetric
 
   !> Product of two fields summed over the owned points of this rank only.
   pure real(wp) function field_product(self, left, right) result(total)

@@ -8,7 +8,7 @@ module operator_assembly
   use linear_solvers, only: linear_solver_t
   use plate_options, only: kinematics_linear
   use delamination_parameters, only: law_cohesive
-  use numberings, only: numbering_t, turned
+  use numberings, only: numbering_t
   use models, only: model_t
   implicit none
   private
@@ -179,7 +179,7 @@ contains
     integer :: a, component
 
     if (any(numbering%leader(points) > 0)) then
-      signs = [(merge(turned, 1.0_wp, numbering%leader(points(a)) > 0), a=1, size(points))]
+      signs = [(merge(numbering%signs(:, points(a)), 1.0_wp, numbering%leader(points(a)) > 0), a=1, size(points))]
       call solver%add(reshape(numbering%equation(:, points), [5*size(points)]), &
                       matrix*spread(signs, 1, size(signs))*spread(signs, 2, size(signs)))
     else
@@ -232,7 +232,8 @@ contains
       do k = 1, 3
         coupling(k, k) = 0
       end do
-      if (numbering%leader(i) > 0) coupling = coupling*spread(turned(:3), 1, 3)*spread(turned(:3), 2, 3)
+      if (numbering%leader(i) > 0) coupling = coupling*spread(numbering%signs(:3, i), 1, 3) &
+                                                 *spread(numbering%signs(:3, i), 2, 3)
       call solver%add(numbering%equation(1:3, i), coupling)
     end do
   end subroutine assemble_tangents

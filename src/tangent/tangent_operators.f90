@@ -102,7 +102,7 @@ contains
     allocate (self%added(3, points), source=0.0_wp)
     self%present = self%added
     self%stiffness = model%elements%stiffness
-    call number_equations(model%mesh, model%distribution, model%held, self%numbering)
+    call number_equations(model%mesh, model%distribution, model%held, self%numbering, model%images)
     self%timers%profile = model%profile
     call choose_solver(model, stays_positive(model), factorization, self%solver, error)
     if (allocated(error)) return

@@ -232,9 +232,10 @@ contains
     end do
     ! A point that follows has the same as its leader.
     do point = 1, numbering%owned
-      if (numbering%leader(point) == 0) cycle
-      field(:, numbering%leader(point)) = field(:, numbering%leader(point))/2
-      field(:, point) = field(:, numbering%leader(point))
+      field(:, point) = field(:, point)/numbering%sharers(point)
+    end do
+    do point = 1, numbering%owned
+      if (numbering%leader(point) > 0) field(:, point) = field(:, numbering%leader(point))
     end do
   end subroutine spread_out
 

@@ -5,7 +5,7 @@ module small_meshes
   use layered_meshes, only: layered_mesh_t, zone_t, create_mesh
   implicit none
   private
-  public :: plain_mesh, zoned_mesh
+  public :: meshed, plain_mesh, zoned_mesh
 
 contains
 

@@ -1,0 +1,166 @@
+!> Images of the points of a whole plate that is its own mirror image, or that a turn by 180 degrees leaves as it is.
+!>
+!> Where something breaks, the equations of such a plate have solutions besides the symmetric one. Rounding would choose
+!> among them: another number of ranks, other units or a turned plate would break in other places, and a part of the
+!> plate that stands for the whole would not. So a motion is replaced by the mean of what its images say of it.
+module symmetry_images
+  use communicators, only: communicator_t
+  use distributions, only: distribution_t
+  use kinds, only: wp
+  use layered_meshes, only: layered_mesh_t
+  use mesh_parameters, only: is_mirrored, symmetry_none, symmetry_point
+  use nine_node_grids, only: last_line, middle_line
+  implicit none
+  private
+  public :: symmetry_images_t, find_images
+
+  !> Sign that a mirror image in x or in y gives to u, v, w, theta_x, theta_y, (5, 2).
+  real(wp), parameter :: signs_of(5, 2) = reshape([-1.0_wp, 1.0_wp, 1.0_wp, -1.0_wp, 1.0_wp, &
+                                                   1.0_wp, -1.0_wp, 1.0_wp, 1.0_wp, -1.0_wp], [5, 2])
+
+  !> Images of all points.
+  type :: symmetry_images_t
+    !> Points of the mesh that are images of a point, (points of the mesh, images); unallocated: none have any. Of three
+    !> images the third is the second one's first.
+    integer, allocatable :: points(:, :)
+    !> Signs of their motion, (5, images)
+    real(wp), allocatable :: signs(:, :)
+  contains
+    !> First of the images of each cell.
+    procedure :: first_cells
+    !> Makes a motion symmetric.
+    procedure :: impose
+  end type symmetry_images_t
+
+contains
+
+  !> The images of a whole plate's points. A mesh or supports that are not their own image to the last digit have none.
+  pure function find_images(mesh, symmetry, held) result(self)
+    !> The mesh of the whole plate
+    type(layered_mesh_t), intent(in) :: mesh
+    !> Part that could stand for the whole, one of `mesh_parameters`
+    integer, intent(in) :: symmetry
+    !> Unknowns held by supports, (5, points of the mesh)
+    logical, intent(in) :: held(:, :)
+    !> The images
+    type(symmetry_images_t) :: self
+    logical, allocatable :: flips(:, :)
+    integer, allocatable :: points(:, :)
+    integer :: k
+
+    if (symmetry == symmetry_none) return
+    allocate (flips(2, 1), source=.true.)
+    if (symmetry /= symmetry_point) flips(:, 1) = is_mirrored(symmetry)
+    if (all(is_mirrored(symmetry))) flips = reshape([.true., .false., .false., .true., .true., .true.], [2, 3])
+    allocate (points(mesh%points(), size(flips, 2)))
+    do k = 1, size(points, 2)
+      points(:, k) = image_of_points(mesh, flips(:, k))
+      if (any(points(:, k) == 0)) return
+      if (any(held(:, points(:, k)) .neqv. held)) return
+    end do
+    self%points = points
+    self%signs = reshape([(merge(signs_of(:, 1), 1.0_wp, flips(1, k))*merge(signs_of(:, 2), 1.0_wp, flips(2, k)), &
+                           k=1, size(points, 2))], [5, size(points, 2)])
+  end function find_images
+
+  !> Image of each point; 0: there is none.
+  pure function image_of_points(mesh, flips) result(images)
+    !> The mesh
+    type(layered_mesh_t), intent(in) :: mesh
+    !> True for coordinates that change their sign
+    logical, intent(in) :: flips(2)
+    !> Points of the mesh, (points of the mesh)
+    integer :: images(mesh%points())
+    integer :: node, image, points, point
+
+    images = 0
+    do node = 1, mesh%nodes()
+      associate (lines => mesh%lines_of(node))
+        image = mesh%node_at(merge(last_line(mesh%cells(1)) - lines(1), lines(1), flips(1)), &
+                             merge(last_line(mesh%cells(2)) - lines(2), lines(2), flips(2)))
+      end associate
+      associate (here => mesh%node_coordinates(:, node), there => mesh%node_coordinates(:, image), &
+                 first => mesh%first_point(node), first_there => mesh%first_point(image))
+        points = mesh%first_point(node + 1) - first
+        if (any(abs(here - merge(-there, there, flips)) > 0)) cycle
+        if (mesh%first_point(image + 1) - first_there /= points) cycle
+        if (any(mesh%point_zone(first:first + points - 1) /= mesh%point_zone(first_there:first_there + points - 1))) &
+          cycle
+        images(first:first + points - 1) = [(point, point=first_there, first_there + points - 1)]
+      end associate
+    end do
+  end function image_of_points
+
+  !> First of the images of each cell, itself among them.
+  pure function first_cells(self, mesh) result(first)
+    !> The images
+    class(symmetry_images_t), intent(in) :: self
+    !> The mesh
+    type(layered_mesh_t), intent(in) :: mesh
+    !> Cells, (cells)
+    integer :: first(product(mesh%cells))
+    integer :: cell, k, point, lines(2)
+
+    first = [(cell, cell=1, size(first))]
+    if (.not. allocated(self%points)) return
+    do cell = 1, size(first)
+      lines = middle_line(mesh%place_of(cell))
+      point = mesh%first_point(mesh%node_at(lines(1), lines(2)))
+      do k = 1, size(self%points, 2)
+        ! The middle of a cell lies between two lines of nodes each way.
+        lines = mesh%lines_of(mesh%point_node(self%points(point, k)))/2 + 1
+        first(cell) = min(first(cell), mesh%cell_at(lines(1), lines(2)))
+      end do
+    end do
+  end function first_cells
+
+  !> Makes a motion symmetric: to the last digit, so that nothing is left that could grow. Collective.
+  subroutine impose(self, communicator, distribution, motion)
+    !> The images
+    class(symmetry_images_t), intent(in) :: self
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> This rank's share
+    type(distribution_t), intent(in) :: distribution
+    !> The motion, ghosts included, (5, local points)
+    real(wp), intent(inout) :: motion(:, :)
+    real(wp), allocatable :: whole(:, :)
+    integer :: i
+
+    if (.not. allocated(self%points)) return
+    call gather(communicator, distribution, motion, size(self%points, 1), whole)
+    do i = 1, size(motion, 2)
+      associate (point => distribution%points(i), signs => self%signs)
+        associate (images => self%points(point, :))
+          motion(:, i) = whole(:, point) + signs(:, 1)*whole(:, images(1))
+          ! Sums of two and two are the same for all four, whatever the order.
+          if (size(images) == 3) motion(:, i) = motion(:, i) + (signs(:, 2)*whole(:, images(2)) &
+                                                                + signs(:, 3)*whole(:, images(3)))
+          motion(:, i) = motion(:, i)/(1 + size(images))
+        end associate
+      end associate
+    end do
+  end subroutine impose
+
+  !> A field at all points of the mesh, on every rank.
+  subroutine gather(communicator, distribution, field, points, whole)
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> This rank's share
+    type(distribution_t), intent(in) :: distribution
+    !> The field, (5, local points)
+    real(wp), intent(in) :: field(:, :)
+    !> Points of the mesh
+    integer, intent(in) :: points
+    !> The same, (5, points of the mesh)
+    real(wp), allocatable, intent(out) :: whole(:, :)
+    real(wp), allocatable :: values(:)
+
+    allocate (whole(5, points), source=0.0_wp)
+    whole(:, distribution%points(:distribution%owned)) = field(:, :distribution%owned)
+    if (communicator%size == 1) return
+    values = reshape(whole, [size(whole)])
+    call communicator%sum(values)
+    whole = reshape(values, shape(whole))
+  end subroutine gather
+end module symmetry_images
