@@ -14,6 +14,9 @@ module step_problems
   private
   public :: step_problem_t, solve_step
 
+  !> Rise of the residual by which an iteration has gone astray: near its tolerance rounding makes it rise a little.
+  real(wp), parameter :: astray = 2
+
   !> One kind of step.
   type, abstract :: step_problem_t
     !> Distance of pressures and gaps from contact (complementarity) at which they have settled
@@ -223,7 +226,7 @@ contains
         cycle
       end if
       ! What it has seen of points on one side of a kink leads astray beyond it.
-      if (operator%condenses .and. norm > before) call operator%anderson%forget()
+      if (operator%condenses .and. norm > astray*before) call operator%anderson%forget()
       before = norm
       converged = norm <= equilibrium%tolerance
       if (converged) converged = problem%may_stop(model, new, pressures_new)
