@@ -180,7 +180,7 @@ contains
              ' thicknesses with broken fibres since time '//rounded_text(time)// &
              ': membrane forces carry it, and the model tears no plies; distrust what follows.'
     case (warning_hole)
-      text = 'The fibres of every ply are broken over an area as large as the patch since time '// &
+      text = 'The fibres of every ply are broken over an area as large as the contact since time '// &
              rounded_text(time)//': the impactor goes through, and the model has no hole; distrust what follows.'
     end select
   end function warning_text

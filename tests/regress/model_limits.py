@@ -32,7 +32,7 @@ SCENES = {
                                  "&time end=2e-3  step=50e-6  rho_inf=0 /\n",
     "reached the border of its zone": ZONE + "&impactor mass=0.5  velocity=3  radius=10e-3 /\n"
                                       "&time end=1e-3  step=10e-6 /\n",
-    "broken over an area as large as the patch": "&impactor mass=2  velocity=5  radius=10e-3 /\n"
+    "broken over an area as large as the contact": "&impactor mass=2  velocity=5  radius=10e-3 /\n"
                                                  "&time end=1e-3  step=10e-6 /\n",
     "deflects by more than 3 thicknesses with broken fibres": "&impactor mass=2  velocity=5  radius=10e-3 /\n"
                                                               "&time end=1e-3  step=10e-6 /\n",
