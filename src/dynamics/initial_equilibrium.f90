@@ -58,7 +58,6 @@ contains
       if (allocated(error)) return
       call state%interfaces%faces%hold(model, correction)
       state%motion%displacement = state%motion%displacement + correction
-      call model%keep_symmetric(state%motion%displacement)
     end do
     call state%plies%book(model, damage)
     if (allocated(state%plies%bands)) call state%plies%bands%commit()

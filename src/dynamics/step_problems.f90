@@ -257,7 +257,6 @@ contains
         return
       end if
       new%motion%displacement = new%motion%displacement + correction
-      call model%keep_symmetric(new%motion%displacement)
       call problem%complete(old, new)
       new%iterations = new%iterations + 1
     end do

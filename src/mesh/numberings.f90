@@ -69,8 +69,8 @@ contains
     signs = reshape([(turned, point=1, size(leader))], shape(signs))
     folded = .false.
     if (present(images)) folded = allocated(images%points)
-    if (folded) call follow_images(images, leader, signs)
     free = .not. held
+    if (folded) call follow_images(images, leader, signs, free)
     do point = 1, size(leader)
       if (leader(point) > 0) free(:, point) = .false.
     end do
@@ -101,17 +101,23 @@ contains
                       self%row_start, self%columns, folded)
   end subroutine number_equations
 
-  !> Has each point follow the first of its images, if that comes before it.
-  pure subroutine follow_images(images, leader, signs)
+  !> Has each point follow the first of its images, if that comes before it. What a point that is its own image would
+  !> turn round is held.
+  pure subroutine follow_images(images, leader, signs, free)
     !> The images
     type(symmetry_images_t), intent(in) :: images
     !> Receives the leaders, (points)
     integer, intent(inout) :: leader(:)
     !> Receives the signs of the points' motion, (5, points)
     real(wp), intent(inout) :: signs(:, :)
+    !> Loses what is held, (5, points)
+    logical, intent(inout) :: free(:, :)
     integer :: point, k
 
     do point = 1, size(leader)
+      do k = 1, size(images%signs, 2)
+        if (images%points(point, k) == point) free(:, point) = free(:, point) .and. images%signs(:, k) > 0
+      end do
       k = minloc(images%points(point, :), dim=1)
       if (images%points(point, k) >= point) cycle
       leader(point) = images%points(point, k)

@@ -2,10 +2,9 @@
 !>
 !> Where something breaks, the equations of such a plate have solutions besides the symmetric one. Rounding would choose
 !> among them: another number of ranks, other units or a turned plate would break in other places, and a part of the
-!> plate that stands for the whole would not. So a motion is replaced by the mean of what its images say of it.
+!> plate that stands for the whole would not. So images share their equations (`numberings`), and every motion found is
+!> its own image to the last digit.
 module symmetry_images
-  use communicators, only: communicator_t
-  use distributions, only: distribution_t
   use kinds, only: wp
   use layered_meshes, only: layered_mesh_t
   use mesh_parameters, only: is_mirrored, symmetry_none, symmetry_point
@@ -28,8 +27,6 @@ module symmetry_images
   contains
     !> First of the images of each cell.
     procedure :: first_cells
-    !> Makes a motion symmetric.
-    procedure :: impose
   end type symmetry_images_t
 
 contains
@@ -113,54 +110,4 @@ contains
       end do
     end do
   end function first_cells
-
-  !> Makes a motion symmetric: to the last digit, so that nothing is left that could grow. Collective.
-  subroutine impose(self, communicator, distribution, motion)
-    !> The images
-    class(symmetry_images_t), intent(in) :: self
-    !> The ranks
-    type(communicator_t), intent(in) :: communicator
-    !> This rank's share
-    type(distribution_t), intent(in) :: distribution
-    !> The motion, ghosts included, (5, local points)
-    real(wp), intent(inout) :: motion(:, :)
-    real(wp), allocatable :: whole(:, :)
-    integer :: i
-
-    if (.not. allocated(self%points)) return
-    call gather(communicator, distribution, motion, size(self%points, 1), whole)
-    do i = 1, size(motion, 2)
-      associate (point => distribution%points(i), signs => self%signs)
-        associate (images => self%points(point, :))
-          motion(:, i) = whole(:, point) + signs(:, 1)*whole(:, images(1))
-          ! Sums of two and two are the same for all four, whatever the order.
-          if (size(images) == 3) motion(:, i) = motion(:, i) + (signs(:, 2)*whole(:, images(2)) &
-                                                                + signs(:, 3)*whole(:, images(3)))
-          motion(:, i) = motion(:, i)/(1 + size(images))
-        end associate
-      end associate
-    end do
-  end subroutine impose
-
-  !> A field at all points of the mesh, on every rank.
-  subroutine gather(communicator, distribution, field, points, whole)
-    !> The ranks
-    type(communicator_t), intent(in) :: communicator
-    !> This rank's share
-    type(distribution_t), intent(in) :: distribution
-    !> The field, (5, local points)
-    real(wp), intent(in) :: field(:, :)
-    !> Points of the mesh
-    integer, intent(in) :: points
-    !> The same, (5, points of the mesh)
-    real(wp), allocatable, intent(out) :: whole(:, :)
-    real(wp), allocatable :: values(:)
-
-    allocate (whole(5, points), source=0.0_wp)
-    whole(:, distribution%points(:distribution%owned)) = field(:, :distribution%owned)
-    if (communicator%size == 1) return
-    values = reshape(whole, [size(whole)])
-    call communicator%sum(values)
-    whole = reshape(values, shape(whole))
-  end subroutine gather
 end module symmetry_images

@@ -1,5 +1,5 @@
-!> What does not change during a run: mesh, supports, loads, and who computes what; and the forces that follow from
-!> a motion.
+!> A scene made ready for steps: mesh, supports, loads, and who computes what; and the forces that follow from a motion.
+!> In a run only layers and the places where the impactor presses change, between steps.
 module models
   use kinds, only: wp
   use communicators, only: communicator_t
@@ -122,8 +122,6 @@ module models
     procedure :: spread_force
     !> Deflection at the struck point.
     procedure :: deflection
-    !> Makes a motion symmetric where it has to be.
-    procedure :: keep_symmetric
     !> Product of two fields over all points of the plate's modelled part.
     procedure :: product => field_product
   end type model_t
@@ -336,15 +334,6 @@ contains
     if (self%struck > 0) w = displacement(3, self%struck)
     call self%communicator%sum(w)
   end function deflection
-
-  !> Makes a motion symmetric where a whole plate is to keep its symmetry. Collective.
-  subroutine keep_symmetric(self, motion)
-    class(model_t), intent(in) :: self
-    !> The motion, ghosts up to date, (5, points)
-    real(wp), intent(inout) :: motion(:, :)
-
-    call self%images%impose(self%communicator, self%distribution, motion)
-  end subroutine keep_symmetric
 
   !> Product of two fields summed over the owned points of this rank only.
   pure real(wp) function field_product(self, left, right) result(total)

@@ -72,17 +72,29 @@ class Scene:
         require(not left, f"{what}: {sorted(left)} are left over.")
 
 
+def state_of(number):
+    """Return the letter of a process's state and its session; Z and 0 if it has ended."""
+    try:
+        state, _, _, session = Path(f"/proc/{number}/stat").read_text(encoding="utf-8").rsplit(")", 1)[1].split()[:4]
+    except OSError:
+        return "Z", 0
+    return state, int(session)
+
+
 def session_of(process):
     """Return the processes of a launcher's session that still run."""
-    found = []
-    for status in Path("/proc").glob("[0-9]*/stat"):
-        try:
-            state, _, _, session = status.read_text(encoding="utf-8").rsplit(")", 1)[1].split()[:4]
-        except OSError:  # ended meanwhile
-            continue
-        if int(session) == process.pid and state != "Z":
-            found.append(int(status.parent.name))
-    return found
+    numbers = [int(path.name) for path in Path("/proc").glob("[0-9]*")]
+    states = {number: state_of(number) for number in numbers}
+    return [number for number, (state, session) in states.items() if session == process.pid and state != "Z"]
+
+
+def stop_all(numbers):
+    """Stop processes, so that what is seen is what is left; return those that stand still. One that has begun to exit
+    takes no signal any more and ends as it would have."""
+    send(numbers, signal.SIGSTOP)
+    while any(state_of(number)[0] not in "TXZ" for number in numbers):
+        time.sleep(0.0005)
+    return [number for number in numbers if state_of(number)[0] == "T"]
 
 
 def send(numbers, stop):
@@ -135,14 +147,13 @@ def kill_once(scene, deck, moments, writing):
         time.sleep(moments.uniform(0, 0.03))
     running = session_of(process)
     victims = moments.choice([running, [process.pid], scene.ranks(process)[:1]])
-    send(running, signal.SIGSTOP)  # so that what is seen is what is left
+    hit = bool(set(stop_all(running)) & set(victims))
     written = bool(list(deck.parent.glob("*_restart.h5.tmp")))
-    hit = process.poll() is None
     send(victims, signal.SIGKILL)
     send(running, signal.SIGCONT)
     code = end_of(process)
-    require(code != EXIT_DONE or not hit or not victims, "A run that was killed ends with 0.")
-    return hit and bool(victims), written, code == EXIT_DONE
+    require(code != EXIT_DONE or not hit, "A run that was killed ends with 0.")
+    return hit, written, code == EXIT_DONE
 
 
 def check_kills(implam, folder, count, launcher):
