@@ -8,8 +8,8 @@ module impact_parameters
   !> Time integrators of the impactor.
   integer, parameter, public :: integrator_gear4 = 1, integrator_trapezoidal = 2, &
                                 integrator_central = 3, integrator_conserving = 4
-  !> Indentation laws: Tan and Sun's (Eq. 3), or elastic Hertz both ways.
-  integer, parameter, public :: law_tan_sun = 1, law_hertz = 2
+  !> Indentation laws: Tan and Sun's (Eq. 3), elastic Hertz both ways, or Thornton's elastic-plastic one.
+  integer, parameter, public :: law_tan_sun = 1, law_hertz = 2, law_thornton = 3
   !> Permanent dent: Tan and Sun's linear one, or Yang and Sun's.
   integer, parameter, public :: dent_tan_sun = 1, dent_yang_sun = 2
 
@@ -35,7 +35,7 @@ module impact_parameters
 
   !> Force against indentation (Eq. 3 of the paper with the reloading branch it lacks).
   type :: indentation_law_t
-    !> law_tan_sun or law_hertz
+    !> law_tan_sun, law_hertz or law_thornton
     integer :: law = law_tan_sun
     !> Contact stiffness, F = k alpha**1.5
     real(wp) :: k = 0
@@ -45,7 +45,7 @@ module impact_parameters
     real(wp) :: reload = 1.5_wp
     !> Slope of Tan and Sun's dent
     real(wp) :: beta = 0.094_wp
-    !> Indentation above which a dent remains
+    !> Indentation above which a dent remains, with Thornton's law that at the yield of the struck face
     real(wp) :: alpha_critical = 0
     !> dent_tan_sun or dent_yang_sun
     integer :: dent = dent_tan_sun

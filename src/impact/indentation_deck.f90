@@ -5,7 +5,7 @@ module indentation_deck
   use deck_remarks, only: tell, remark_idle, are_clear
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
-  use impact_parameters, only: indentation_law_t, law_tan_sun, law_hertz, dent_tan_sun, dent_yang_sun
+  use impact_parameters, only: indentation_law_t, law_tan_sun, law_hertz, law_thornton, dent_tan_sun, dent_yang_sun
   use kinds, only: wp
   use hertz_contact, only: sun_stiffness
   use text, only: line_t, append, to_text
@@ -20,8 +20,8 @@ module indentation_deck
     'indentation | optional | Contact force against indentation; left out: elastic Hertz, k by Sun''s formula.'
   !> Rows of the keys.
   character(len=key_row_length), parameter, public :: indentation_rows(*) = [character(len=key_row_length) :: &
-    'indentation | law | choice | 1 | - | ''tan_sun'' | tan_sun hertz | &
-      &Loading, unloading and reloading after Tan and Sun, or elastic Hertz both ways.', &
+    'indentation | law | choice | 1 | - | ''tan_sun'' | tan_sun hertz thornton | &
+      &After Tan and Sun, elastic Hertz both ways, or elastic-plastic after Thornton.', &
     'indentation | k | real | 1 | force/length^1.5 | = Sun''s formula | > 0 | &
       &Contact stiffness in F = k alpha^1.5.', &
     'indentation | impactor_E | real | 1 | pressure | = rigid | > 0 | &
@@ -35,7 +35,7 @@ module indentation_deck
     'indentation | beta | real | 1 | - | 0.094 | >= 0, < 1 | &
       &Slope of Tan and Sun''s dent.', &
     'indentation | alpha_cr | real | 1 | length | none | > 0 | &
-      &Indentation above which a dent remains; needed with law = ''tan_sun''.', &
+      &Indentation above which a dent remains; needed but with law = ''hertz''.', &
     'indentation | dent | choice | 1 | - | ''tan_sun'' | tan_sun yang_sun | &
       &Formula of the permanent dent.']
 
@@ -54,7 +54,8 @@ contains
 
     law%law = law_hertz
     if (settings%has_group(indentation_group)) then
-      law%law = code_of(settings%text_of(indentation_group, 'law'), 'tan_sun hertz', [law_tan_sun, law_hertz])
+      law%law = code_of(settings%text_of(indentation_group, 'law'), 'tan_sun hertz thornton', &
+                        [law_tan_sun, law_hertz, law_thornton])
       law%dent = code_of(settings%text_of(indentation_group, 'dent'), 'tan_sun yang_sun', [dent_tan_sun, dent_yang_sun])
       law%q = settings%real_of(indentation_group, 'q')
       law%reload = settings%real_of(indentation_group, 'reload')
@@ -98,10 +99,12 @@ contains
     else
       if (.not. (settings%is_given(indentation_group, 'alpha_cr') .or. &
                  problems%concern(indentation_group, 'alpha_cr'))) &
-        call tell(settings, problems, indentation_group, 'alpha_cr', 'is missing; law = ''tan_sun'' needs the '// &
+        call tell(settings, problems, indentation_group, 'alpha_cr', 'is missing; law = '''// &
+                  settings%text_of(indentation_group, 'law')//''' needs the '// &
                   'indentation above which a dent remains (law = ''hertz'' leaves none).')
-      call check_exponents(settings, law, problems)
+      if (law%law == law_tan_sun) call check_exponents(settings, law, problems)
     end if
+    if (law%law == law_thornton) call idle('q reload beta dent', 'has no effect with law = ''thornton''.')
     if (law%law == law_tan_sun .and. law%dent == dent_yang_sun) &
       call idle('beta', 'has no effect with dent = ''yang_sun''.')
     if (settings%is_given(indentation_group, key_k)) then

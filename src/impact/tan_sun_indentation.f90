@@ -1,16 +1,18 @@
-!> Contact force between impactor and struck face as a function of the indentation (Eq. 3 of the
-!> paper), with the reloading branch that Eq. 3 lacks and all energies in closed form.
+!> Contact force between impactor and struck face as a function of the indentation: Tan and Sun's law (Eq. 3 of the
+!> paper) with the reloading branch that Eq. 3 lacks, Hertz's and Thornton's, with all energies in closed form.
 !>
 !> For a given committed state the force is one continuous, non-decreasing function of the
 !> indentation: zero up to the dent, a power law from the dent to the largest indentation so far,
-!> and F = k alpha**1.5 beyond it. The power is `q` as long as the bodies have not separated, so a
-!> reversal during contact runs back up the unloading curve, and `reload` after a separation. The
+!> and that of `contact_loading` beyond it. After Tan and Sun the power is `q` as long as the bodies have not separated,
+!> so a reversal during contact runs back up the unloading curve, and `reload` after a separation. The
 !> reloading curve is run back the way it came: a second contact that doesn't reach the largest
 !> indentation is elastic. Energy is never created if 1.5 <= reload <= q, see `check_indentation` of the deck.
+!> After Thornton it is 1.5 both ways.
 module tan_sun_indentation
   use archives, only: archive_t
-  use hertz_contact, only: hertz_exponent, hertz_force, hertz_stiffness, mean_power
-  use impact_parameters, only: indentation_law_t, law_hertz, law_tan_sun, dent_yang_sun
+  use contact_loading, only: loading_force, loading_stiffness, loading_indentation, mean_loading_force
+  use hertz_contact, only: hertz_exponent, hertz_force, mean_power
+  use impact_parameters, only: indentation_law_t, law_hertz, law_thornton, dent_yang_sun
   use kinds, only: wp
   implicit none
   private
@@ -83,7 +85,7 @@ contains
     else if (alpha <= branch%finish) then
       force = branch%force*position(branch, alpha)**branch%exponent
     else
-      force = hertz_force(law%k, alpha)
+      force = loading_force(law, alpha)
     end if
   end function indentation_force
 
@@ -103,7 +105,7 @@ contains
     if (force < branch%force) then
       alpha = branch%start + (branch%finish - branch%start)*(force/branch%force)**(1/branch%exponent)
     else
-      alpha = (force/law%k)**(1/hertz_exponent)
+      alpha = loading_indentation(law, force)
     end if
   end function indentation_of
 
@@ -126,7 +128,7 @@ contains
       stiffness = branch%exponent*branch%force/(branch%finish - branch%start) &
                   *position(branch, alpha)**(branch%exponent - 1)
     else
-      stiffness = hertz_stiffness(law%k, alpha)
+      stiffness = loading_stiffness(law, alpha)
     end if
   end function indentation_stiffness
 
@@ -159,7 +161,7 @@ contains
     if (upper > lower) mean = branch%force*(upper - lower)/(most - least) &
                               *mean_power(position(branch, lower), position(branch, upper), branch%exponent)
     lower = max(least, branch%finish)
-    if (most > lower) mean = mean + law%k*(most - lower)/(most - least)*mean_power(lower, most, hertz_exponent)
+    if (most > lower) mean = mean + mean_loading_force(law, lower, most)*(most - lower)/(most - least)
   end function mean_indentation_force
 
   !> Work of the contact force along a path that doesn't turn.
@@ -178,7 +180,7 @@ contains
     work = mean_indentation_force(law, state, alpha_from, alpha_to)*(alpha_to - alpha_from)
   end function indentation_work
 
-  !> Bound on the ratio of the present contact stiffness to that of loading at the same indentation.
+  !> Bound on the ratio of the present contact stiffness to that of Hertz at the same indentation.
   pure function stiffening(law, state) result(ratio)
     !> The law
     type(indentation_law_t), intent(in) :: law
@@ -191,7 +193,8 @@ contains
     branch = current_branch(law, state)
     ratio = 1
     if (branch%finish > branch%start) &
-      ratio = branch%exponent/hertz_exponent*branch%finish/(branch%finish - branch%start)
+      ratio = max(ratio, branch%exponent/hertz_exponent*branch%finish/(branch%finish - branch%start) &
+                  *branch%force/hertz_force(law%k, branch%finish))
   end function stiffening
 
   !> Accepts a new indentation, reached in one direction from the committed one.
@@ -206,7 +209,7 @@ contains
     state%work = state%work + indentation_work(law, state, state%alpha, alpha)
     if (alpha > state%alpha_max) then
       state%alpha_max = alpha
-      state%force_max = hertz_force(law%k, alpha)
+      state%force_max = loading_force(law, alpha)
       state%dent = permanent_dent(law, alpha)
       state%separated = .false.
     else if (alpha <= state%dent) then
@@ -239,11 +242,11 @@ contains
     !> The curve
     type(branch_t) :: branch
 
-    if (law%law /= law_tan_sun) return
+    if (law%law == law_hertz) return
     branch%start = state%dent
     branch%finish = state%alpha_max
     branch%force = state%force_max
-    branch%exponent = merge(law%reload, law%q, state%separated)
+    if (law%law /= law_thornton) branch%exponent = merge(law%reload, law%q, state%separated)
   end function current_branch
 
   !> Place on a curve, 0 at its start and 1 at its end.
@@ -258,7 +261,8 @@ contains
     s = (alpha - branch%start)/(branch%finish - branch%start)
   end function position
 
-  !> Dent that unloading from an indentation leaves (Tan and Sun 1985; Yang and Sun 1982).
+  !> Dent that unloading from an indentation leaves (Tan and Sun 1985; Yang and Sun 1982; Thornton 1997, whose sphere
+  !> comes back from a face that its radius and the dent have made to fit).
   pure function permanent_dent(law, alpha_max) result(dent)
     !> The law
     type(indentation_law_t), intent(in) :: law
@@ -269,7 +273,9 @@ contains
 
     dent = 0
     if (law%law == law_hertz .or. alpha_max <= law%alpha_critical) return
-    if (law%dent == dent_yang_sun) then
+    if (law%law == law_thornton) then
+      dent = alpha_max*(1 - loading_force(law, alpha_max)/hertz_force(law%k, alpha_max))
+    else if (law%dent == dent_yang_sun) then
       dent = alpha_max*(1 - (law%alpha_critical/alpha_max)**0.4_wp)
     else
       dent = law%beta*(alpha_max - law%alpha_critical)
