@@ -337,17 +337,19 @@ contains
     type(line_t), allocatable :: lines(:)
     real(wp), allocatable :: x_edges(:), y_edges(:)
     real(wp) :: zone(2), starter(2)
+    character(len=:), allocatable :: text
     integer :: place
 
     allocate (lines(size(deck%delaminations)))
-    if (size(lines) == 0) return
     x_edges = cell_edges(deck%plate, deck%mesh, 1) - deck%mesh%struck(1)
     y_edges = cell_edges(deck%plate, deck%mesh, 2) - deck%mesh%struck(2)
     do place = 1, size(lines)
       call extents_of(x_edges, y_edges, deck%delaminations(place), zone, starter)
-      lines(place)%text = 'Interface below ply '//to_text(deck%delaminations(place)%below_ply)//': the mesh makes '// &
-                          'the zone '//shown(zone)//' and the starter '//shown(starter)//'.'
-      if (deck%delaminations(place)%follows) lines(place)%text = lines(place)%text//' The zone follows the damage.'
+      text = 'Interface below ply '//to_text(deck%delaminations(place)%below_ply)//': the mesh makes the zone '// &
+             shown(zone)
+      if (deck%delaminations(place)%starter > 0) text = text//' and the starter '//shown(starter)
+      if (deck%delaminations(place)%follows) text = text//'. The zone follows the damage'
+      lines(place)%text = text//'.'
     end do
   end function extent_lines
 

@@ -342,8 +342,7 @@ contains
     change = 0
     if (self%trial%largest_stress > 0) change = abs(self%trial%stress - self%now%stress)/self%trial%largest_stress
     call model%profile%enter('ply criteria')
-    call self%trial%plies%grow(model, [self%now%time, self%trial%time], self%now%motion%displacement, &
-                               self%trial%motion%displacement)
+    call self%trial%plies%grow(model, self%trial%motion%displacement)
     call model%profile%leave()
     if (self%trial%plies%softened) call book_failures(model, self%now, self%trial)
     call note_flaws(model, self%trial%plies, self%trial%interfaces)

@@ -12,7 +12,7 @@ module ply_damage_deck
   !> Name that checks across groups use.
   character(len=*), parameter, public :: ply_damage_group = 'ply_damage'
   !> Keys without effect on plies that soften by their fracture energies.
-  character(len=*), parameter, public :: keys_of_sudden_failure = 'd fade average stress'
+  character(len=*), parameter, public :: keys_of_sudden_failure = 'd stress'
   !> Row of the group.
   character(len=group_row_length), parameter, public :: ply_damage_group_row = &
     'ply_damage | optional | Failure of plies: matrix cracking, matrix crushing, fibre failure.'
@@ -22,10 +22,6 @@ module ply_damage_deck
       &Divisor of the elastic constants that a mode of failure takes away (Table 2).', &
     'ply_damage | e | real | 1 | - | 0.001 | > 0, <= 1 | &
       &Least value left of an elastic constant, as a fraction of the undamaged one.', &
-    'ply_damage | fade | real | 1 | time | 0 | >= 0 | &
-      &Time over which a failure takes its stiffness away, in proportion; 0: at once.', &
-    'ply_damage | average | real | 1 | length | 0 | >= 0 | &
-      &Distance over which the strains for the criteria are averaged; 0: over each element alone.', &
     'ply_damage | criteria | choice | 1 | - | ''hou'' | hou hashin puck | &
       &Set of failure criteria: those of Hou et al. (Table 1), of Hashin (1980) or of Puck (1998).', &
     'ply_damage | stress | choice | 1 | - | ''middle'' | middle faces | &
@@ -42,8 +38,6 @@ contains
 
     damage%d = settings%real_of(ply_damage_group, 'd')
     damage%e = settings%real_of(ply_damage_group, 'e')
-    damage%fade = settings%real_of(ply_damage_group, 'fade')
-    damage%average = settings%real_of(ply_damage_group, 'average')
     damage%criteria = code_of(settings%text_of(ply_damage_group, 'criteria'), 'hou hashin puck', &
                               [criteria_hou, criteria_hashin, criteria_puck])
     damage%stress = code_of(settings%text_of(ply_damage_group, 'stress'), 'middle faces', &

@@ -24,10 +24,6 @@ module ply_damage_parameters
     real(wp) :: d = 100
     !> Least value left of an elastic constant, as a fraction of the undamaged one
     real(wp) :: e = 1.0e-3_wp
-    !> Time over which a failure takes its stiffness away
-    real(wp) :: fade = 0
-    !> Distance over which the strains for the criteria are averaged; 0: over each element alone
-    real(wp) :: average = 0
     !> criteria_hou, criteria_hashin or criteria_puck
     integer :: criteria = criteria_hou
     !> stress_at_middle or stress_at_faces

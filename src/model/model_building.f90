@@ -19,7 +19,6 @@ module model_building
   use cohesive_laws, only: create_cohesive_law
   use delamination_parameters, only: contact_augmented_lagrangian, law_cohesive, toughnesses
   use distributions, only: distribute
-  use neighbourhoods, only: neighbourhood_of
   use supports, only: held_unknowns
   use rig_models, only: new_rig_model, hold_by_rigs
   use line_loads, only: along_y
@@ -81,8 +80,6 @@ contains
     if (allocated(scene%supports)) call build_rigs(self)
     self%has_bonds = self%map%layered .or. self%rig%unilateral .or. self%rig%elastic
     call find_struck_point(self)
-    if (scene%has_ply_damage .and. scene%ply_damage%average > 0 .and. .not. scene%has_crack_bands()) &
-      self%surroundings = neighbourhood_of(self%mesh, self%distribution%elements, scene%ply_damage%average)
   end subroutine create_model
 
   !> True if membrane and bending do not act on each other.

@@ -18,7 +18,6 @@ module models
   use face_contact, only: contact_law_t
   use cohesive_laws, only: cohesive_law_t
   use distributions, only: distribution_t
-  use neighbourhoods, only: neighbourhood_t
   use placed_lines, only: placed_line_t
   use rig_models, only: rig_model_t
   use scenes, only: scene_t
@@ -93,8 +92,6 @@ module models
     integer, allocatable :: zone(:)
     !> Position of the struck node's first point on the rank that owns it; 0 elsewhere
     integer :: struck = 0
-    !> Surroundings of this rank's elements that ply criteria average over; unallocated: the element alone
-    type(neighbourhood_t), allocatable :: surroundings
     !> This rank's elements around the struck node
     integer, allocatable :: struck_elements(:)
     !> Elements around the struck node on all ranks

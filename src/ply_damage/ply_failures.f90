@@ -10,7 +10,7 @@ module ply_failures
   use stacking, only: in_plane_section, section_stiffness
   use section_stiffnesses, only: visit_stiffness
   use models, only: model_t
-  use ply_onsets, only: ply_onset_t, new_ply_onset
+  use failed_modes, only: failed_modes_t, new_failed_modes
   use text, only: to_text
   implicit none
   private
@@ -22,8 +22,8 @@ module ply_failures
 
   !> Failures of the plies of this rank's elements.
   type :: ply_failure_t
-    !> When they began, where failures take their stiffness at once
-    type(ply_onset_t) :: onset
+    !> What has failed, where failures take their stiffness at once
+    type(failed_modes_t) :: modes
     !> Plies that soften by their fracture energies; unallocated: they fail at once
     type(crack_band_sections_t), allocatable :: bands
     !> Section stiffness left in the elements, (lanes, 21, batches)
@@ -76,7 +76,7 @@ contains
     if (model%scene%has_crack_bands()) then
       self%bands = new_crack_band_sections(model)
     else
-      self%onset = new_ply_onset(model)
+      self%modes = new_failed_modes(model)
     end if
   end function new_ply_failure
 
@@ -171,7 +171,7 @@ contains
     logical, allocatable :: failed(:, :)
 
     if (.not. allocated(self%bands)) then
-      failed = self%onset%failed(ply)
+      failed = self%modes%failed(ply)
       return
     end if
     associate (broken => self%bands%broken(ply), pressed => self%bands%mostly_pressed(ply))
@@ -195,7 +195,7 @@ contains
     if (allocated(self%bands)) then
       elasticity = self%bands%elasticity(ply, element)
     else
-      elasticity = self%onset%elasticity(model, ply, element)
+      elasticity = self%modes%elasticity(model, ply, element)
     end if
   end function elasticity
 
@@ -215,16 +215,14 @@ contains
     end associate
   end function elasticities
 
-  !> Finds new failures in an accepted state and takes away what stiffness goes until the end of the next step.
-  subroutine grow(self, model, times, before, after)
+  !> Finds new failures in an accepted state and takes away the stiffness that goes with them. Collective.
+  subroutine grow(self, model, displacement)
     !> The failures
     class(ply_failure_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> Times before and after the step
-    real(wp), intent(in) :: times(2)
-    !> Displacements before and after the step, (5, points)
-    real(wp), intent(in) :: before(:, :), after(:, :)
-    logical, allocatable :: changing(:)
+    !> Displacement, ghosts up to date, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    logical, allocatable :: failing(:)
     integer :: element
 
     if (allocated(self%bands)) then
@@ -233,13 +231,11 @@ contains
       call self%bands%commit()
     end if
     if (.not. model%scene%has_ply_damage .or. allocated(self%bands)) return
-    changing = self%onset%fading()
-    call self%onset%find(model, self%stiffness, times, before, after, changing)
-    call self%onset%go_on(times)
-    self%softened = model%communicator%any(any(changing))
+    call self%modes%find(model, self%stiffness, displacement, failing)
+    self%softened = model%communicator%any(any(failing))
     if (.not. self%softened) return
-    do element = 1, size(changing)
-      if (changing(element)) call soften(self, model, element)
+    do element = 1, size(failing)
+      if (failing(element)) call soften(self, model, element)
     end do
   end subroutine grow
 
@@ -253,7 +249,7 @@ contains
 
     associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
       self%stiffness(lane_of(element), :, batch_of(element)) = &
-        section_stiffness(model%plies(range(1):range(2)), self%onset%elasticities(model, element), &
+        section_stiffness(model%plies(range(1):range(2)), self%modes%elasticities(model, element), &
                           model%scene%laminate%shear_correction)
       if (allocated(self%free)) self%free(lane_of(element), :, batch_of(element)) = &
         free_resultants(model%plies(range(1):range(2)), self%elasticities(model, element))
@@ -336,7 +332,7 @@ contains
     type(model_t), intent(in) :: model
     integer :: mode, element
 
-    call self%onset%visit(archive, model, 'ply_failure/onset/')
+    call self%modes%visit(archive, model)
     if (allocated(self%bands)) then
       call self%bands%visit(archive, model)
       do mode = 1, energy_modes

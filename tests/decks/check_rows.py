@@ -29,7 +29,6 @@ OTHERS = (
     ("dynamics/states.f90", "stress force", "an item of a checkpoint"),
     ("interfaces/interface_ties.f90", "zone", "an item of a checkpoint"),
     ("petsc/petsc_session.f90", "petsc_options", "PETSc's own variable of the environment"),
-    ("ply_damage/ply_onsets.f90", "time", "an item of a checkpoint"),
     ("model/motion_fields.f90", "velocity", "a field in NAME.h5, which users read"),
     ("results/fields_file_xdmf.f90", "cell", "XDMF's word for a field on elements"),
     ("results/output_parameters.f90", "displacement rotation velocity delamination energy_release ply_damage stress",

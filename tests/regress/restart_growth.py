@@ -9,8 +9,7 @@ rejected from checkpoints next to rejected steps, while delaminations grow: bitw
 cohesive from the checkpoint after each step of a run whose interface is cohesive: bitwise
 layers   from the checkpoint after each step of a run whose layers follow their damage: bitwise
 softening from the checkpoint after each step of a run whose plies soften: bitwise
-nose     the same under a nose that presses where it touches: bitwise
-fading   while failed plies lose their stiffness, with an operator factored before: bitwise"""
+nose     the same under a nose that presses where it touches: bitwise"""
 
 import signal
 import sys
@@ -47,7 +46,6 @@ DECK = "../small/damage.nml"
 STEP = 10e-6
 GROWING = ["mesh%elements=10,10", "impactor%velocity=3", "delamination%G_c=200", "delamination%zone=28.3e-3,20.6e-3",
            "delamination%starter=8.9e-3"]
-AVERAGES = ["ply_damage%average=2e-3", f"ply_damage%fade={4 * STEP!r}"]
 # Up to the first cracks, cooled from the cure.
 SOFTENING = ["time%end=120e-6", "thermal%delta_T=-150", "material%alpha1=-0.3e-6", "material%alpha2=28e-6"]
 NOSE = ["impactor%contact_area='sphere'", "time%step=16e-6", "time%end=400e-6"]
@@ -130,11 +128,6 @@ def check_splits(implam, folder, _):
                                 [f"delamination%growth='{rule}'", f"delamination%energy_release='{release}'"])
 
 
-def check_averages(implam, folder, _):
-    """Plies that fade and fail by averaged strains, beside fronts."""
-    split_around_growth(implam, folder, "averages", AVERAGES)
-
-
 def split_around_growth(implam, folder, name, choices):
     """Split before and after the step with the most growth."""
     settings = [*GROWING, *choices]
@@ -149,30 +142,6 @@ def split_around_growth(implam, folder, name, choices):
         later = history["delaminated_area"][-1] - history["delaminated_area"][step - 1]
         require(later > 0, f"{name}: nothing grew after the split, the trial proves nothing.")
         print(f"{name} split after step {step}: {1e6 * later:.0f} mm^2 grow after it, the same to the last bit")
-
-
-def steps_of_fading(history):
-    """Return the steps after which plies go on losing stiffness that failed before, and whose operator is older."""
-    failed = [sum(modes) for modes in zip(history["matrix_cracks"], history["matrix_crushings"],
-                                          history["fibre_failures"], strict=True)]
-    lost, factors = history["energy_ply_damage"], history["refactorisations"]
-    return [step for step in range(2, len(failed) - 1)
-            if failed[step] == failed[step - 2] > 0 and lost[step] > lost[step - 1] > lost[step - 2]
-            and factors[step - 1] == factors[step - 2]]
-
-
-def check_fading(implam, folder, _):
-    """Where the stiffness is half gone, and other than that of the lagging operator."""
-    # Tough faces: where cells delaminate the operator is made anew.
-    settings = [*GROWING, "delamination%G_c=2000", "impactor%velocity=4", f"ply_damage%fade={8 * STEP!r}"]
-    scout = run_deck(implam, write_deck(folder / "scout", DECK, [*settings, f"time%end={30 * STEP!r}"]))
-    steps = [step for step in steps_of_fading(read_history(scout)) if step > 2]
-    require(steps, "No plies fade while none fails: the trial proves nothing.")
-    for step in {steps[0], steps[-1]}:
-        reference, again = run_split(implam, folder / f"fading_{step}", DECK, split_after(step, settings))
-        require_same(again, reference, f"split after step {step}")
-        require(damage_of(again) == damage_of(reference), "Other cells delaminated or plies failed.")
-        print(f"Split after step {step}, while plies fade: the same to the last bit")
 
 
 def rows_written(folder):
@@ -246,7 +215,7 @@ def check_rejected(implam, folder, _):
 
 
 TRIALS = {"every": check_every, "splits": check_splits, "moments": check_moments, "ranks": check_ranks,
-          "rejected": check_rejected, "fading": check_fading, "averages": check_averages, "cohesive": check_cohesive,
+          "rejected": check_rejected, "cohesive": check_cohesive,
           "layers": check_layers,
           "softening": check_softening, "nose": check_nose}
 

@@ -1,0 +1,145 @@
+!> Modes of failure that have occurred in the plies of every element, each at once and for good (section 3.2 of the
+!> paper), and the elastic constants left.
+module failed_modes
+  use kinds, only: wp
+  use archives, only: archive_t
+  use plies, only: elasticity_t
+  use ply_damage_parameters, only: failure_modes
+  use degradation, only: degraded
+  use models, only: model_t
+  use criterion_strains, only: mean_strains_of_elements
+  use ply_criteria, only: failure_measures
+  implicit none
+  private
+  public :: failed_modes_t, new_failed_modes
+
+  !> What has failed in this rank's elements.
+  type :: failed_modes_t
+    !> True where a mode has occurred, (modes, plies, elements); unallocated: not modelled
+    logical, allocatable, private :: occurred(:, :, :)
+  contains
+    !> Finds the modes whose criteria are met for the first time.
+    procedure :: find
+    !> Elastic constants left in a ply of an element, and in all its plies.
+    procedure :: elasticity
+    procedure :: elasticities
+    !> Modes that have occurred in a ply.
+    procedure :: failed
+    !> Saves or loads.
+    procedure :: visit
+  end type failed_modes_t
+
+contains
+
+  !> No failure.
+  pure function new_failed_modes(model) result(self)
+    type(model_t), intent(in) :: model
+    !> The modes
+    type(failed_modes_t) :: self
+
+    if (.not. model%scene%has_ply_damage) return
+    allocate (self%occurred(failure_modes, size(model%plies), model%elements%elements), source=.false.)
+  end function new_failed_modes
+
+  !> Finds the modes whose criteria are met for the first time.
+  subroutine find(self, model, stiffness, displacement, found)
+    !> The modes
+    class(failed_modes_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> Section stiffness left in the elements, (lanes, 21, batches)
+    real(wp), intent(in) :: stiffness(:, :, :)
+    !> Displacement, ghosts up to date, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> True for elements with a new failure, (elements)
+    logical, allocatable, intent(out) :: found(:)
+    real(wp), allocatable :: strains(:, :)
+    logical, allocatable :: failing(:, :)
+    integer :: element
+
+    strains = mean_strains_of_elements(model, displacement)
+    allocate (found(size(strains, 2)))
+    do element = 1, size(found)
+      associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
+        associate (occurred => self%occurred(:, range(1):range(2), element))
+          failing = failure_measures(model, stiffness, element, self%elasticities(model, element), &
+                                     strains(:, element)) >= 1 .and. .not. occurred
+          occurred = occurred .or. failing
+        end associate
+      end associate
+      found(element) = any(failing)
+    end do
+  end subroutine find
+
+  !> Elastic constants left in a ply of an element.
+  pure function elasticity(self, model, ply, element)
+    !> The modes
+    class(failed_modes_t), intent(in) :: self
+    type(model_t), intent(in) :: model
+    !> Ply of the laminate
+    integer, intent(in) :: ply
+    !> Element of this rank
+    integer, intent(in) :: element
+    !> Constants of the ply
+    type(elasticity_t) :: elasticity
+
+    elasticity = model%plies(ply)%elasticity
+    if (allocated(self%occurred)) &
+      elasticity = degraded(elasticity, self%occurred(:, ply, element), model%scene%ply_damage)
+  end function elasticity
+
+  !> Elastic constants left in the plies of an element.
+  pure function elasticities(self, model, element) result(elasticity)
+    !> The modes
+    class(failed_modes_t), intent(in) :: self
+    type(model_t), intent(in) :: model
+    !> Element of this rank
+    integer, intent(in) :: element
+    !> Constants of the element's plies
+    type(elasticity_t), allocatable :: elasticity(:)
+    integer :: ply
+
+    associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
+      allocate (elasticity(range(2) - range(1) + 1))
+      do ply = range(1), range(2)
+        elasticity(ply - range(1) + 1) = self%elasticity(model, ply, element)
+      end do
+    end associate
+  end function elasticities
+
+  !> Modes that have occurred in a ply.
+  pure function failed(self, ply)
+    !> The modes
+    class(failed_modes_t), intent(in) :: self
+    !> Ply of the laminate
+    integer, intent(in) :: ply
+    !> True where a mode has occurred, (modes, elements)
+    logical, allocatable :: failed(:, :)
+
+    failed = self%occurred(:, ply, :)
+  end function failed
+
+  !> Saves or loads the modes.
+  subroutine visit(self, archive, model)
+    !> The modes
+    class(failed_modes_t), intent(inout) :: self
+    !> Where to or where from
+    class(archive_t), intent(inout) :: archive
+    type(model_t), intent(in) :: model
+    real(wp), allocatable :: table(:, :)
+    integer :: element, ply
+
+    if (.not. allocated(self%occurred)) return
+    table = reshape(merge(1.0_wp, 0.0_wp, self%occurred), [size(self%occurred, 1)*size(self%occurred, 2), &
+                                                          size(self%occurred, 3)])
+    call archive%field('ply_failure/occurred', model%distribution%elements, model%mesh%elements(), table)
+    self%occurred = reshape(table, shape(self%occurred)) > 0
+    ! What is loaded may come from an element that had more plies.
+    do element = 1, size(self%occurred, 3)
+      associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
+        do ply = 1, size(self%occurred, 2)
+          if (ply < range(1) .or. ply > range(2)) self%occurred(:, ply, element) = .false.
+        end do
+      end associate
+    end do
+  end subroutine visit
+end module failed_modes
