@@ -234,19 +234,18 @@ contains
       due = self%controller%renewal_due(self%stepping%adapt, model%scene%kinematics == kinematics_von_karman, &
         mass_factor/self%operator%mass_factor, self%now%deflection - self%operator%deflection, model%thickness)
     do
-      if (due) call renew(self, model, mass_factor, error)
+      if (due) call self%operator%renew(model, self%now%plies%stiffness, self%now%interfaces, &
+        self%now%motion%displacement, self%integrator%stiffness_factor(), mass_factor, error)
       if (allocated(error)) return
+      if (due) call self%controller%renewed()
       self%factorizations_begun = self%operator%factorizations
       self%solves_begun = self%operator%solves
       problem = new_dynamic_step(self%integrator, step, self%stepping%adapt%iterations)
       problem%begins_fresh = due
       call solve_step(problem, model, self%stepping%equilibrium, self%operator, self%now, self%trial, converged, error)
-      if (converged .and. model%map%layered) then
-        call model%profile%enter('fronts')
+      if (converged .and. model%map%layered) &
         call grow_in_step(problem, model, self%stepping%equilibrium, self%operator, self%now, self%trial, converged, &
                           error)
-        call model%profile%leave()
-      end if
       if (converged .or. due .or. allocated(error)) exit
       due = .true.
     end do
@@ -254,21 +253,6 @@ contains
     self%haste = max(problem%rounds%haste, self%trial%plies%haste)
     if (converged .and. self%haste > 1) converged = step <= self%smallest_step(model)*(1 + 1.0e-9_wp)
   end subroutine try_step
-
-  !> Renews the operator where a step begins.
-  subroutine renew(self, model, mass_factor, error)
-    !> The time stepper
-    class(time_stepper_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
-    !> Factor of the mass
-    real(wp), intent(in) :: mass_factor
-    !> Set if the operator is singular
-    type(error_t), allocatable, intent(out) :: error
-
-    call self%operator%renew(model, self%now%plies%stiffness, self%now%interfaces, self%now%motion%displacement, &
-                             self%integrator%stiffness_factor(), mass_factor, error)
-    if (.not. allocated(error)) call self%controller%renewed()
-  end subroutine renew
 
   !> Tries one load step.
   subroutine try_load(self, model, event, step, converged, error)
