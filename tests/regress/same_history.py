@@ -7,8 +7,8 @@ Usage: same_history.py ranks IMPLAM DECK FOLDER TOLERANCE LAUNCHER... [-- SETTIN
 ranks: on 1, 2 and 4 ranks, LAUNCHER taking the number of ranks as its last word. PART: a part of the plate, quarter,
 half_x, half_y or point, against the whole plate with twice the elements along the directions halved. mirror: against
 the plate with x and y exchanged. tolerances: with residuals of 1e-9 against .8e-9 and 2e-9, so that steps take other
-numbers of iterations and operators are renewed at other times. Where an interface delaminates or plies fail, it must grow, and the same cells and
-plies be the ones at the end."""
+numbers of iterations and operators are renewed at other times. Where an interface delaminates or plies fail, it must
+grow, and the same cells and plies be the ones at the end."""
 
 import re
 import sys
