@@ -67,9 +67,11 @@ contains
 
   !> Betters the operator's answer to a residual: the impact force that goes with it, and cohesive points in
   !> equilibrium.
-  subroutine condense(memory, coupling, model, operator, old, new, residual, correction, error)
+  subroutine condense(memory, may_burst, coupling, model, operator, old, new, residual, correction, error)
     !> What earlier corrections of the step have found about crowds of points
     type(softening_memory_t), intent(inout) :: memory
+    !> False: a burst is only told of, by the memory
+    logical, intent(in) :: may_burst
     !> The impactor's side of the step
     type(impact_coupling_t), intent(inout) :: coupling
     type(model_t), intent(in) :: model
@@ -105,6 +107,11 @@ contains
       call new_condensed_correction(operator, model, old%interfaces%cohesive, new%motion%displacement, answer, guess, &
                                     condensed)
       call solve_together(condensed, coupling, model, operator, old, new, correction, error)
+      memory%bursts = memory%bursts .or. condensed%system%snaps
+      if (memory%bursts .and. .not. may_burst) then
+        call operator%timers%stop('condensation')
+        return
+      end if
       call condensed%wanting(operator, model, old%interfaces%cohesive, new%motion%displacement, correction, equations, &
                              crowded)
       call operator%timers%stop('condensation')
@@ -116,6 +123,7 @@ contains
     if (.not. crowded .or. allocated(error)) return
     coupling = before
     correction = answer
+    memory%crowded = .true.
     call soften(memory, coupling, model, operator, old, new, residual, correction, error)
   end subroutine condense
 

@@ -309,7 +309,9 @@ contains
     type(error_t), allocatable, intent(inout) :: error
 
     if (operator%condenses) then
-      call condense(self%memory, self%coupling, model, operator, old, new, residual, correction, error)
+      call condense(self%memory, self%begins_fresh, self%coupling, model, operator, old, new, residual, &
+                    correction, error)
+      self%bursts = self%bursts .or. self%memory%bursts
     else if (model%scene%has_impactor) then
       call self%coupling%solve(model, operator, old, new, correction, error)
     end if

@@ -42,6 +42,7 @@ contains
     real(wp) :: fracture
     logical :: grown
 
+    call model%profile%enter('fronts')
     ties = now%interfaces%ties
     do
       free = trial%interfaces%faces%free
@@ -49,7 +50,7 @@ contains
       call grow_fronts(model, trial%plies%stiffness, trial%motion, trial%interfaces, trial%ledger%delamination, grown)
       ! The integrators cannot tell the energy that fracture takes from their own losses.
       trial%ledger%algorithmic = trial%ledger%algorithmic - (trial%ledger%delamination - fracture)
-      if (.not. grown .or. grows_by_steps(model)) return
+      if (.not. grown .or. grows_by_steps(model)) exit
       call ties%release(model, free, trial%interfaces%faces%free, &
                        trial%motion%internal(1:3, :) + trial%motion%inertia(1:3, :))
       problem%guess = trial%motion%displacement
@@ -60,11 +61,12 @@ contains
       start%ledger%delamination = start%ledger%delamination + fracture
       start%ledger%algorithmic = start%ledger%algorithmic - fracture
       call solve_step(problem, model, equilibrium, operator, start, trial, converged, error)
-      if (.not. converged .or. allocated(error)) return
+      if (.not. converged .or. allocated(error)) exit
       opened = trial%interfaces%ties%first_opening(model, free, trial%interfaces%faces%free, trial%motion%displacement)
       trial%interfaces%ties%set_free = trial%interfaces%ties%set_free + opened
       ties%set_free = ties%set_free + opened
     end do
+    call model%profile%leave()
   end subroutine grow_in_step
 
   !> True if delaminations grow with the steps, none of them at a frozen time.

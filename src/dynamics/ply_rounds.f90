@@ -19,9 +19,10 @@ module ply_rounds
   !> Rounds of a step at most. A few suffice where fibres crack one after the other; it takes tens where they snap.
   integer, parameter :: most_rounds = 30
   !> Residual over the forces in play at which damage follows, if equilibrium asks for less: damage that follows a break
-  !> brings a hundred times as much out of balance. It hangs on no count of iterations, so that ranks, symmetric parts
-  !> and turned plates find the same.
-  real(wp), parameter :: nearly = 1.0e-3_wp
+  !> brings a tenth of them out of balance. What is still out of balance as it follows hangs on the operator, and so on
+  !> rounding; it stays in the damage. It hangs on no count of iterations, so that ranks, symmetric parts and turned
+  !> plates find the same.
+  real(wp), parameter :: nearly = 1.0e-6_wp
   !> Energy over all energy that plies lose in a round which is not worth another one.
   real(wp), parameter :: noticed = 1.0e-4_wp
   !> Energy over all energy that may go beyond what is dissipated as damage follows the end of a step: a step that

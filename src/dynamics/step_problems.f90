@@ -23,6 +23,10 @@ module step_problems
     real(wp) :: contact_tolerance = 0
     !> True: a solver that fails may be cured by a shorter step
     logical :: curable = .true.
+    !> True: the operator with which the step begins is that of its start, so its end hangs on nothing before that
+    logical :: begins_fresh = .true.
+    !> True: there was a burst in the step, of which another operator may find another end
+    logical :: bursts = .false.
   contains
     !> First guess of the state at the end of the step.
     procedure(begin_step), deferred :: begin
@@ -182,7 +186,8 @@ contains
     softened = .false.
   end subroutine soften
 
-  !> Tries a step. On return either `converged` and `new` is the state at its end, or nothing of it counts.
+  !> Tries a step. On return either `converged` and `new` is the state at its end, or nothing of it counts. A burst that
+  !> did not begin with the operator of its start does not converge: of several ends, the way there decides.
   subroutine solve_step(problem, model, equilibrium, operator, old, new, converged, error)
     !> The kind of step
     class(step_problem_t), intent(inout) :: problem
@@ -204,6 +209,7 @@ contains
     integer :: begun
     logical :: pressures_new, softened
 
+    converged = .false.
     call new%start_from(model, old)
     allocate (residual, correction, mold=old%motion%displacement)
     pressures_new = .false.
@@ -256,6 +262,7 @@ contains
         deallocate (error)
         return
       end if
+      if (problem%bursts .and. .not. problem%begins_fresh) return
       new%motion%displacement = new%motion%displacement + correction
       call problem%complete(old, new)
       new%iterations = new%iterations + 1

@@ -209,7 +209,7 @@ contains
     step = merge(1.0_wp/(1024*self%stepping%static_steps), self%stepping%time%step_min, model%scene%has_static)
   end function smallest_step
 
-  !> Tries one time step.
+  !> Tries one time step. One that fails or bursts is tried again with the operator of its start, if it had another.
   subroutine try_step(self, model, event, step, converged, error)
     !> The time stepper
     class(time_stepper_t), intent(inout) :: self
@@ -233,22 +233,22 @@ contains
     if (.not. due) &
       due = self%controller%renewal_due(self%stepping%adapt, model%scene%kinematics == kinematics_von_karman, &
         mass_factor/self%operator%mass_factor, self%now%deflection - self%operator%deflection, model%thickness)
-    if (due) then
-      call self%operator%renew(model, self%now%plies%stiffness, self%now%interfaces, &
-                               self%now%motion%displacement, self%integrator%stiffness_factor(), mass_factor, error)
+    do
+      if (due) call self%operator%renew(model, self%now%plies%stiffness, self%now%interfaces, &
+        self%now%motion%displacement, self%integrator%stiffness_factor(), mass_factor, error)
       if (allocated(error)) return
-      call self%controller%renewed()
-    end if
-    self%factorizations_begun = self%operator%factorizations
-    self%solves_begun = self%operator%solves
-    problem = new_dynamic_step(self%integrator, step, self%stepping%adapt%iterations)
-    call solve_step(problem, model, self%stepping%equilibrium, self%operator, self%now, self%trial, converged, error)
-    if (converged .and. model%map%layered) then
-      call model%profile%enter('fronts')
-      call grow_in_step(problem, model, self%stepping%equilibrium, self%operator, self%now, self%trial, converged, &
-                        error)
-      call model%profile%leave()
-    end if
+      if (due) call self%controller%renewed()
+      self%factorizations_begun = self%operator%factorizations
+      self%solves_begun = self%operator%solves
+      problem = new_dynamic_step(self%integrator, step, self%stepping%adapt%iterations)
+      problem%begins_fresh = due
+      call solve_step(problem, model, self%stepping%equilibrium, self%operator, self%now, self%trial, converged, error)
+      if (converged .and. model%map%layered) &
+        call grow_in_step(problem, model, self%stepping%equilibrium, self%operator, self%now, self%trial, converged, &
+                          error)
+      if (converged .or. due .or. allocated(error)) exit
+      due = .true.
+    end do
     ! Steps of the smallest length are taken as they are: the energy watch tells what they create.
     self%haste = max(problem%rounds%haste, self%trial%plies%haste)
     if (converged .and. self%haste > 1) converged = step <= self%smallest_step(model)*(1 + 1.0e-9_wp)

@@ -26,6 +26,8 @@ module softening_corrections
     integer, private :: factorizations = -1, switches = -1
     !> True: so many points soften in this step that none of them gets an answer of its own
     logical :: crowded = .false.
+    !> True: points have snapped in this step, so there may be other equilibria
+    logical :: bursts = .false.
   contains
     !> Turns the operator's answer into a correction.
     procedure :: correct => soften
@@ -58,6 +60,7 @@ contains
 
     self%factorizations = -1
     self%crowded = .false.
+    self%bursts = .false.
   end subroutine forget
 
   !> True if it has answers of an operator as it is now.
@@ -115,10 +118,10 @@ contains
       call self%kept%clear(size(residual, 2), model%distribution%owned, most_kept + most_answers)
     self%factorizations = operator%factorizations
     self%switches = operator%switches
-    self%crowded = .true.
     call operator%follow_changes(model, correction)
     call operator%timers%start('softening')
-    call find_equilibrium(plate, self%kept, points, outside, pattern, residual, most_answers, correction, error)
+    call find_equilibrium(plate, self%kept, points, outside, pattern, residual, most_answers, correction, error, &
+                          self%bursts)
     call operator%timers%stop('softening')
   end subroutine soften
 

@@ -47,7 +47,8 @@ module softening_equilibria
 contains
 
   !> Change of the plate's motion that brings forces, points and the force from outside into balance, or nearer to it.
-  subroutine find_equilibrium(plate, kept, points, outside, pattern, residual, most_answers, change, error)
+  subroutine find_equilibrium(plate, kept, points, outside, pattern, residual, most_answers, change, error, &
+                              snaps)
     !> The plate
     class(linear_plate_t), target, intent(inout) :: plate
     !> Its answers so far
@@ -66,6 +67,8 @@ contains
     real(wp), intent(inout) :: change(:, :)
     !> Set if the plate does not answer
     type(error_t), allocatable, intent(inout) :: error
+    !> Set to true where a tangent is not positive definite, so that there may be other equilibria
+    logical, intent(inout), optional :: snaps
     type(small_system_t) :: small
     real(wp), allocatable :: answer(:, :), carried(:, :), imbalance(:, :), shares(:)
     real(wp) :: first
@@ -98,6 +101,7 @@ contains
       if (allocated(error)) return
     end do
     call kept%motion_of(shares, change)
+    if (present(snaps)) snaps = snaps .or. small%snaps
   end subroutine find_equilibrium
 
   !> Renews the small system after answers have come.

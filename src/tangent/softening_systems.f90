@@ -24,6 +24,8 @@ module softening_systems
     class(outside_force_t), pointer :: outside => null()
     !> Norm of the force out of balance before the first iteration
     real(wp) :: first = 0
+    !> True once the tangent on the way was not positive definite: there may be other equilibria
+    logical :: snaps = .false.
   contains
     !> Force out of balance.
     procedure(force_at), deferred :: find_force
@@ -109,8 +111,8 @@ contains
 
   !> Factors the tangent at the unknowns.
   subroutine factorize(self, x, tangent)
-    !> The system
-    class(softening_system_t), intent(in) :: self
+    !> The system; notes that its tangent is not positive definite
+    class(softening_system_t), intent(inout) :: self
     !> The unknowns
     real(wp), intent(in) :: x(:)
     !> Receives the factors
@@ -124,6 +126,7 @@ contains
       call tangent%symmetric%factorize((matrix + transpose(matrix))/2)
       if (tangent%symmetric%positive) exit
     end do
+    self%snaps = self%snaps .or. kind > slopes_true
     if (kind > slopes_true .or. is_symmetric(matrix)) return
     call tangent%whole%factorize(matrix)
     tangent%skew = .not. tangent%whole%singular

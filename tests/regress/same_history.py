@@ -2,11 +2,13 @@
 Usage: same_history.py ranks IMPLAM DECK FOLDER TOLERANCE LAUNCHER... [-- SETTING...]
        same_history.py PART IMPLAM DECK FOLDER TOLERANCE [-- SETTING...]
        same_history.py mirror IMPLAM DECK FOLDER TOLERANCE [-- SETTING...]
+       same_history.py tolerances IMPLAM DECK FOLDER TOLERANCE [-- SETTING...]
 
 ranks: on 1, 2 and 4 ranks, LAUNCHER taking the number of ranks as its last word. PART: a part of the plate, quarter,
 half_x, half_y or point, against the whole plate with twice the elements along the directions halved. mirror: against
-the plate with x and y exchanged. Where an interface delaminates or plies fail, it must grow, and the same cells and
-plies be the ones at the end."""
+the plate with x and y exchanged. tolerances: with residuals of 1e-9 against .8e-9 and 2e-9, so that steps take other
+numbers of iterations and operators are renewed at other times. Where an interface delaminates or plies fail, it must
+grow, and the same cells and plies be the ones at the end."""
 
 import re
 import sys
@@ -68,6 +70,13 @@ def histories_of_mirror(implam, deck, folder, _, settings):
     yield "mirror image", rows, mirrored(damage_of(history))
 
 
+def histories_of_tolerances(implam, deck, folder, _, settings):
+    """Yield name and history with several tolerances of equilibrium."""
+    for tolerance in ("1e-9", "0.8e-9", "2e-9"):
+        history = run_deck(implam, write_deck(folder / tolerance, deck, [*settings, f"solver%tolerance={tolerance}"]))
+        yield f"residuals of {tolerance}", read_history(history), damage_of(history)
+
+
 def compare(kind, implam, deck, folder, tolerance, *words):
     """Run and compare."""
     left_out = (*COUNTS, "stress") if kind in PARTS else COUNTS
@@ -76,7 +85,8 @@ def compare(kind, implam, deck, folder, tolerance, *words):
     if kind in PARTS:
         runs = histories_of_part(kind, implam, deck, Path(folder), settings)
     else:
-        histories = {"ranks": histories_of_ranks, "mirror": histories_of_mirror}[kind]
+        histories = {"ranks": histories_of_ranks, "mirror": histories_of_mirror,
+                     "tolerances": histories_of_tolerances}[kind]
         runs = histories(implam, deck, Path(folder), launcher, settings)
     passed = True
     _, reference, reference_damage = next(runs)
