@@ -71,8 +71,8 @@ contains
     end associate
   end subroutine check_resolution
 
-  !> Tells where mesh and step do not reach the accuracy asked for, or where nobody knows: a contact so long on so large
-  !> a plate that pilot calculations with half the step would take too long.
+  !> Tells where mesh and step do not reach the accuracy asked for, or where nobody knows: a contact so long that
+  !> pilot calculations with half the step would take too long.
   subroutine check_accuracy(deck, problems)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -83,7 +83,7 @@ contains
     associate (o => deck%outlook)
       if (o%step_error(1) < 0 .or. o%mesh_error(1) < 0) then
         call remark(deck%settings, problems, case_group, key_accuracy, 'can''t be held against pilot calculations '// &
-                    'for this step: so long a contact on so large a plate would take them too long.')
+                    'for this step: so many steps would take them too long.')
       else if (100*(o%step_error(1) + o%mesh_error(1)) > missed*deck%accuracy) then
         call remark(deck%settings, problems, case_group, key_accuracy, 'isn''t reached: by a pilot calculation the '// &
                     'largest force will be '//short_text(100*(o%step_error(1) + o%mesh_error(1)))//' % off.')

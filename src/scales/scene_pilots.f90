@@ -53,10 +53,8 @@ module scene_pilots
   real(wp), parameter :: first_steps = 2, fine_steps = 4.5_wp
   !> Steps in one contact time up to which modes are kept at hand.
   real(wp), parameter :: most_fine = 128
-  !> Most steps of a pilot, and most steps times modes: a tenth of a second for contacts whose run takes ten. A
-  !> tenth of it left two of 33 random scenes with a peak 1.1 % off instead of 1 %, and seven without an estimate.
-  integer, parameter :: most_steps = 100000
-  real(wp), parameter :: most_work = 3.0e8_wp
+  !> Most steps of a pilot: they take a tenth of a second, and a run of as many hours.
+  integer, parameter :: most_steps = 262144
   !> Steps that a contact takes at least.
   integer, parameter :: least_steps = 24
   !> Elements in a wave of first contact with an error of 1 %, and the power of the error that their side grows with.
@@ -100,21 +98,11 @@ contains
 
     plate = reduced(self%plate, followed/step)
     if (cell > 0) call disperse(plate, cell)
-    steps = steps_at_most(self, step)
+    steps = most_steps
     if (end > 0) steps = min(steps, max(1, nint(end/step)))
     run = run_pilot(plate, self%scene%impactor, self%scene%indentation, step, steps, end > 0)
     if (end > 0) run%complete = steps >= nint(end/step)
   end function run_of
-
-  !> Steps that a pilot may take.
-  pure integer function steps_at_most(self, step) result(steps)
-    !> The pilot
-    type(scene_pilot_t), intent(in) :: self
-    !> Step
-    real(wp), intent(in) :: step
-
-    steps = min(most_steps, int(most_work/max(1, count(self%plate%frequency <= followed/step))))
-  end function steps_at_most
 
   !> The contact from touch to end by a first, coarse pilot; looked at no longer than the run lasts.
   pure function contact_end(self, end) result(run)
@@ -149,7 +137,7 @@ contains
     pilot%scales = scales
     pilot%plate = plate_modes(scene, max(followed/step, min(2*followed/step, excited/scales%contact_time)))
     coarse = run_of(pilot, step, end, 0.0_wp)
-    if (nint(end/(step/2)) <= steps_at_most(pilot, step/2)) then
+    if (nint(end/(step/2)) <= most_steps) then
       fine = run_of(pilot, step/2, end, 0.0_wp)
       outlook%step_error = difference(coarse, fine, 2)*4/3
     else
@@ -195,7 +183,7 @@ contains
     end do
     do
       ratio = 2**finer
-      if (finer == 1 .or. ratio*least_steps <= steps_at_most(self, end/(ratio*least_steps))) exit
+      if (finer == 1 .or. ratio*least_steps <= most_steps) exit
       finer = finer - 1
     end do
     finest = run_of(self, end/(ratio*least_steps), end, 0.0_wp)
