@@ -6,7 +6,7 @@ module deck_scales
   use deck_problems, only: problems_t
   use deck_remarks, only: remark
   use kinds, only: wp
-  use mesh_deck, only: mesh_group, key_elements, key_patch
+  use mesh_deck, only: mesh_group, key_core, key_elements, key_patch
   use scene_pilots, only: outlook_of
   use scene_scales, only: scene_scales_t, scales_of, has_blow
   use short_numbers, only: short_text
@@ -38,7 +38,9 @@ contains
     scales = scales_of(deck%scene_t)
     if (has_blow(deck%scene_t) .and. .not. deck%has_static) then
       deck%outlook = outlook_of(deck%scene_t, scales, deck%stepping%time%step, deck%stepping%time%end, &
-                                edge_near(deck, scales%wave_length))
+                                edge_near(deck, merge(scales%wave_length, maxval(deck%plate%length), &
+                                                      deck%settings%is_given(mesh_group, key_core) .or. &
+                                                      .not. deck%settings%is_known(mesh_group, key_core))))
       associate (o => deck%outlook)
         deck%stepping%outlook = outlook_t(scales%contact_time, o%force, o%deflection, o%last_contact)
       end associate

@@ -9,7 +9,7 @@ module pilot_impacts
                                  commit_indentation
   implicit none
   private
-  public :: pilot_t, run_pilot, difference, figures_of
+  public :: pilot_t, run_pilot, difference, bound_of_difference, figures_of
 
   !> What a pilot calculation found.
   type :: pilot_t
@@ -35,6 +35,8 @@ module pilot_impacts
   real(wp), parameter :: contact_part = 0.01_wp
   !> A contact that ended is taken to be the last if none follows for as long as it took up to then.
   real(wp), parameter :: waiting = 2
+  !> Part of the largest force from which on a peak is like it.
+  real(wp), parameter :: like_peaks = 0.9_wp
   !> Halvings and Newton steps for the force; Newton needs five.
   integer, parameter :: most_iterations = 60
 
@@ -165,4 +167,32 @@ contains
       relative(2) = sqrt(sum((coarse%force(:number) - wanted)**2)/sum(wanted**2))
     end associate
   end function difference
+
+  !> The same, but of all like peaks the one that is farthest off. Where the bodies touch again and again, which peak is
+  !> how far off is a matter of chance, so that the error of the largest is no bound.
+  pure function bound_of_difference(coarse, fine, ratio, apart) result(relative)
+    !> The pilot with the longer steps
+    type(pilot_t), intent(in) :: coarse
+    !> The other one
+    type(pilot_t), intent(in) :: fine
+    !> Steps of the finer one in one of the coarser
+    integer, intent(in) :: ratio
+    !> Steps of the coarser one within which only the largest force is a peak
+    integer, intent(in) :: apart
+    !> Of the peaks, of the history
+    real(wp) :: relative(2)
+    real(wp) :: largest
+    integer :: number, i, first, last
+
+    relative = difference(coarse, fine, ratio)
+    number = min(size(coarse%force), size(fine%force)/ratio)
+    do i = 1, number
+      if (fine%force(ratio*i) < like_peaks*fine%peak) cycle
+      first = max(1, i - apart)
+      last = min(number, i + apart)
+      largest = maxval(fine%force(ratio*(first - 1) + 1:ratio*last))
+      if (maxval(fine%force(ratio*(i - 1) + 1:ratio*i)) < largest) cycle
+      relative(1) = max(relative(1), abs(maxval(coarse%force(first:last)) - largest)/fine%peak)
+    end do
+  end function bound_of_difference
 end module pilot_impacts

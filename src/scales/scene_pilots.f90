@@ -3,7 +3,7 @@
 module scene_pilots
   use kinds, only: wp
   use modal_plates, only: modal_plate_t, reduced
-  use pilot_impacts, only: pilot_t, run_pilot, difference, figures_of
+  use pilot_impacts, only: pilot_t, run_pilot, difference, bound_of_difference, figures_of
   use scene_scales, only: scene_scales_t, plate_modes, contact_side
   use scenes, only: scene_t
   implicit none
@@ -104,6 +104,20 @@ contains
     if (end > 0) run%complete = steps >= nint(end/step)
   end function run_of
 
+  !> Bounds of errors of a pilot's peaks and history by a finer one; two peaks are a rise of first contact apart.
+  pure function bounds_of(self, coarse, fine, ratio) result(relative)
+    !> The pilot
+    type(scene_pilot_t), intent(in) :: self
+    !> Both runs
+    type(pilot_t), intent(in) :: coarse, fine
+    !> Steps of the finer one in one of the coarser
+    integer, intent(in) :: ratio
+    !> Of the peaks, of the history
+    real(wp) :: relative(2)
+
+    relative = bound_of_difference(coarse, fine, ratio, max(1, nint(self%scales%contact_time/coarse%step)))
+  end function bounds_of
+
   !> The contact from touch to end by a first, coarse pilot; looked at no longer than the run lasts.
   pure function contact_end(self, end) result(run)
     !> The pilot
@@ -173,7 +187,8 @@ contains
     real(wp), intent(out) :: step
     !> Its errors
     real(wp), intent(out) :: error(2)
-    type(pilot_t) :: finest
+    type(pilot_t) :: finest, coarse
+    real(wp) :: longer
     integer :: finer, steps, ratio
 
     ! Coarse pilots could agree on what both miss, so each is held against the finest that can be had.
@@ -190,12 +205,15 @@ contains
     do
       steps = least_steps*2**finer/ratio
       step = end/steps
-      error = difference(run_of(self, step, end, 0.0_wp), finest, ratio)/(1 - 1/real(ratio, wp)**2)
+      error = bounds_of(self, run_of(self, step, end, 0.0_wp), finest, ratio)/(1 - 1/real(ratio, wp)**2)
       if (all(error <= bounds) .or. ratio == 2) exit
       ratio = ratio/2
     end do
     if (all(error <= bounds)) then
-      step = end/ceiling(end/(step*min(1.5_wp, sqrt(minval(bounds/max(error, tiny(1.0_wp)))))))
+      longer = end/ceiling(end/(step*min(1.5_wp, sqrt(minval(bounds/max(error, tiny(1.0_wp)))))))
+      ! The peak depends on where steps fall, too, so that its error isn't smooth in the step.
+      coarse = run_of(self, longer, end, 0.0_wp)
+      if (abs(coarse%peak/finest%peak - 1) <= bounds(1)) step = longer
     else if (finest%complete) then
       ! The finest is better by the order of the method.
       step = finest%step
@@ -225,7 +243,7 @@ contains
     cell = min(minval(self%scene%plate%length)/4, &
                self%scales%wave_length/wave_elements*(200*bounds(1))**wave_power)
     do while (cell > self%scales%wave_length/20)
-      if (all(difference(run_of(self, step, end, cell), exact, 1) <= bounds)) exit
+      if (all(bounds_of(self, run_of(self, step, end, cell), exact, 1) <= bounds)) exit
       cell = cell*finer
     end do
   end function largest_cell
