@@ -208,12 +208,16 @@ contains
     real(wp), intent(in) :: cell
     !> Length of the waves; 0: nothing strikes
     real(wp), intent(in) :: wave_length
-    type(line_t) :: extent
+    type(line_t), allocatable :: extents(:)
+    integer :: direction
 
     if (deck%settings%is_known(mesh_group, key_core) .or. deck%settings%is_known(mesh_group, key_cell)) return
     if (size(deck%delaminations) > 0 .or. .not. wave_length > 0) return
-    extent = line_t(short_text(deck%mesh%patch + 2*core_waves*wave_length))
-    call deck%settings%choose(mesh_group, key_core, [extent, extent])
+    allocate (extents(0))
+    do direction = 1, 2
+      call append(extents, short_text(deck%mesh%patch + 2*core_waves*wave_length))
+    end do
+    call deck%settings%choose(mesh_group, key_core, extents)
     call choose_one(deck, mesh_group, key_cell, cell)
   end subroutine choose_core
 
