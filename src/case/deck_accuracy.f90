@@ -27,6 +27,10 @@ module deck_accuracy
   real(wp), parameter :: beyond_contact = 1.25_wp
   !> Most elements along one direction of the part modelled, twice that of a whole plate: more take hours.
   integer, parameter :: most_along = 100
+  !> Waves of first contact on either side of the patch that have the elements asked for, where they are too many for
+  !> the plate. On random scene 9 of `tests/bench/elastic_scenes.py` the first peak is 2.9 % off without, 0.3 % with one
+  !> wave, 0.03 % with two.
+  real(wp), parameter :: core_waves = 2
   !> Elements across the smaller side of the zone of an interface that may delaminate.
   integer, parameter :: zone_elements = 24
   !> Fields written in a run, and the largest accuracy, %, with which they are: they cost a draft half its time.
@@ -178,9 +182,11 @@ contains
     number = max(2, ceiling(min(half/cell, 1.0e6_wp) - 0.01_wp))
     if (deck%mesh%patch > 0) number = max(number, 1 + max(1, ceiling(min((half - deck%mesh%patch/2)/cell, 1.0e6_wp) &
                                                                      - 0.01_wp)))
-    if (any(number > most_along)) call remark(deck%settings, problems, case_group, key_accuracy, 'asks for more '// &
-      'than '//to_text(most_along)//' elements from the struck point to an edge, which are not chosen; expect '// &
-      'larger errors.')
+    if (any(number > most_along)) then
+      call remark(deck%settings, problems, case_group, key_accuracy, 'asks for more than '//to_text(most_along)// &
+                  ' elements from the struck point to an edge, which are not chosen; expect larger errors.')
+      call choose_core(deck, cell, scales%wave_length)
+    end if
     number = min(number, most_along)*parts
     allocate (words(0))
     call append(words, to_text(number(1)))
@@ -193,6 +199,27 @@ contains
                   short_text(scales%wave_length)//' long.')
     end if
   end subroutine choose_elements
+
+  !> Elements as small as wanted around the struck point at least: the first contact is over before its waves have left.
+  subroutine choose_core(deck, cell, wave_length)
+    !> The deck
+    type(deck_t), intent(inout) :: deck
+    !> Side of the elements wanted
+    real(wp), intent(in) :: cell
+    !> Length of the waves; 0: nothing strikes
+    real(wp), intent(in) :: wave_length
+    type(line_t), allocatable :: extents(:)
+    integer :: direction
+
+    if (deck%settings%is_known(mesh_group, key_core) .or. deck%settings%is_known(mesh_group, key_cell)) return
+    if (size(deck%delaminations) > 0 .or. .not. wave_length > 0) return
+    allocate (extents(0))
+    do direction = 1, 2
+      call append(extents, short_text(deck%mesh%patch + 2*core_waves*wave_length))
+    end do
+    call deck%settings%choose(mesh_group, key_core, extents)
+    call choose_one(deck, mesh_group, key_cell, cell)
+  end subroutine choose_core
 
   !> Smallest side of the zones; that of the plate if none is given.
   pure real(wp) function smallest_zone(deck) result(side)

@@ -24,6 +24,7 @@ module deck_cross_checks
   use plate_deck, only: plate_group, check_edges
   use pressure_deck, only: pressure_group, key_history
   use support_deck, only: check_static_rigs
+  use short_numbers, only: short_text
   use static_deck, only: static_group, key_dissipation
   use text, only: line_t, append, joined, words_of
   use time_deck, only: time_group
@@ -190,6 +191,12 @@ contains
       end if
       if (deck%mesh%patch <= 0 .and. s%has_group(mesh_group) .and. are_clear(s, problems, mesh_group, key_patch)) &
         call tell(s, problems, mesh_group, key_patch, 'an impactor needs a loaded patch; give its side > 0.')
+      ! The force presses on all of the patch, which has no nose above it there.
+      if (deck%impactor%spreads .and. deck%impactor%radius > 0 .and. &
+          deck%mesh%patch/sqrt(2.0_wp) > deck%impactor%radius) &
+        call remark(s, problems, mesh_group, key_patch, 'reaches beyond the nose that presses on it: its corners '// &
+                    'are '//short_text(deck%mesh%patch/sqrt(2.0_wp))//' from the struck point, and the radius is '// &
+                    short_text(deck%impactor%radius)//'; make the patch smaller.')
       if (.not. (s%is_given(indentation_group, key_k) .or. s%is_given(impactor_group, key_radius)) .and. &
           are_clear(s, problems, indentation_group, key_k) .and. are_clear(s, problems, impactor_group, key_radius)) &
         call tell(s, problems, impactor_group, key_radius, &

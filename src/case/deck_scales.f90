@@ -6,7 +6,7 @@ module deck_scales
   use deck_problems, only: problems_t
   use deck_remarks, only: remark
   use kinds, only: wp
-  use mesh_deck, only: mesh_group, key_elements, key_patch
+  use mesh_deck, only: mesh_group, key_core, key_elements, key_patch
   use scene_pilots, only: outlook_of
   use scene_scales, only: scene_scales_t, scales_of, has_blow
   use short_numbers, only: short_text
@@ -38,7 +38,9 @@ contains
     scales = scales_of(deck%scene_t)
     if (has_blow(deck%scene_t) .and. .not. deck%has_static) then
       deck%outlook = outlook_of(deck%scene_t, scales, deck%stepping%time%step, deck%stepping%time%end, &
-                                edge_near(deck, scales%wave_length))
+                                edge_near(deck, merge(scales%wave_length, maxval(deck%plate%length), &
+                                                      deck%settings%is_given(mesh_group, key_core) .or. &
+                                                      .not. deck%settings%is_known(mesh_group, key_core))))
       associate (o => deck%outlook)
         deck%stepping%outlook = outlook_t(scales%contact_time, o%force, o%deflection, o%last_contact)
       end associate
@@ -71,8 +73,8 @@ contains
     end associate
   end subroutine check_resolution
 
-  !> Tells where mesh and step do not reach the accuracy asked for, or where nobody knows: a contact so long on so large
-  !> a plate that pilot calculations with half the step would take too long.
+  !> Tells where mesh and step do not reach the accuracy asked for, or where nobody knows: a contact so long that
+  !> pilot calculations with half the step would take too long.
   subroutine check_accuracy(deck, problems)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -83,7 +85,7 @@ contains
     associate (o => deck%outlook)
       if (o%step_error(1) < 0 .or. o%mesh_error(1) < 0) then
         call remark(deck%settings, problems, case_group, key_accuracy, 'can''t be held against pilot calculations '// &
-                    'for this step: so long a contact on so large a plate would take them too long.')
+                    'for this step: so many steps would take them too long.')
       else if (100*(o%step_error(1) + o%mesh_error(1)) > missed*deck%accuracy) then
         call remark(deck%settings, problems, case_group, key_accuracy, 'isn''t reached: by a pilot calculation the '// &
                     'largest force will be '//short_text(100*(o%step_error(1) + o%mesh_error(1)))//' % off.')

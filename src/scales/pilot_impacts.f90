@@ -4,14 +4,12 @@ module pilot_impacts
   use impact_parameters, only: impactor_parameters_t, indentation_law_t
   use kinds, only: wp
   use modal_plates, only: modal_plate_t
+  use patch_responses, only: patch_response_t, start_response, coming_deflection, look_ahead, block_steps
   use tan_sun_indentation, only: indentation_t, indentation_force, indentation_stiffness, touch_indentation, &
                                  commit_indentation
   implicit none
   private
-  public :: pilot_t, run_pilot, difference, figures_of
-
-  !> Modes side by side, and steps that they are moved at once: both stay next to the processor while they are.
-  integer, parameter :: lanes = 64, ahead = 64
+  public :: pilot_t, run_pilot, difference, bound_of_difference, figures_of
 
   !> What a pilot calculation found.
   type :: pilot_t
@@ -33,26 +31,12 @@ module pilot_impacts
     logical :: complete = .false.
   end type pilot_t
 
-  !> Modes as steps of the average acceleration move them, side by side so that the compiler takes several at once. The
-  !> velocity is kept as the way of half a step: a step then turns position p and velocity v into t (p + v) + v and
-  !> t (p + v) - p, and a force at either end of it adds the same to both.
-  type :: moving_modes_t
-    !> Deflection of the patch by each mode, and its rate times half a step, (lanes, blocks)
-    real(wp), allocatable :: position(:, :), velocity(:, :)
-    !> Both as they are after the steps looked ahead, if no force comes
-    real(wp), allocatable :: next_position(:, :), next_velocity(:, :)
-    !> The factor t of a step
-    real(wp), allocatable :: turn(:, :)
-    !> Deflection per force at either end of the step
-    real(wp), allocatable :: give(:, :)
-    !> Deflection so many steps after a force of one at the end of a step
-    real(wp) :: answer(ahead) = 0
-  end type moving_modes_t
-
   !> Part of the largest force that counts as contact.
   real(wp), parameter :: contact_part = 0.01_wp
   !> A contact that ended is taken to be the last if none follows for as long as it took up to then.
   real(wp), parameter :: waiting = 2
+  !> Part of the largest force from which on a peak is like it.
+  real(wp), parameter :: like_peaks = 0.9_wp
   !> Halvings and Newton steps for the force; Newton needs five.
   integer, parameter :: most_iterations = 60
 
@@ -75,14 +59,13 @@ contains
     !> What was found
     type(pilot_t) :: pilot
     type(indentation_t) :: contact
-    type(moving_modes_t) :: modes
+    type(patch_response_t) :: patch
     real(wp), allocatable :: force(:)
-    real(wp) :: ball(3), compliance, rigid, free(2), now, before, deflection, alone(ahead)
-    integer :: i, active, first
+    real(wp) :: ball(3), rigid, free(2), now, before, deflection
+    integer :: i, active
 
-    call start_modes(plate, step, modes)
-    allocate (force(-ahead:most_steps), source=0.0_wp)
-    compliance = plate%rest + sum(modes%give)
+    patch = start_response(plate, step, most_steps, to_the_end)
+    allocate (force(most_steps), source=0.0_wp)
     rigid = step**2/(4*impactor%mass)
     ball = [0.0_wp, impactor%velocity, impactor%gravity]
     pilot%step = step
@@ -91,16 +74,13 @@ contains
     do i = 1, most_steps
       before = now
       free(1) = ball(1) + step*ball(2) + step**2/4*(ball(3) + impactor%gravity)
-      if (mod(i - 1, ahead) == 0) then
-        first = i - 1
-        call move_modes(modes, force(first - ahead:first), alone)
-      end if
-      free(2) = alone(i - first) + dot_product(modes%answer(:i - first - 1), force(i - 1:first + 1:-1))
-      call find_force(law, contact, free(1) - free(2), compliance + rigid, now)
+      if (mod(i - 1, block_steps) == 0 .and. i > 1) call look_ahead(patch, i - 1, force)
+      free(2) = coming_deflection(patch, i, force)
+      call find_force(law, contact, free(1) - free(2), patch%at_once + rigid, now)
       ball(1) = free(1) - rigid*now
       ball(2) = ball(2) + step/2*(ball(3) + impactor%gravity - now/impactor%mass)
       ball(3) = impactor%gravity - now/impactor%mass
-      deflection = free(2) + compliance*now
+      deflection = free(2) + patch%at_once*now
       call commit_indentation(law, contact, ball(1) - deflection)
       force(i) = now
       pilot%deflection = max(pilot%deflection, abs(deflection))
@@ -112,84 +92,11 @@ contains
       if (i > waiting*active .and. active > 0 .and. .not. to_the_end) exit
     end do
     pilot%complete = i <= most_steps
-    pilot%force = force(1:min(i, most_steps))
+    pilot%force = force(:min(i, most_steps))
     pilot%indentation = contact%alpha_max
     pilot%last_contact = active*step
     pilot%velocity = ball(2)
   end function run_pilot
-
-  !> Modes at rest, and what a step makes of them.
-  pure subroutine start_modes(plate, step, modes)
-    !> Modes of the plate
-    type(modal_plate_t), intent(in) :: plate
-    !> Step
-    real(wp), intent(in) :: step
-    !> The modes in lanes; those that fill the last lanes do nothing
-    type(moving_modes_t), intent(out) :: modes
-    real(wp), allocatable :: square(:), weight(:)
-    real(wp) :: pulse(-ahead:0)
-    integer :: blocks
-
-    blocks = (size(plate%frequency) + lanes - 1)/lanes
-    square = [plate%frequency**2, spread(0.0_wp, 1, blocks*lanes - size(plate%frequency))]
-    weight = [plate%weight, spread(0.0_wp, 1, blocks*lanes - size(plate%frequency))]
-    allocate (modes%position(lanes, blocks), modes%velocity(lanes, blocks), source=0.0_wp)
-    allocate (modes%next_position(lanes, blocks), modes%next_velocity(lanes, blocks), source=0.0_wp)
-    modes%turn = reshape((1 - square*step**2/4)/(1 + square*step**2/4), [lanes, blocks])
-    modes%give = reshape(weight*step**2/4/(1 + square*step**2/4), [lanes, blocks])
-    pulse = 0
-    pulse(0) = 1
-    call move_modes(modes, pulse, modes%answer)
-    modes%next_position = 0
-    modes%next_velocity = 0
-  end subroutine start_modes
-
-  !> Takes the modes over the steps whose forces have been found, and looks as many steps ahead.
-  pure subroutine move_modes(modes, force, alone)
-    !> The modes, `ahead` steps back; receives them at the end of the last step
-    type(moving_modes_t), intent(inout) :: modes
-    !> Forces at the ends of these steps, that at the start of the first before them
-    real(wp), intent(in) :: force(0:ahead)
-    !> Deflection of the patch at the ends of the steps to come without forces there
-    real(wp), intent(out) :: alone(ahead)
-    real(wp) :: position(lanes), velocity(lanes), turn(lanes), give(lanes), total(lanes, ahead), turned, before, pushed
-    integer :: block, i, lane, pushes
-
-    pushes = merge(ahead, 0, any(force(1:) > 0))
-    if (pushes == 0) modes%position = modes%next_position
-    if (pushes == 0) modes%velocity = modes%next_velocity
-    total = 0
-    do block = 1, size(modes%position, 2)
-      position = modes%position(:, block)
-      velocity = modes%velocity(:, block)
-      turn = modes%turn(:, block)
-      give = modes%give(:, block)
-      do i = 1, pushes
-        pushed = force(i - 1) + force(i)
-        do lane = 1, lanes
-          before = position(lane)
-          turned = turn(lane)*(before + velocity(lane)) + give(lane)*pushed
-          position(lane) = turned + velocity(lane)
-          velocity(lane) = turned - before
-        end do
-      end do
-      modes%position(:, block) = position
-      modes%velocity(:, block) = velocity
-      do i = 1, ahead
-        pushed = merge(force(ahead), 0.0_wp, i == 1)
-        do lane = 1, lanes
-          before = position(lane)
-          turned = turn(lane)*(before + velocity(lane)) + give(lane)*pushed
-          position(lane) = turned + velocity(lane)
-          velocity(lane) = turned - before
-          total(lane, i) = total(lane, i) + position(lane)
-        end do
-      end do
-      modes%next_position(:, block) = position
-      modes%next_velocity(:, block) = velocity
-    end do
-    alone = sum(total, 1)
-  end subroutine move_modes
 
   !> The one root of F = F(alpha_free - compliance F), by Newton's method within an interval.
   pure subroutine find_force(law, contact, free, compliance, force)
@@ -260,4 +167,32 @@ contains
       relative(2) = sqrt(sum((coarse%force(:number) - wanted)**2)/sum(wanted**2))
     end associate
   end function difference
+
+  !> The same, but of all like peaks the one that is farthest off. Where the bodies touch again and again, which peak is
+  !> how far off is a matter of chance, so that the error of the largest is no bound.
+  pure function bound_of_difference(coarse, fine, ratio, apart) result(relative)
+    !> The pilot with the longer steps
+    type(pilot_t), intent(in) :: coarse
+    !> The other one
+    type(pilot_t), intent(in) :: fine
+    !> Steps of the finer one in one of the coarser
+    integer, intent(in) :: ratio
+    !> Steps of the coarser one within which only the largest force is a peak
+    integer, intent(in) :: apart
+    !> Of the peaks, of the history
+    real(wp) :: relative(2)
+    real(wp) :: largest
+    integer :: number, i, first, last
+
+    relative = difference(coarse, fine, ratio)
+    number = min(size(coarse%force), size(fine%force)/ratio)
+    do i = 1, number
+      if (fine%force(ratio*i) < like_peaks*fine%peak) cycle
+      first = max(1, i - apart)
+      last = min(number, i + apart)
+      largest = maxval(fine%force(ratio*(first - 1) + 1:ratio*last))
+      if (maxval(fine%force(ratio*(i - 1) + 1:ratio*i)) < largest) cycle
+      relative(1) = max(relative(1), abs(maxval(coarse%force(first:last)) - largest)/fine%peak)
+    end do
+  end function bound_of_difference
 end module pilot_impacts

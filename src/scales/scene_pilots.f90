@@ -3,7 +3,7 @@
 module scene_pilots
   use kinds, only: wp
   use modal_plates, only: modal_plate_t, reduced
-  use pilot_impacts, only: pilot_t, run_pilot, difference, figures_of
+  use pilot_impacts, only: pilot_t, run_pilot, difference, bound_of_difference, figures_of
   use scene_scales, only: scene_scales_t, plate_modes, contact_side
   use scenes, only: scene_t
   implicit none
@@ -53,10 +53,8 @@ module scene_pilots
   real(wp), parameter :: first_steps = 2, fine_steps = 4.5_wp
   !> Steps in one contact time up to which modes are kept at hand.
   real(wp), parameter :: most_fine = 128
-  !> Most steps of a pilot, and most steps times modes: a tenth of a second for contacts whose run takes ten. A
-  !> tenth of it left two of 33 random scenes with a peak 1.1 % off instead of 1 %, and seven without an estimate.
-  integer, parameter :: most_steps = 100000
-  real(wp), parameter :: most_work = 3.0e8_wp
+  !> Most steps of a pilot: they take a tenth of a second, and a run of as many hours.
+  integer, parameter :: most_steps = 262144
   !> Steps that a contact takes at least.
   integer, parameter :: least_steps = 24
   !> Elements in a wave of first contact with an error of 1 %, and the power of the error that their side grows with.
@@ -100,21 +98,25 @@ contains
 
     plate = reduced(self%plate, followed/step)
     if (cell > 0) call disperse(plate, cell)
-    steps = steps_at_most(self, step)
+    steps = most_steps
     if (end > 0) steps = min(steps, max(1, nint(end/step)))
     run = run_pilot(plate, self%scene%impactor, self%scene%indentation, step, steps, end > 0)
     if (end > 0) run%complete = steps >= nint(end/step)
   end function run_of
 
-  !> Steps that a pilot may take.
-  pure integer function steps_at_most(self, step) result(steps)
+  !> Bounds of errors of a pilot's peaks and history by a finer one; two peaks are a rise of first contact apart.
+  pure function bounds_of(self, coarse, fine, ratio) result(relative)
     !> The pilot
     type(scene_pilot_t), intent(in) :: self
-    !> Step
-    real(wp), intent(in) :: step
+    !> Both runs
+    type(pilot_t), intent(in) :: coarse, fine
+    !> Steps of the finer one in one of the coarser
+    integer, intent(in) :: ratio
+    !> Of the peaks, of the history
+    real(wp) :: relative(2)
 
-    steps = min(most_steps, int(most_work/max(1, count(self%plate%frequency <= followed/step))))
-  end function steps_at_most
+    relative = bound_of_difference(coarse, fine, ratio, max(1, nint(self%scales%contact_time/coarse%step)))
+  end function bounds_of
 
   !> The contact from touch to end by a first, coarse pilot; looked at no longer than the run lasts.
   pure function contact_end(self, end) result(run)
@@ -149,7 +151,7 @@ contains
     pilot%scales = scales
     pilot%plate = plate_modes(scene, max(followed/step, min(2*followed/step, excited/scales%contact_time)))
     coarse = run_of(pilot, step, end, 0.0_wp)
-    if (nint(end/(step/2)) <= steps_at_most(pilot, step/2)) then
+    if (nint(end/(step/2)) <= most_steps) then
       fine = run_of(pilot, step/2, end, 0.0_wp)
       outlook%step_error = difference(coarse, fine, 2)*4/3
     else
@@ -185,7 +187,8 @@ contains
     real(wp), intent(out) :: step
     !> Its errors
     real(wp), intent(out) :: error(2)
-    type(pilot_t) :: finest
+    type(pilot_t) :: finest, coarse
+    real(wp) :: longer
     integer :: finer, steps, ratio
 
     ! Coarse pilots could agree on what both miss, so each is held against the finest that can be had.
@@ -195,19 +198,22 @@ contains
     end do
     do
       ratio = 2**finer
-      if (finer == 1 .or. ratio*least_steps <= steps_at_most(self, end/(ratio*least_steps))) exit
+      if (finer == 1 .or. ratio*least_steps <= most_steps) exit
       finer = finer - 1
     end do
     finest = run_of(self, end/(ratio*least_steps), end, 0.0_wp)
     do
       steps = least_steps*2**finer/ratio
       step = end/steps
-      error = difference(run_of(self, step, end, 0.0_wp), finest, ratio)/(1 - 1/real(ratio, wp)**2)
+      error = bounds_of(self, run_of(self, step, end, 0.0_wp), finest, ratio)/(1 - 1/real(ratio, wp)**2)
       if (all(error <= bounds) .or. ratio == 2) exit
       ratio = ratio/2
     end do
     if (all(error <= bounds)) then
-      step = end/ceiling(end/(step*min(1.5_wp, sqrt(minval(bounds/max(error, tiny(1.0_wp)))))))
+      longer = end/ceiling(end/(step*min(1.5_wp, sqrt(minval(bounds/max(error, tiny(1.0_wp)))))))
+      ! The peak depends on where steps fall, too, so that its error isn't smooth in the step.
+      coarse = run_of(self, longer, end, 0.0_wp)
+      if (abs(coarse%peak/finest%peak - 1) <= bounds(1)) step = longer
     else if (finest%complete) then
       ! The finest is better by the order of the method.
       step = finest%step
@@ -237,7 +243,7 @@ contains
     cell = min(minval(self%scene%plate%length)/4, &
                self%scales%wave_length/wave_elements*(200*bounds(1))**wave_power)
     do while (cell > self%scales%wave_length/20)
-      if (all(difference(run_of(self, step, end, cell), exact, 1) <= bounds)) exit
+      if (all(bounds_of(self, run_of(self, step, end, cell), exact, 1) <= bounds)) exit
       cell = cell*finer
     end do
   end function largest_cell

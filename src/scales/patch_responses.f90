@@ -1,0 +1,157 @@
+!> How the struck patch gives way under a force that changes from step to step, the modes of the plate moved by the
+!> average acceleration.
+!>
+!> A force on the patch shows after n steps by as much whenever it acted. So modes need not be moved one by one: their
+!> answers add up to one, with which the forces are folded. Forces are known only up to the present step, so they are
+!> taken in blocks that double (Hairer, Lubich and Schlichte, Fast numerical solution of nonlinear Volterra convolution
+!> equations, SIAM J. Sci. Stat. Comput. 6, 1985): the work grows with the steps times the square of their logarithm,
+!> and not with the steps times the modes.
+module patch_responses
+  use fourier_transforms, only: fourier, unit_turns, sums_of_sines
+  use kinds, only: wp
+  use modal_plates, only: modal_plate_t
+  implicit none
+  private
+  public :: patch_response_t, start_response, coming_deflection, look_ahead, block_steps
+
+  !> Steps whose forces are folded one by one, and those of a block whose forces are folded without transforms.
+  integer, parameter :: block_steps = 64, direct_steps = 256
+  !> Steps that the answer is found for where the end isn't known.
+  integer, parameter :: first_steps = 1024
+
+  !> A transform of one length.
+  type :: spectrum_t
+    !> The values
+    complex(wp), allocatable :: value(:)
+  end type spectrum_t
+
+  !> The answer of the patch, and what it has in store.
+  type :: patch_response_t
+    !> The plate's modes
+    type(modal_plate_t) :: plate
+    !> Step
+    real(wp) :: step = 0
+    !> Deflection per force at the end of the same step
+    real(wp) :: at_once = 0
+    !> Deflection so many steps after a force of one at the end of a step
+    real(wp), allocatable :: later(:)
+    !> Deflection at the ends of all steps by the forces that have been looked ahead with
+    real(wp), allocatable :: coming(:)
+    !> Transforms of the answer by the power of two of the block that they are folded with
+    type(spectrum_t) :: spectra(31)
+    !> What transforms of any of these lengths take
+    complex(wp), allocatable :: turns(:)
+  end type patch_response_t
+
+contains
+
+  !> A plate at rest.
+  pure function start_response(plate, step, steps, to_the_end) result(self)
+    !> Modes of the plate
+    type(modal_plate_t), intent(in) :: plate
+    !> Step
+    real(wp), intent(in) :: step
+    !> Steps at most
+    integer, intent(in) :: steps
+    !> True: all of them will be taken
+    logical, intent(in) :: to_the_end
+    !> The response
+    type(patch_response_t) :: self
+    integer :: known
+
+    self%plate = plate
+    self%step = step
+    self%at_once = plate%rest + sum(plate%weight*step**2/4/(1 + (plate%frequency*step/2)**2))
+    allocate (self%coming(steps), source=0.0_wp)
+    known = first_steps
+    do while (to_the_end .and. known < steps)
+      known = 2*known
+    end do
+    call find_answer(self, known)
+  end function start_response
+
+  !> Finds the answer for a number of steps. A mode moved by the average acceleration turns by theta a step,
+  !> tan(theta/2) = omega step/2, and after a force of one swings as a sine.
+  pure subroutine find_answer(self, steps)
+    !> The response
+    type(patch_response_t), intent(inout) :: self
+    !> Steps, a power of two
+    integer, intent(in) :: steps
+    logical :: swings(size(self%plate%frequency))
+    integer :: i
+
+    associate (omega => self%plate%frequency, weight => self%plate%weight)
+      swings = omega > 0
+      self%later = sums_of_sines( &
+        2*atan(pack(omega, swings)*self%step/2), &
+        pack(weight*self%step/max(omega, tiny(1.0_wp))/(1 + (omega*self%step/2)**2), swings), steps)
+      self%later = self%later + self%step**2*sum(weight, mask=.not. swings)*[(real(i, wp), i=1, steps)]
+    end associate
+    self%turns = unit_turns(steps)
+  end subroutine find_answer
+
+  !> Deflection at the end of a step, but for the force there.
+  pure real(wp) function coming_deflection(self, step, force) result(deflection)
+    !> The response, which looked ahead at the last multiple of `block_steps`
+    type(patch_response_t), intent(in) :: self
+    !> The step
+    integer, intent(in) :: step
+    !> Forces at the ends of all steps before
+    real(wp), intent(in) :: force(:)
+    integer :: since
+
+    since = mod(step - 1, block_steps)
+    deflection = self%coming(step) + dot_product(self%later(:since), force(step - 1:step - since:-1))
+  end function coming_deflection
+
+  !> Folds the forces of the last block into the steps to come, as many of them as the block has.
+  pure subroutine look_ahead(self, now, force)
+    !> The response
+    type(patch_response_t), intent(inout) :: self
+    !> Steps taken, a multiple of `block_steps`
+    integer, intent(in) :: now
+    !> Forces at their ends
+    real(wp), intent(in) :: force(:)
+    integer :: length, last, k
+
+    ! The largest power of two that divides the steps.
+    length = iand(now, -now)
+    last = min(now + length, size(self%coming))
+    if (.not. any(force(now - length + 1:now) > 0) .or. last <= now) return
+    if (2*length > size(self%later)) call find_answer(self, 2*length)
+    if (length > direct_steps) then
+      call fold_by_transform(self, force(now - length + 1:now), now, last)
+    else
+      do k = 1, length
+        self%coming(now + 1:last) = self%coming(now + 1:last) + force(now + 1 - k)*self%later(k:k + last - now - 1)
+      end do
+    end if
+  end subroutine look_ahead
+
+  !> The same by transforms twice as long as the block.
+  pure subroutine fold_by_transform(self, force, now, last)
+    !> The response
+    type(patch_response_t), intent(inout) :: self
+    !> Forces of the block, a power of two of them
+    real(wp), intent(in) :: force(:)
+    !> Steps taken, and the last that the forces are folded into
+    integer, intent(in) :: now, last
+    complex(wp) :: values(2*size(force))
+    integer :: length
+
+    length = size(force)
+    associate (spectrum => self%spectra(trailz(length)))
+      if (.not. allocated(spectrum%value)) then
+        spectrum%value = [(0.0_wp, 0.0_wp), cmplx(self%later(:2*length - 1), 0.0_wp, wp)]
+        call fourier(spectrum%value, self%turns)
+      end if
+      values(:length) = cmplx(force, 0.0_wp, wp)
+      values(length + 1:) = 0
+      call fourier(values, self%turns)
+      ! The conjugate of a conjugate's transform goes back.
+      values = conjg(values*spectrum%value)
+      call fourier(values, self%turns)
+      self%coming(now + 1:last) = self%coming(now + 1:last) + real(values(length + 1:length + last - now))/(2*length)
+    end associate
+  end subroutine fold_by_transform
+end module patch_responses
