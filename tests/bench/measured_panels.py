@@ -3,7 +3,7 @@
 Usage: measured_panels.py IMPLAM 6.5J|25J FOLDER [GROUP%KEY=VALUE ...] [-GROUP ...]
        measured_panels.py FOLDER 6.5J|25J
 
-Runs the deck of input/experiments in FOLDER, on cells of 2 mm unless keys say otherwise, without the groups
+Runs the deck of input/experiments in FOLDER with the keys given, without the groups
 named behind a dash (those of one line, such as -ply_damage), and prints peak force, largest displacement of
 the tup, end of contact, projected area, absorbed energy, for 25 J the relative L2 error of the force history and
 the forces at some times beside the measured ones, what plies and delaminations took, steps and cost. Without
@@ -17,9 +17,6 @@ import sys
 from pathlib import Path
 
 DECKS = Path(__file__).resolve().parents[2] / "input" / "experiments"
-KEYS = ["mesh%cell=2e-3", "time%step=20e-6", "solver%tolerance=1e-5", "solver%factorization='cholmod'"]
-MORE_KEYS = {"6.5J": ["mesh%elements=24,36", "time%end=3.5e-3"],
-             "25J": ["mesh%elements=26,40", "mesh%core=48e-3,48e-3", "delamination%zone=48e-3,48e-3", "time%end=4e-3"]}
 TIMES = (0.4, 0.6, 0.8, 1.0, 1.1, 1.2, 1.6, 2.0, 2.5, 3.0)
 
 
@@ -69,7 +66,7 @@ def run(implam, name, folder, settings):
     dropped = tuple(f"&{setting[1:]} " for setting in settings if setting.startswith("-"))
     lines = (DECKS / f"t700_m21_{name}.nml").read_text(encoding="utf-8").splitlines(keepends=True)
     text = change_deck("".join(line for line in lines if not line.startswith(dropped)),
-                       KEYS + MORE_KEYS[name] + [setting for setting in settings if not setting.startswith("-")])
+                       [setting for setting in settings if not setting.startswith("-")])
     (folder / "deck.nml").write_text(text, encoding="utf-8")
     before = os.times()
     subprocess.run([implam, folder / "deck.nml", "--output", folder], check=True, stdout=subprocess.DEVNULL)

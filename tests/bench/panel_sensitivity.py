@@ -1,0 +1,68 @@
+#!/usr/bin/env python3
+"""What a tenth of each input does to a measured panel (doc/manual/experiments.md).
+Usage: panel_sensitivity.py IMPLAM 6.5J|25J FOLDER [GROUP%KEY=VALUE ...]
+
+Runs the deck of measured_panels.py as it is and with each figure of material, interface, indentation and tup 10 %
+larger, each in a folder of its own, and prints a row of a table: peak force, largest displacement and projected area,
+for the changed ones in per cent of the deck's. With time%end=2e-3 behind it a run ends when the tup has turned back.
+What has ended in FOLDER is not run again."""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+from measured_panels import DECKS, rows_of
+
+# Those that decide most come first.
+INPUTS = {"delamination": ("G_IIc", "G_Ic", "eta"),
+          "material": ("S12", "YT", "E1", "E2", "G12", "G13", "G23", "XC", "G_fc", "XT", "G_ft", "G_mt", "G_mc", "YC",
+                       "nu12", "density"),
+          "indentation": ("k", "alpha_cr")}
+
+
+def changes(text):
+    """Each input of a deck, 10 % larger."""
+    for group, keys in INPUTS.items():
+        for key in keys:
+            value = float(re.search(rf"\b{key}=([\d.e+-]+)", text)[1])
+            yield f"{group}%{key}={1.1*value:.10g}"
+
+
+def figures(folder):
+    """Peak force, largest displacement and projected area of a run that has ended, or nothing."""
+    histories = list(folder.glob("*_history.csv"))
+    if not (folder / "ended").exists() or not histories:
+        return None
+    rows = rows_of(histories[0])
+    return (max(row["force"] for row in rows), max(row["impactor_displacement"] for row in rows),
+            rows[-1]["projected_area"])
+
+
+def run(arguments, folder, settings):
+    """Run one deck, unless it has been run."""
+    if figures(folder) is None:
+        command = [sys.executable, str(Path(__file__).with_name("measured_panels.py")), arguments[0], arguments[1],
+                   str(folder), *settings]
+        if subprocess.run(command, stdout=subprocess.DEVNULL, check=False).returncode == 0:
+            (folder / "ended").touch()
+    return figures(folder)
+
+
+def main(arguments):
+    """Run them all."""
+    text = (DECKS / f"t700_m21_{arguments[1]}.nml").read_text(encoding="utf-8")
+    given, folder = arguments[3:], Path(arguments[2])
+    base = run(arguments, folder / "as_it_is", given)
+    print("| 10 % more of | peak force | largest displacement | projected area |\n" + "|---"*4 + "|")
+    print(f"| none | {base[0]/1e3:.2f} kN | {1e3*base[1]:.2f} mm | {1e6*base[2]:.0f} mm2 |", flush=True)
+    for change in changes(text):
+        name = change.split("=")[0].replace("%", "_")
+        changed = run(arguments, folder / name, [*given, change])
+        parts = "no end" if changed is None else \
+            " | ".join(f"{100*(a/b - 1):+.1f} %" for a, b in zip(changed, base, strict=True))
+        print(f"| {name.split('_', 1)[1]} | {parts} |", flush=True)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
