@@ -254,6 +254,7 @@ contains
     logical, intent(out) :: softened
 
     call self%rounds%go_on(model, equilibrium, norm, new, softened)
+    self%bursts = self%bursts .or. self%rounds%breaks .and. allocated(new%interfaces%cohesive%cohesive)
   end subroutine soften
 
   !> The force answers to the motion only within an iteration, so an impact needs one.
@@ -282,7 +283,7 @@ contains
     type(error_t), allocatable, intent(inout) :: error
     logical :: follows
 
-    follows = modulo(new%iterations + 1, self%renewal) > 0 .and. .not. self%memory%is_full(operator)
+    follows = modulo(new%iterations - self%begun + 1, self%renewal) > 0 .and. .not. self%memory%is_full(operator)
     if (follows) call operator%follow(model, new%interfaces, follows, error)
     if (follows .or. allocated(error)) return
     call operator%renew(model, new%plies%stiffness, new%interfaces, new%motion%displacement, &

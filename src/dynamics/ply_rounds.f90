@@ -18,11 +18,6 @@ module ply_rounds
   ! doc/manual/accuracy.md.
   !> Rounds of a step at most. A few suffice where fibres crack one after the other; it takes tens where they snap.
   integer, parameter :: most_rounds = 30
-  !> Residual over the forces in play at which damage follows, if equilibrium asks for less: damage that follows a break
-  !> brings a tenth of them out of balance. What is still out of balance as it follows hangs on the operator, and so on
-  !> rounding; it stays in the damage. It hangs on no count of iterations, so that ranks, symmetric parts and turned
-  !> plates find the same.
-  real(wp), parameter :: nearly = 1.0e-6_wp
   !> Energy over all energy that plies lose in a round which is not worth another one.
   real(wp), parameter :: noticed = 1.0e-4_wp
   !> Energy over all energy that may go beyond what is dissipated as damage follows the end of a step: a step that
@@ -33,6 +28,8 @@ module ply_rounds
   type :: ply_rounds_t
     !> Rounds taken
     integer, private :: taken = 0
+    !> True once a round took enough of them for another one
+    logical :: breaks = .false.
     !> What they lose at the end of the step, over the most that a step may lose
     real(wp) :: haste = 0
   contains
@@ -59,14 +56,15 @@ contains
     real(wp) :: lost, excess, energy
 
     softened = .false.
-    if (.not. new%plies%lagging .or. norm > max(nearly, equilibrium%tolerance)) return
+    if (.not. new%plies%lagging .or. norm > equilibrium%tolerance) return
     energy = max(new%ledger%initial + new%ledger%external_work, new%ledger%strain)
     if (self%taken < most_rounds) then
       call new%plies%follow(model, new%motion%displacement, lost, excess)
       softened = abs(lost) > 0
       self%taken = self%taken + 1
-      if (lost <= noticed*energy) self%taken = most_rounds
-    else if (norm <= equilibrium%tolerance) then
+      self%breaks = self%breaks .or. lost > noticed*energy
+      if (.not. lost > noticed*energy) self%taken = most_rounds
+    else
       later = new%plies
       call later%follow(model, new%motion%displacement, lost, excess)
       self%haste = max(0.0_wp, excess)/(most_lost*max(energy, tiny(energy)**0.5_wp))

@@ -27,6 +27,8 @@ module step_problems
     logical :: begins_fresh = .true.
     !> True: there was a burst in the step, of which another operator may find another end
     logical :: bursts = .false.
+    !> Iterations taken when plies followed last
+    integer :: begun = 0
   contains
     !> First guess of the state at the end of the step.
     procedure(begin_step), deferred :: begin
@@ -206,14 +208,13 @@ contains
     type(error_t), allocatable, intent(out) :: error
     real(wp), allocatable :: residual(:, :), correction(:, :)
     real(wp) :: norm, before, energy
-    integer :: begun
     logical :: pressures_new, softened
 
     converged = .false.
     call new%start_from(model, old)
     allocate (residual, correction, mold=old%motion%displacement)
     pressures_new = .false.
-    begun = 0
+    problem%begun = 0
     before = huge(before)
     call problem%begin(model, operator, old, new)
     do
@@ -226,7 +227,8 @@ contains
       norm = problem%residual_norm(model, equilibrium, operator, residual, new)
       call problem%soften(model, equilibrium, norm, new, softened)
       if (softened) then
-        begun = new%iterations
+        if (problem%bursts .and. .not. problem%begins_fresh) return
+        problem%begun = new%iterations
         before = huge(before)
         call operator%anderson%forget()
         cycle
@@ -247,7 +249,7 @@ contains
         call operator%anderson%pause()
         if (new%contact_iterations < equilibrium%max_iterations) cycle
       end if
-      if (.not. norm <= huge(norm) .or. new%iterations - begun >= equilibrium%max_iterations) exit
+      if (.not. norm <= huge(norm) .or. new%iterations - problem%begun >= equilibrium%max_iterations) exit
       call problem%prepare_operator(model, operator, new, error)
       ! Only a further iteration asks what the last one showed.
       call operator%anderson%note(correction)
