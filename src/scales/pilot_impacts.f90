@@ -168,9 +168,9 @@ contains
     end associate
   end function difference
 
-  !> The same, but of the largest forces of all contacts like the hardest the one that is farthest off. Where the bodies
-  !> touch again and again, which contact is how far off is a matter of chance, so that the error of the largest force is
-  !> no bound. Ripples of one long contact are many, and their largest is not.
+  !> The same, but of the largest forces of all contacts like the hardest the one that is farthest off. Where the
+  !> bodies touch again and again, which contact is how far off is a matter of chance, so that the error of the largest
+  !> force is no bound. Ripples of one long contact are many, and their largest is not.
   pure function bound_of_difference(coarse, fine, ratio) result(relative)
     !> The pilot with the longer steps
     type(pilot_t), intent(in) :: coarse
