@@ -9,7 +9,7 @@ module pilot_impacts
                                  commit_indentation
   implicit none
   private
-  public :: pilot_t, run_pilot, difference, bound_of_difference, figures_of
+  public :: pilot_t, run_pilot, difference, bound_of_difference, difference_at_peak, figures_of
 
   !> What a pilot calculation found.
   type :: pilot_t
@@ -35,7 +35,7 @@ module pilot_impacts
   real(wp), parameter :: contact_part = 0.01_wp
   !> A contact that ended is taken to be the last if none follows for as long as it took up to then.
   real(wp), parameter :: waiting = 2
-  !> Part of the largest force from which on a peak is like it.
+  !> Part of the largest force from which on that of a contact is like it.
   real(wp), parameter :: like_peaks = 0.9_wp
   !> Halvings and Newton steps for the force; Newton needs five.
   integer, parameter :: most_iterations = 60
@@ -168,31 +168,53 @@ contains
     end associate
   end function difference
 
-  !> The same, but of all like peaks the one that is farthest off. Where the bodies touch again and again, which peak is
-  !> how far off is a matter of chance, so that the error of the largest is no bound.
-  pure function bound_of_difference(coarse, fine, ratio, apart) result(relative)
+  !> The same, but of the largest forces of all contacts like the hardest the one that is farthest off. Where the
+  !> bodies touch again and again, which contact is how far off is a matter of chance, so that the error of the largest
+  !> force is no bound. Ripples of one long contact are many, and their largest is not.
+  pure function bound_of_difference(coarse, fine, ratio) result(relative)
     !> The pilot with the longer steps
     type(pilot_t), intent(in) :: coarse
     !> The other one
     type(pilot_t), intent(in) :: fine
     !> Steps of the finer one in one of the coarser
     integer, intent(in) :: ratio
-    !> Steps of the coarser one within which only the largest force is a peak
-    integer, intent(in) :: apart
     !> Of the peaks, of the history
     real(wp) :: relative(2)
-    real(wp) :: largest
-    integer :: number, i, first, last
+    real(wp) :: largest, now
+    integer :: number, i, first
 
     relative = difference(coarse, fine, ratio)
     number = min(size(coarse%force), size(fine%force)/ratio)
+    largest = 0
+    first = 1
     do i = 1, number
-      if (fine%force(ratio*i) < like_peaks*fine%peak) cycle
-      first = max(1, i - apart)
-      last = min(number, i + apart)
-      largest = maxval(fine%force(ratio*(first - 1) + 1:ratio*last))
-      if (maxval(fine%force(ratio*(i - 1) + 1:ratio*i)) < largest) cycle
-      relative(1) = max(relative(1), abs(maxval(coarse%force(first:last)) - largest)/fine%peak)
+      now = maxval(fine%force(ratio*(i - 1) + 1:ratio*i))
+      largest = max(largest, now)
+      if (now > 0 .and. i < number) cycle
+      if (largest >= like_peaks*fine%peak) &
+        relative(1) = max(relative(1), abs(maxval(coarse%force(first:i)) - largest)/fine%peak)
+      largest = 0
+      first = i
     end do
   end function bound_of_difference
+
+  !> What two pilots differ by around the largest force of the finer one, in the mean of squares, as a force. In a long
+  !> contact the errors of ripples at that very instant may be nil by chance; those beside it tell.
+  pure real(wp) function difference_at_peak(coarse, fine, ratio, beside) result(force)
+    !> The pilot with the longer steps
+    type(pilot_t), intent(in) :: coarse
+    !> The other one
+    type(pilot_t), intent(in) :: fine
+    !> Steps of the finer one in one of the coarser
+    integer, intent(in) :: ratio
+    !> Steps of the coarser one looked at before the largest force and after it
+    integer, intent(in) :: beside
+    integer :: number, at, first, last
+
+    number = min(size(coarse%force), size(fine%force)/ratio)
+    at = maxloc(fine%force(ratio:ratio*number:ratio), 1)
+    first = max(1, at - beside)
+    last = min(number, at + beside)
+    force = norm2(coarse%force(first:last) - fine%force(ratio*first:ratio*last:ratio))/sqrt(real(last - first + 1, wp))
+  end function difference_at_peak
 end module pilot_impacts

@@ -3,7 +3,8 @@
 module scene_pilots
   use kinds, only: wp
   use modal_plates, only: modal_plate_t, reduced
-  use pilot_impacts, only: pilot_t, run_pilot, difference, bound_of_difference, figures_of
+  use pilot_impacts, only: pilot_t, run_pilot, difference, bound_of_difference, difference_at_peak, &
+                           figures_of
   use scene_scales, only: scene_scales_t, plate_modes, contact_side
   use scenes, only: scene_t
   implicit none
@@ -61,9 +62,15 @@ module scene_pilots
   !> With 3.1 and 3.5 the peak of two random scenes was 1.33 and 1.09 % off; the history's error falls with the power
   !> 3.6 of their number.
   real(wp), parameter :: wave_elements = 4.5_wp, wave_power = 1/3.6_wp
+  !> The fewest elements in a wave that this holds for.
+  real(wp), parameter :: fewest_elements = 3.1_wp
   !> Relative rise of a mode's frequency on elements of side e, (kappa e)**4 times this, kappa its wave number. Settled
   !> by `tests/bench/elastic_scenes.py`.
   real(wp), parameter :: dispersion = 6.0e-4_wp
+  real(wp), parameter :: pi = acos(-1.0_wp)
+  !> Half periods of the impactor on the plate's spring that the first pilot may last: pilots wait for twice the time of
+  !> contact, and contacts that end and come again have lasted up to 1.4 half periods.
+  real(wp), parameter :: waited = 4.5_wp
 
 contains
 
@@ -104,21 +111,8 @@ contains
     if (end > 0) run%complete = steps >= nint(end/step)
   end function run_of
 
-  !> Bounds of errors of a pilot's peaks and history by a finer one; two peaks are a rise of first contact apart.
-  pure function bounds_of(self, coarse, fine, ratio) result(relative)
-    !> The pilot
-    type(scene_pilot_t), intent(in) :: self
-    !> Both runs
-    type(pilot_t), intent(in) :: coarse, fine
-    !> Steps of the finer one in one of the coarser
-    integer, intent(in) :: ratio
-    !> Of the peaks, of the history
-    real(wp) :: relative(2)
-
-    relative = bound_of_difference(coarse, fine, ratio, max(1, nint(self%scales%contact_time/coarse%step)))
-  end function bounds_of
-
-  !> The contact from touch to end by a first, coarse pilot; looked at no longer than the run lasts.
+  !> The contact from touch to end by a first, coarse pilot; looked at no longer than the run lasts. Where a heavy
+  !> impactor rests on the plate for longer than such steps can tell, they are longer.
   pure function contact_end(self, end) result(run)
     !> The pilot
     type(scene_pilot_t), intent(in) :: self
@@ -126,8 +120,11 @@ contains
     real(wp), intent(in) :: end
     !> What was found
     type(pilot_t) :: run
+    real(wp) :: looked_at
 
-    run = run_of(self, self%scales%contact_time/first_steps, end, 0.0_wp)
+    looked_at = end
+    if (.not. end > 0) looked_at = waited*pi*sqrt(self%scene%impactor%mass*self%scales%compliance)
+    run = run_of(self, max(self%scales%contact_time/first_steps, looked_at/most_steps), end, 0.0_wp)
   end function contact_end
 
   !> What a run is to show with a step and elements of some side. The method is of second order in the step.
@@ -160,8 +157,7 @@ contains
     if (coarse%complete) then
       meshed = run_of(pilot, step, end, edge)
       outlook%mesh_error = difference(meshed, coarse, 1)
-      if (outlook%step_error(1) >= 0) outlook%figure_error = abs(figures_of(coarse) - figures_of(fine))*4/3 &
-                                                + abs(figures_of(meshed) - figures_of(coarse))
+      if (outlook%step_error(1) >= 0) outlook%figure_error = errors_of_figures(scales, edge, coarse, fine, meshed)
     end if
     outlook%force = fine%peak
     outlook%indentation = fine%indentation
@@ -174,6 +170,30 @@ contains
     pilot%plate = plate_modes(pilot%scene, followed/step)
     outlook%patch_error = difference(run_of(pilot, step, end, 0.0_wp), coarse, 1)
   end function outlook_of
+
+  !> Errors by step and mesh together of what a summary tells. That of the largest force is at least what the forces
+  !> beside it are off, and, where the force of first contact is the largest, what its waves miss in the elements around
+  !> the patch.
+  pure function errors_of_figures(scales, edge, coarse, fine, meshed) result(errors)
+    !> Scales of the scene
+    type(scene_scales_t), intent(in) :: scales
+    !> Side of the elements near the struck point
+    real(wp), intent(in) :: edge
+    !> Pilots with the step of the run, with half of it, and with the mesh
+    type(pilot_t), intent(in) :: coarse, fine, meshed
+    !> In the order of `figures_of`
+    real(wp) :: errors(5)
+    integer :: beside, at
+
+    errors = abs(figures_of(coarse) - figures_of(fine))*4/3 + abs(figures_of(meshed) - figures_of(coarse))
+    beside = nint(scales%contact_time/(2*coarse%step))
+    errors(1) = max(errors(1), hypot(difference_at_peak(coarse, fine, 2, beside)*4/3, &
+                                     difference_at_peak(meshed, coarse, 1, beside)))
+    at = maxloc(fine%force, 1)
+    if (all(fine%force(2:at) >= fine%force(:at - 1))) &
+      errors(1) = max(errors(1), fine%peak*(wave_elements*min(edge/scales%wave_length, 1/fewest_elements))** &
+                      (1/wave_power)/200)
+  end function errors_of_figures
 
   !> The largest step whose errors stay within bounds.
   pure subroutine largest_step(self, end, bounds, step, error)
@@ -205,7 +225,7 @@ contains
     do
       steps = least_steps*2**finer/ratio
       step = end/steps
-      error = bounds_of(self, run_of(self, step, end, 0.0_wp), finest, ratio)/(1 - 1/real(ratio, wp)**2)
+      error = bound_of_difference(run_of(self, step, end, 0.0_wp), finest, ratio)/(1 - 1/real(ratio, wp)**2)
       if (all(error <= bounds) .or. ratio == 2) exit
       ratio = ratio/2
     end do
@@ -239,11 +259,13 @@ contains
     real(wp), parameter :: finer = 0.85_wp
 
     exact = run_of(self, step, end, 0.0_wp)
-    ! Modes tell what waves do on the mesh, not what the first of them do in the elements around the patch.
+    ! Modes tell what waves do on the mesh, not what the first of them do in the elements around the patch. Steps longer
+    ! than the rise pass over these; the shortest waves that they follow are longer by the root.
     cell = min(minval(self%scene%plate%length)/4, &
-               self%scales%wave_length/wave_elements*(200*bounds(1))**wave_power)
+               self%scales%wave_length/wave_elements*(200*bounds(1))**wave_power* &
+               sqrt(max(1.0_wp, first_steps*step/self%scales%contact_time)))
     do while (cell > self%scales%wave_length/20)
-      if (all(bounds_of(self, run_of(self, step, end, cell), exact, 1) <= bounds)) exit
+      if (all(bound_of_difference(run_of(self, step, end, cell), exact, 1) <= bounds)) exit
       cell = cell*finer
     end do
   end function largest_cell
