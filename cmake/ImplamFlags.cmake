@@ -18,6 +18,10 @@ if(CMAKE_Fortran_COMPILER_ID STREQUAL "GNU")
   if(IMPLAM_NATIVE)
     list(APPEND IMPLAM_RELEASE -march=native)
   endif()
+  set(IMPLAM_RELEASE_C -ffp-contract=off)
+  if(IMPLAM_NATIVE AND CMAKE_C_COMPILER_ID STREQUAL "GNU")
+    list(APPEND IMPLAM_RELEASE_C -march=native)
+  endif()
   set(IMPLAM_DEBUG -Og -g -fbacktrace
     -fcheck=all,no-array-temps             # bounds, shapes, allocation, pointers
     -ffpe-trap=invalid,zero,overflow       # stop where the first NaN is born
@@ -36,6 +40,7 @@ add_library(implam_flags INTERFACE)
 target_compile_options(implam_flags INTERFACE
   $<$<COMPILE_LANGUAGE:Fortran>:${IMPLAM_FLAGS}>
   $<$<AND:$<COMPILE_LANGUAGE:Fortran>,$<CONFIG:Release>>:${IMPLAM_RELEASE}>
+  $<$<AND:$<COMPILE_LANGUAGE:C>,$<CONFIG:Release>>:${IMPLAM_RELEASE_C}>
   $<$<AND:$<COMPILE_LANGUAGE:Fortran>,$<CONFIG:Debug>>:${IMPLAM_DEBUG}>
   $<$<AND:$<COMPILE_LANGUAGE:Fortran>,$<CONFIG:Coverage>>:${IMPLAM_COVERAGE}>)
 target_link_options(implam_flags INTERFACE $<$<CONFIG:Coverage>:--coverage>)

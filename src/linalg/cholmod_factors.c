@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <suitesparse/cholmod.h>
+#include "supernodal_solves.h"
 
 typedef struct {
   cholmod_common common;
@@ -11,8 +12,10 @@ typedef struct {
   /* The matrix in the order of the factor, and where each of its values goes there. */
   cholmod_sparse *ordered;
   int *places;
-  /* What solves leave for the next: solution and work space. */
+  /* What solves for several right-hand sides leave for the next: solution and work space. */
   cholmod_dense *solution, *work, *spare;
+  /* One right-hand side in the order of the factor, and work space behind it. */
+  double *one;
 } implam_cholmod;
 
 /* Outcomes of a factorization. */
@@ -88,6 +91,8 @@ int implam_cholmod_factorize(implam_cholmod *self)
   if (!self->factor) self->factor = cholmod_analyze(&self->matrix, &self->common);
   if (!self->factor) return failed;
   if (!self->places && !order_matrix(self)) return failed;
+  if (!self->one) self->one = malloc((self->matrix.nrow + implam_supernodal_work(self->factor))*sizeof(double));
+  if (!self->one) return failed;
   const double *values = self->matrix.x;
   double *ordered = self->ordered->x;
   for (size_t k = 0; k < self->matrix.nzmax; k++) ordered[self->places[k]] = values[k];
@@ -96,10 +101,23 @@ int implam_cholmod_factorize(implam_cholmod *self)
   return self->common.status == CHOLMOD_OK ? factored : failed;
 }
 
+/* Solves for one right-hand side. */
+static void solve_one(implam_cholmod *self, const double *right_hand_side, double *solution)
+{
+  const int rows = (int)self->matrix.nrow, *order = self->factor->Perm;
+  for (int k = 0; k < rows; k++) self->one[k] = right_hand_side[order[k]];
+  implam_supernodal_solve(self->factor, self->one, self->one + rows);
+  for (int k = 0; k < rows; k++) solution[order[k]] = self->one[k];
+}
+
 /* Solves for right-hand sides that stand one behind the other; 0 for success. */
 int implam_cholmod_solve(implam_cholmod *self, int count, double *right_hand_sides, double *solutions)
 {
   const size_t rows = self->matrix.nrow;
+  if (count == 1) {
+    solve_one(self, right_hand_sides, solutions);
+    return factored;
+  }
   cholmod_dense right = {.nrow = rows, .ncol = (size_t)count, .nzmax = rows*(size_t)count, .d = rows,
                          .x = right_hand_sides, .xtype = CHOLMOD_REAL, .dtype = CHOLMOD_DOUBLE};
   if (!cholmod_solve2(CHOLMOD_A, self->factor, &right, 0, &self->solution, 0, &self->work, &self->spare, &self->common))
@@ -122,6 +140,7 @@ void implam_cholmod_free(implam_cholmod *self)
   cholmod_free_factor(&self->factor, &self->common);
   cholmod_free_sparse(&self->ordered, &self->common);
   free(self->places);
+  free(self->one);
   cholmod_free_dense(&self->solution, &self->common);
   cholmod_free_dense(&self->work, &self->common);
   cholmod_free_dense(&self->spare, &self->common);
