@@ -1,7 +1,6 @@
 /* Solves with a supernodal factor L L' for one right-hand side. CHOLMOD's own calls BLAS twice a supernode, a hundred
    columns or fewer at a time, and gets half the memory's rate; here each entry of the factor is read once on the way
    there and once on the way back, four columns together, and asked for ahead of its use. */
-#include <string.h>
 #include "supernodal_solves.h"
 
 /* Four numbers that the processor takes together, wherever they begin. */
@@ -91,20 +90,18 @@ void implam_supernodal_solve(const cholmod_factor *factor, double *x, double *wo
 {
   const int *first = factor->super, *list = factor->pi, *place = factor->px, *row = factor->s;
   const double *values = factor->x;
+  /* A supernode's list of rows begins with its own columns. */
   for (int k = 0; k < (int)factor->nsuper; k++) {
-    const int columns = first[k + 1] - first[k], rows = list[k + 1] - list[k], *its_row = row + list[k];
-    memcpy(work, x + first[k], (size_t)columns*sizeof(double));
-    memset(work + columns, 0, (size_t)(rows - columns)*sizeof(double));
-    eliminate(rows, columns, values + place[k], work);
-    memcpy(x + first[k], work, (size_t)columns*sizeof(double));
-    for (int i = columns; i < rows; i++) x[its_row[i]] += work[i];
+    const int rows = list[k + 1] - list[k], *its_row = row + list[k];
+    for (int i = 0; i < rows; i++) work[i] = x[its_row[i]];
+    eliminate(rows, first[k + 1] - first[k], values + place[k], work);
+    for (int i = 0; i < rows; i++) x[its_row[i]] = work[i];
   }
   for (int k = (int)factor->nsuper - 1; k >= 0; k--) {
     const int columns = first[k + 1] - first[k], rows = list[k + 1] - list[k], *its_row = row + list[k];
-    memcpy(work, x + first[k], (size_t)columns*sizeof(double));
-    for (int i = columns; i < rows; i++) work[i] = x[its_row[i]];
+    for (int i = 0; i < rows; i++) work[i] = x[its_row[i]];
     substitute(rows, columns, values + place[k], work);
-    memcpy(x + first[k], work, (size_t)columns*sizeof(double));
+    for (int i = 0; i < columns; i++) x[its_row[i]] = work[i];
   }
 }
 
