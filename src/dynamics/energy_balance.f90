@@ -52,8 +52,7 @@ contains
     type(products_t) :: products
     real(wp) :: amplitudes(2), gain, impactor, taken, fracture, heat, damage
 
-    call model%inertia(new%motion%velocity, new%motion%momentum)
-    products = step_products(model, old, energy, new)
+    call find_products(model, integrator, old, step, energy, new, products)
     amplitudes = model%scene%pressure%amplitude([old%time, new%time])
     new%ledger%kinetic = products%kinetic/2
     new%ledger%strain = products%strain
@@ -130,20 +129,24 @@ contains
   end function integrator_gain
 
   !> Products of the step's fields, of the whole plate.
-  function step_products(model, old, energy, new) result(products)
+  subroutine find_products(model, integrator, old, step, energy, new, products)
     type(model_t), intent(in) :: model
+    !> Integrator of the plate
+    type(plate_integrator_t), intent(in) :: integrator
     !> State at the start
     type(state_t), intent(in) :: old
+    !> Time step
+    real(wp), intent(in) :: step
     !> Strain energy of this rank's elements
     real(wp), intent(in) :: energy
-    !> State at the end
-    type(state_t), intent(in) :: new
+    !> State at the end; receives mass times velocity
+    type(state_t), intent(inout) :: new
     !> The products
-    type(products_t) :: products
+    type(products_t), intent(out) :: products
     real(wp) :: sums(13)
 
     sums = 0
-    sums(:7) = field_products(model%distribution%owned, old%motion, new%motion)
+    call multiply_fields(model%distribution%owned, integrator, step, old%motion, new%motion, sums(:7))
     sums(8) = energy
     if (allocated(model%pressure)) &
       sums(9) = model%product(new%motion%displacement - old%motion%displacement, model%pressure)
@@ -158,7 +161,7 @@ contains
     products = products_t(kinetic=sums(1), mean_internal=sums(2)/2, internal_change=sums(3), inertia_change=sums(4), &
                           jerk_new=sums(5), jerk_old=sums(6), jerk_change=sums(7), strain=sums(8), pressure=sums(9), &
                           faces=sums(10), lines=sums(11), lines_change=sums(12), cohesive=sums(13))
-  end function step_products
+  end subroutine find_products
 
   !> Change of displacement times mean force and times change of force of the lines, of this rank's points.
   pure function line_products(model, old, new) result(sums)
@@ -178,47 +181,82 @@ contains
     sums = [model%product(change, before + after)/2, model%product(change, after - before)]
   end function line_products
 
-  !> Products of fields over this rank's points, in one pass over them: v.Mv at the end; change of displacement times
-  !> sum and change of internal force and times change of inertia force; a.Ma at the end and at the start; change of a
-  !> times change of Ma.
-  pure function field_products(owned, old, new) result(sums)
+  !> Products of fields over this rank's points: v.Mv at the end; change of displacement times sum and change of
+  !> internal force and times change of inertia force; a.Ma at the end and at the start, and change of a times change of
+  !> Ma, where the integrator asks for them.
+  pure subroutine multiply_fields(owned, integrator, step, old, new, sums)
     !> Number of points that this rank owns
     integer, intent(in) :: owned
-    !> Motion at the start and at the end of the step
-    type(motion_t), intent(in) :: old, new
+    !> Integrator of the plate
+    type(plate_integrator_t), intent(in) :: integrator
+    !> Time step
+    real(wp), intent(in) :: step
+    !> Motion at the start of the step
+    type(motion_t), intent(in) :: old
+    !> Motion at its end; receives mass times velocity
+    type(motion_t), intent(inout) :: new
     !> The products
-    real(wp) :: sums(7)
-    real(wp) :: parts(together, 7)
+    real(wp), intent(out) :: sums(7)
+    real(wp) :: works(together, 4), jerks(together, 3)
 
-    parts = 0
-    call add_products(5*owned, old%displacement, old%acceleration, old%internal, old%inertia, new%displacement, &
-                      new%velocity, new%acceleration, new%internal, new%inertia, new%momentum, parts)
-    sums = sum(parts, 1)
-  end function field_products
+    works = 0
+    call add_works(5*owned, step*[1 - integrator%gamma, integrator%gamma], old%displacement, old%internal, &
+                   old%inertia, old%momentum, new%displacement, new%velocity, new%internal, new%inertia, &
+                   new%momentum, works)
+    jerks = 0
+    if (abs(2*integrator%beta - integrator%gamma) > 0) &
+      call add_jerks(5*owned, old%acceleration, old%inertia, new%acceleration, new%inertia, jerks)
+    sums = [sum(works, 1), sum(jerks, 1)]
+  end subroutine multiply_fields
 
-  !> Adds the products of numbers in turn to so many sums each, which the processor takes together.
-  pure subroutine add_products(number, u, a, f, i, u_new, v_new, a_new, f_new, i_new, momentum, sums)
+  !> Mass times velocity by Newmark's formula for the velocity, which spares a sum over elements, and the products of
+  !> numbers in turn, added to so many sums each, which the processor takes together.
+  pure subroutine add_works(number, weights, u, f, i, p, u_new, v_new, f_new, i_new, p_new, sums)
     !> How many
     integer, intent(in) :: number
-    !> Displacement, acceleration, internal and inertia force at the start
-    real(wp), intent(in) :: u(number), a(number), f(number), i(number)
-    !> The same, velocity and mass times velocity at the end
-    real(wp), intent(in) :: u_new(number), v_new(number), a_new(number), f_new(number), i_new(number), momentum(number)
-    !> Sums of the seven products
-    real(wp), intent(inout) :: sums(together, 7)
+    !> Weights of the inertia forces at the start and at the end in the change of mass times velocity
+    real(wp), intent(in) :: weights(2)
+    !> Displacement, internal and inertia force and mass times velocity at the start
+    real(wp), intent(in) :: u(number), f(number), i(number), p(number)
+    !> Displacement, velocity, internal and inertia force at the end
+    real(wp), intent(in) :: u_new(number), v_new(number), f_new(number), i_new(number)
+    !> Mass times velocity at the end
+    real(wp), intent(inout) :: p_new(number)
+    !> Sums of the four products
+    real(wp), intent(inout) :: sums(together, 4)
     integer :: start, k, n
 
     do start = 0, number - 1, together
       do k = 1, min(together, number - start)
         n = start + k
-        sums(k, 1) = sums(k, 1) + v_new(n)*momentum(n)
+        p_new(n) = p(n) + (weights(1)*i(n) + weights(2)*i_new(n))
+        sums(k, 1) = sums(k, 1) + v_new(n)*p_new(n)
         sums(k, 2) = sums(k, 2) + (u_new(n) - u(n))*(f_new(n) + f(n))
         sums(k, 3) = sums(k, 3) + (u_new(n) - u(n))*(f_new(n) - f(n))
         sums(k, 4) = sums(k, 4) + (u_new(n) - u(n))*(i_new(n) - i(n))
-        sums(k, 5) = sums(k, 5) + a_new(n)*i_new(n)
-        sums(k, 6) = sums(k, 6) + a(n)*i(n)
-        sums(k, 7) = sums(k, 7) + (a_new(n) - a(n))*(i_new(n) - i(n))
       end do
     end do
-  end subroutine add_products
+  end subroutine add_works
+
+  !> Products of accelerations and inertia forces likewise.
+  pure subroutine add_jerks(number, a, i, a_new, i_new, sums)
+    !> How many
+    integer, intent(in) :: number
+    !> Acceleration and inertia force at the start
+    real(wp), intent(in) :: a(number), i(number)
+    !> The same at the end
+    real(wp), intent(in) :: a_new(number), i_new(number)
+    !> Sums of the three products
+    real(wp), intent(inout) :: sums(together, 3)
+    integer :: start, k, n
+
+    do start = 0, number - 1, together
+      do k = 1, min(together, number - start)
+        n = start + k
+        sums(k, 1) = sums(k, 1) + a_new(n)*i_new(n)
+        sums(k, 2) = sums(k, 2) + a(n)*i(n)
+        sums(k, 3) = sums(k, 3) + (a_new(n) - a(n))*(i_new(n) - i(n))
+      end do
+    end do
+  end subroutine add_jerks
 end module energy_balance

@@ -217,11 +217,11 @@ contains
       call archive%field('motion/acceleration', owned, points, motion%acceleration)
       call archive%field('motion/internal', owned, points, motion%internal)
       call archive%field('motion/inertia', owned, points, motion%inertia)
+      call archive%field('motion/momentum', owned, points, motion%momentum)
     end associate
     if (.not. archive%loading) return
     call model%halo%update(motion%displacement)
     call model%halo%update(motion%velocity)
     call model%halo%update(motion%acceleration)
-    call model%inertia(motion%velocity, motion%momentum)
   end subroutine visit_motion
 end module states

@@ -304,9 +304,11 @@ contains
     integer :: numbers
 
     numbers = number*(size(self%rows%start) - 1)
-    solutions(:numbers) = 0
-    if (.not. self%factored) call fail(error, exit_internal, no_factor)
-    if (allocated(error)) return
+    if (.not. self%factored) then
+      solutions(:numbers) = 0
+      call fail(error, exit_internal, no_factor)
+      return
+    end if
     outcome = cholmod_solve(self%package, int(number, c_int), right_hand_sides, solutions)
     self%solves = self%solves + number
     if (outcome /= done .or. .not. all(ieee_is_finite(solutions(:numbers)))) &
