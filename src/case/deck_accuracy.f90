@@ -105,6 +105,7 @@ contains
     type(scene_pilot_t) :: pilot
     type(pilot_t) :: first
     real(wp) :: end, step, bounds(2), error(2)
+    logical :: follows
 
     bounds = share*deck%accuracy/100*[1.0_wp, history_over_peak]
     end = deck%settings%real_of(time_group, key_end)
@@ -126,7 +127,8 @@ contains
                   ' time(s), is over at '//short_text(first%last_contact)//' in a pilot calculation by modes.')
     end if
     step = deck%settings%real_of(time_group, key_step)
-    if (.not. step > 0) then
+    follows = .not. step > 0
+    if (follows) then
       call largest_step(pilot, end, bounds, step, error)
       call choose_one(deck, time_group, key_step, step)
       step = deck%settings%real_of(time_group, key_step)
@@ -136,8 +138,8 @@ contains
     call choose_integrator(deck)
     call choose_clocks(deck, step, end)
     if (deck%settings%is_given(mesh_group, key_elements)) return
-    call choose_elements(deck, largest_cell(pilot, step, min(end, beyond_contact*first%last_contact), bounds), scales, &
-                         problems)
+    call choose_elements(deck, largest_cell(pilot, step, min(end, beyond_contact*first%last_contact), bounds, &
+                                            follows), scales, problems)
   end subroutine choose_for_impact
 
   !> Mesh, and in time the step, of a plate under pressure.

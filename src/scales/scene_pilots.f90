@@ -244,7 +244,7 @@ contains
   end subroutine largest_step
 
   !> The largest elements whose errors stay within bounds.
-  pure function largest_cell(self, step, end, bounds) result(cell)
+  pure function largest_cell(self, step, end, bounds, follows) result(cell)
     !> The pilot
     type(scene_pilot_t), intent(in) :: self
     !> Step
@@ -253,17 +253,22 @@ contains
     real(wp), intent(in) :: end
     !> Relative errors of peak and history allowed
     real(wp), intent(in) :: bounds(2)
+    !> True: the step follows the impact within these bounds; a longer one tells nothing of the elements needed
+    logical, intent(in) :: follows
     !> Side of the elements
     real(wp) :: cell
     type(pilot_t) :: exact
     real(wp), parameter :: finer = 0.85_wp
+    real(wp) :: longer
 
+    longer = 1
+    if (follows) longer = max(1.0_wp, first_steps*step/self%scales%contact_time)
     exact = run_of(self, step, end, 0.0_wp)
     ! Modes tell what waves do on the mesh, not what the first of them do in the elements around the patch. Steps longer
     ! than the rise pass over these; the shortest waves that they follow are longer by the root.
     cell = min(minval(self%scene%plate%length)/4, &
                self%scales%wave_length/wave_elements*(200*bounds(1))**wave_power* &
-               sqrt(max(1.0_wp, first_steps*step/self%scales%contact_time)))
+               sqrt(longer))
     do while (cell > self%scales%wave_length/20)
       if (all(bound_of_difference(run_of(self, step, end, cell), exact, 1) <= bounds)) exit
       cell = cell*finer
