@@ -191,9 +191,28 @@ contains
                                      difference_at_peak(meshed, coarse, 1, beside)))
     at = maxloc(fine%force, 1)
     if (all(fine%force(2:at) >= fine%force(:at - 1))) &
-      errors(1) = max(errors(1), fine%peak*(wave_elements*min(edge/scales%wave_length, 1/fewest_elements))** &
-                      (1/wave_power)/200)
+      errors(1) = max(errors(1), fine%peak*error_with(scales, edge))
   end function errors_of_figures
+
+  !> Side of the elements around the patch with which the waves of first contact miss a part of its force.
+  pure real(wp) function edge_for(scales, error) result(edge)
+    !> Scales of the scene
+    type(scene_scales_t), intent(in) :: scales
+    !> That part
+    real(wp), intent(in) :: error
+
+    edge = scales%wave_length/wave_elements*(200*error)**wave_power
+  end function edge_for
+
+  !> The part of the force of first contact that its waves miss with such elements: `edge_for`, inverted.
+  pure real(wp) function error_with(scales, edge) result(error)
+    !> Scales of the scene
+    type(scene_scales_t), intent(in) :: scales
+    !> Side of the elements
+    real(wp), intent(in) :: edge
+
+    error = (wave_elements*min(edge/scales%wave_length, 1/fewest_elements))**(1/wave_power)/200
+  end function error_with
 
   !> The largest step whose errors stay within bounds.
   pure subroutine largest_step(self, end, bounds, step, error)
@@ -267,8 +286,7 @@ contains
     ! Modes tell what waves do on the mesh, not what the first of them do in the elements around the patch. Steps longer
     ! than the rise pass over these; the shortest waves that they follow are longer by the root.
     cell = min(minval(self%scene%plate%length)/4, &
-               self%scales%wave_length/wave_elements*(200*bounds(1))**wave_power* &
-               sqrt(longer))
+               edge_for(self%scales, bounds(1))*sqrt(longer))
     do while (cell > self%scales%wave_length/20)
       if (all(bound_of_difference(run_of(self, step, end, cell), exact, 1) <= bounds)) exit
       cell = cell*finer

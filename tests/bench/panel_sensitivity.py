@@ -2,7 +2,7 @@
 """What a tenth of each input does to a measured panel (doc/manual/experiments.md).
 Usage: panel_sensitivity.py IMPLAM 6.5J|25J FOLDER [GROUP%KEY=VALUE ...]
 
-Runs the deck of measured_panels.py as it is and with each figure of material, interface, indentation and tup 10 %
+Runs the deck of measured_panels.py as it is and with each figure of material, interface and indentation 10 %
 larger, each in a folder of its own, and prints a row of a table: peak force, largest displacement and projected area,
 for the changed ones in per cent of the deck's. With time%end=2e-3 behind it a run ends when the tup has turned back.
 What has ended in FOLDER is not run again."""
