@@ -12,7 +12,6 @@ module computations
   use errors, only: error_t, exit_done, exit_stopped, exit_usage, fail
   use files, only: is_directory
   use layer_following, only: visit_zones
-  use linear_solver_deck, only: check_ranks
   use linear_solver_parameters, only: factorization_automatic, factorization_mumps
   use petsc_library, only: start_petsc, finish_petsc
   use root_output, only: print_lines
@@ -103,7 +102,6 @@ contains
     !> Exit code
     integer, intent(inout) :: code
 
-    call check_ranks(deck%settings, deck%linear_solver, communicator%size, problems)
     code = problems%exit_code()
     call print_lines(communicator, problems%lines())
     if (allocated(command%output)) deck%output%directory = command%output

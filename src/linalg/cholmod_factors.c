@@ -1,5 +1,6 @@
-/* CHOLMOD behind five procedures that Fortran can call: a symmetric positive definite matrix, whose lists stay the
-   caller's, and its supernodal factor (Chen et al., ACM Trans. Math. Softw. 35, 2008). */
+/* CHOLMOD behind procedures that Fortran can call: a symmetric positive definite matrix, whose lists stay the caller's,
+   and its supernodal factor (Chen et al., ACM Trans. Math. Softw. 35, 2008). The last rows may be a border, which is
+   eliminated last: the last columns of the factor are those of its Schur complement then. */
 #include <stdlib.h>
 #include <string.h>
 #include <suitesparse/cholmod.h>
@@ -9,6 +10,8 @@ typedef struct {
   cholmod_common common;
   cholmod_sparse matrix;
   cholmod_factor *factor;
+  /* Rows of the border. */
+  int border;
   /* The matrix in the order of the factor, and where each of its values goes there. */
   cholmod_sparse *ordered;
   int *places;
@@ -21,12 +24,13 @@ typedef struct {
 /* Outcomes of a factorization. */
 enum { factored = 0, not_positive = 1, failed = 2 };
 
-/* A matrix by its lower triangle in compressed columns, from 0, which is its upper one in compressed rows; null without
-   memory. */
-implam_cholmod *implam_cholmod_new(int rows, int *start, int *columns, double *values)
+/* A matrix by its lower triangle in compressed columns, from 0, which is its upper one in compressed rows, and how many
+   of its last rows are a border; null without memory. */
+implam_cholmod *implam_cholmod_new(int rows, int border, int *start, int *columns, double *values)
 {
   implam_cholmod *self = calloc(1, sizeof *self);
   if (!self) return 0;
+  self->border = border;
   cholmod_start(&self->common);
   self->common.supernodal = CHOLMOD_SUPERNODAL;
   self->common.quick_return_if_not_posdef = 1;
@@ -43,6 +47,47 @@ implam_cholmod *implam_cholmod_new(int rows, int *start, int *columns, double *v
   a->dtype = CHOLMOD_DOUBLE;
   a->sorted = a->packed = 1;
   return self;
+}
+
+/* Orders what is inside the border by itself: CHOLMOD's choice, children before their parents. 0 without memory. */
+static int order_inside(implam_cholmod *self, int inside, int *order)
+{
+  const int *start = self->matrix.p, *rows = self->matrix.i;
+  cholmod_sparse *part = cholmod_allocate_sparse((size_t)inside, (size_t)inside, (size_t)start[inside], 1, 1, -1,
+                                                 CHOLMOD_PATTERN, &self->common);
+  if (!part) return 0;
+  int *first = part->p, *its_rows = part->i;
+  first[0] = 0;
+  for (int j = 0; j < inside; j++) {
+    first[j + 1] = first[j];
+    for (int k = start[j]; k < start[j + 1]; k++)
+      if (rows[k] < inside) its_rows[first[j + 1]++] = rows[k];
+  }
+  cholmod_factor *factor = cholmod_analyze(part, &self->common);
+  if (factor) memcpy(order, factor->Perm, (size_t)inside*sizeof(int));
+  const int done = factor != 0;
+  cholmod_free_factor(&factor, &self->common);
+  cholmod_free_sparse(&part, &self->common);
+  return done;
+}
+
+/* Orders the matrix, the border last, and finds the pattern of its factor. */
+static cholmod_factor *analyze(implam_cholmod *self)
+{
+  const int rows = (int)self->matrix.nrow, inside = rows - self->border;
+  if (!self->border) return cholmod_analyze(&self->matrix, &self->common);
+  int *order = malloc((size_t)rows*sizeof(int));
+  cholmod_factor *factor = 0;
+  for (int k = 0; order && k < rows; k++) order[k] = k;
+  if (order && order_inside(self, inside, order)) {
+    /* An order by the tree could take a part of the border before another's inside. */
+    self->common.nmethods = 1;
+    self->common.method[0].ordering = CHOLMOD_GIVEN;
+    self->common.postorder = 0;
+    factor = cholmod_analyze_p(&self->matrix, order, 0, 0, &self->common);
+  }
+  free(order);
+  return factor;
 }
 
 /* Finds once where the values go: cholmod_factorize would transpose the matrix twice each time, which takes up to 40 % of
@@ -88,7 +133,7 @@ int implam_cholmod_factorize(implam_cholmod *self)
 {
   double none[2] = {0, 0};
   self->common.status = CHOLMOD_OK;
-  if (!self->factor) self->factor = cholmod_analyze(&self->matrix, &self->common);
+  if (!self->factor) self->factor = analyze(self);
   if (!self->factor) return failed;
   if (!self->places && !order_matrix(self)) return failed;
   if (!self->one) self->one = malloc((self->matrix.nrow + implam_supernodal_work(self->factor))*sizeof(double));
@@ -106,7 +151,8 @@ static void solve_one(implam_cholmod *self, const double *right_hand_side, doubl
 {
   const int rows = (int)self->matrix.nrow, *order = self->factor->Perm;
   for (int k = 0; k < rows; k++) self->one[k] = right_hand_side[order[k]];
-  implam_supernodal_solve(self->factor, self->one, self->one + rows);
+  implam_supernodal_forward(self->factor, rows, self->one, self->one + rows);
+  implam_supernodal_backward(self->factor, rows, self->one, self->one + rows);
   for (int k = 0; k < rows; k++) solution[order[k]] = self->one[k];
 }
 
@@ -124,6 +170,68 @@ int implam_cholmod_solve(implam_cholmod *self, int count, double *right_hand_sid
     return failed;
   memcpy(solutions, self->solution->x, rows*(size_t)count*sizeof(double));
   return 0;
+}
+
+/* Half of a solve for columns one behind the other, in the order of the factor, which ends with the border; several
+   columns go through the border, too. 0 for success. */
+static int half_solve(implam_cholmod *self, int count, double *columns, int backward)
+{
+  const size_t rows = self->matrix.nrow;
+  const int inside = (int)rows - self->border;
+  if (count == 1) {
+    if (backward) implam_supernodal_backward(self->factor, inside, columns, self->one + rows);
+    else implam_supernodal_forward(self->factor, inside, columns, self->one + rows);
+    return factored;
+  }
+  cholmod_dense many = {.nrow = rows, .ncol = (size_t)count, .nzmax = rows*(size_t)count, .d = rows, .x = columns,
+                        .xtype = CHOLMOD_REAL, .dtype = CHOLMOD_DOUBLE};
+  cholmod_dense *work = cholmod_allocate_dense((size_t)count, self->factor->maxesize, (size_t)count, CHOLMOD_REAL,
+                                               &self->common);
+  const int done = work && (backward ? cholmod_super_ltsolve(self->factor, &many, work, &self->common) :
+                            cholmod_super_lsolve(self->factor, &many, work, &self->common));
+  cholmod_free_dense(&work, &self->common);
+  return done ? factored : failed;
+}
+
+/* Eliminates what is inside the border from right-hand sides; they are left in the order of the factor, the border's
+   last. Of several the border is solved for with its lower factor, too. 0 for success. */
+int implam_cholmod_forward(implam_cholmod *self, int count, const double *right_hand_sides, double *eliminated)
+{
+  const size_t rows = self->matrix.nrow;
+  const int *order = self->factor->Perm;
+  for (size_t c = 0; c < (size_t)count; c++)
+    for (size_t k = 0; k < rows; k++) eliminated[c*rows + k] = right_hand_sides[c*rows + (size_t)order[k]];
+  return half_solve(self, count, eliminated, 0);
+}
+
+/* Solutions from what `implam_cholmod_forward` left and the border's solution, of several times its upper factor, in the
+   border's places; 0 for success. */
+int implam_cholmod_backward(implam_cholmod *self, int count, double *eliminated, double *solutions)
+{
+  const size_t rows = self->matrix.nrow;
+  const int *order = self->factor->Perm, outcome = half_solve(self, count, eliminated, 1);
+  for (size_t c = 0; c < (size_t)count; c++)
+    for (size_t k = 0; k < rows; k++) solutions[c*rows + (size_t)order[k]] = eliminated[c*rows + k];
+  return outcome;
+}
+
+/* Lower factor of the border's Schur complement, by columns, zero above its diagonal. */
+void implam_cholmod_border(const implam_cholmod *self, double *lower)
+{
+  const cholmod_factor *factor = self->factor;
+  const int *first = factor->super, *list = factor->pi, *place = factor->px, *row = factor->s;
+  const int border = self->border, inside = (int)self->matrix.nrow - border;
+  const double *values = factor->x;
+  memset(lower, 0, (size_t)border*(size_t)border*sizeof(double));
+  for (int k = 0; k < (int)factor->nsuper; k++) {
+    const int rows = list[k + 1] - list[k];
+    for (int j = 0; j < first[k + 1] - first[k]; j++) {
+      const int column = first[k] + j - inside;
+      for (int i = j; column >= 0 && i < rows; i++)
+        lower[(size_t)column*(size_t)border + (size_t)(row[list[k] + i] - inside)] =
+          values[place[k] + j*rows + i];
+    }
+  }
 }
 
 /* Entries stored in the factor, and the most memory that was in use, in bytes. */

@@ -1,9 +1,10 @@
-!> Direct solution of symmetric positive definite equations on one rank by CHOLMOD (Chen et al., ACM Trans. Math. Softw.
-!> 35, 2008). Its solves with one right-hand side, which most of a run consists of, take half the time of MUMPS'.
+!> Direct solution of symmetric positive definite equations by CHOLMOD (Chen et al., ACM Trans. Math. Softw. 35, 2008).
+!> Solves with one right-hand side, which most of a run consists of, take half the time of MUMPS'.
 module cholmod_solvers
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
-  use, intrinsic :: iso_c_binding, only: c_associated, c_double, c_int, c_null_ptr, c_ptr
   use blas_settings, only: settle_blas
+  use cholmod_library, only: cholmod_done, cholmod_not_positive
+  use cholmod_parts, only: cholmod_part_t
   use communicators, only: communicator_t
   use errors, only: error_t, fail, exit_convergence, exit_internal, exit_usage
   use free_mechanisms, only: mechanism_t
@@ -11,7 +12,6 @@ module cholmod_solvers
   use kinds, only: wp
   use linear_solvers, only: linear_solver_t
   use petsc_library, only: new_petsc_solver
-  use symmetric_rows, only: symmetric_rows_t
   use text, only: to_text
   implicit none
   private
@@ -23,8 +23,6 @@ module cholmod_solvers
   character(len=*), parameter :: singular = 'The stiffness matrix is singular: a part of the plate can move freely.', &
                                  indefinite = 'The stiffness matrix is singular or not positive definite.', &
                                  trouble = 'CHOLMOD could not factor the stiffness matrix, probably for lack of memory.'
-  !> Outcomes of a factorization, as in cholmod_factors.c
-  integer(c_int), parameter :: done = 0, not_positive = 1
 
   !> A symmetric matrix and its factor. It has many components because a second solver may stand in.
   type, extends(linear_solver_t) :: cholmod_solver_t
@@ -32,15 +30,17 @@ module cholmod_solvers
     logical :: falls_back = .false.
     !> Factorizations that MUMPS did
     integer, private :: fallen_back = 0
-    !> The matrix
-    type(symmetric_rows_t), private :: rows
-    !> CHOLMOD's side
-    type(c_ptr), private :: package = c_null_ptr
+    !> This rank's part of the matrix and of the factor
+    type(cholmod_part_t), private :: part
+    !> The pattern of the rows that this rank owns, on several ranks, for a solver that stands in
+    integer, allocatable, private :: row_start(:), columns(:)
+    !> First row that this rank owns, and rows of all
+    integer, private :: first_row = 0, total = 0
     !> True while there is a factor
     logical, private :: factored = .false.
     !> Finds parts of the structure that can move freely
     type(mechanism_t), private :: mechanism
-    !> The rank
+    !> All ranks
     type(communicator_t), private :: communicator
     !> MUMPS with the present factor, if CHOLMOD could not make it
     class(linear_solver_t), allocatable, private :: other
@@ -60,97 +60,57 @@ module cholmod_solvers
     procedure, private :: apply
   end type cholmod_solver_t
 
-  interface
-    !> Takes a matrix, whose lists stay the caller's; null without memory.
-    function cholmod_new(rows, start, columns, values) result(package) bind(c, name='implam_cholmod_new')
-      import :: c_int, c_double, c_ptr
-      !> Number of rows
-      integer(c_int), value :: rows
-      !> Where rows begin, from 0, and the columns, of the upper triangle
-      integer(c_int), intent(in) :: start(*), columns(*)
-      !> Values there
-      real(c_double), intent(in) :: values(*)
-      !> CHOLMOD's side
-      type(c_ptr) :: package
-    end function cholmod_new
-
-    !> Factors the matrix as its values are now.
-    integer(c_int) function cholmod_factorize(package) bind(c, name='implam_cholmod_factorize')
-      import :: c_int, c_ptr
-      !> CHOLMOD's side
-      type(c_ptr), value :: package
-    end function cholmod_factorize
-
-    !> Solves for right-hand sides one behind the other; 0 for success.
-    integer(c_int) function cholmod_solve(package, number, right_hand_sides, solutions) &
-      bind(c, name='implam_cholmod_solve')
-      import :: c_int, c_double, c_ptr
-      !> CHOLMOD's side
-      type(c_ptr), value :: package
-      !> Number of right-hand sides
-      integer(c_int), value :: number
-      !> The right-hand sides
-      real(c_double), intent(in) :: right_hand_sides(*)
-      !> The solutions
-      real(c_double), intent(inout) :: solutions(*)
-    end function cholmod_solve
-
-    !> Size of the factor.
-    subroutine cholmod_size(package, entries, bytes) bind(c, name='implam_cholmod_size')
-      import :: c_double, c_ptr
-      !> CHOLMOD's side
-      type(c_ptr), value :: package
-      !> Entries stored, and most memory that was in use
-      real(c_double), intent(out) :: entries, bytes
-    end subroutine cholmod_size
-
-    !> Frees all but the matrix.
-    subroutine cholmod_free(package) bind(c, name='implam_cholmod_free')
-      import :: c_ptr
-      !> CHOLMOD's side; may be null
-      type(c_ptr), value :: package
-    end subroutine cholmod_free
-  end interface
-
 contains
 
   !> Sets the pattern of the matrix, anew if there was one.
-  subroutine define(self, communicator, first_row, total_rows, row_start, columns, positive_definite, error)
+  subroutine define(self, communicator, first_row, total_rows, row_start, columns, positive_definite, error, seen)
     class(cholmod_solver_t), intent(inout) :: self
-    !> The only rank
+    !> All ranks
     type(communicator_t), intent(in) :: communicator
-    !> 0
+    !> First row that this rank owns, from 0
     integer, intent(in) :: first_row
     !> Number of rows
     integer, intent(in) :: total_rows
-    !> Where the columns of each row begin, from 1, shape (rows + 1)
+    !> Where the columns of each owned row begin, from 1, shape (owned rows + 1)
     integer, intent(in) :: row_start(:)
-    !> Columns of the rows in both triangles, from 0, ascending within a row, diagonal included
+    !> Columns of the owned rows in both triangles, from 0, ascending within a row, diagonal included
     integer, intent(in) :: columns(:)
     !> Must be true
     logical, intent(in) :: positive_definite
     !> Raised where CHOLMOD doesn't suit, or memory is short
     type(error_t), allocatable, intent(inout) :: error
+    !> Rows of other ranks to which this rank adds, from 0; left out: none
+    integer, intent(in), optional :: seen(:)
+    logical :: lacks_memory
 
     call self%release()
     call give_back_freed()
-    if (communicator%size > 1 .or. .not. positive_definite) then
-      call fail(error, exit_usage, 'CHOLMOD works on one rank and positive definite matrices only: choose MUMPS.')
+    if (.not. positive_definite) then
+      call fail(error, exit_usage, 'CHOLMOD works on positive definite matrices only: choose MUMPS.')
       return
     end if
     call settle_blas()
     self%communicator = communicator
-    call self%rows%define(row_start, columns)
-    self%package = cholmod_new(int(total_rows, c_int), self%rows%start, self%rows%columns, self%rows%values)
-    if (.not. c_associated(self%package)) call fail(error, exit_internal, trouble)
+    self%first_row = first_row
+    self%total = total_rows
+    if (present(seen)) then
+      call self%part%define(communicator, first_row, total_rows, row_start, columns, seen, lacks_memory)
+    else
+      call self%part%define(communicator, first_row, total_rows, row_start, columns, [integer ::], lacks_memory)
+    end if
+    if (lacks_memory) call fail(error, exit_internal, trouble)
+    call communicator%agree(error)
+    if (communicator%size == 1 .or. .not. self%falls_back) return
+    self%row_start = row_start
+    self%columns = columns
   end subroutine define
 
   !> Zeroes the values of the matrix.
   subroutine clear(self)
     class(cholmod_solver_t), intent(inout) :: self
 
-    self%rows%values = 0
-    self%rows%complete = .true.
+    self%part%matrix%values = 0
+    self%part%matrix%complete = .true.
   end subroutine clear
 
   !> Adds an element's matrix.
@@ -161,7 +121,7 @@ contains
     !> The symmetric matrix, shape (equations, equations)
     real(wp), intent(in) :: values(:, :)
 
-    call self%rows%add(equations, values)
+    call self%part%add(equations, values)
   end subroutine add
 
   !> Looks whether all entries had their places.
@@ -170,8 +130,9 @@ contains
     !> Raised when an entry falls outside the pattern
     type(error_t), allocatable, intent(inout) :: error
 
-    if (.not. self%rows%complete) &
+    if (.not. self%part%matrix%complete) &
       call fail(error, exit_internal, 'An element couples unknowns that the pattern of the matrix does not couple.')
+    call self%communicator%agree(error)
   end subroutine finish_assembly
 
   !> Factors the matrix as it was assembled last. Which package does it follows from the matrix alone, so that a run
@@ -180,7 +141,7 @@ contains
     class(cholmod_solver_t), intent(inout) :: self
     !> Raised when the matrix is singular, or has no factor and no other solver stands in
     type(error_t), allocatable, intent(inout) :: error
-    integer(c_int) :: outcome
+    integer :: outcome
     logical :: found
 
     if (allocated(self%other)) then
@@ -188,17 +149,17 @@ contains
       deallocate (self%other)
     end if
     self%factorizations = self%factorizations + 1
-    outcome = cholmod_factorize(self%package)
-    self%factored = outcome == done
+    call self%part%factorize(outcome)
+    self%factored = outcome == cholmod_done
     found = .false.
     if (self%factored) call self%find_mechanism(found)
-    if (outcome /= done .and. self%falls_back) then
+    if (outcome /= cholmod_done .and. self%falls_back) then
       call self%fall_back(error)
-    else if (outcome == not_positive) then
+    else if (outcome == cholmod_not_positive) then
       call fail(error, exit_convergence, indefinite)
     else if (found) then
       call fail(error, exit_convergence, singular)
-    else if (outcome /= done) then
+    else if (outcome /= cholmod_done) then
       call fail(error, exit_convergence, trouble)
     end if
     self%factored = .not. allocated(error)
@@ -212,12 +173,13 @@ contains
     !> Whether it can
     logical, intent(out) :: found
     real(wp), allocatable :: values(:)
-    integer :: pass
+    integer :: pass, outcome
 
-    values = self%rows%values(self%rows%start(:size(self%rows%start) - 1) + 1)
+    call self%part%diagonal(values)
     call self%mechanism%begin(values)
     do pass = 1, self%mechanism%passes
-      found = cholmod_solve(self%package, 1_c_int, self%mechanism%right_hand_side(), values) /= 0
+      call self%part%solve(1, self%mechanism%right_hand_side(), values, outcome)
+      found = outcome /= cholmod_done
       if (.not. found) call self%mechanism%judge(self%communicator, values, found)
       if (found) exit
     end do
@@ -228,26 +190,35 @@ contains
     class(cholmod_solver_t), intent(inout) :: self
     !> Raised when that fails, too
     type(error_t), allocatable, intent(inout) :: error
-    integer, allocatable :: row_start(:), columns(:)
+    integer, allocatable :: row_start(:), columns(:), equation(:)
     integer :: row, k
 
     call new_petsc_solver(self%communicator, self%other, error)
     if (allocated(error)) return
-    call self%rows%both_triangles(row_start, columns)
-    call self%other%define(self%communicator, 0, size(row_start) - 1, row_start, columns, .false., error)
+    if (self%communicator%size == 1) then
+      call self%part%matrix%both_triangles(row_start, columns)
+      call self%other%define(self%communicator, 0, self%total, row_start, columns, .false., error)
+      equation = [(row, row=0, self%total - 1)]
+    else
+      call self%other%define(self%communicator, self%first_row, self%total, self%row_start, self%columns, .false., &
+                             error)
+      equation = self%part%rows%equation
+    end if
     if (allocated(error)) return
     call self%other%clear()
-    do row = 1, size(self%rows%start) - 1
-      do k = self%rows%start(row) + 1, self%rows%start(row + 1)
-        associate (column => self%rows%columns(k), value => self%rows%values(k))
-          if (column == row - 1) then
-            call self%other%add([column], reshape([value], [1, 1]))
-          else
-            call self%other%add([row - 1, column], reshape([0.0_wp, value, value, 0.0_wp], [2, 2]))
-          end if
-        end associate
+    associate (matrix => self%part%matrix)
+      do row = 1, size(equation)
+        do k = matrix%start(row) + 1, matrix%start(row + 1)
+          associate (column => matrix%columns(k) + 1, value => matrix%values(k))
+            if (column == row) then
+              call self%other%add([equation(column)], reshape([value], [1, 1]))
+            else if (abs(value) > 0) then
+              call self%other%add(equation([row, column]), reshape([0.0_wp, value, value, 0.0_wp], [2, 2]))
+            end if
+          end associate
+        end do
       end do
-    end do
+    end associate
     call self%other%finish_assembly(error)
     if (.not. allocated(error)) call self%other%factorize(error)
     self%fallen_back = self%fallen_back + 1
@@ -300,18 +271,17 @@ contains
     real(wp), intent(inout) :: solutions(*)
     !> Raised when there is no finite solution
     type(error_t), allocatable, intent(inout) :: error
-    integer(c_int) :: outcome
-    integer :: numbers
+    integer :: numbers, outcome
 
-    numbers = number*(size(self%rows%start) - 1)
+    numbers = number*self%part%owned
     if (.not. self%factored) then
       solutions(:numbers) = 0
       call fail(error, exit_internal, no_factor)
       return
     end if
-    outcome = cholmod_solve(self%package, int(number, c_int), right_hand_sides, solutions)
+    call self%part%solve(number, right_hand_sides, solutions, outcome)
     self%solves = self%solves + number
-    if (outcome /= done .or. .not. all(ieee_is_finite(solutions(:numbers)))) &
+    if (.not. self%communicator%all(outcome == cholmod_done .and. all(ieee_is_finite(solutions(:numbers))))) &
       call fail(error, exit_convergence, 'The linear equations have no finite solution.')
   end subroutine apply
 
@@ -326,10 +296,7 @@ contains
     if (allocated(self%other)) then
       call self%other%statistics(factor_entries, megabytes)
     else
-      factor_entries = 0
-      megabytes = 0
-      if (c_associated(self%package)) call cholmod_size(self%package, factor_entries, megabytes)
-      megabytes = megabytes/2**20
+      call self%part%measure(factor_entries, megabytes)
     end if
   end subroutine statistics
 
@@ -352,9 +319,7 @@ contains
       call self%other%release()
       deallocate (self%other)
     end if
-    if (c_associated(self%package)) call cholmod_free(self%package)
-    self%package = c_null_ptr
-    call self%rows%release()
+    call self%part%release()
     call self%mechanism%forget()
     self%factored = .false.
   end subroutine release

@@ -1,5 +1,6 @@
 !> Small dense systems.
 module dense_systems
+  use, intrinsic :: iso_c_binding, only: c_double, c_int
   use kinds, only: wp
   implicit none
   private
@@ -31,6 +32,7 @@ module dense_systems
     procedure :: factorize => factorize_positive
     !> Solves with the factors.
     procedure :: solve => solve_positive
+    procedure :: solve_many
     !> The inverse of the matrix.
     procedure :: inverse
   end type positive_factor_t
@@ -93,6 +95,17 @@ module dense_systems
       !> Not 0: an argument is wrong
       integer, intent(out) :: info
     end subroutine dpotrs
+
+    !> Solves with the factor of dpotrf for one right-hand side, which LAPACK takes longer for.
+    subroutine dense_solve(rows, lower, x) bind(c, name='implam_dense_solve')
+      import :: c_double, c_int
+      !> Order
+      integer(c_int), value :: rows
+      !> Lower factor
+      real(c_double), intent(in) :: lower(*)
+      !> Right-hand side, overwritten by the solution
+      real(c_double), intent(inout) :: x(*)
+    end subroutine dense_solve
 
     !> LAPACK: the inverse from the factor of dpotrf.
     subroutine dpotri(uplo, n, a, lda, info)
@@ -158,10 +171,20 @@ contains
     class(positive_factor_t), intent(in) :: self
     !> Right-hand side on entry, solution on return, (n)
     real(wp), intent(inout) :: x(:)
+
+    if (size(x) > 0) call dense_solve(int(size(x), c_int), self%factors, x)
+  end subroutine solve_positive
+
+  !> Solves with the factor of a positive definite matrix for several right-hand sides.
+  subroutine solve_many(self, x)
+    !> The factor
+    class(positive_factor_t), intent(in) :: self
+    !> Right-hand sides on entry, solutions on return, (n, columns)
+    real(wp), contiguous, intent(inout) :: x(:, :)
     integer :: info
 
-    if (size(x) > 0) call dpotrs('L', size(x), 1, self%factors, size(x), x, size(x), info)
-  end subroutine solve_positive
+    if (size(x) > 0) call dpotrs('L', size(x, 1), size(x, 2), self%factors, size(x, 1), x, size(x, 1), info)
+  end subroutine solve_many
 
   !> The inverse of a positive definite matrix.
   function inverse(self)

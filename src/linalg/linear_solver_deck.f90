@@ -11,13 +11,13 @@ module linear_solver_deck
   use text, only: line_t, words_of
   implicit none
   private
-  public :: fill_linear_solver, check_petsc_options, check_ranks
+  public :: fill_linear_solver, check_petsc_options
 
   character(len=*), parameter :: group = 'solver'
   !> Rows of the keys.
   character(len=key_row_length), parameter, public :: linear_solver_rows(*) = [character(len=key_row_length) :: &
     'solver | factorization | choice | 1 | - | ''automatic'' | automatic mumps cholmod | &
-      &Direct solver; cholmod on one rank only, which automatic takes there where nothing buckles or softens.', &
+      &Direct solver; automatic takes cholmod where no load step buckles or softens and ranks share few rows.', &
     'solver | petsc_options | text | 1 | - | '''' | any text | &
       &Options handed to PETSc as they are.']
 
@@ -73,19 +73,4 @@ contains
       if (index(word, trim(beginnings(i))) == 1) is_allowed = .true.
     end do
   end function is_allowed
-
-  !> Whether the factorization runs on so many ranks.
-  subroutine check_ranks(settings, solver, ranks, problems)
-    !> Keys in effect
-    type(settings_t), intent(in) :: settings
-    !> The linear solver
-    type(linear_solver_parameters_t), intent(in) :: solver
-    !> Number of ranks
-    integer, intent(in) :: ranks
-    !> Faults found are added
-    type(problems_t), intent(inout) :: problems
-
-    if (solver%factorization == factorization_cholmod .and. ranks > 1) call tell(settings, problems, group, &
-      'factorization', 'works on one rank only; run on one rank, or take ''mumps''.')
-  end subroutine check_ranks
 end module linear_solver_deck

@@ -40,7 +40,7 @@ module linear_solvers
 
   abstract interface
     !> Sets the pattern of the matrix, anew if there was one; called by all ranks together.
-    subroutine define(self, communicator, first_row, total_rows, row_start, columns, positive_definite, error)
+    subroutine define(self, communicator, first_row, total_rows, row_start, columns, positive_definite, error, seen)
       import :: linear_solver_t, communicator_t, error_t
       class(linear_solver_t), intent(inout) :: self
       !> All ranks
@@ -57,6 +57,8 @@ module linear_solvers
       logical, intent(in) :: positive_definite
       !> Raised when the solver cannot be set up
       type(error_t), allocatable, intent(inout) :: error
+      !> Rows of other ranks to which this rank adds, from 0; left out: none
+      integer, intent(in), optional :: seen(:)
     end subroutine define
 
     !> Changes the matrix as a whole.

@@ -1,4 +1,4 @@
-/* Solves with a supernodal factor L L' for one right-hand side. CHOLMOD's own calls BLAS twice a supernode, a hundred
+/* Solves with a supernodal or a dense factor L L' for one right-hand side. CHOLMOD's own calls BLAS twice a supernode, a hundred
    columns or fewer at a time, and gets half the memory's rate; here each entry of the factor is read once on the way
    there and once on the way back, four columns together, and asked for ahead of its use. */
 #include "supernodal_solves.h"
@@ -86,23 +86,43 @@ static void substitute(int rows, int columns, const double *block, double *w)
   }
 }
 
-void implam_supernodal_solve(const cholmod_factor *factor, double *x, double *work)
+/* How many columns of a supernode come before a column. */
+static int columns_before(const int *first, int k, int end)
+{
+  const int columns = (first[k + 1] < end ? first[k + 1] : end) - first[k];
+  return columns > 0 ? columns : 0;
+}
+
+void implam_supernodal_forward(const cholmod_factor *factor, int end, double *x, double *work)
 {
   const int *first = factor->super, *list = factor->pi, *place = factor->px, *row = factor->s;
   const double *values = factor->x;
   /* A supernode's list of rows begins with its own columns. */
-  for (int k = 0; k < (int)factor->nsuper; k++) {
+  for (int k = 0; k < (int)factor->nsuper && first[k] < end; k++) {
     const int rows = list[k + 1] - list[k], *its_row = row + list[k];
     for (int i = 0; i < rows; i++) work[i] = x[its_row[i]];
-    eliminate(rows, first[k + 1] - first[k], values + place[k], work);
+    eliminate(rows, columns_before(first, k, end), values + place[k], work);
     for (int i = 0; i < rows; i++) x[its_row[i]] = work[i];
   }
+}
+
+void implam_supernodal_backward(const cholmod_factor *factor, int end, double *x, double *work)
+{
+  const int *first = factor->super, *list = factor->pi, *place = factor->px, *row = factor->s;
+  const double *values = factor->x;
   for (int k = (int)factor->nsuper - 1; k >= 0; k--) {
-    const int columns = first[k + 1] - first[k], rows = list[k + 1] - list[k], *its_row = row + list[k];
+    const int columns = columns_before(first, k, end), rows = list[k + 1] - list[k], *its_row = row + list[k];
+    if (columns == 0) continue;
     for (int i = 0; i < rows; i++) work[i] = x[its_row[i]];
     substitute(rows, columns, values + place[k], work);
     for (int i = 0; i < columns; i++) x[its_row[i]] = work[i];
   }
+}
+
+void implam_dense_solve(int rows, const double *lower, double *x)
+{
+  eliminate(rows, rows, lower, x);
+  substitute(rows, rows, lower, x);
 }
 
 size_t implam_supernodal_work(const cholmod_factor *factor)

@@ -6,7 +6,13 @@
 /* Numbers of work space that a factor asks for: the rows of its longest supernode. */
 size_t implam_supernodal_work(const cholmod_factor *factor);
 
-/* Solves in place, right-hand side and solution in the order of the factor, which is supernodal, L L' and whole. */
-void implam_supernodal_solve(const cholmod_factor *factor, double *x, double *work);
+/* The two halves of a solve in place, with L and with L', by the columns before `end`: numbers in the order of the factor,
+   which is supernodal, L L' and whole. Forward leaves on the others what eliminating these columns leaves of them, and
+   backward begins with their solution. */
+void implam_supernodal_forward(const cholmod_factor *factor, int end, double *x, double *work);
+void implam_supernodal_backward(const cholmod_factor *factor, int end, double *x, double *work);
+
+/* Solves in place with the dense lower factor of a matrix, by columns. */
+void implam_dense_solve(int rows, const double *lower, double *x);
 
 #endif

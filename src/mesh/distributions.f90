@@ -63,7 +63,7 @@ contains
     end do
   end subroutine distribute
 
-  !> Deals cells out to ranks, those that are images of each other to one.
+  !> Deals cells out to ranks, each as much work as it has elements, those that are images of each other to one.
   subroutine deal_out_cells(mesh, ranks, first, part, error)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
@@ -75,7 +75,7 @@ contains
     integer, allocatable, intent(out) :: part(:)
     !> Set if METIS fails
     type(error_t), allocatable, intent(out) :: error
-    integer, allocatable :: row_start(:), neighbours(:), folded_start(:), folded(:), part_of_first(:)
+    integer, allocatable :: row_start(:), neighbours(:), folded_start(:), folded(:), part_of_first(:), work(:)
     integer :: cell, firsts, place(size(first))
 
     call cell_graph(mesh, row_start, neighbours)
@@ -97,7 +97,13 @@ contains
       end associate
     end do
     folded = folded(:folded_start(firsts + 1) - 1)
-    call partition_graph(folded_start, folded, ranks, part_of_first, error)
+    allocate (work(firsts), source=0)
+    do cell = 1, mesh%elements()
+      associate (its => work(place(first(mesh%element_cell(cell)))))
+        its = its + 1
+      end associate
+    end do
+    call partition_graph(folded_start, folded, ranks, part_of_first, error, work)
     if (.not. allocated(error)) part = part_of_first(place(first))
   end subroutine deal_out_cells
 

@@ -14,7 +14,7 @@ module partitions
     !> Partition of a graph into parts of equal weight, few edges being cut.
     integer(c_int32_t) function metis_partition(vertices, constraints, row_start, neighbours, vertex_weights, &
                                                 vertex_sizes, edge_weights, parts, target_weights, imbalance, &
-                                                options, edge_cut, part_of) bind(c, name='METIS_PartGraphKway')
+                                                options, edge_cut, part_of) bind(c, name='METIS_PartGraphRecursive')
       import :: c_int32_t, c_ptr
       !> Number of vertices, and of weights a vertex
       integer(c_int32_t), intent(in) :: vertices, constraints

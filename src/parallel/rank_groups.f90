@@ -22,7 +22,7 @@ module rank_groups
     !> Whether this is rank 0, which writes.
     procedure :: is_root
     !> Replaces a value by its sum over the ranks, the same on every rank.
-    generic :: sum => sum_real, sum_reals, sum_integer, sum_long
+    generic :: sum => sum_real, sum_reals, sum_table, sum_integer, sum_long
     !> Replaces a value by its greatest over the ranks.
     generic :: maximum => maximum_real, maximum_reals, maximum_integer
     !> Replaces a value by its least over the ranks.
@@ -35,7 +35,7 @@ module rank_groups
     procedure :: preceding
     !> Waits for all ranks.
     procedure :: barrier
-    procedure, private :: sum_real, sum_reals, sum_integer, sum_long
+    procedure, private :: sum_real, sum_reals, sum_table, sum_integer, sum_long
     procedure, private :: maximum_real, maximum_reals, maximum_integer, minimum_real, minimum_integer
   end type rank_group_t
 
@@ -75,6 +75,16 @@ contains
     if (self%size == 1) return
     call MPI_Allreduce(MPI_IN_PLACE, values, size(values), MPI_DOUBLE_PRECISION, MPI_SUM, self%group)
   end subroutine sum_reals
+
+  !> Sum of a table of reals over the ranks, item by item.
+  subroutine sum_table(self, values)
+    class(rank_group_t), intent(in) :: self
+    !> This rank's shares; the sums on return
+    real(wp), contiguous, intent(inout) :: values(:, :)
+
+    if (self%size == 1) return
+    call MPI_Allreduce(MPI_IN_PLACE, values, size(values), MPI_DOUBLE_PRECISION, MPI_SUM, self%group)
+  end subroutine sum_table
 
   !> Sum of an integer over the ranks.
   subroutine sum_integer(self, value)

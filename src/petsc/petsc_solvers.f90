@@ -67,7 +67,7 @@ module petsc_solvers
 contains
 
   !> Sets the pattern of the matrix, anew if there was one.
-  subroutine define(self, communicator, first_row, total_rows, row_start, columns, positive_definite, error)
+  subroutine define(self, communicator, first_row, total_rows, row_start, columns, positive_definite, error, seen)
     class(petsc_solver_t), intent(inout) :: self
     !> All ranks
     type(communicator_t), intent(in) :: communicator
@@ -83,6 +83,8 @@ contains
     logical, intent(in) :: positive_definite
     !> Raised when PETSc fails
     type(error_t), allocatable, intent(inout) :: error
+    !> Not needed: PETSc carries to other ranks what is added to their rows
+    integer, intent(in), optional :: seen(:)
 
     call self%release()
     call give_back_freed()

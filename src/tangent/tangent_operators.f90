@@ -12,8 +12,8 @@ module tangent_operators
   use section_stiffnesses, only: visit_stiffness
   use interface_states, only: interface_state_t
   use anderson_acceleration, only: anderson_t
-  use operator_assembly, only: assemble_elements, assemble_diagonal, assemble_tangents, stays_positive
-  use operator_solvers, only: choose_solver
+  use operator_assembly, only: assemble_elements, assemble_diagonal, assemble_tangents
+  use operator_solvers, only: set_solver_up
   use woodbury_updates, only: woodbury_updates_t, list_changes, gather_changes
   implicit none
   private
@@ -104,10 +104,8 @@ contains
     self%stiffness = model%elements%stiffness
     call number_equations(model%mesh, model%distribution, model%held, self%numbering, model%images)
     self%timers%profile = model%profile
-    call choose_solver(model, stays_positive(model), factorization, self%solver, error)
+    call set_solver_up(model, self%numbering, factorization, self%solver, error)
     if (allocated(error)) return
-    call self%solver%define(model%communicator, self%numbering%first_row, self%numbering%total, &
-                            self%numbering%row_start, self%numbering%columns, stays_positive(model), error)
     ! The solver has its own copy of this large list.
     deallocate (self%numbering%columns)
   end subroutine create

@@ -95,7 +95,7 @@ module dense_solvers
 contains
 
   !> Sets the order of the matrix, anew if there was one; the pattern is of no use to it.
-  subroutine define(self, communicator, first_row, total_rows, row_start, columns, positive_definite, error)
+  subroutine define(self, communicator, first_row, total_rows, row_start, columns, positive_definite, error, seen)
     class(dense_solver_t), intent(inout) :: self
     !> One rank
     type(communicator_t), intent(in) :: communicator
@@ -111,6 +111,7 @@ contains
     logical, intent(in) :: positive_definite
     !> Raised on more than one rank
     type(error_t), allocatable, intent(inout) :: error
+    integer, intent(in), optional :: seen(:)
 
     call self%release()
     if (communicator%size > 1) then

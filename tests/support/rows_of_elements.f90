@@ -7,7 +7,8 @@ module rows_of_elements
   use linear_solvers, only: linear_solver_t
   implicit none
   private
-  public :: order_of, equations_of, element_matrix, define, first_row, assemble, right_hand_side, dense_solution, spring
+  public :: order_of, equations_of, element_matrix, define, first_row, assemble, right_hand_side, dense_solution, &
+            spring, rank_of
 
   !> Each element has this many equations and shares this many with the next
   integer, parameter :: width = 7, shared = 3
@@ -45,26 +46,44 @@ contains
     end do
   end function element_matrix
 
+  !> Rank that adds an element: dealt like cards, or the one that owns its first row.
+  pure integer function rank_of(element, elements, ranks, in_blocks) result(rank)
+    integer, intent(in) :: element, elements, ranks
+    logical, intent(in), optional :: in_blocks
+
+    rank = mod(element - 1, ranks)
+    if (.not. present(in_blocks)) return
+    if (.not. in_blocks) return
+    do rank = ranks - 1, 1, -1
+      if (first_row(rank, ranks, elements) <= minval(equations_of(element))) exit
+    end do
+  end function rank_of
+
   !> Defines a solver for the rows of one rank.
-  subroutine define(solver, communicator, elements, positive_definite, error)
+  subroutine define(solver, communicator, elements, positive_definite, error, in_blocks)
     class(linear_solver_t), intent(inout) :: solver
     type(communicator_t), intent(in) :: communicator
     integer, intent(in) :: elements
     logical, intent(in) :: positive_definite
     type(error_t), allocatable, intent(inout) :: error
-    logical :: coupled(0:order_of(elements) - 1, 0:order_of(elements) - 1)
+    logical, intent(in), optional :: in_blocks
+    logical :: coupled(0:order_of(elements) - 1, 0:order_of(elements) - 1), seen(0:order_of(elements) - 1)
     integer, allocatable :: row_start(:), columns(:)
     integer :: first, last, row, e, i
 
     coupled = .false.
+    seen = .false.
     do e = 1, elements
       coupled(equations_of(e), equations_of(e)) = .true.
+      if (rank_of(e, elements, communicator%size, in_blocks) == communicator%rank) seen(equations_of(e)) = .true.
     end do
     first = first_row(communicator%rank, communicator%size, elements)
     last = first_row(communicator%rank + 1, communicator%size, elements) - 1
     row_start = [1, (1 + count(coupled(:, first:row)), row=first, last)]
     columns = [(pack([(i, i=0, order_of(elements) - 1)], coupled(:, row)), row=first, last)]
-    call solver%define(communicator, first, order_of(elements), row_start, columns, positive_definite, error)
+    seen(first:last) = .false.
+    call solver%define(communicator, first, order_of(elements), row_start, columns, positive_definite, error, &
+                       pack([(i, i=0, order_of(elements) - 1)], seen))
   end subroutine define
 
   !> First row of a rank.
@@ -74,17 +93,19 @@ contains
     first_row = rank*order_of(elements)/ranks
   end function first_row
 
-  !> Assembles the elements, dealt to the ranks like cards.
-  subroutine assemble(solver, communicator, elements, shift, scale, error)
+  !> Assembles the elements.
+  subroutine assemble(solver, communicator, elements, shift, scale, error, in_blocks)
     class(linear_solver_t), intent(inout) :: solver
     type(communicator_t), intent(in) :: communicator
     integer, intent(in) :: elements
     real(wp), intent(in) :: shift, scale
     type(error_t), allocatable, intent(inout) :: error
+    logical, intent(in), optional :: in_blocks
     integer :: e
 
     call solver%clear()
-    do e = 1 + communicator%rank, elements, communicator%size
+    do e = 1, elements
+      if (rank_of(e, elements, communicator%size, in_blocks) /= communicator%rank) cycle
       call solver%add(equations_of(e), scale*element_matrix(e, shift))
     end do
     call solver%finish_assembly(error)

@@ -1,0 +1,136 @@
+!> The equations of a border between ranks, once each rank has eliminated what is inside its own part: the sum of the
+!> ranks' Schur complements, factored densely on every rank (substructuring, Przemieniecki, AIAA J. 1, 1963).
+module border_systems
+  use communicators, only: communicator_t
+  use dense_systems, only: positive_factor_t
+  use kinds, only: wp
+  implicit none
+  private
+  public :: border_system_t
+
+  !> The border's equations.
+  type :: border_system_t
+    !> All ranks
+    type(communicator_t), private :: communicator
+    !> Rows of the border
+    integer, private :: rows = 0
+    !> Place on the border of each of this rank's rows there
+    integer, allocatable, private :: place(:)
+    !> Lower factor of this rank's Schur complement with more on its diagonal, zero above, (its rows, its rows)
+    real(wp), allocatable, private :: lower(:, :)
+    !> Factor of the sum over the ranks
+    type(positive_factor_t), private :: factor
+  contains
+    !> Sets the border's size.
+    procedure :: define
+    !> Adds the ranks' Schur complements up and factors the sum.
+    procedure :: factorize
+    !> Solves, between the two halves of the ranks' own solves.
+    procedure :: solve
+  end type border_system_t
+
+  interface
+    !> LAPACK: u u' of an upper triangle.
+    subroutine dlauum(uplo, n, a, lda, info)
+      import :: wp
+      !> 'U': an upper triangle
+      character, intent(in) :: uplo
+      !> Order, leading dimension
+      integer, intent(in) :: n, lda
+      !> The triangle, overwritten by that of the product
+      real(wp), intent(inout) :: a(lda, *)
+      !> Not 0: an argument is wrong
+      integer, intent(out) :: info
+    end subroutine dlauum
+
+    !> BLAS: a triangular matrix times several columns.
+    subroutine dtrmm(side, uplo, trans, diag, m, n, alpha, a, lda, b, ldb)
+      import :: wp
+      !> 'L': from the left; 'L': lower; 'N' or 'T'; 'N': its diagonal counts
+      character, intent(in) :: side, uplo, trans, diag
+      !> Rows and columns, leading dimensions
+      integer, intent(in) :: m, n, lda, ldb
+      !> Factor
+      real(wp), intent(in) :: alpha
+      !> The triangle
+      real(wp), intent(in) :: a(lda, *)
+      !> The columns, overwritten by the product
+      real(wp), intent(inout) :: b(ldb, *)
+    end subroutine dtrmm
+  end interface
+
+contains
+
+  !> Sets the border's size.
+  subroutine define(self, communicator, rows, place)
+    class(border_system_t), intent(inout) :: self
+    !> All ranks
+    type(communicator_t), intent(in) :: communicator
+    !> Rows of the border
+    integer, intent(in) :: rows
+    !> Place on the border of each of this rank's rows there
+    integer, intent(in) :: place(:)
+
+    self%communicator = communicator
+    self%rows = rows
+    self%place = place
+  end subroutine define
+
+  !> Adds the ranks' Schur complements up and factors the sum; called by all ranks together.
+  subroutine factorize(self, lower, more, positive)
+    class(border_system_t), intent(inout) :: self
+    !> Lower factor of this rank's Schur complement with more on its diagonal, zero above, (its rows, its rows)
+    real(wp), intent(in) :: lower(:, :)
+    !> What its diagonal has more, (its rows)
+    real(wp), intent(in) :: more(:)
+    !> Whether the sum is positive definite
+    logical, intent(out) :: positive
+    real(wp), allocatable :: matrix(:, :), product(:, :)
+    integer :: k, rows, info
+
+    rows = size(lower, 1)
+    self%lower = lower
+    ! LAPACK multiplies an upper triangle by its transpose: that of the rows in the opposite order.
+    product = lower(rows:1:-1, rows:1:-1)
+    if (rows > 0) call dlauum('U', rows, product, rows, info)
+    allocate (matrix(self%rows, self%rows), source=0.0_wp)
+    do k = 1, rows
+      associate (column => product(rows + 1 - k:1:-1, rows + 1 - k))
+        ! Places ascend, so that the lower triangle stays the lower one.
+        matrix(self%place(k:), self%place(k)) = column
+        matrix(self%place(k), self%place(k)) = column(1) - more(k)
+      end associate
+    end do
+    call self%communicator%sum(matrix)
+    call self%factor%factorize(matrix)
+    positive = self%communicator%all(self%factor%positive)
+  end subroutine factorize
+
+  !> Solves the border's equations; called by all ranks together.
+  subroutine solve(self, forces, eliminated)
+    class(border_system_t), intent(inout) :: self
+    !> This rank's right-hand sides on the border: those of the equations that it owns, else zero, (border, columns)
+    real(wp), intent(in) :: forces(:, :)
+    !> On entry what eliminating the inside of right-hand sides without border leaves on this rank's rows there, the
+    !> solution on return; of several columns solved with the lower factor, and times the upper one, (its rows, columns)
+    real(wp), intent(inout) :: eliminated(:, :)
+    real(wp), allocatable :: sums(:, :)
+    integer :: columns, rows
+
+    rows = size(eliminated, 1)
+    columns = size(eliminated, 2)
+    if (columns > 1 .and. rows > 0) &
+      call dtrmm('L', 'L', 'N', 'N', rows, columns, 1.0_wp, self%lower, rows, eliminated, rows)
+    sums = forces
+    sums(self%place, :) = sums(self%place, :) + eliminated
+    call self%communicator%sum(sums)
+    if (columns == 1) then
+      call self%factor%solve(sums(:, 1))
+    else
+      call self%factor%solve_many(sums)
+    end if
+    eliminated = sums(self%place, :)
+    if (columns > 1 .and. rows > 0) &
+      call dtrmm('L', 'L', 'T', 'N', rows, columns, 1.0_wp, self%lower, rows, eliminated, rows)
+  end subroutine solve
+end module border_systems
