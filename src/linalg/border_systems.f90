@@ -23,6 +23,8 @@ module border_systems
   contains
     !> Sets the border's size.
     procedure :: define
+    !> Takes this rank's Schur complement.
+    procedure :: take
     !> Adds the ranks' Schur complements up and factors the sum.
     procedure :: factorize
     !> Solves, between the two halves of the ranks' own solves.
@@ -76,22 +78,28 @@ contains
     self%place = place
   end subroutine define
 
-  !> Adds the ranks' Schur complements up and factors the sum; called by all ranks together.
-  subroutine factorize(self, lower, more, positive)
+  !> Takes this rank's Schur complement.
+  subroutine take(self, lower)
     class(border_system_t), intent(inout) :: self
-    !> Lower factor of this rank's Schur complement with more on its diagonal, zero above, (its rows, its rows)
-    real(wp), intent(in) :: lower(:, :)
-    !> What its diagonal has more, (its rows)
+    !> Its lower factor, with more on its diagonal, zero above, (its rows, its rows); not kept
+    real(wp), allocatable, intent(inout) :: lower(:, :)
+
+    call move_alloc(lower, self%lower)
+  end subroutine take
+
+  !> Adds the ranks' Schur complements up and factors the sum; called by all ranks together.
+  subroutine factorize(self, more, positive)
+    class(border_system_t), intent(inout) :: self
+    !> What the diagonal of this rank's Schur complement has more, (its rows)
     real(wp), intent(in) :: more(:)
     !> Whether the sum is positive definite
     logical, intent(out) :: positive
     real(wp), allocatable :: matrix(:, :), product(:, :)
     integer :: k, rows, info
 
-    rows = size(lower, 1)
-    self%lower = lower
+    rows = size(self%lower, 1)
     ! LAPACK multiplies an upper triangle by its transpose: that of the rows in the opposite order.
-    product = lower(rows:1:-1, rows:1:-1)
+    product = self%lower(rows:1:-1, rows:1:-1)
     if (rows > 0) call dlauum('U', rows, product, rows, info)
     allocate (matrix(self%rows, self%rows), source=0.0_wp)
     do k = 1, rows

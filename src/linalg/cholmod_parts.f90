@@ -90,12 +90,16 @@ contains
     integer, intent(in) :: equations(:)
     !> The symmetric matrix, shape (equations, equations)
     real(wp), intent(in) :: values(:, :)
+    integer :: rows(size(equations))
 
     if (self%communicator%size == 1) then
       call self%matrix%add(equations, values)
-    else
-      call self%matrix%add(merge(-1, self%rows%row_of(max(equations, 0)), equations < 0), values)
+      return
     end if
+    rows = merge(-1, self%rows%row_of(max(equations, 0)), equations < 0)
+    call self%matrix%add(rows, values)
+    ! An equation that this rank does not have must not pass for one left out.
+    if (any(rows < 0 .and. equations >= 0)) self%matrix%complete = .false.
   end subroutine add
 
   !> Factors the matrix; called by all ranks together.
@@ -133,7 +137,8 @@ contains
     if (outcome /= cholmod_done) return
     allocate (lower(size(more), size(more)))
     call cholmod_border(self%package, lower)
-    call self%border%factorize(lower, more, positive)
+    call self%border%take(lower)
+    call self%border%factorize(more, positive)
     if (.not. positive) outcome = cholmod_not_positive
   end subroutine factorize_all
 

@@ -40,8 +40,6 @@ module cholmod_solvers
     logical, private :: factored = .false.
     !> Finds parts of the structure that can move freely
     type(mechanism_t), private :: mechanism
-    !> All ranks
-    type(communicator_t), private :: communicator
     !> MUMPS with the present factor, if CHOLMOD could not make it
     class(linear_solver_t), allocatable, private :: other
   contains
@@ -90,7 +88,6 @@ contains
       return
     end if
     call settle_blas()
-    self%communicator = communicator
     self%first_row = first_row
     self%total = total_rows
     if (present(seen)) then
@@ -132,7 +129,7 @@ contains
 
     if (.not. self%part%matrix%complete) &
       call fail(error, exit_internal, 'An element couples unknowns that the pattern of the matrix does not couple.')
-    call self%communicator%agree(error)
+    call self%part%communicator%agree(error)
   end subroutine finish_assembly
 
   !> Factors the matrix as it was assembled last. Which package does it follows from the matrix alone, so that a run
@@ -179,8 +176,9 @@ contains
     call self%mechanism%begin(values)
     do pass = 1, self%mechanism%passes
       call self%part%solve(1, self%mechanism%right_hand_side(), values, outcome)
-      found = outcome /= cholmod_done
-      if (.not. found) call self%mechanism%judge(self%communicator, values, found)
+      ! Judging asks all ranks, so they must agree that there is something to judge.
+      found = self%part%communicator%any(outcome /= cholmod_done)
+      if (.not. found) call self%mechanism%judge(self%part%communicator, values, found)
       if (found) exit
     end do
   end subroutine find_mechanism
@@ -193,15 +191,15 @@ contains
     integer, allocatable :: row_start(:), columns(:), equation(:)
     integer :: row, k
 
-    call new_petsc_solver(self%communicator, self%other, error)
+    call new_petsc_solver(self%part%communicator, self%other, error)
     if (allocated(error)) return
-    if (self%communicator%size == 1) then
+    if (self%part%communicator%size == 1) then
       call self%part%matrix%both_triangles(row_start, columns)
-      call self%other%define(self%communicator, 0, self%total, row_start, columns, .false., error)
+      call self%other%define(self%part%communicator, 0, self%total, row_start, columns, .false., error)
       equation = [(row, row=0, self%total - 1)]
     else
-      call self%other%define(self%communicator, self%first_row, self%total, self%row_start, self%columns, .false., &
-                             error)
+      call self%other%define(self%part%communicator, self%first_row, self%total, self%row_start, self%columns, &
+                             .false., error)
       equation = self%part%rows%equation
     end if
     if (allocated(error)) return
@@ -281,7 +279,8 @@ contains
     end if
     call self%part%solve(number, right_hand_sides, solutions, outcome)
     self%solves = self%solves + number
-    if (.not. self%communicator%all(outcome == cholmod_done .and. all(ieee_is_finite(solutions(:numbers))))) &
+    if (.not. self%part%communicator%all(outcome == cholmod_done .and. &
+                                         all(ieee_is_finite(solutions(:numbers))))) &
       call fail(error, exit_convergence, 'The linear equations have no finite solution.')
   end subroutine apply
 
