@@ -58,7 +58,7 @@ contains
     companion%velocity = stepper%now%impactor%velocity
     figures = figures_of(model, stepper%now%interfaces)
     companion%area = sum(figures%area)
-    call stepper%operator%solver%release()
+    call stepper%operator%release()
   end subroutine run_companion
 
   !> The deck of a companion.

@@ -380,7 +380,7 @@ contains
     call log_costs(self%timers, self%stepper%operator, self%log)
     call self%log%note('Results: '//self%base//'_history.csv, '//self%base//'.xdmf, '//self%base//summary_ending// &
                        ', '//self%base//'.log')
-    call self%stepper%operator%solver%release()
+    call self%stepper%operator%release()
   end subroutine finalize
 
   !> Says what the run has come to, also one that has been stopped or has failed: in NAME_summary.json, and rounded for

@@ -29,6 +29,8 @@ module impact_coupling
   contains
     !> Force on the plate in its equation of motion.
     procedure :: load
+    !> True: one solution finds the load.
+    procedure :: is_settled
     !> Solves for the force, and lets the plate respond.
     procedure :: solve
     !> Finds the force.
@@ -68,6 +70,14 @@ contains
 
     load = self%share*self%unknown + self%inherited
   end function load
+
+  !> True: one solution finds the load. The mean force over a step is the plate's load only for alpha_f = 1/2.
+  pure logical function is_settled(self)
+    !> The impactor's side of the step
+    class(impact_coupling_t), intent(in) :: self
+
+    is_settled = .not. self%mean .or. abs(self%alpha_f - 0.5_wp) <= 0
+  end function is_settled
 
   !> Solves for the impact force, given the correction of the plate for the force assumed, and adds the
   !> plate's response to the change of the force.

@@ -114,7 +114,7 @@ contains
     call stepper%visit(transfer, model, error)
     if (allocated(error)) return
     timers = stepper%operator%timers
-    call stepper%operator%solver%release()
+    call stepper%operator%release()
     scene = model%scene
     do zone = 1, size(extents, 2)
       scene%delaminations(zone)%zone = extents(:, zone)

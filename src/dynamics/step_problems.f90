@@ -208,7 +208,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     real(wp), allocatable :: residual(:, :), correction(:, :)
     real(wp) :: norm, before, energy
-    logical :: pressures_new, softened
+    logical :: pressures_new, softened, in_plane
 
     converged = .false.
     call new%start_from(model, old)
@@ -216,6 +216,7 @@ contains
     pressures_new = .false.
     problem%begun = 0
     before = huge(before)
+    if (allocated(operator%membrane)) call operator%membrane%begin()
     call problem%begin(model, operator, old, new)
     do
       call operator%timers%start('element forces')
@@ -250,15 +251,25 @@ contains
         if (new%contact_iterations < equilibrium%max_iterations) cycle
       end if
       if (.not. norm <= huge(norm) .or. new%iterations - problem%begun >= equilibrium%max_iterations) exit
-      call problem%prepare_operator(model, operator, new, error)
-      ! Only a further iteration asks what the last one showed.
-      call operator%anderson%note(correction)
-      if (.not. allocated(error)) call operator%correct(model, residual, correction, error)
+      in_plane = .false.
+      ! The impact force is found by the whole operator.
+      if (allocated(operator%membrane) .and. new%iterations > 0) &
+        in_plane = operator%membrane%suffices(model, operator%numbering, residual, norm, equilibrium%tolerance)
+      if (in_plane) then
+        call operator%membrane%correct(model, operator%timers, residual, correction, error)
+        ! A correction by another operator is not to be compared with.
+        call operator%anderson%pause()
+      else
+        call problem%prepare_operator(model, operator, new, error)
+        ! Only a further iteration asks what the last one showed.
+        call operator%anderson%note(correction)
+        if (.not. allocated(error)) call operator%correct(model, residual, correction, error)
+      end if
       if (allocated(error)) then
         if (problem%curable .and. error%code == exit_convergence) deallocate (error)
         return
       end if
-      call problem%improve(model, operator, old, new, residual, correction, error)
+      if (.not. in_plane) call problem%improve(model, operator, old, new, residual, correction, error)
       if (allocated(error)) then
         ! Numbers have run away, or the operator is not positive: a shorter step may cure it.
         deallocate (error)

@@ -12,6 +12,7 @@ module time_stepping
   use models, only: model_t
   use states, only: state_t, new_state
   use tangent_operators, only: tangent_operator_t
+  use operator_restarts, only: visit_operator
   use step_controllers, only: step_controller_t, retries, shrinks
   use step_limits, only: impactor_limit, growth_limit, has_gear
   use step_problems, only: solve_step
@@ -364,9 +365,9 @@ contains
     if (model%scene%has_static) then
       self%controller%wanted = 1.0_wp/self%stepping%static_steps
     else
-      ! Softening points take many solves in an iteration, the fewer the better the operator knows them.
-      lasting = self%now%iterations
-      if (self%operator%condenses) lasting = self%operator%solves - self%solves_begun
+      ! An iteration may take many solves, or none.
+      lasting = merge(self%operator%solves - self%solves_begun, self%now%iterations, &
+                      self%operator%condenses .or. allocated(self%operator%membrane))
       call self%controller%accept(self%stepping, step, self%now%iterations, lasting - self%operator%switches, change)
       if (model%scene%has_crack_bands()) call self%controller%heed_plies(self%stepping, self%haste)
       if (follows_error(self%stepping%adapt)) &
@@ -394,6 +395,6 @@ contains
     call self%controller%visit(archive)
     if (allocated(self%step_error%share)) call self%step_error%visit(archive, model)
     call archive%item('stepper/rejected', self%rejected)
-    call self%operator%visit(archive, model, error)
+    call visit_operator(self%operator, archive, model, error)
   end subroutine visit
 end module time_stepping

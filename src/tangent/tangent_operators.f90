@@ -4,17 +4,16 @@
 module tangent_operators
   use kinds, only: wp
   use errors, only: error_t
-  use archives, only: archive_t
   use timers, only: timer_set_t
   use linear_solvers, only: linear_solver_t
   use numberings, only: numbering_t, number_equations
   use models, only: model_t
-  use section_stiffnesses, only: visit_stiffness
   use interface_states, only: interface_state_t
   use anderson_acceleration, only: anderson_t
   use operator_assembly, only: assemble_elements, assemble_diagonal, assemble_tangents
+  use membrane_operators, only: membrane_operator_t, create_membrane_operator
   use operator_solvers, only: set_solver_up
-  use woodbury_updates, only: woodbury_updates_t, list_changes, gather_changes
+  use woodbury_updates, only: woodbury_updates_t, list_changes
   implicit none
   private
   public :: tangent_operator_t
@@ -43,16 +42,14 @@ module tangent_operators
     real(wp), allocatable :: stiffness(:, :, :)
     !> Diagonal of the operator, (5, points)
     real(wp), allocatable :: diagonal(:, :)
-    !> Displacement under a unit force of the impactor, (5, points)
-    real(wp), allocatable :: response(:, :)
-    !> That response without the changes since the factorization, (5, points)
-    real(wp), allocatable :: fresh_response(:, :)
-    !> Stiffness added to the three jumps of each point when factored, (3, points)
-    real(wp), allocatable :: added(:, :)
-    !> The same with the changes followed since then, (3, points)
-    real(wp), allocatable :: present(:, :)
+    !> Displacement under a unit force of the impactor, and without the changes since the factorization, (5, points)
+    real(wp), allocatable :: response(:, :), fresh_response(:, :)
+    !> Stiffness added to the three jumps of each point when factored, and with the changes since then, (3, points)
+    real(wp), allocatable :: added(:, :), present(:, :)
     !> Changes of ties and contacts since then
     type(woodbury_updates_t) :: changes
+    !> The operator of the motion in the plane alone, where that is worth having
+    type(membrane_operator_t), allocatable :: membrane
     !> What the iterations of the present step have shown
     type(anderson_t) :: anderson
     !> Deflection of the struck point at which the tangent was taken
@@ -80,8 +77,11 @@ module tangent_operators
     procedure :: find_columns
     procedure :: find_response
     procedure :: follow_changes
-    !> Saves what is needed to make the same factor again, or loads it and makes it.
-    procedure :: visit
+    !> Factors what has been assembled, and puts changes since then in force.
+    procedure :: factorize
+    procedure :: put_in_force
+    !> Frees the factors.
+    procedure :: release
   end type tangent_operator_t
 
 contains
@@ -95,11 +95,11 @@ contains
     integer, intent(in) :: factorization
     !> Set if the solver cannot be set up
     type(error_t), allocatable, intent(out) :: error
-    integer :: points
 
-    points = size(model%distribution%points)
-    allocate (self%displacement(5, points), self%response(5, points), self%diagonal(5, points), source=0.0_wp)
-    allocate (self%added(3, points), source=0.0_wp)
+    allocate (self%displacement(5, size(model%distribution%points)), source=0.0_wp)
+    self%response = self%displacement
+    self%diagonal = self%displacement
+    self%added = self%displacement(:3, :)
     self%present = self%added
     self%stiffness = model%elements%stiffness
     call number_equations(model%mesh, model%distribution, model%held, self%numbering, model%images)
@@ -108,6 +108,7 @@ contains
     if (allocated(error)) return
     ! The solver has its own copy of this large list.
     deallocate (self%numbering%columns)
+    call create_membrane_operator(model, factorization, self%membrane, error)
   end subroutine create
 
   !> Assembles and factors the operator at a displacement, and finds the response to a unit force.
@@ -140,14 +141,14 @@ contains
     call interfaces%added_stiffness(model, self%diagonal, stiffness_factor, self%added)
     self%present = self%added
     call self%timers%stop('assembly')
-    call factorize(self, model, error)
+    call self%factorize(model, error)
   end subroutine renew
 
   !> Factors what has been assembled, the stiffness added to the jumps included, and finds the response
   !> to a unit force.
   subroutine factorize(self, model, error)
     !> The operator
-    type(tangent_operator_t), intent(inout) :: self
+    class(tangent_operator_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Set if the operator is singular
     type(error_t), allocatable, intent(inout) :: error
@@ -156,6 +157,8 @@ contains
     call self%solver%finish_assembly(error)
     call self%timers%start('factorization')
     if (.not. allocated(error)) call self%solver%factorize(error)
+    if (allocated(self%membrane) .and. .not. allocated(error)) &
+      call self%membrane%renew(model, self%stiffness, self%displacement, self%stiffness_factor, self%mass_factor, error)
     call self%timers%stop('factorization')
     self%ready = .not. allocated(error)
     if (.not. self%ready) return
@@ -209,7 +212,7 @@ contains
                self%changes%kept + count([(self%changes%column_of(equations(k)) == 0, k=1, size(equations))]) &
                <= min(most_columns, int(most_numbers/self%numbering%total))
     if (.not. possible .or. self%changes%same(equations, stiffness)) return
-    call put_in_force(self, model, equations, stiffness, error)
+    call self%put_in_force(model, equations, stiffness, error)
     if (allocated(error)) return
     self%switches = self%switches + 1
     call self%anderson%forget()
@@ -218,7 +221,7 @@ contains
   !> Puts changes in force, after finding the columns that they lack, and finds the response to a unit force anew.
   subroutine put_in_force(self, model, equations, stiffness, error)
     !> The operator
-    type(tangent_operator_t), intent(inout) :: self
+    class(tangent_operator_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Equations changed, the same on every rank, ascending
     integer, intent(in) :: equations(:)
@@ -326,73 +329,12 @@ contains
     call model%halo%update(solution)
   end subroutine solve_factor
 
-  !> Saves what is needed to make the very same factor again, as it shapes the iterations, or loads it and makes it.
-  subroutine visit(self, archive, model, error)
+  !> Frees the factors.
+  subroutine release(self)
     !> The operator
     class(tangent_operator_t), intent(inout) :: self
-    !> Where to or where from
-    class(archive_t), intent(inout) :: archive
-    type(model_t), intent(in) :: model
-    !> Set if the factor cannot be made again
-    type(error_t), allocatable, intent(out) :: error
-    real(wp), allocatable :: changed(:, :)
-    integer, allocatable :: columns(:)
-    integer :: ranks
 
-    call archive%item('operator/ready', self%ready)
-    call archive%item('operator/stiffness_factor', self%stiffness_factor)
-    call archive%item('operator/mass_factor', self%mass_factor)
-    allocate (changed, mold=self%added)
-    call self%changes%spread_out(self%numbering, changed)
-    associate (share => model%distribution)
-      call archive%field('operator/displacement', share%points(:share%owned), model%mesh%points(), self%displacement)
-      if (model%has_bonds) then
-        call archive%field('operator/added', share%points(:share%owned), model%mesh%points(), self%added)
-        call archive%field('operator/changed', share%points(:share%owned), model%mesh%points(), changed)
-      end if
-    end associate
-    if (model%scene%has_ply_damage) call visit_stiffness(archive, 'operator/stiffness', model, self%stiffness)
-    ranks = model%communicator%size
-    columns = self%changes%list()
-    call archive%item('operator/ranks', ranks)
-    call archive%item('operator/columns', columns)
-    ! On another number of ranks the equations have other numbers: only the columns in use are found again.
-    if (ranks /= model%communicator%size) columns = [integer ::]
-    if (archive%loading .and. self%ready) call remake(self, model, columns, changed, error)
-    call archive%item('operator/factorizations', self%factorizations)
-    call archive%item('operator/solves', self%solves)
-  end subroutine visit
-
-  !> Makes the factor again from what was loaded.
-  subroutine remake(self, model, columns, changed, error)
-    !> The operator
-    type(tangent_operator_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
-    !> Equation and company of each column found since, (2 columns)
-    integer, intent(in) :: columns(:)
-    !> Changes in force, zero where there is none, (3, points)
-    real(wp), intent(in) :: changed(:, :)
-    !> Set if it cannot be made
-    type(error_t), allocatable, intent(inout) :: error
-    integer, allocatable :: equations(:)
-    real(wp), allocatable :: stiffness(:)
-    integer :: k
-
-    self%present = self%added
-    call model%halo%update(self%displacement)
-    self%deflection = model%deflection(self%displacement)
-    call self%solver%clear()
-    call assemble_elements(model, self%stiffness, self%numbering, self%displacement, self%stiffness_factor, &
-                           self%mass_factor, self%solver, self%diagonal)
-    call factorize(self, model, error)
-    k = 1
-    do while (k < size(columns) .and. .not. allocated(error))
-      call find_columns(self, model, columns(k:k + 2*columns(k + 1) - 2:2), error)
-      k = k + 2*columns(k + 1)
-    end do
-    if (.not. allocated(error) .and. model%has_bonds) then
-      call gather_changes(model%communicator, self%numbering, changed(:, :self%numbering%owned), equations, stiffness)
-      if (size(equations) > 0) call put_in_force(self, model, equations, stiffness, error)
-    end if
-  end subroutine remake
+    call self%solver%release()
+    if (allocated(self%membrane)) call self%membrane%release()
+  end subroutine release
 end module tangent_operators

@@ -180,7 +180,7 @@ contains
     products(2) = model%product(mode, force)
     call model%communicator%sum(products)
     frequency = sqrt(products(1)/products(2))
-    call operator%solver%release()
+    call operator%release()
   end subroutine find_mode
 
   !> Puts a plate that has been started into a shape from which it is released.

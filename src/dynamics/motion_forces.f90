@@ -1,0 +1,63 @@
+!> Forces of the equation of motion (Eq. 1, generalised alpha), weighed between the ends of a step; all unknowns in one
+!> row, which the compiler takes several at a time.
+module motion_forces
+  use kinds, only: wp
+  implicit none
+  private
+  public :: weigh, weigh_start, weigh_rest
+
+contains
+
+  !> Forces against the motion.
+  pure subroutine weigh(number, weights, new_inertia, old_inertia, new_internal, old_internal, residual)
+    !> Number of unknowns
+    integer, intent(in) :: number
+    !> Weights of the four forces
+    real(wp), intent(in) :: weights(4)
+    !> The forces at the end and at the start of the step
+    real(wp), intent(in) :: new_inertia(number), old_inertia(number), new_internal(number), old_internal(number)
+    !> Their sum with the sign turned
+    real(wp), intent(inout) :: residual(number)
+    integer :: i
+
+    do i = 1, number
+      residual(i) = -weights(1)*new_inertia(i) - weights(2)*old_inertia(i) - weights(3)*new_internal(i) &
+                    - weights(4)*old_internal(i)
+    end do
+  end subroutine weigh
+
+  !> Forces against a plate that stays where it is, with Newmark's acceleration for that.
+  pure subroutine weigh_start(number, weights, momentum, inertia, internal, residual)
+    !> Number of unknowns
+    integer, intent(in) :: number
+    !> Weights of the first two
+    real(wp), intent(in) :: weights(2)
+    !> Mass times velocity and acceleration, and internal forces, at the start of the step
+    real(wp), intent(in) :: momentum(number), inertia(number), internal(number)
+    !> Their sum with the sign that a residual has
+    real(wp), intent(inout) :: residual(number)
+    integer :: i
+
+    do i = 1, number
+      residual(i) = weights(1)*momentum(i) + weights(2)*inertia(i) - internal(i)
+    end do
+  end subroutine weigh_start
+
+  !> Internal forces at the end of a step, as the equation of motion leaves them.
+  pure subroutine weigh_rest(number, weights, new_inertia, old_inertia, old_internal, new_internal)
+    !> Number of unknowns
+    integer, intent(in) :: number
+    !> Weights of inertia and internal forces, at the end and at the start of the step
+    real(wp), intent(in) :: weights(4)
+    !> The other forces
+    real(wp), intent(in) :: new_inertia(number), old_inertia(number), old_internal(number)
+    !> Loads on entry, internal forces at the end of the step on return
+    real(wp), intent(inout) :: new_internal(number)
+    integer :: i
+
+    do i = 1, number
+      new_internal(i) = (new_internal(i) - weights(1)*new_inertia(i) - weights(2)*old_inertia(i) &
+                         - weights(4)*old_internal(i))/weights(3)
+    end do
+  end subroutine weigh_rest
+end module motion_forces
