@@ -4,6 +4,7 @@ import argparse
 import os
 import pathlib
 import re
+import statistics
 import subprocess
 import tempfile
 
@@ -12,10 +13,10 @@ from bench import DECK, ENVIRONMENT, PHASE
 PANEL = pathlib.Path(__file__).parents[2]/'input/experiments/t700_m21_25J.nml'
 
 
-def decks():
+def decks(steps):
     """Names and texts of the decks."""
     for kinematics, elements in (('linear', 131), ('von_karman', 100)):
-        yield kinematics, DECK.format(kinematics=kinematics, elements=elements, step=1e-6, end=100e-6, more='&solver /')
+        yield kinematics, DECK.format(kinematics=kinematics, elements=elements, step=1e-6, end=steps*1e-6, more='&solver /')
     yield 'panel', re.sub(r'end=\S+', 'end=3.6e-4', PANEL.read_text())
 
 
@@ -34,11 +35,16 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('program')
     parser.add_argument('--factorization', default='automatic', help='of two ranks')
+    parser.add_argument('--steps', type=int, default=300, help='of the plates')
+    parser.add_argument('--repeat', type=int, default=3, help='runs of each, in turns; medians are printed')
     arguments = parser.parse_args()
     program = os.path.abspath(arguments.program)
-    for name, text in decks():
-        runs = [phases_of(program, ranks, text.replace('&solver', f"&solver factorization='{kind}'"))
-                for ranks, kind in ((1, 'automatic'), (2, arguments.factorization))]
+    for name, text in decks(arguments.steps):
+        runs = [[], []]
+        for _ in range(arguments.repeat):
+            for ranks, kind in ((1, 'automatic'), (2, arguments.factorization)):
+                runs[ranks - 1].append(phases_of(program, ranks, text.replace('&solver', f"&solver factorization='{kind}'")))
+        runs = [{part: statistics.median(run[part] for run in same) for part in same[0]} for same in runs]
         ratios = {part: runs[0][part]/runs[1][part] for part in ('steps', 'solve', 'factorization', 'element forces')}
         rest = [run['steps'] - run['factorization'] - run['assembly'] for run in runs]
         print(f'{name}: steps {runs[0]["steps"]:.1f} and {runs[1]["steps"]:.1f} s, one over two',
