@@ -1,18 +1,18 @@
 #!/usr/bin/env python3
-"""What transverse shear bears of the force on the 25 J panel, and its stresses in the plies (doc/manual/experiments.md).
+"""What transverse shear bears of the force on the 25 J panel (doc/manual/experiments.md).
 Usage: panel_shear.py FOLDER
 
-Reads what measured_panels.py IMPLAM 25J FOLDER output%fields='stress','ply_damage' output%fields_every=2e-4 has left, and
-prints a row for each time: the force, then for rings about the struck point
+Reads what measured_panels.py has left there of a run of 25J with output%fields='stress','ply_damage' and
+output%fields_every=2e-4. Prints a row for each time: the force, then for rings about the struck point
 
-- the force that transverse shear bears there, in kN: plies add up their stresses on a circle. Slowly, the force is this
-  and the part of membrane forces along the slope;
+- the force that transverse shear bears there, in kN: plies add up their stresses on a circle. Slowly, the force is
+  this and the part of membrane forces along the slope;
 - the radial membrane force, in N/mm;
 - root mean square and largest size of s23 over all plies, in MPa.
 
-Plies of a cell have the stresses of its middle. Rings begin 5.5 mm from the struck point: nearer, within the nose's contact
-of 3 to 3.6 mm and half a thickness of the panel, the load spreads through the thickness, of which plate theory knows
-nothing. Needs h5py."""
+Plies of a cell have the stresses of its middle. Rings begin 5.5 mm from the struck point: nearer, within the nose's
+contact of 3 to 3.6 mm and half a thickness of the panel, the load spreads through the thickness, of which plate
+theory knows nothing. Needs h5py."""
 
 import sys
 from pathlib import Path
