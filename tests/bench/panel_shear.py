@@ -1,0 +1,72 @@
+#!/usr/bin/env python3
+"""What transverse shear bears of the force on the 25 J panel (doc/manual/experiments.md).
+Usage: panel_shear.py FOLDER
+
+Reads what measured_panels.py has left there of a run of 25J with output%fields='stress','ply_damage' and
+output%fields_every=2e-4. Prints a row for each time: the force, then for rings about the struck point
+
+- the force that transverse shear bears there, in kN: plies add up their stresses on a circle. Slowly, the force is
+  this and the part of membrane forces along the slope;
+- the radial membrane force, in N/mm;
+- root mean square and largest size of s23 over all plies, in MPa.
+
+Plies of a cell have the stresses of its middle. Rings begin 5.5 mm from the struck point: nearer, within the nose's
+contact of 3 to 3.6 mm and half a thickness of the panel, the load spreads through the thickness, of which plate
+theory knows nothing. Needs h5py."""
+
+import sys
+from pathlib import Path
+
+import h5py
+import numpy as np
+from measured_panels import rows_of, value_at
+
+RINGS = ((5.5e-3, 8e-3), (8e-3, 11e-3), (11e-3, 16e-3), (16e-3, 24e-3))
+ANGLES = (0, 0, 45, 45, 90, 90, -45, -45, -45, -45, 90, 90, 45, 45, 0, 0)
+THICKNESS = 0.26e-3
+
+
+def ply_forces(stresses, angle, away):
+    """Shear force and membrane force of a ply along directions in the plane, per length."""
+    along = away[:, 0] * np.cos(np.radians(angle)) + away[:, 1] * np.sin(np.radians(angle))
+    across = away[:, 1] * np.cos(np.radians(angle)) - away[:, 0] * np.sin(np.radians(angle))
+    shear = along * stresses["tau13"] + across * stresses["tau23"]
+    membrane = along**2 * stresses["sigma11"] + across**2 * stresses["sigma22"] + 2 * along * across * stresses["tau12"]
+    return THICKNESS * shear, THICKNESS * membrane
+
+
+def ring_figures(mesh, cells, ring):
+    """Force borne by shear, radial membrane force, root mean square and largest s23."""
+    places = mesh["coordinates"][()][mesh["connectivity"][()].reshape(len(mesh["cells/first_ply"]), -1)]
+    middles = places.mean(axis=1)[:, :2]
+    distances = np.hypot(*middles.T)
+    areas = np.ptp(places[:, :, 0], axis=1) * np.ptp(places[:, :, 1], axis=1)
+    in_ring = (distances >= ring[0]) & (distances < ring[1])
+    borne, radial, squares, largest = 0.0, 0.0, [], 0.0
+    for ply, angle in enumerate(ANGLES, 1):
+        of_ply = in_ring & (mesh["cells/first_ply"][()] <= ply) & (mesh["cells/last_ply"][()] >= ply)
+        stresses = {name: cells[f"ply_{ply}_{name}"][()][of_ply]
+                    for name in ("sigma11", "sigma22", "tau12", "tau13", "tau23")}
+        shear, membrane = ply_forces(stresses, angle, middles[of_ply] / distances[of_ply, None])
+        borne += 2 * np.pi * np.average(shear * distances[of_ply], weights=areas[of_ply])
+        radial += np.average(membrane, weights=areas[of_ply])
+        squares.append(np.average(stresses["tau23"]**2, weights=areas[of_ply]))
+        largest = max(largest, np.abs(stresses["tau23"]).max())
+    return abs(borne) / 1e3, radial / 1e3, np.mean(squares)**0.5 / 1e6, largest / 1e6
+
+
+def main(folder):
+    """Print the table."""
+    rows = rows_of(next(folder.glob("*_history.csv")))
+    history = [row["time"] for row in rows], [row["force"] for row in rows]
+    print("time, ms | force, kN |" + " |".join(f" {1e3*ring[0]:g}-{1e3*ring[1]:g} mm" for ring in RINGS))
+    with h5py.File(next(folder.glob("*_25J.h5"))) as file:
+        for now in (file["times"][name] for name in sorted(file["times"])):
+            mesh = file["meshes"][max(file["meshes"])]
+            figures = [ring_figures(mesh, now["cells"], ring) for ring in RINGS]
+            print(f"{1e3*now['time'][()]:.2f} | {value_at(now['time'][()], *history)/1e3:.2f} |",
+                  " | ".join("{:.2f} {:.0f} {:.0f} {:.0f}".format(*values) for values in figures))
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))
