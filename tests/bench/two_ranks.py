@@ -43,7 +43,8 @@ def main():
         runs = [[], []]
         for _ in range(arguments.repeat):
             for ranks, kind in ((1, 'automatic'), (2, arguments.factorization)):
-                runs[ranks - 1].append(phases_of(program, ranks, text.replace('&solver', f"&solver factorization='{kind}'")))
+                deck = text.replace('&solver', f"&solver factorization='{kind}'")
+                runs[ranks - 1].append(phases_of(program, ranks, deck))
         runs = [{part: statistics.median(run[part] for run in same) for part in same[0]} for same in runs]
         ratios = {part: runs[0][part]/runs[1][part] for part in ('steps', 'solve', 'factorization', 'element forces')}
         rest = [run['steps'] - run['factorization'] - run['assembly'] for run in runs]
