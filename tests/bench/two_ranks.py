@@ -16,7 +16,8 @@ PANEL = pathlib.Path(__file__).parents[2]/'input/experiments/t700_m21_25J.nml'
 def decks(steps):
     """Names and texts of the decks."""
     for kinematics, elements in (('linear', 131), ('von_karman', 100)):
-        yield kinematics, DECK.format(kinematics=kinematics, elements=elements, step=1e-6, end=steps*1e-6, more='&solver /')
+        yield kinematics, DECK.format(kinematics=kinematics, elements=elements, step=1e-6, end=steps*1e-6,
+                                      more='&solver /')
     yield 'panel', re.sub(r'end=\S+', 'end=3.6e-4', PANEL.read_text())
 
 
