@@ -86,7 +86,8 @@ contains
     shear = law%stiffness_shear*(s1**2 + s2**2)/2
     energy = shear + law%stiffness_opening*n**2/2
     share = shear/energy
-    if (share > 0) &
+    ! A power takes longer than all the rest.
+    if (share > 0 .and. abs(law%toughness_shear - law%toughness_opening) > 0) &
       toughness = toughness*(1 + (law%toughness_shear/law%toughness_opening - 1)*share**law%mixing_exponent)
     unit_ratio = sqrt(law%failure_ratio*energy/toughness)
     reach%size = size

@@ -210,7 +210,7 @@ contains
     step = merge(1.0_wp/(1024*self%stepping%static_steps), self%stepping%time%step_min, model%scene%has_static)
   end function smallest_step
 
-  !> Tries one time step. One that fails or bursts is tried again with the operator of its start, if it had another.
+  !> Tries one time step. One that fails or bursts is tried again, and the next begins, with the operator of its start.
   subroutine try_step(self, model, event, step, converged, error)
     !> The time stepper
     class(time_stepper_t), intent(inout) :: self
@@ -250,6 +250,7 @@ contains
       if (converged .or. due .or. allocated(error)) exit
       due = .true.
     end do
+    if (problem%bursts) self%operator%ready = .false.
     ! Steps of the smallest length are taken as they are: the energy watch tells what they create.
     self%haste = max(problem%rounds%haste, self%trial%plies%haste)
     if (converged .and. self%haste > 1) converged = step <= self%smallest_step(model)*(1 + 1.0e-9_wp)
@@ -365,7 +366,6 @@ contains
     if (model%scene%has_static) then
       self%controller%wanted = 1.0_wp/self%stepping%static_steps
     else
-      ! An iteration may take many solves, or none.
       lasting = merge(self%operator%solves - self%solves_begun, self%now%iterations, &
                       self%operator%condenses .or. allocated(self%operator%membrane))
       call self%controller%accept(self%stepping, step, self%now%iterations, lasting - self%operator%switches, change)

@@ -54,6 +54,8 @@ def main(arguments):
     text = (DECKS / f"t700_m21_{arguments[1]}.nml").read_text(encoding="utf-8")
     given, folder = arguments[3:], Path(arguments[2])
     base = run(arguments, folder / "as_it_is", given)
+    if base is None:
+        sys.exit(f"The deck as it is did not end: see {folder / 'as_it_is'}.")
     print("| 10 % more of | peak force | largest displacement | projected area |\n" + "|---"*4 + "|")
     print(f"| none | {base[0]/1e3:.2f} kN | {1e3*base[1]:.2f} mm | {1e6*base[2]:.0f} mm2 |", flush=True)
     for change in changes(text):
