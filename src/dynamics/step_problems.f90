@@ -214,9 +214,9 @@ contains
     call new%start_from(model, old)
     allocate (residual, correction, mold=old%motion%displacement)
     pressures_new = .false.
+    in_plane = .false.
     problem%begun = 0
     before = huge(before)
-    if (allocated(operator%membrane)) call operator%membrane%begin()
     call problem%begin(model, operator, old, new)
     do
       call operator%timers%start('element forces')
@@ -251,10 +251,11 @@ contains
         if (new%contact_iterations < equilibrium%max_iterations) cycle
       end if
       if (.not. norm <= huge(norm) .or. new%iterations - problem%begun >= equilibrium%max_iterations) exit
-      in_plane = .false.
-      ! The impact force is found by the whole operator.
-      if (allocated(operator%membrane) .and. new%iterations > 0) &
+      ! The impact force is found by the whole operator, and so is what a correction in the plane leaves.
+      if (allocated(operator%membrane) .and. new%iterations > 0) then
+        operator%membrane%fails = operator%membrane%fails .or. in_plane
         in_plane = operator%membrane%suffices(model, operator%numbering, residual, norm, equilibrium%tolerance)
+      end if
       if (in_plane) then
         call operator%membrane%correct(model, operator%timers, residual, correction, error)
         ! A correction by another operator is not to be compared with.

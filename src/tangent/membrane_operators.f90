@@ -9,7 +9,7 @@ module membrane_operators
   use models, only: model_t
   use numberings, only: numbering_t, number_equations
   use operator_assembly, only: assemble_elements
-  use operator_solvers, only: set_solver_up
+  use operator_solvers, only: set_solver_up, solve_field
   use plate_options, only: kinematics_von_karman
   use timers, only: timer_set_t
   implicit none
@@ -27,15 +27,11 @@ module membrane_operators
     class(linear_solver_t), allocatable, private :: solver
     !> Factors of stiffness and mass in it; none yet: 0
     real(wp), private :: stiffness_factor = 0, mass_factor = 0
-    !> True once a correction has been tried in the present step
-    logical, private :: tried = .false.
     !> True once one did not suffice: none is tried before the whole operator is renewed
     logical :: fails = .false.
   contains
     !> Factors the operator, if it is not what it was.
     procedure :: renew
-    !> Begins a step.
-    procedure :: begin
     !> True where a correction in the plane should do.
     procedure :: suffices
     !> Correction of the displacement for a residual.
@@ -107,19 +103,11 @@ contains
     self%mass_factor = mass_factor
   end subroutine renew
 
-  !> Begins a step.
-  pure subroutine begin(self)
-    !> The operator
-    class(membrane_operator_t), intent(inout) :: self
-
-    self%tried = .false.
-  end subroutine begin
-
   !> True where forces out of the plane are within the tolerance and those in the plane are not, the same on every rank.
-  !> To be asked of each residual that is over it: one that is left by a correction in the plane ends these.
+  !> To be asked of a residual that is over it.
   logical function suffices(self, model, numbering, residual, norm, tolerance)
     !> The operator
-    class(membrane_operator_t), intent(inout) :: self
+    class(membrane_operator_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> Equations of all unknowns
     type(numbering_t), intent(in) :: numbering
@@ -130,7 +118,6 @@ contains
     real(wp) :: squares(3), forces(5, numbering%owned)
 
     suffices = .false.
-    self%fails = self%fails .or. self%tried
     if (self%fails .or. .not. norm <= huge(norm)) return
     forces = residual(:, :numbering%owned)
     call numbering%fold(forces)
@@ -138,7 +125,6 @@ contains
     squares = [sum(forces(1:2, :)**2), sum(forces(3, :)**2), sum(forces(4:5, :)**2)/model%thickness**2]
     call model%communicator%sum(squares)
     suffices = norm*sqrt(sum(squares(2:))) <= tolerance*sqrt(sum(squares))
-    self%tried = suffices
   end function suffices
 
   !> Correction of the displacement for the residual in the plane, ghosts included.
@@ -154,15 +140,8 @@ contains
     real(wp), intent(inout) :: correction(:, :)
     !> Set if the solution is not finite
     type(error_t), allocatable, intent(inout) :: error
-    real(wp) :: right_hand_side(self%numbering%rows), values(self%numbering%rows)
 
-    call self%numbering%gather(residual, right_hand_side)
-    call timers%start('solve in plane')
-    call self%solver%solve(right_hand_side, values, error)
-    call timers%stop('solve in plane')
-    if (allocated(error)) return
-    call self%numbering%scatter(values, correction)
-    call model%halo%update(correction)
+    call solve_field(model, self%numbering, self%solver, timers, 'solve in plane', residual, correction, error)
   end subroutine correct
 
   !> Frees the factor.

@@ -12,7 +12,7 @@ module tangent_operators
   use anderson_acceleration, only: anderson_t
   use operator_assembly, only: assemble_elements, assemble_diagonal, assemble_tangents
   use membrane_operators, only: membrane_operator_t, create_membrane_operator
-  use operator_solvers, only: set_solver_up
+  use operator_solvers, only: set_solver_up, solve_field
   use woodbury_updates, only: woodbury_updates_t, list_changes
   implicit none
   private
@@ -183,7 +183,7 @@ contains
     allocate (force, mold=self%response)
     force = 0
     force(3, :) = model%patch/model%mesh%multiplicity
-    call solve_factor(self, model, force, self%response, error)
+    call solve_field(model, self%numbering, self%solver, self%timers, 'solve', force, self%response, error)
     self%compliance = model%patch_mean(self%response)
   end subroutine find_response
 
@@ -288,7 +288,7 @@ contains
     !> Set if the solution is not finite
     type(error_t), allocatable, intent(out) :: error
 
-    call solve_factor(self, model, residual, correction, error)
+    call solve_field(model, self%numbering, self%solver, self%timers, 'solve', residual, correction, error)
     self%solves = self%solves + 1
     if (.not. (allocated(error) .or. self%condenses)) call self%follow_changes(model, correction)
   end subroutine correct
@@ -305,29 +305,6 @@ contains
     call self%changes%correct(model%communicator, self%numbering, solution)
     call model%halo%update(solution)
   end subroutine follow_changes
-
-  !> Solution of the operator as it was factored, ghosts included.
-  subroutine solve_factor(self, model, force, solution, error)
-    !> The operator
-    type(tangent_operator_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
-    !> Force at the owned points, (5, points)
-    real(wp), intent(in) :: force(:, :)
-    !> Solution, (5, points)
-    real(wp), intent(inout) :: solution(:, :)
-    !> Set if the solution is not finite
-    type(error_t), allocatable, intent(inout) :: error
-    real(wp), allocatable :: right_hand_side(:), values(:)
-
-    allocate (right_hand_side(self%numbering%rows), values(self%numbering%rows))
-    call self%numbering%gather(force, right_hand_side)
-    call self%timers%start('solve')
-    call self%solver%solve(right_hand_side, values, error)
-    call self%timers%stop('solve')
-    if (allocated(error)) return
-    call self%numbering%scatter(values, solution)
-    call model%halo%update(solution)
-  end subroutine solve_factor
 
   !> Frees the factors.
   subroutine release(self)

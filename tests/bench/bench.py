@@ -114,9 +114,12 @@ def step_cost(program, arguments):
         print(f'  a step over a solve, on the wall: {run.wall["steps"]/run.wall["solve"]:.2f} (at most {target}); '
               f'of the processor {seconds/steps/solve:.2f}; without factorizations '
               f'{(seconds - factoring)/steps/solve:.2f}')
-        for phase in ('solve', 'factorization', 'assembly', 'element forces'):
-            print(f'    {phase}: {100*run.phases[phase][1]/seconds:.1f} % of the steps')
-        rest = seconds - sum(run.phases[p][1] for p in ('solve', 'factorization', 'assembly', 'element forces'))
+        parts = [part for part in ('solve', 'solve in plane', 'factorization', 'assembly', 'element forces')
+                 if part in run.phases]
+        for part in parts:
+            times, taken = run.phases[part]
+            print(f'    {part}: {times} times, {100*taken/seconds:.1f} % of the steps')
+        rest = seconds - sum(run.phases[part][1] for part in parts)
         print(f'    all else: {100*rest/seconds:.1f} % of the steps')
         before = run.seconds - seconds - run.phases['results'][1]
         print(f'  before the first step: {before:.2f} s of {run.seconds:.2f} s, {100*before/run.seconds:.1f} %; with '

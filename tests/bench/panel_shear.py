@@ -14,16 +14,18 @@ Plies of a cell have the stresses of its middle. Rings begin 5.5 mm from the str
 contact of 3 to 3.6 mm and half a thickness of the panel, the load spreads through the thickness, of which plate
 theory knows nothing. Needs h5py."""
 
+import re
 import sys
 from pathlib import Path
 
 import h5py
 import numpy as np
-from measured_panels import rows_of, value_at
+from measured_panels import DECKS, rows_of, value_at
 
 RINGS = ((5.5e-3, 8e-3), (8e-3, 11e-3), (11e-3, 16e-3), (16e-3, 24e-3))
-ANGLES = (0, 0, 45, 45, 90, 90, -45, -45, -45, -45, 90, 90, 45, 45, 0, 0)
-THICKNESS = 0.26e-3
+DECK = (DECKS / "t700_m21_25J.nml").read_text(encoding="utf-8")
+ANGLES = [float(angle) for angle in re.search(r"angles=([-\d.,]+)", DECK)[1].split(",")]
+THICKNESS = float(re.search(r"thicknesses=([-+\d.e]+)", DECK)[1])
 
 
 def ply_forces(stresses, angle, away):
