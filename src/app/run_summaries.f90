@@ -1,5 +1,6 @@
 !> The end of a run in words and figures: found once, told in the log and written to NAME_summary.json.
 module run_summaries
+  use case_deck, only: wants_companion
   use companion_runs, only: companion_t, run_companion
   use deck_contents, only: deck_t
   use errors, only: error_t
@@ -12,16 +13,20 @@ module run_summaries
   use run_records, only: run_record_t
   use summary_file, only: summary_text, write_summary
   use summary_lines, only: lines_of_summary
-  use text, only: line_t
+  use text, only: line_t, append
   use time_stepping, only: time_stepper_t
   implicit none
   private
   public :: summarise
 
+  !> What is told of a run whose errors are not known.
+  character(len=*), parameter :: hint = '  errors              not known; a coarser run, about an eighth of '// &
+                                        'the work, tells them with &case error_estimate=.true.'
+
 contains
 
   !> Says what a run has come to, also one that has been stopped or has failed. A companion runs first if the deck asks
-  !> for one; the run's own factor has been released by then. Collective.
+  !> for one, or for an accuracy that nothing else tells; the run's own factor has been released by then. Collective.
   subroutine summarise(deck, model, stepper, record, provenance, seconds, path, log, error)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -45,15 +50,18 @@ contains
     type(companion_t) :: companion
     type(error_t), allocatable :: fault
     type(line_t), allocatable :: lines(:)
+    logical :: ended
     integer :: i
 
     call find_figures(model, stepper%now, figures)
     if (.not. allocated(error)) errors = errors_by_pilot(deck, record)
-    if (deck%error_estimate .and. .not. (allocated(error) .or. deck%has_static)) &
+    ended = .not. (allocated(error) .or. deck%has_static)
+    if (ended .and. wants_companion(deck%settings, errors%source /= 'none')) &
       call run_companion(deck, model%communicator, companion)
-    if (companion%done) errors = errors_by_companion(errors, record, stepper%now%impactor%velocity, &
-      sum(figures%interfaces%area), companion, deck%stepping%time%step)
+    if (companion%done) errors = errors_by_companion(deck, record, stepper%now%impactor%velocity, &
+                                                     sum(figures%interfaces%area), companion)
     lines = lines_of_summary(deck, stepper%now, record, figures, errors)
+    if (ended .and. errors%source == 'none') call append(lines, hint)
     do i = 1, size(lines)
       call log%note(lines(i)%text)
     end do

@@ -6,11 +6,12 @@ module case_deck
   use text, only: lower_case
   implicit none
   private
-  public :: fill_case, fill_claims, has_accuracy
+  public :: fill_case, fill_claims, has_accuracy, wants_companion
 
   !> Names of the group and of keys.
   character(len=*), parameter, public :: case_group = 'case', key_name = 'name', &
-                                         key_accuracy = 'accuracy', key_refine = 'refine'
+                                         key_accuracy = 'accuracy', key_refine = 'refine', &
+                                         key_error_estimate = 'error_estimate'
   character(len=*), parameter :: group = case_group
   !> Row of the group.
   character(len=group_row_length), parameter, public :: case_group_row = &
@@ -27,8 +28,8 @@ module case_deck
       &Units that the deck is in: the check holds its values against them, and results name them.', &
     'case | strict | logical | 1 | - | .false. | .true. .false. | &
       &Whether a run ends with exit code 3 where it passes the model''s limits, instead of a warning.', &
-    'case | error_estimate | logical | 1 | - | .false. | .true. .false. | &
-      &Whether a coarser companion run, about an eighth of the work, tells the errors of the results at the end.', &
+    'case | error_estimate | logical | 1 | - | none | .true. .false. | &
+      &Whether a coarser run, an eighth of the work, tells errors. Left out: with accuracy, unless the pilot does.', &
     'case | refine | integer | 1 | - | 0 | >= 0, <= 4 | &
       &Times that elements and steps are halved; the results are then those of NAME_finer1 and so on.']
 
@@ -61,8 +62,19 @@ contains
     has_accuracy = settings%is_given(group, key_accuracy)
   end function has_accuracy
 
+  !> True: a companion run is to tell the errors of the results.
+  pure logical function wants_companion(settings, told)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+    !> True: the pilot calculation tells them
+    logical, intent(in) :: told
+
+    wants_companion = has_accuracy(settings) .and. .not. told
+    if (settings%is_given(group, key_error_estimate)) wants_companion = settings%logical_of(group, key_error_estimate)
+  end function wants_companion
+
   !> What the case claims of its results.
-  pure subroutine fill_claims(settings, accuracy, units, strict, error_estimate, refine)
+  pure subroutine fill_claims(settings, accuracy, units, strict, refine)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> Error of the peak force allowed, %; 0: mesh and steps are the deck's
@@ -71,15 +83,12 @@ contains
     character(len=:), allocatable, intent(out) :: units
     !> True: a run ends where it passes the model's limits
     logical, intent(out) :: strict
-    !> True: a companion run tells the errors of the results
-    logical, intent(out) :: error_estimate
     !> Times that elements and steps are halved
     integer, intent(out) :: refine
 
     refine = settings%integer_of(group, key_refine)
     units = settings%text_of(group, 'units')
     strict = settings%logical_of(group, 'strict')
-    error_estimate = settings%logical_of(group, 'error_estimate')
     select case (lower_case(settings%text_of(group, key_accuracy)))
     case ('draft')
       accuracy = draft_error

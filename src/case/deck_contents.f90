@@ -29,8 +29,6 @@ module deck_contents
     character(len=:), allocatable :: units
     !> True: the run ends where it passes the model's limits
     logical :: strict = .false.
-    !> True: a companion run tells the errors of the summary's figures
-    logical :: error_estimate = .false.
     !> Times that elements and steps are halved
     integer :: refine = 0
     !> What was chosen for the accuracy and why

@@ -140,8 +140,7 @@ contains
     type(problems_t), intent(inout) :: problems
 
     call fill_case(deck%settings, deck%source, deck%name, deck%title)
-    call fill_claims(deck%settings, deck%accuracy, deck%units, deck%strict, deck%error_estimate, &
-                     deck%refine)
+    call fill_claims(deck%settings, deck%accuracy, deck%units, deck%strict, deck%refine)
     call fill_kinematics(deck%settings, deck%kinematics)
     call fill_plate(deck%settings, deck%plate)
     call fill_supports(deck%settings, deck%supports)

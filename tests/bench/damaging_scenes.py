@@ -120,7 +120,7 @@ def damage_of(folder, place, unit):
         cells = np.sort(points[mesh["connectivity"][:, :4]].reshape(-1, 12), axis=1)
         parted = {tuple(point) for point in points[last["points/damage_above"][:] > 1 - 1e-9]}
         failed = {(name, value, *cell) for name, values in last["cells"].items() if name.endswith("_failure")
-                  for value, cell in zip(values[:], map(tuple, cells)) if value}
+                  for value, cell in zip(values[:], map(tuple, cells), strict=True) if value}
     return parted, failed
 
 

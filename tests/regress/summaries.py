@@ -6,6 +6,7 @@ contact  duration of contact and rebound of a ball on a rigid base against Hertz
 restart  a run taken up again says what the undisturbed one says, to the last bit; warnings and onsets too
 ranks    two ranks say what one says, to 1e-9
 endings  runs that were stopped or failed say so, with what they reached
+errors   a plate that deflects far, with an accuracy: a coarser run tells the errors, and a finer one bears them out
 static   the release rate under a static load grows with its square and is that of the compliance"""
 
 import json
@@ -235,6 +236,27 @@ def check_endings(implam, folder, _):
     require(not list(killed.parent.glob("*_summary.json")), "A killed run leaves the summary of the one before.")
 
 
+def check_errors(implam, folder, _):
+    """Sun and Chen's plate struck by 100 g at 10 m/s; as it is, where the pilot knows; without accuracy none does."""
+    fast = ["case%kinematics='von_karman'", "impactor%velocity=10", "impactor%mass=0.1", "mesh%elements=8,8",
+            "time%step=8e-6", "time%end=1500e-6", "case%accuracy='draft'"]
+    found = {}
+    for name, settings in (("fast", fast), ("finer", [*fast, "case%refine=2", "case%error_estimate=.false."]),
+                           ("untold", fast[:-1]), ("slow", ["case%accuracy='draft'"])):
+        deck = write_deck(folder / name, "../sun_chen.nml", settings)
+        run_deck(implam, deck)
+        found[name] = summary_of(deck.parent)
+        log = next(deck.parent.glob("*.log")).read_text(encoding="utf-8")
+        require(("errors              not known" in log) == (name in ("finer", "untold")), f"{name}: the log is wrong.")
+    sources = {name: summary["estimated_errors"]["source"] for name, summary in found.items()}
+    require(sources == {"fast": "companion", "finer": "none", "untold": "none", "slow": "pilot"}, f"{sources}")
+    for figure in ("peak_force", "peak_force_at", "contact_duration", "largest_deflection", "impactor_velocity"):
+        off = abs(found["fast"][figure] - found["finer"][figure])
+        estimate = found["fast"]["estimated_errors"][figure]
+        print(f"{figure}: {off:.3g} off, estimate {estimate:.3g} of {found['finer'][figure]:.4g}")
+        require(off <= 2 * estimate, f"{figure} is {off} off, the estimate was {estimate}.")
+
+
 def static_run(implam, folder, starter):
     """Return the history and the summary of four load steps on a plate whose lower faces part freely."""
     deck = write_deck(folder, "../small/static_damage.nml", [
@@ -265,7 +287,7 @@ def check_static(implam, folder, _):
 
 
 TRIALS = {"figures": check_figures, "contact": check_contact, "restart": check_restart, "ranks": check_ranks,
-          "endings": check_endings, "static": check_static}
+          "endings": check_endings, "errors": check_errors, "static": check_static}
 
 if __name__ == "__main__":
     trial, implam, folder, *launcher = sys.argv[1:]
