@@ -20,8 +20,9 @@ module run_summaries
   public :: summarise
 
   !> What is told of a run whose errors are not known.
-  character(len=*), parameter :: hint = '  errors              not known; a coarser run, about an eighth of '// &
-                                        'the work, tells them with &case error_estimate=.true.'
+  character(len=*), parameter :: unknown = '  errors              not known; ', &
+    hint = unknown//'a coarser run, about an eighth of the work, tells them with &case error_estimate=.true.', &
+    cut = unknown//'the coarser run that tells them has not come to its end'
 
 contains
 
@@ -50,18 +51,21 @@ contains
     type(companion_t) :: companion
     type(error_t), allocatable :: fault
     type(line_t), allocatable :: lines(:)
-    logical :: ended
+    logical :: ended, wanted
     integer :: i
 
     call find_figures(model, stepper%now, figures)
     if (.not. allocated(error)) errors = errors_by_pilot(deck, record)
     ended = .not. (allocated(error) .or. deck%has_static)
-    if (ended .and. wants_companion(deck%settings, errors%source /= 'none')) &
-      call run_companion(deck, model%communicator, companion)
+    wanted = ended .and. wants_companion(deck%settings, errors%source /= 'none')
+    if (wanted) call run_companion(deck, model%communicator, companion)
     if (companion%done) errors = errors_by_companion(deck, record, stepper%now%impactor%velocity, &
                                                      sum(figures%interfaces%area), companion)
     lines = lines_of_summary(deck, stepper%now, record, figures, errors)
-    if (ended .and. errors%source == 'none') call append(lines, hint)
+    if (ended .and. errors%source == 'none') then
+      if (wanted) call append(lines, cut)
+      if (.not. wanted) call append(lines, hint)
+    end if
     do i = 1, size(lines)
       call log%note(lines(i)%text)
     end do
