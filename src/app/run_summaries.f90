@@ -13,16 +13,16 @@ module run_summaries
   use run_records, only: run_record_t
   use summary_file, only: summary_text, write_summary
   use summary_lines, only: lines_of_summary
-  use text, only: line_t, append
+  use text, only: line_t
   use time_stepping, only: time_stepper_t
   implicit none
   private
   public :: summarise
 
-  !> What is told of a run whose errors are not known.
-  character(len=*), parameter :: unknown = '  errors              not known; ', &
-    hint = unknown//'a coarser run, about an eighth of the work, tells them with &case error_estimate=.true.', &
-    cut = unknown//'the coarser run that tells them has not come to its end'
+  !> Why errors are not known.
+  character(len=*), parameter :: unasked = 'a coarser run, about an eighth of the work, tells them with &case '// &
+                                           'error_estimate=.true.', &
+                                 cut = 'the coarser run that tells them has not come to its end'
 
 contains
 
@@ -51,6 +51,7 @@ contains
     type(companion_t) :: companion
     type(error_t), allocatable :: fault
     type(line_t), allocatable :: lines(:)
+    character(len=:), allocatable :: untold
     logical :: ended, wanted
     integer :: i
 
@@ -61,11 +62,12 @@ contains
     if (wanted) call run_companion(deck, model%communicator, companion)
     if (companion%done) errors = errors_by_companion(deck, record, stepper%now%impactor%velocity, &
                                                      sum(figures%interfaces%area), companion)
-    lines = lines_of_summary(deck, stepper%now, record, figures, errors)
+    untold = ''
     if (ended .and. errors%source == 'none') then
-      if (wanted) call append(lines, cut)
-      if (.not. wanted) call append(lines, hint)
+      untold = unasked
+      if (wanted) untold = cut
     end if
+    lines = lines_of_summary(deck, stepper%now, record, figures, errors, untold)
     do i = 1, size(lines)
       call log%note(lines(i)%text)
     end do

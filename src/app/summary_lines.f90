@@ -19,7 +19,7 @@ module summary_lines
 contains
 
   !> The summary as lines of the log.
-  function lines_of_summary(deck, now, record, figures, errors) result(lines)
+  function lines_of_summary(deck, now, record, figures, errors, untold) result(lines)
     !> The deck
     type(deck_t), intent(in) :: deck
     !> The state reached
@@ -30,6 +30,8 @@ contains
     type(run_figures_t), intent(in) :: figures
     !> How far they may be off
     type(run_errors_t), intent(in) :: errors
+    !> Why that is not known; empty: it is, or isn't to be told
+    character(len=*), intent(in) :: untold
     !> The lines
     type(line_t), allocatable :: lines(:)
     character(len=:), allocatable :: at
@@ -45,6 +47,7 @@ contains
     if (deck%has_ply_damage) call tell(lines, 'failed plies', 'fibres '//to_text(figures%failures(1))// &
       ', matrix cracked '//to_text(figures%failures(2))//', crushed '//to_text(figures%failures(3))// &
       ' (counted in each element)')
+    if (len(untold) > 0) call tell(lines, 'errors', 'not known; '//untold)
     call tell_warnings(lines, deck, record)
   end function lines_of_summary
 

@@ -26,7 +26,7 @@ LAYUPS = ((0, 90, 0), (90, 0, 90), (0, 90, 90, 0), (0, 45, 90, -45, -45, 90, 45,
           (30, -30, 90, -30, 30), (0, 60, -60, -60, 60, 0))
 EXIT_DONE, EXIT_CONVERGENCE, EXIT_STOPPED = 0, 3, 75
 AREA, ENERGY = "delaminated_area", "energy_delamination"
-SAME_AREA = 1e-4  # of the area; it has the points that are parting, too
+SAME_AREA = 1e-6  # of the area; it has the points that are parting, too
 MINUTE = 60  # seconds of the processor
 os.environ |= {"OMP_NUM_THREADS": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1",
                "OMPI_MCA_hwloc_base_binding_policy": "none"}
@@ -109,6 +109,11 @@ def row_of(folder, number):
         return {name: float(value) for name, value in list(csv.DictReader(file))[number].items()}
 
 
+def names_of(points):
+    """Return the places of points in whole nanometres."""
+    return [tuple(point) for point in np.round(1e9 * points).astype(int).tolist()]
+
+
 def damage_of(folder, place, unit):
     """Return the points parted and the plies failed at the end, by where they are: `place` gives x and y in the scene
     as it is, `unit` that of length."""
@@ -116,11 +121,11 @@ def damage_of(folder, place, unit):
         last = file["times"][max(file["times"])]
         mesh = file["meshes"][max(file["meshes"])]
         points = mesh["coordinates"][:] / unit
-        points = np.round(1e9 * np.column_stack((*place(points[:, 0], points[:, 1]), points[:, 2]))).astype(int)
-        cells = np.sort(points[mesh["connectivity"][:, :4]].reshape(-1, 12), axis=1)
-        parted = {tuple(point) for point in points[last["points/damage_above"][:] > 1 - 1e-9]}
-        failed = {(name, value, *cell) for name, values in last["cells"].items() if name.endswith("_failure")
-                  for value, cell in zip(values[:], map(tuple, cells), strict=True) if value}
+        points = np.column_stack((*place(points[:, 0], points[:, 1]), points[:, 2]))
+        middles = names_of(points[mesh["connectivity"][:]].mean(axis=1))
+        parted = set(names_of(points[last["points/damage_above"][:] > 1 - 1e-9]))
+        failed = {(name, value, middle) for name, values in last["cells"].items() if name.endswith("_failure")
+                  for value, middle in zip(values[:], middles, strict=True) if value}
     return parted, failed
 
 
