@@ -5,21 +5,22 @@
 !> remainder. The compliance between both directions stays, and so does reciprocity; the stiffness stays positive
 !> definite. Each damage follows the strain that its stress would have alone, s11/((1 - d_f) E1). That makes the
 !> energy d dissipates half the undamaged modulus times the square of that strain, whatever the others do
-!> (P. Maimi et al., Mechanics of Materials 39 (2007) 897-908, for the energy and its variables).
+!> (P. Maimi et al., Mechanics of Materials 39 (2007) 897-908, for the energy and its variables). Before the matrix
+!> cracks shear may take a part of G12 throughout the element, as Hahn and Tsai have it.
 module crack_bands
+  use hahn_tsai, only: shear_coefficient, shear_loss, energy_of_loss
   use kinds, only: wp
   use material_parameters, only: material_t
   use matrix_exposures, only: matrix_strengths_t, matrix_strengths, matrix_exposure
   use plies, only: elasticity_t, elasticity_of
   use ply_damage_parameters, only: ply_damage_t, energy_modes, fibre_tension, fibre_compression, matrix_tension, &
                                    matrix_compression
+  use softening_falls, only: softening_t, fall_of, worse, damage_at, share_growth, weights_of_signs, least_ratio
   implicit none
   private
   public :: crack_band_t, band_state_t, band_strains_t, create_crack_band, strain_band, elasticity_left, onset_strain, &
             longest_element
 
-  !> Least strain at failure over that at the onset: a longer element would snap back.
-  real(wp), parameter, public :: least_ratio = 1.25_wp
   !> Rounds in which both damages find together, and the change at which they have. Poisson's coupling is weak, so that
   !> five are usual.
   integer, parameter :: most_rounds = 50
@@ -37,6 +38,8 @@ module crack_bands
     real(wp) :: toughness(energy_modes) = 0
     !> Part of the stiffness that damage cannot take
     real(wp) :: remainder = 0
+    !> Hahn and Tsai's beta; 0: shear is linear
+    real(wp) :: shear_beta = 0
   end type crack_band_t
 
   !> What a ply of an element remembers.
@@ -45,6 +48,8 @@ module crack_bands
     real(wp) :: damage(2) = 0
     !> Energy dissipated per volume in each mode
     real(wp) :: dissipated(energy_modes) = 0
+    !> Part of G12 that shear took before the matrix cracked
+    real(wp) :: sheared = 0
   end type band_state_t
 
   !> Strains of a ply of an element in the ply's axes.
@@ -54,18 +59,6 @@ module crack_bands
     !> Means of their squares and of their product: 11, 22, 12; and of the square of the shear strain
     real(wp) :: square(3) = 0, shear_square = 0
   end type band_strains_t
-
-  !> One straight fall of stress over strain.
-  type :: softening_t
-    !> Strain over that of the onset
-    real(wp) :: exposure = 0
-    !> Strain at failure over that of the onset, N
-    real(wp) :: ratio = huge(1.0_wp)
-    !> Energy per volume that it takes in all
-    real(wp) :: energy = 0
-    !> Mode in which it is booked
-    integer :: mode = fibre_tension
-  end type softening_t
 
 contains
 
@@ -83,6 +76,7 @@ contains
     band%matrix = matrix_strengths(material, damage%criteria)
     band%toughness = material%toughness
     band%remainder = damage%e
+    band%shear_beta = shear_coefficient(material%g12, material%s12, material%shear_failure_strain)
   end function create_crack_band
 
   !> What a ply remembers if trial strains are accepted.
@@ -102,9 +96,10 @@ contains
     integer :: round, i
 
     new = old
+    call shear_band(band, strains, old, new)
     do round = 1, most_rounds
       before = new%damage
-      falls = softening_of(band, lengths, strains, new%damage)
+      falls = softening_of(sheared_law(band, new%sheared), lengths, strains, new%damage)
       do i = 1, 2
         new%damage(i) = max(old%damage(i), damage_at(falls(i)))
       end do
@@ -117,22 +112,87 @@ contains
     end do
   end subroutine strain_band
 
-  !> Constants that damage leaves.
-  pure function elasticity_left(band, damage) result(elasticity)
+  !> What shear takes of G12 as long as the matrix has no crack: up to the strains at which it gets one, in proportion.
+  pure subroutine shear_band(band, strains, old, new)
     !> The law
     type(crack_band_t), intent(in) :: band
-    !> Damage of fibres and matrix
-    real(wp), intent(in) :: damage(2)
+    !> Strains of the ply
+    type(band_strains_t), intent(in) :: strains
+    !> The ply in the last accepted state
+    type(band_state_t), intent(in) :: old
+    !> The ply with these strains
+    type(band_state_t), intent(inout) :: new
+    real(wp) :: least, most, middle
+    integer :: i
+
+    if (.not. band%shear_beta > 0 .or. old%damage(2) > 0) return
+    least = 0
+    most = 1
+    if (.not. cracks_at(most)) least = 1
+    do i = 1, digits(least)
+      if (least >= most) exit
+      middle = (least + most)/2
+      if (cracks_at(middle)) then
+        most = middle
+      else
+        least = middle
+      end if
+    end do
+    new%sheared = loss_at(least)
+    associate (modulus => band%elasticity%g12, beta => band%shear_beta, booked => new%dissipated(matrix_compression))
+      booked = booked + energy_of_loss(modulus, beta, new%sheared) - energy_of_loss(modulus, beta, old%sheared)
+    end associate
+
+  contains
+
+    !> Part of G12 that is lost at a part of the strains.
+    pure real(wp) function loss_at(part) result(loss)
+      !> The part
+      real(wp), intent(in) :: part
+
+      loss = max(old%sheared, shear_loss(band%elasticity%g12, band%shear_beta, part*sqrt(strains%shear_square)))
+    end function loss_at
+
+    !> True: the matrix cracks at a part of the strains.
+    pure logical function cracks_at(part) result(cracks)
+      !> The part
+      real(wp), intent(in) :: part
+      type(softening_t) :: signs(2)
+
+      signs = matrix_falls(sheared_law(band, loss_at(part)), 1.0_wp, strains, stiffness_left(band, old%damage))
+      cracks = part*maxval(signs%exposure) > 1
+    end function cracks_at
+  end subroutine shear_band
+
+  !> The law with what shear has left of G12.
+  pure function sheared_law(band, loss) result(law)
+    !> The law
+    type(crack_band_t), intent(in) :: band
+    !> Part of G12 that is lost
+    real(wp), intent(in) :: loss
+    !> The law
+    type(crack_band_t) :: law
+
+    law = band
+    law%elasticity%g12 = band%elasticity%g12*(1 - loss)
+  end function sheared_law
+
+  !> Constants that a state leaves.
+  pure function elasticity_left(band, state) result(elasticity)
+    !> The law
+    type(crack_band_t), intent(in) :: band
+    !> The ply
+    type(band_state_t), intent(in) :: state
     !> The constants
     type(elasticity_t) :: elasticity
     real(wp) :: left(2)
 
-    left = stiffness_left(band, damage)
+    left = stiffness_left(band, state%damage)
     elasticity = band%elasticity
     elasticity%e1 = elasticity%e1*left(1)
     elasticity%nu12 = elasticity%nu12*left(1)
     elasticity%e2 = elasticity%e2*left(2)
-    elasticity%g12 = elasticity%g12*left(2)
+    elasticity%g12 = elasticity%g12*(1 - state%sheared)*left(2)
   end function elasticity_left
 
   !> Parts of the stiffness along and across the fibres that damage leaves.
@@ -159,20 +219,51 @@ contains
     real(wp), intent(in) :: damage(2)
     !> Of fibres and matrix
     type(softening_t) :: falls(2)
+
+    falls(1) = worse(fibre_falls(band, lengths(1), strains, stiffness_left(band, damage)))
+    falls(2) = worse(matrix_falls(band, lengths(2), strains, stiffness_left(band, damage)))
+  end function softening_of
+
+  !> The falls of the fibres.
+  pure function fibre_falls(band, length, strains, left) result(signs)
+    !> The law
+    type(crack_band_t), intent(in) :: band
+    !> Length of the element along the fibres
+    real(wp), intent(in) :: length
+    !> Strains of the ply
+    type(band_strains_t), intent(in) :: strains
+    !> Parts of the stiffness along and across the fibres that damage leaves
+    real(wp), intent(in) :: left(2)
+    !> Of tension and compression
     type(softening_t) :: signs(2)
-    real(wp) :: left(2), part(2), size, weights(2), shear_energy, energy, toughness
+    real(wp) :: part(2), size, weights(2), energy
 
     associate (c => band%elasticity, m => strains%mean, s => strains%square, g => band%toughness)
-      left = stiffness_left(band, damage)
-      ! Strains that the stresses s11 and s22 would have alone: e1 + part e2, e2 + part e1, over a common divisor.
-      part = [left(2)*c%nu12*c%e2/c%e1, left(1)*c%nu12]
+      part = parts_of_others(c, left)
       size = sqrt(max(0.0_wp, s(1) + part(1)*(2*s(3) + part(1)*s(2))))/(1 - product(part))
       weights = weights_of_signs((m(1) + part(1)*m(2))/(1 - product(part)), size)
       energy = c%e1*size**2/2
-      signs(1) = fall_of(weights(1)*c%e1*size/band%along(1), energy, g(fibre_tension), lengths(1), fibre_tension)
-      signs(2) = fall_of(weights(2)*c%e1*size/band%along(2), energy, g(fibre_compression), lengths(1), &
-                         fibre_compression)
-      falls(1) = worse(signs)
+      signs(1) = fall_of(weights(1)*c%e1*size/band%along(1), energy, g(fibre_tension), length, fibre_tension)
+      signs(2) = fall_of(weights(2)*c%e1*size/band%along(2), energy, g(fibre_compression), length, fibre_compression)
+    end associate
+  end function fibre_falls
+
+  !> The falls of the matrix.
+  pure function matrix_falls(band, length, strains, left) result(signs)
+    !> The law
+    type(crack_band_t), intent(in) :: band
+    !> Length of the element across the fibres
+    real(wp), intent(in) :: length
+    !> Strains of the ply
+    type(band_strains_t), intent(in) :: strains
+    !> Parts of the stiffness along and across the fibres that damage leaves
+    real(wp), intent(in) :: left(2)
+    !> Of tension and compression
+    type(softening_t) :: signs(2)
+    real(wp) :: part(2), size, weights(2), shear_energy, energy, toughness, across, shear
+
+    associate (c => band%elasticity, m => strains%mean, s => strains%square, g => band%toughness)
+      part = parts_of_others(c, left)
       size = sqrt(max(0.0_wp, s(2) + part(2)*(2*s(3) + part(2)*s(1))))/(1 - product(part))
       weights = weights_of_signs((m(2) + part(2)*m(1))/(1 - product(part)), size)
       shear_energy = c%g12*strains%shear_square/2
@@ -181,94 +272,31 @@ contains
       toughness = g(matrix_compression)
       if (energy > 0) &
         toughness = energy/((energy - shear_energy)/g(matrix_tension) + shear_energy/g(matrix_compression))
-      associate (across => c%e2*size, shear => c%g12*sqrt(strains%shear_square))
-        signs(1) = fall_of(weights(1)*matrix_exposure(band%matrix, across, shear), energy, toughness, lengths(2), &
-                           matrix_tension)
-        signs(2) = fall_of(weights(2)*matrix_exposure(band%matrix, -across, shear), energy, g(matrix_compression), &
-                           lengths(2), matrix_compression)
-      end associate
-      falls(2) = worse(signs)
+      across = c%e2*size
+      shear = c%g12*sqrt(strains%shear_square)
+      signs(1) = fall_of(weights(1)*matrix_exposure(band%matrix, across, shear), energy, toughness, length, &
+                         matrix_tension)
+      signs(2) = fall_of(weights(2)*matrix_exposure(band%matrix, -across, shear), energy, g(matrix_compression), &
+                         length, matrix_compression)
     end associate
-  end function softening_of
+  end function matrix_falls
 
-  !> Parts that tension and compression have in the root mean square of a strain. They are those of two halves of the
-  !> ply that differ as much as needed, and change smoothly where the mean changes its sign.
-  pure function weights_of_signs(mean, size) result(weights)
-    !> Mean and root mean square
-    real(wp), intent(in) :: mean, size
-    !> Of tension and compression; their squares add up to 1
-    real(wp) :: weights(2)
-    real(wp) :: middle, spread
+  !> Parts of the other strain that a stress along and across the fibres would have alone: e1 + part e2, e2 + part e1,
+  !> over a common divisor.
+  pure function parts_of_others(elasticity, left) result(part)
+    !> Constants without damage
+    type(elasticity_t), intent(in) :: elasticity
+    !> Parts of the stiffness along and across the fibres that damage leaves
+    real(wp), intent(in) :: left(2)
+    !> Of e2 and of e1
+    real(wp) :: part(2)
 
-    weights = [1, 0]
-    if (.not. size > tiny(size)) return
-    middle = max(-1.0_wp, min(1.0_wp, mean/size))
-    spread = sqrt(1 - middle**2)
-    weights(1) = sqrt((max(0.0_wp, middle + spread)**2 + max(0.0_wp, middle - spread)**2)/2)
-    weights(2) = sqrt((max(0.0_wp, -middle + spread)**2 + max(0.0_wp, -middle - spread)**2)/2)
-  end function weights_of_signs
-
-  !> That of two falls with the larger damage.
-  pure function worse(signs)
-    !> Tension and compression
-    type(softening_t), intent(in) :: signs(2)
-    !> One of them
-    type(softening_t) :: worse
-
-    worse = signs(1)
-    if (damage_at(signs(2)) > damage_at(signs(1))) worse = signs(2)
-  end function worse
-
-  !> The fall of a mode whose stress, undamaged, would stand at an exposure and store an energy.
-  pure function fall_of(exposure, energy, toughness, length, mode) result(fall)
-    !> Undamaged stress over that of the onset
-    real(wp), intent(in) :: exposure
-    !> Energy per volume that the strain would store undamaged
-    real(wp), intent(in) :: energy
-    !> Energy per area of crack
-    real(wp), intent(in) :: toughness
-    !> Length of the element across the crack
-    real(wp), intent(in) :: length
-    !> The mode
-    integer, intent(in) :: mode
-    !> The fall
-    type(softening_t) :: fall
-
-    fall%mode = mode
-    fall%exposure = exposure
-    if (.not. exposure > 1) return
-    fall%ratio = max(least_ratio, toughness/length/(energy/exposure**2))
-    fall%energy = fall%ratio*(energy/exposure**2)
-  end function fall_of
-
-  !> Damage on a fall: d = N (f - 1)/(f (N - 1)).
-  pure real(wp) function damage_at(fall) result(damage)
-    !> The fall
-    type(softening_t), intent(in) :: fall
-
-    damage = 0
-    if (fall%exposure >= fall%ratio) then
-      damage = 1
-    else if (fall%exposure > 1) then
-      damage = min(1.0_wp, fall%ratio*(fall%exposure - 1)/(fall%exposure*(fall%ratio - 1)))
-    end if
-  end function damage_at
-
-  !> Growth of the dissipated part d/(N (1 - d) + d) with the damage, free of cancellation.
-  pure real(wp) function share_growth(ratio, damage_from, damage_to) result(growth)
-    !> N
-    real(wp), intent(in) :: ratio
-    !> Damage before and after
-    real(wp), intent(in) :: damage_from, damage_to
-    real(wp) :: from, to
-
-    from = ratio*(1 - damage_from) + damage_from
-    to = ratio*(1 - damage_to) + damage_to
-    growth = ratio*(damage_to - damage_from)/(from*to)
-  end function share_growth
+    part = [left(2)*elasticity%nu12*elasticity%e2/elasticity%e1, left(1)*elasticity%nu12]
+  end function parts_of_others
 
   !> A strain below which a ply can't begin to be damaged, whatever its direction: strains in its plane are measured by
-  !> the root of e1**2 + e2**2 + g12**2/2, which a turn of the axes leaves as it is.
+  !> the root of e1**2 + e2**2 + g12**2/2, which a turn of the axes leaves as it is. Shear that is not linear takes its
+  !> part from zero on.
   pure real(wp) function onset_strain(band)
     !> The law
     type(crack_band_t), intent(in) :: band
@@ -287,6 +315,7 @@ contains
     end do
     ! Between two directions the exposure is larger by less than 2 %.
     onset_strain = (1 - nu12*nu21)/(1.02_wp*exposure)
+    if (band%shear_beta > 0) onset_strain = 0
   end function onset_strain
 
   !> Longest element across the crack that takes no more than the fracture energy, in each mode; shear counts with
@@ -301,7 +330,8 @@ contains
     associate (c => band%elasticity, m => band%matrix)
       energies(:2) = band%along**2/(2*c%e1)
       energies(matrix_tension) = m%tension**2/(2*c%e2)
-      energies(matrix_compression) = max(m%compression**2/(2*c%e2), m%shear**2/(2*c%g12))
+      energies(matrix_compression) = max(m%compression**2/(2*c%e2), m%shear**2/(2*c%g12) + &
+                                                                    band%shear_beta*m%shear**4/2)
     end associate
     lengths = band%toughness/(least_ratio*energies)
   end function longest_element

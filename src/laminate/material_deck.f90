@@ -64,6 +64,8 @@ module material_deck
       &Energy that cracking the matrix by tension across the fibres takes per area of crack.', &
     'material | G_mc | real | 1 | energy/area | none | > 0 | &
       &Energy that failing the matrix by shear or by compression across the fibres takes per area of crack.', &
+    'material | shear_failure_strain | real | 1 | - | none | > 0 | &
+      &Shear strain in the plane at S12, beyond S12/G12 if shear is not linear; plies need fracture energies.', &
     'material | alpha1 | real | 1 | 1/temperature | 0 | any | &
       &Thermal expansion along the fibres.', &
     'material | alpha2 | real | 1 | 1/temperature | 0 | any | &
@@ -121,6 +123,7 @@ contains
     material%s12 = settings%real_of(material_group, 'S12', place)
     material%sf = settings%real_of(material_group, 'Sf', place)
     material%sm23 = settings%real_of(material_group, 'Sm23', place)
+    material%shear_failure_strain = settings%real_of(material_group, 'shear_failure_strain', place)
     material%expansion = [settings%real_of(material_group, 'alpha1', place), &
                           settings%real_of(material_group, 'alpha2', place)]
     do mode = 1, size(toughness_keys)

@@ -147,28 +147,38 @@ contains
     !> Section stiffness
     real(wp), intent(inout) :: stiffness(21)
     type(elasticity_t) :: elasticity(size(self%plies))
-    real(wp) :: before(2), normal(2)
+    real(wp) :: before(3), normal(2)
     logical :: changed
     integer :: ply
 
     changed = .false.
     associate (first => self%range(1, element), last => self%range(2, element))
       do ply = first, last
-        before = self%trial(ply, element)%damage
+        before = stiffness_lost(self%trial(ply, element))
         normal = abs([self%plies(ply)%cosine, self%plies(ply)%sine])
         ! A straight crack cuts elements of this mean area over its length: the sides' shadow across it.
         call strain_band(self%bands(ply), [dot_product(normal, self%sides(:, element)), &
                                            dot_product(normal, self%sides([2, 1], element))], &
                          strains_of_ply(self%plies(ply), moments), self%accepted(ply, element), &
                          self%trial(ply, element))
-        changed = changed .or. any(abs(self%trial(ply, element)%damage - before) > 0)
-        elasticity(ply) = elasticity_left(self%bands(ply), self%trial(ply, element)%damage)
+        changed = changed .or. any(abs(stiffness_lost(self%trial(ply, element)) - before) > 0)
+        elasticity(ply) = elasticity_left(self%bands(ply), self%trial(ply, element))
       end do
       if (.not. changed) return
       stiffness(:18) = in_plane_section(self%plies(first:last), elasticity(first:last))
-      self%touched(element) = any([(any(self%trial(ply, element)%damage > 0), ply=first, last)])
+      self%touched(element) = any([(any(stiffness_lost(self%trial(ply, element)) > 0), ply=first, last)])
     end associate
   end subroutine soften_element
+
+  !> Parts of the stiffness that a ply has lost: along, across, in shear before it cracked.
+  pure function stiffness_lost(state) result(lost)
+    !> The ply
+    type(band_state_t), intent(in) :: state
+    !> From 0 to 1
+    real(wp) :: lost(3)
+
+    lost = [state%damage, state%sheared]
+  end function stiffness_lost
 
   !> Makes the trial the accepted state.
   pure subroutine commit(self)
@@ -237,7 +247,7 @@ contains
     !> The constants
     type(elasticity_t) :: elasticity
 
-    elasticity = elasticity_left(self%bands(ply), self%trial(ply, element)%damage)
+    elasticity = elasticity_left(self%bands(ply), self%trial(ply, element))
   end function elasticity
 
   !> Resultants of strains without stress in the trial.
@@ -262,12 +272,12 @@ contains
     !> Where to or where from
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
-    integer, parameter :: numbers = 2 + energy_modes
+    integer, parameter :: numbers = 3 + energy_modes
     real(wp) :: table(numbers*size(self%plies), size(self%touched))
     integer :: element, ply
 
     do element = 1, size(self%touched)
-      table(:, element) = [([self%accepted(ply, element)%damage, self%accepted(ply, element)%dissipated], &
+      table(:, element) = [([stiffness_lost(self%accepted(ply, element)), self%accepted(ply, element)%dissipated], &
                             ply=1, size(self%plies))]
     end do
     call archive%field('ply_failure/crack_bands', model%distribution%elements, model%mesh%elements(), table)
@@ -275,13 +285,13 @@ contains
     do element = 1, size(self%touched)
       do ply = 1, size(self%plies)
         associate (values => table((ply - 1)*numbers + 1:ply*numbers, element))
-          self%accepted(ply, element) = band_state_t(values(1:2), values(3:))
+          self%accepted(ply, element) = band_state_t(damage=values(1:2), sheared=values(3), dissipated=values(4:))
           ! What is loaded may come from an element that had more plies.
           if (ply < self%range(1, element) .or. ply > self%range(2, element)) &
             self%accepted(ply, element) = band_state_t()
         end associate
       end do
-      self%touched(element) = any([(any(self%accepted(ply, element)%damage > 0), ply=1, size(self%plies))])
+      self%touched(element) = any([(any(stiffness_lost(self%accepted(ply, element)) > 0), ply=1, size(self%plies))])
     end do
     self%trial = self%accepted
   end subroutine visit

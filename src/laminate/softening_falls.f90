@@ -1,0 +1,101 @@
+!> Straight falls of stress over strain, from the onset of damage to failure.
+module softening_falls
+  use kinds, only: wp
+  use ply_damage_parameters, only: fibre_tension
+  implicit none
+  private
+  public :: softening_t, fall_of, worse, damage_at, share_growth, weights_of_signs
+
+  !> Least strain at failure over that at the onset: a longer element would snap back.
+  real(wp), parameter, public :: least_ratio = 1.25_wp
+
+  !> One straight fall of stress over strain.
+  type :: softening_t
+    !> Strain over that of the onset
+    real(wp) :: exposure = 0
+    !> Strain at failure over that of the onset, N
+    real(wp) :: ratio = huge(1.0_wp)
+    !> Energy per volume that it takes in all
+    real(wp) :: energy = 0
+    !> Mode in which it is booked
+    integer :: mode = fibre_tension
+  end type softening_t
+
+contains
+
+  !> Parts that tension and compression have in the root mean square of a strain. They are those of two halves of the
+  !> ply that differ as much as needed, and change smoothly where the mean changes its sign.
+  pure function weights_of_signs(mean, size) result(weights)
+    !> Mean and root mean square
+    real(wp), intent(in) :: mean, size
+    !> Of tension and compression; their squares add up to 1
+    real(wp) :: weights(2)
+    real(wp) :: middle, spread
+
+    weights = [1, 0]
+    if (.not. size > tiny(size)) return
+    middle = max(-1.0_wp, min(1.0_wp, mean/size))
+    spread = sqrt(1 - middle**2)
+    weights(1) = sqrt((max(0.0_wp, middle + spread)**2 + max(0.0_wp, middle - spread)**2)/2)
+    weights(2) = sqrt((max(0.0_wp, -middle + spread)**2 + max(0.0_wp, -middle - spread)**2)/2)
+  end function weights_of_signs
+
+  !> That of two falls with the larger damage.
+  pure function worse(signs)
+    !> Tension and compression
+    type(softening_t), intent(in) :: signs(2)
+    !> One of them
+    type(softening_t) :: worse
+
+    worse = signs(1)
+    if (damage_at(signs(2)) > damage_at(signs(1))) worse = signs(2)
+  end function worse
+
+  !> The fall of a mode whose stress, undamaged, would stand at an exposure and store an energy.
+  pure function fall_of(exposure, energy, toughness, length, mode) result(fall)
+    !> Undamaged stress over that of the onset
+    real(wp), intent(in) :: exposure
+    !> Energy per volume that the strain would store undamaged
+    real(wp), intent(in) :: energy
+    !> Energy per area of crack
+    real(wp), intent(in) :: toughness
+    !> Length of the element across the crack
+    real(wp), intent(in) :: length
+    !> The mode
+    integer, intent(in) :: mode
+    !> The fall
+    type(softening_t) :: fall
+
+    fall%mode = mode
+    fall%exposure = exposure
+    if (.not. exposure > 1) return
+    fall%ratio = max(least_ratio, toughness/length/(energy/exposure**2))
+    fall%energy = fall%ratio*(energy/exposure**2)
+  end function fall_of
+
+  !> Damage on a fall: d = N (f - 1)/(f (N - 1)).
+  pure real(wp) function damage_at(fall) result(damage)
+    !> The fall
+    type(softening_t), intent(in) :: fall
+
+    damage = 0
+    if (fall%exposure >= fall%ratio) then
+      damage = 1
+    else if (fall%exposure > 1) then
+      damage = min(1.0_wp, fall%ratio*(fall%exposure - 1)/(fall%exposure*(fall%ratio - 1)))
+    end if
+  end function damage_at
+
+  !> Growth of the dissipated part d/(N (1 - d) + d) with the damage, free of cancellation.
+  pure real(wp) function share_growth(ratio, damage_from, damage_to) result(growth)
+    !> N
+    real(wp), intent(in) :: ratio
+    !> Damage before and after
+    real(wp), intent(in) :: damage_from, damage_to
+    real(wp) :: from, to
+
+    from = ratio*(1 - damage_from) + damage_from
+    to = ratio*(1 - damage_to) + damage_to
+    growth = ratio*(damage_to - damage_from)/(from*to)
+  end function share_growth
+end module softening_falls
