@@ -7,6 +7,7 @@ module programs
   use launchers, only: launched
   use deck_symmetries, only: symmetry_sentence
   use deck_contents, only: deck_t
+  use deck_crack_bands, only: strength_lines
   use deck_problems, only: problems_t
   use deck_scales, only: scale_lines
   use deck_table, only: load_deck_table
@@ -200,7 +201,7 @@ contains
     if (code /= exit_done) return
     call print_lines(communicator, [line_t(command%target//': no errors.')])
     if (symmetry_sentence(deck) /= '') call print_lines(communicator, [line_t(symmetry_sentence(deck))])
-    call print_lines(communicator, scale_lines(deck))
+    call print_lines(communicator, [scale_lines(deck), strength_lines(deck)])
     model_size = size_of_model(deck%scene_t)
     call print_lines(communicator, [line_t(model_size%sentence())])
   end subroutine check

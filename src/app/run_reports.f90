@@ -6,6 +6,7 @@ module run_reports
   use profiles, only: part_length, profile_row_t
   use timers, only: timer_set_t
   use deck_contents, only: deck_t
+  use deck_crack_bands, only: strength_lines
   use deck_echo, only: echo
   use deck_extents, only: extent_lines
   use deck_scales, only: scale_lines
@@ -34,7 +35,7 @@ contains
     call load_deck_table(vocabulary)
     call echo(vocabulary, deck%settings, lines)
     if (deck%has_impactor .and. .not. deck%has_indentation) call echo_without_group(deck%indentation, lines)
-    lines = [lines, extent_lines(deck), scale_lines(deck)]
+    lines = [lines, extent_lines(deck), scale_lines(deck), strength_lines(deck)]
     if (allocated(deck%reasons)) lines = [lines, deck%reasons]
     do i = 1, size(lines)
       call log%detail(lines(i)%text)

@@ -1,19 +1,24 @@
-!> Checks of plies that soften by their fracture energies: are all energies there, what has no effect beside them, and
-!> does the mesh bear them?
+!> Plies that soften by their fracture energies. Are all energies there, what has no effect beside them, does the mesh
+!> bear them? And the strengths in place of all blocks of plies.
 module deck_crack_bands
   use cell_grids, only: cell_edges
   use crack_bands, only: create_crack_band, longest_element
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
   use deck_remarks, only: tell, remark, remark_idle, are_clear
+  use in_situ_strengths, only: material_in_place
   use kinds, only: wp
   use material_deck, only: material_group, toughness_keys
-  use ply_damage_deck, only: ply_damage_group, keys_of_sudden_failure
+  use material_parameters, only: material_t
+  use plies, only: ply_t
+  use ply_blocks, only: block_of
+  use ply_damage_deck, only: ply_damage_group, key_in_situ, keys_of_sudden_failure
   use short_numbers, only: short_text
-  use text, only: line_t, append, joined
+  use stacking, only: stacked_plies
+  use text, only: line_t, append, joined, to_text
   implicit none
   private
-  public :: check_crack_bands
+  public :: check_crack_bands, strength_lines
 
 contains
 
@@ -25,17 +30,41 @@ contains
     type(problems_t), intent(inout) :: problems
     integer :: i
 
-    if (.not. any([(any(deck%materials(i)%toughness > 0), i=1, size(deck%materials))])) return
+    if (.not. any([(any(deck%materials(i)%toughness > 0), i=1, size(deck%materials))])) then
+      if (deck%ply_damage%in_situ) call refuse_in_situ(deck, problems)
+      return
+    end if
     do i = 1, size(deck%materials)
       call check_energies(deck, i, problems)
     end do
     call remark_idle(deck%settings, problems, ply_damage_group, keys_of_sudden_failure, &
                      'has no effect on plies with fracture energies.')
     if (problems%errors() > 0) return
+    if (deck%ply_damage%in_situ .and. all(block_of(stacked_plies(deck%laminate, deck%materials), 1) == &
+                                          [1, size(deck%laminate%angle)])) &
+      call remark(deck%settings, problems, ply_damage_group, key_in_situ, 'has no effect: all plies are of one '// &
+                  'material and angle, so that none has a neighbour to hold its cracks together.')
     do i = 1, size(deck%materials)
       call check_lengths(deck, i, problems)
     end do
   end subroutine check_crack_bands
+
+  !> Strengths in place need fracture energies.
+  subroutine refuse_in_situ(deck, problems)
+    !> The deck, which has none
+    type(deck_t), intent(in) :: deck
+    !> The fault is added
+    type(problems_t), intent(inout) :: problems
+    integer :: place, mode
+
+    do place = 1, size(deck%materials)
+      do mode = 1, size(toughness_keys)
+        if (.not. are_clear(deck%settings, problems, material_group, toughness_keys(mode), place)) return
+      end do
+    end do
+    call tell(deck%settings, problems, ply_damage_group, key_in_situ, 'strengths in place follow from the '// &
+              'fracture energies G_mt and G_mc; give G_ft, G_fc, G_mt and G_mc of every material, or leave it out.')
+  end subroutine refuse_in_situ
 
   !> Energies come all four, and for all materials.
   subroutine check_energies(deck, place, problems)
@@ -72,7 +101,7 @@ contains
     integer :: mode
 
     present = element_lengths(deck)
-    longest = longest_element(create_crack_band(deck%materials(place), deck%ply_damage))
+    longest = longest_elements(deck, place)
     allocate (limits(0))
     do mode = 1, size(toughness_keys)
       if (longest(mode) < present(2)) call append(limits, toughness_keys(mode)//' from '//short_text(longest(mode)))
@@ -81,6 +110,51 @@ contains
       'more than its fracture energy, '//joined(limits, ', ')//' on; they are '//short_text(present(1))//' to '// &
       short_text(present(2))//' long, so keep them shorter where plies fail.', place)
   end subroutine check_lengths
+
+  !> Longest elements that take no more than the fracture energies, in every block of a material. Strengths in place are
+  !> never below the material's, so that they only make them shorter.
+  pure function longest_elements(deck, place) result(longest)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Index of the material
+    integer, intent(in) :: place
+    !> The lengths in the order of the modes
+    real(wp) :: longest(size(toughness_keys))
+    type(ply_t), allocatable :: plies(:)
+    integer :: ply
+
+    plies = stacked_plies(deck%laminate, deck%materials)
+    longest = longest_element(create_crack_band(deck%materials(place), deck%ply_damage))
+    do ply = 1, size(plies)
+      if (plies(ply)%material == place) longest = min(longest, longest_element(create_crack_band( &
+        material_in_place(plies, ply, deck%materials, deck%ply_damage), deck%ply_damage)))
+    end do
+  end function longest_elements
+
+  !> The strengths in place of all blocks of plies, from the struck face.
+  function strength_lines(deck) result(lines)
+    !> The deck, checked
+    type(deck_t), intent(in) :: deck
+    !> One line a block; none unless the deck asks for these strengths
+    type(line_t), allocatable :: lines(:)
+    type(ply_t), allocatable :: plies(:)
+    type(material_t) :: material
+    character(len=:), allocatable :: name
+    integer :: range(2)
+
+    allocate (lines(0))
+    if (.not. deck%ply_damage%in_situ) return
+    plies = stacked_plies(deck%laminate, deck%materials)
+    range = 0
+    do while (range(2) < size(plies))
+      range = block_of(plies, range(2) + 1)
+      material = material_in_place(plies, range(1), deck%materials, deck%ply_damage)
+      name = 'YT and S12 in place, ply '//to_text(range(1))
+      if (range(2) > range(1)) name = 'YT and S12 in place, plies '//to_text(range(1))//' to '//to_text(range(2))
+      call append(lines, '  '//name//repeat(' ', max(1, 44 - len(name)))//short_text(material%yt)//', '// &
+                  short_text(material%s12))
+    end do
+  end function strength_lines
 
   !> Shortest and longest side of the cells.
   pure function element_lengths(deck) result(lengths)

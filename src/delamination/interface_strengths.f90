@@ -1,12 +1,13 @@
-!> Shear strengths of all interfaces between plies, and blocks of plies that are alike.
+!> Shear strengths of all interfaces between plies.
 module interface_strengths
   use delamination_parameters, only: delamination_t
   use kinds, only: wp
   use material_parameters, only: material_t
   use plies, only: ply_t
+  use ply_blocks, only: are_alike
   implicit none
   private
-  public :: shear_strengths, block_thickness
+  public :: shear_strengths
 
 contains
 
@@ -36,33 +37,4 @@ contains
       end associate
     end do
   end function shear_strengths
-
-  !> Thickness of the block of neighbouring plies that are alike.
-  pure real(wp) function block_thickness(plies, ply) result(thickness)
-    !> All plies, from the struck face
-    type(ply_t), intent(in) :: plies(:)
-    !> One of the block
-    integer, intent(in) :: ply
-    integer :: first, last
-
-    first = ply
-    do while (first > 1)
-      if (.not. are_alike(plies(first - 1), plies(ply))) exit
-      first = first - 1
-    end do
-    last = ply
-    do while (last < size(plies))
-      if (.not. are_alike(plies(last + 1), plies(ply))) exit
-      last = last + 1
-    end do
-    thickness = plies(last)%z_bottom - plies(first)%z_top
-  end function block_thickness
-
-  !> True: one material at one angle.
-  pure logical function are_alike(a, b)
-    !> The plies
-    type(ply_t), intent(in) :: a, b
-
-    are_alike = a%material == b%material .and. abs(a%cosine*b%sine - a%sine*b%cosine) < 1.0e-12_wp
-  end function are_alike
 end module interface_strengths

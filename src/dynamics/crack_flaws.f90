@@ -3,9 +3,9 @@ module crack_flaws
   use delamination_parameters, only: law_cohesive
   use interface_flaws, only: weaken_beside
   use interface_states, only: interface_state_t
-  use interface_strengths, only: block_thickness
   use kinds, only: wp
   use models, only: model_t
+  use ply_blocks, only: block_thickness
   use ply_damage_parameters, only: matrix_cracking, matrix_crushing
   use ply_failures, only: ply_failure_t
   implicit none

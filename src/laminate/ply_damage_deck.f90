@@ -9,8 +9,8 @@ module ply_damage_deck
   private
   public :: fill_ply_damage
 
-  !> Name that checks across groups use.
-  character(len=*), parameter, public :: ply_damage_group = 'ply_damage'
+  !> Names that checks across groups use.
+  character(len=*), parameter, public :: ply_damage_group = 'ply_damage', key_in_situ = 'in_situ'
   !> Keys without effect on plies that soften by their fracture energies.
   character(len=*), parameter, public :: keys_of_sudden_failure = 'd stress'
   !> Row of the group.
@@ -25,7 +25,9 @@ module ply_damage_deck
     'ply_damage | criteria | choice | 1 | - | ''hou'' | hou hashin puck | &
       &Set of failure criteria: those of Hou et al. (Table 1), of Hashin (1980) or of Puck (1998).', &
     'ply_damage | stress | choice | 1 | - | ''middle'' | middle faces | &
-      &Where in a ply the stresses are taken: its mid-plane, or the worse of its faces.']
+      &Where in a ply the stresses are taken: its mid-plane, or the worse of its faces.', &
+    'ply_damage | in_situ | logical | 1 | - | .false. | .true. .false. | &
+      &YT and S12 of each block of plies follow from its thickness, G_mt and G_mc (in-situ strengths).']
 
 contains
 
@@ -42,5 +44,6 @@ contains
                               [criteria_hou, criteria_hashin, criteria_puck])
     damage%stress = code_of(settings%text_of(ply_damage_group, 'stress'), 'middle faces', &
                             [stress_at_middle, stress_at_faces])
+    damage%in_situ = settings%logical_of(ply_damage_group, key_in_situ)
   end subroutine fill_ply_damage
 end module ply_damage_deck

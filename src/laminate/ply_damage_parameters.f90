@@ -18,7 +18,7 @@ module ply_damage_parameters
   !> Where in a ply the stresses are taken: in its mid-plane, or on the worse of its faces.
   integer, parameter, public :: stress_at_middle = 1, stress_at_faces = 2
 
-  !> How a failed ply loses its stiffness (Table 2 of the paper).
+  !> When plies fail, and how a failed ply loses its stiffness (Table 2 of the paper).
   type :: ply_damage_t
     !> Divisor of the elastic constants that a mode of failure takes away
     real(wp) :: d = 100
@@ -28,5 +28,7 @@ module ply_damage_parameters
     integer :: criteria = criteria_hou
     !> stress_at_middle or stress_at_faces
     integer :: stress = stress_at_middle
+    !> True: the strengths of the matrix are those in place
+    logical :: in_situ = .false.
   end type ply_damage_t
 end module ply_damage_parameters

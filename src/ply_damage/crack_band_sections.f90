@@ -6,6 +6,7 @@ module crack_band_sections
   use crack_bands, only: crack_band_t, band_state_t, create_crack_band, strain_band, elasticity_left, onset_strain
   use element_batches, only: lanes, first_element
   use free_strains, only: free_resultants
+  use in_situ_strengths, only: material_in_place
   use kinds, only: wp
   use models, only: model_t
   use plies, only: ply_t, elasticity_t
@@ -65,8 +66,11 @@ contains
     integer :: i, cell(2)
 
     self%plies = model%plies
-    self%bands = [(create_crack_band(model%scene%materials(model%plies(i)%material), model%scene%ply_damage), &
-                   i=1, size(model%plies))]
+    allocate (self%bands(size(model%plies)))
+    do i = 1, size(self%bands)
+      self%bands(i) = create_crack_band(material_in_place(model%plies, i, model%scene%materials, &
+                                                          model%scene%ply_damage), model%scene%ply_damage)
+    end do
     if (allocated(model%free)) self%free = model%free
     self%onset = minval([(onset_strain(self%bands(i)), i=1, size(self%bands))]) &
                  - maxval([(norm2(self%plies(i)%free_strain), i=1, size(self%plies))])

@@ -1,0 +1,68 @@
+!> Strengths of the matrix of plies in place: neighbours of another angle hold its cracks together, the more so the
+!> thinner the block of plies that a crack runs through (P. P. Camanho, C. G. Davila, S. T. Pinho, L. Iannucci,
+!> P. Robinson, Composites Part A 37 (2006) 165-176, for a straight curve of shear).
+module in_situ_strengths
+  use kinds, only: wp
+  use material_parameters, only: material_t
+  use plies, only: ply_t
+  use ply_blocks, only: block_of, block_thickness
+  use ply_damage_parameters, only: ply_damage_t, matrix_tension, matrix_compression
+  implicit none
+  private
+  public :: strengths_in_place, material_in_place
+
+  real(wp), parameter :: pi = acos(-1.0_wp)
+  !> Factor of the stress intensity at a crack that reaches a free face, and the factor of the strength of a thin block
+  !> at a face that goes with it, 2/1.12 as printed.
+  real(wp), parameter :: at_free_face = 1.12_wp, thin_at_face = 1.79_wp
+
+contains
+
+  !> Material of a ply with the strengths that its failure is judged by: those in place if the deck asks for them. A
+  !> block that is the whole laminate has no neighbours; its strengths are the material's.
+  pure function material_in_place(plies, ply, materials, damage) result(material)
+    !> All plies, from the struck face
+    type(ply_t), intent(in) :: plies(:)
+    !> The ply
+    integer, intent(in) :: ply
+    !> Materials that they refer to
+    type(material_t), intent(in) :: materials(:)
+    !> Tells whether strengths are those in place
+    type(ply_damage_t), intent(in) :: damage
+    !> The material
+    type(material_t) :: material
+    real(wp) :: strengths(2)
+    logical :: at_face(2)
+
+    material = materials(plies(ply)%material)
+    at_face = block_of(plies, ply) == [1, size(plies)]
+    if (.not. damage%in_situ .or. all(at_face)) return
+    strengths = strengths_in_place(material, block_thickness(plies, ply), any(at_face))
+    material%yt = strengths(1)
+    material%s12 = strengths(2)
+  end function material_in_place
+
+  !> Strengths in place of a block of plies.
+  pure function strengths_in_place(material, thickness, at_face) result(strengths)
+    !> Its material, with strengths and fracture energies
+    type(material_t), intent(in) :: material
+    !> Its thickness
+    real(wp), intent(in) :: thickness
+    !> True: it has neighbours on one side only
+    logical, intent(in) :: at_face
+    !> YT and S12
+    real(wp) :: strengths(2)
+    real(wp) :: compliance, opening, shear
+
+    associate (m => material)
+      compliance = 2*(1/m%e2 - (m%nu12*m%e2/m%e1)**2/m%e1)
+      opening = sqrt(m%toughness(matrix_tension)/(pi*thickness*compliance))
+      shear = sqrt(m%g12*m%toughness(matrix_compression)/(pi*thickness))
+      if (at_face) then
+        strengths = max([m%yt, m%s12], [thin_at_face*opening, 2*shear])
+      else
+        strengths = sqrt(2.0_wp)*max([at_free_face*m%yt, m%s12], 2*[opening, shear])
+      end if
+    end associate
+  end function strengths_in_place
+end module in_situ_strengths
