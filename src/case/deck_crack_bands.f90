@@ -8,7 +8,7 @@ module deck_crack_bands
   use deck_remarks, only: tell, remark, remark_idle, are_clear
   use in_situ_strengths, only: material_in_place
   use kinds, only: wp
-  use material_deck, only: material_group, toughness_keys
+  use material_deck, only: material_group, key_shear_strain, toughness_keys
   use material_parameters, only: material_t
   use plies, only: ply_t
   use ply_blocks, only: block_of
@@ -32,10 +32,15 @@ contains
 
     if (.not. any([(any(deck%materials(i)%toughness > 0), i=1, size(deck%materials))])) then
       if (deck%ply_damage%in_situ) call refuse_in_situ(deck, problems)
+      do i = 1, size(deck%materials)
+        call remark_idle(deck%settings, problems, material_group, key_shear_strain, &
+                         'has no effect without fracture energies.', i)
+      end do
       return
     end if
     do i = 1, size(deck%materials)
       call check_energies(deck, i, problems)
+      call check_shear(deck, i, problems)
     end do
     call remark_idle(deck%settings, problems, ply_damage_group, keys_of_sudden_failure, &
                      'has no effect on plies with fracture energies.')
@@ -87,6 +92,23 @@ contains
       'fracture energies are given, but not '//joined(missing, ', ')// &
       '; give G_ft, G_fc, G_mt and G_mc of every material, or none.', place)
   end subroutine check_energies
+
+  !> Shear that is not linear strains a ply more than a straight line would.
+  subroutine check_shear(deck, place, problems)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Index of the material
+    integer, intent(in) :: place
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    real(wp) :: strain, linear
+
+    strain = deck%settings%real_of(material_group, key_shear_strain, place)
+    if (.not. (strain > 0 .and. deck%materials(place)%g12 > 0)) return
+    linear = deck%materials(place)%s12/deck%materials(place)%g12
+    if (strain < linear) call tell(deck%settings, problems, material_group, key_shear_strain, 'must be at least '// &
+                                   'S12/G12 = '//short_text(linear)//', that of linear shear.', place)
+  end subroutine check_shear
 
   !> Warns of elements too long to fail with no more than the fracture energies.
   subroutine check_lengths(deck, place, problems)

@@ -8,7 +8,7 @@
 !> (P. Maimi et al., Mechanics of Materials 39 (2007) 897-908, for the energy and its variables). Before the matrix
 !> cracks shear may take a part of G12 throughout the element, as Hahn and Tsai have it.
 module crack_bands
-  use hahn_tsai, only: shear_coefficient, shear_loss, energy_of_loss
+  use hahn_tsai, only: shear_loss, energy_of_loss
   use kinds, only: wp
   use material_parameters, only: material_t
   use matrix_exposures, only: matrix_strengths_t, matrix_strengths, matrix_exposure
@@ -76,7 +76,7 @@ contains
     band%matrix = matrix_strengths(material, damage%criteria)
     band%toughness = material%toughness
     band%remainder = damage%e
-    band%shear_beta = shear_coefficient(material%g12, material%s12, material%shear_failure_strain)
+    band%shear_beta = material%shear_beta
   end function create_crack_band
 
   !> What a ply remembers if trial strains are accepted.
@@ -107,7 +107,7 @@ contains
     end do
     do i = 1, 2
       if (new%damage(i) > old%damage(i)) &
-        new%dissipated(falls(i)%mode) = old%dissipated(falls(i)%mode) + (1 - band%remainder)*falls(i)%energy* &
+        new%dissipated(falls(i)%mode) = new%dissipated(falls(i)%mode) + (1 - band%remainder)*falls(i)%energy* &
                                         share_growth(falls(i)%ratio, old%damage(i), new%damage(i))
     end do
   end subroutine strain_band
@@ -140,7 +140,7 @@ contains
     end do
     new%sheared = loss_at(least)
     associate (modulus => band%elasticity%g12, beta => band%shear_beta, booked => new%dissipated(matrix_compression))
-      booked = booked + energy_of_loss(modulus, beta, new%sheared) - energy_of_loss(modulus, beta, old%sheared)
+      booked = booked + (energy_of_loss(modulus, beta, new%sheared) - energy_of_loss(modulus, beta, old%sheared))
     end associate
 
   contains

@@ -1,6 +1,6 @@
 !> Strengths of the matrix of plies in place: neighbours of another angle hold its cracks together, the more so the
 !> thinner the block of plies that a crack runs through (P. P. Camanho, C. G. Davila, S. T. Pinho, L. Iannucci,
-!> P. Robinson, Composites Part A 37 (2006) 165-176, for a straight curve of shear).
+!> P. Robinson, Composites Part A 37 (2006) 165-176).
 module in_situ_strengths
   use kinds, only: wp
   use material_parameters, only: material_t
@@ -57,12 +57,11 @@ contains
     associate (m => material)
       compliance = 2*(1/m%e2 - (m%nu12*m%e2/m%e1)**2/m%e1)
       opening = sqrt(m%toughness(matrix_tension)/(pi*thickness*compliance))
-      shear = sqrt(m%g12*m%toughness(matrix_compression)/(pi*thickness))
-      if (at_face) then
-        strengths = max([m%yt, m%s12], [thin_at_face*opening, 2*shear])
-      else
-        strengths = sqrt(2.0_wp)*max([at_free_face*m%yt, m%s12], 2*[opening, shear])
-      end if
+      ! What the paper calls phi, for a block at a face; thick, where it leaves S12 as it is, or thin.
+      shear = max(6*m%s12**2/m%g12 + 9*m%shear_beta*m%s12**4, 24*m%toughness(matrix_compression)/(pi*thickness))
+      strengths(1) = merge(max(m%yt, thin_at_face*opening), sqrt(2.0_wp)*max(at_free_face*m%yt, 2*opening), at_face)
+      if (.not. at_face) shear = 2*shear
+      strengths(2) = sqrt(shear*m%g12/(3*(1 + sqrt(1 + m%shear_beta*shear*m%g12**2))))
     end associate
   end function strengths_in_place
 end module in_situ_strengths

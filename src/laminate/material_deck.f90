@@ -4,6 +4,7 @@ module material_deck
   use deck_remarks, only: tell, are_clear
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
+  use hahn_tsai, only: shear_coefficient
   use kinds, only: wp
   use material_parameters, only: material_t
   use plies, only: material_objection
@@ -14,7 +15,8 @@ module material_deck
 
   !> Name that checks across groups use.
   character(len=*), parameter, public :: material_group = 'material', key_isotropic = 'E ', key_along = 'E1', &
-                                         key_density = 'density', key_tension = 'XT'
+                                         key_density = 'density', key_tension = 'XT', &
+                                         key_shear_strain = 'shear_failure_strain'
   !> Row of the group.
   character(len=group_row_length), parameter, public :: material_group_row = &
     'material | repeatable | One ply material, orthotropic or isotropic; may be given several times.'
@@ -65,7 +67,7 @@ module material_deck
     'material | G_mc | real | 1 | energy/area | none | > 0 | &
       &Energy that failing the matrix by shear or by compression across the fibres takes per area of crack.', &
     'material | shear_failure_strain | real | 1 | - | none | > 0 | &
-      &Shear strain in the plane at S12, beyond S12/G12 if shear is not linear; plies need fracture energies.', &
+      &Shear strain in the plane at S12; left out: S12/G12, shear is linear.', &
     'material | alpha1 | real | 1 | 1/temperature | 0 | any | &
       &Thermal expansion along the fibres.', &
     'material | alpha2 | real | 1 | 1/temperature | 0 | any | &
@@ -123,7 +125,6 @@ contains
     material%s12 = settings%real_of(material_group, 'S12', place)
     material%sf = settings%real_of(material_group, 'Sf', place)
     material%sm23 = settings%real_of(material_group, 'Sm23', place)
-    material%shear_failure_strain = settings%real_of(material_group, 'shear_failure_strain', place)
     material%expansion = [settings%real_of(material_group, 'alpha1', place), &
                           settings%real_of(material_group, 'alpha2', place)]
     do mode = 1, size(toughness_keys)
@@ -142,6 +143,8 @@ contains
       call tell(settings, problems, material_group, '', 'its moduli differ by more than a factor of '// &
                 to_text(most_contrast)//', where rounding spoils the answer.', place)
     end if
+    material%shear_beta = shear_coefficient(material%g12, material%s12, &
+                                            settings%real_of(material_group, key_shear_strain, place))
   end subroutine fill_material
 
   !> Largest over smallest modulus of a material.

@@ -24,8 +24,8 @@ module material_parameters
     real(wp) :: yt = 0, yc = 0
     !> Shear strengths: in the plane, of the fibres, and in the 2-3 plane
     real(wp) :: s12 = 0, sf = 0, sm23 = 0
-    !> Shear strain in the plane at S12; 0: not given, shear is linear
-    real(wp) :: shear_failure_strain = 0
+    !> Hahn and Tsai's coefficient of shear in the plane; 0: it is linear
+    real(wp) :: shear_beta = 0
     !> Fracture energies per area: fibre tension and compression, matrix tension and compression; 0: not given
     real(wp) :: toughness(4) = 0
     !> Thermal expansion along and across the fibres

@@ -232,14 +232,11 @@ contains
 
     ! Coarse pilots could agree on what both miss, so each is held against the finest that can be had.
     finer = 1
-    do while (2**finer*least_steps*self%scales%contact_time < fine_steps/sqrt(bounds(1))*end)
+    do while (2*2**finer*least_steps <= most_steps)
+      if (2**finer*least_steps*self%scales%contact_time >= fine_steps/sqrt(bounds(1))*end) exit
       finer = finer + 1
     end do
-    do
-      ratio = 2**finer
-      if (finer == 1 .or. ratio*least_steps <= most_steps) exit
-      finer = finer - 1
-    end do
+    ratio = 2**finer
     finest = run_of(self, end/(ratio*least_steps), end, 0.0_wp)
     do
       steps = least_steps*2**finer/ratio
