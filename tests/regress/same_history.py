@@ -48,7 +48,7 @@ def histories_of_part(part, implam, deck, folder, settings):
 
 def exchange_axes(text):
     """Return a deck with x and y exchanged: pairs swapped and a fibre angle replaced by 90 degrees less it."""
-    pairs = r"\b(length|elements|zone)=([^\s,]+), *([^\s,]+)"
+    pairs = r"\b(length|elements|core|zone)=([^\s,]+), *([^\s,]+)"
     text = re.sub(pairs, r"\1=\3, \2", text)
     text = re.sub(r"\bedges=('\w+'), *('\w+'), *('\w+'), *('\w+')", r"edges=\3, \4, \1, \2", text)
     return re.sub(r"(?<=\bangles=).*?(?=\s+\w+\s*=|\s*/)", lambda angles: re.sub(
