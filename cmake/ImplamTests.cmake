@@ -11,7 +11,7 @@ endif()
 
 # implam_settle_test(<test> <label>): label, environment and time limit of a registered test.
 function(implam_settle_test test label)
-  set_tests_properties(${test} PROPERTIES LABELS ${label} ENVIRONMENT "${IMPLAM_TEST_ENVIRONMENT}" TIMEOUT 300)
+  set_tests_properties(${test} PROPERTIES LABELS ${label} ENVIRONMENT "${IMPLAM_TEST_ENVIRONMENT}" TIMEOUT 600)
 endfunction()
 
 # implam_share_cores(<test>...): tests of several ranks; one that waits for another leaves its core to others.
