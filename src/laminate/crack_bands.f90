@@ -236,12 +236,10 @@ contains
     real(wp), intent(in) :: left(2)
     !> Of tension and compression
     type(softening_t) :: signs(2)
-    real(wp) :: part(2), size, weights(2), energy
+    real(wp) :: size, weights(2), energy
 
-    associate (c => band%elasticity, m => strains%mean, s => strains%square, g => band%toughness)
-      part = parts_of_others(c, left)
-      size = sqrt(max(0.0_wp, s(1) + part(1)*(2*s(3) + part(1)*s(2))))/(1 - product(part))
-      weights = weights_of_signs((m(1) + part(1)*m(2))/(1 - product(part)), size)
+    associate (c => band%elasticity, g => band%toughness)
+      call find_strain_alone(c, strains, left, 1, size, weights)
       energy = c%e1*size**2/2
       signs(1) = fall_of(weights(1)*c%e1*size/band%along(1), energy, g(fibre_tension), length, fibre_tension)
       signs(2) = fall_of(weights(2)*c%e1*size/band%along(2), energy, g(fibre_compression), length, fibre_compression)
@@ -260,12 +258,10 @@ contains
     real(wp), intent(in) :: left(2)
     !> Of tension and compression
     type(softening_t) :: signs(2)
-    real(wp) :: part(2), size, weights(2), shear_energy, energy, toughness, across, shear
+    real(wp) :: size, weights(2), shear_energy, energy, toughness, across, shear
 
-    associate (c => band%elasticity, m => strains%mean, s => strains%square, g => band%toughness)
-      part = parts_of_others(c, left)
-      size = sqrt(max(0.0_wp, s(2) + part(2)*(2*s(3) + part(2)*s(1))))/(1 - product(part))
-      weights = weights_of_signs((m(2) + part(2)*m(1))/(1 - product(part)), size)
+    associate (c => band%elasticity, g => band%toughness)
+      call find_strain_alone(c, strains, left, 2, size, weights)
       shear_energy = c%g12*strains%shear_square/2
       energy = c%e2*size**2/2 + shear_energy
       ! Linear interaction of the modes (E. M. Wu, R. C. Reuter, 1965): G_I/G_mt + G_II/G_mc = 1.
@@ -281,18 +277,28 @@ contains
     end associate
   end function matrix_falls
 
-  !> Parts of the other strain that a stress along and across the fibres would have alone: e1 + part e2, e2 + part e1,
-  !> over a common divisor.
-  pure function parts_of_others(elasticity, left) result(part)
+  !> Strain that s11 or s22 would have alone: e1 + part e2, e2 + part e1, over a common divisor.
+  pure subroutine find_strain_alone(elasticity, strains, left, direction, size, weights)
     !> Constants without damage
     type(elasticity_t), intent(in) :: elasticity
+    !> Strains of the ply
+    type(band_strains_t), intent(in) :: strains
     !> Parts of the stiffness along and across the fibres that damage leaves
     real(wp), intent(in) :: left(2)
-    !> Of e2 and of e1
+    !> 1: along the fibres, 2: across
+    integer, intent(in) :: direction
+    !> Its root mean square
+    real(wp), intent(out) :: size
+    !> Parts that tension and compression have in it
+    real(wp), intent(out) :: weights(2)
     real(wp) :: part(2)
 
     part = [left(2)*elasticity%nu12*elasticity%e2/elasticity%e1, left(1)*elasticity%nu12]
-  end function parts_of_others
+    associate (m => strains%mean, s => strains%square, i => direction, j => 3 - direction)
+      size = sqrt(max(0.0_wp, s(i) + part(i)*(2*s(3) + part(i)*s(j))))/(1 - product(part))
+      weights = weights_of_signs((m(i) + part(i)*m(j))/(1 - product(part)), size)
+    end associate
+  end subroutine find_strain_alone
 
   !> A strain below which a ply can't begin to be damaged, whatever its direction: strains in its plane are measured by
   !> the root of e1**2 + e2**2 + g12**2/2, which a turn of the axes leaves as it is. Shear that is not linear takes its
