@@ -47,6 +47,8 @@ module dynamic_steps
     logical :: stays = .false., coasts = .false.
     !> True: internal forces follow from the motion, as one correction solves the step
     logical :: spares = .false.
+    !> True: the operator was renewed on the way to an equilibrium, so it hangs on that way
+    logical :: renewed = .false.
     !> Square of the patch's shares, of this rank's points
     real(wp) :: patch_square = 0
     !> The impactor's side of the step
@@ -126,6 +128,7 @@ contains
     new%contact_iterations = 0
     call operator%anderson%forget()
     operator%switches = 0
+    self%renewed = .false.
     call self%memory%forget()
   end subroutine begin
 
@@ -243,7 +246,8 @@ contains
                                       new%largest_forces)
   end function residual_norm
 
-  !> Lets plies that soften follow.
+  !> Lets plies that soften follow. In a burst what comes then begins from the equilibrium reached alone: with answers
+  !> of the way there, rounding on that way would choose among several ends.
   subroutine soften(self, model, equilibrium, norm, new, softened)
     !> The problem
     class(dynamic_step_t), intent(inout) :: self
@@ -259,6 +263,7 @@ contains
 
     call self%rounds%go_on(model, equilibrium, norm, new, softened)
     self%bursts = self%bursts .or. self%rounds%breaks .and. allocated(new%interfaces%cohesive%cohesive)
+    if (softened .and. self%bursts) call self%memory%forget()
   end subroutine soften
 
   !> The force answers to the motion only within an iteration, so an impact needs one.
@@ -277,7 +282,7 @@ contains
   !> Makes the operator follow ties and contacts, or renews it where that or its age asks for it.
   subroutine prepare_operator(self, model, operator, new, error)
     !> The problem
-    class(dynamic_step_t), intent(in) :: self
+    class(dynamic_step_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> The factored operator
     type(tangent_operator_t), intent(inout) :: operator
@@ -285,11 +290,15 @@ contains
     type(state_t), intent(in) :: new
     !> Set if the solver fails
     type(error_t), allocatable, intent(inout) :: error
-    logical :: follows
+    logical :: follows, first
 
+    first = new%iterations == self%begun
     follows = modulo(new%iterations - self%begun + 1, self%renewal) > 0 .and. .not. self%memory%is_full(operator)
+    if (first) follows = follows .and. .not. (self%bursts .and. self%renewed)
+    if (operator%condenses) follows = follows .and. .not. self%stalls
     if (follows) call operator%follow(model, new%interfaces, follows, error)
     if (follows .or. allocated(error)) return
+    self%renewed = .not. first
     call operator%renew(model, new%plies%stiffness, new%interfaces, new%motion%displacement, &
                         self%integrator%stiffness_factor(), self%integrator%mass_factor(self%step), error)
   end subroutine prepare_operator

@@ -137,7 +137,7 @@ contains
   !> A fresh tangent wherever it may have changed.
   subroutine prepare_operator(self, model, operator, new, error)
     !> The problem
-    class(static_step_t), intent(in) :: self
+    class(static_step_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> The factored operator
     type(tangent_operator_t), intent(inout) :: operator

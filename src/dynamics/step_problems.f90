@@ -16,6 +16,9 @@ module step_problems
 
   !> Rise of the residual by which an iteration has gone astray: near its tolerance rounding makes it rise a little.
   real(wp), parameter :: astray = 2
+  !> Iterations that should bring the residual down to a part, or the iteration stalls.
+  integer, parameter :: watched = 4
+  real(wp), parameter :: most_left = 0.5_wp
 
   !> One kind of step.
   type, abstract :: step_problem_t
@@ -29,6 +32,8 @@ module step_problems
     logical :: bursts = .false.
     !> Iterations taken when plies followed last
     integer :: begun = 0
+    !> True: the last iterations have not come nearer to equilibrium, so another operator is wanted
+    logical :: stalls = .false.
   contains
     !> First guess of the state at the end of the step.
     procedure(begin_step), deferred :: begin
@@ -113,7 +118,7 @@ module step_problems
     subroutine prepare_operator(self, model, operator, new, error)
       import :: step_problem_t, model_t, tangent_operator_t, state_t, error_t
       !> The problem
-      class(step_problem_t), intent(in) :: self
+      class(step_problem_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       !> The factored operator
       type(tangent_operator_t), intent(inout) :: operator
@@ -207,7 +212,7 @@ contains
     !> Set if the solver fails for good
     type(error_t), allocatable, intent(out) :: error
     real(wp), allocatable :: residual(:, :), correction(:, :)
-    real(wp) :: norm, before, energy
+    real(wp) :: norm, before, earlier, energy
     logical :: pressures_new, softened, in_plane
 
     converged = .false.
@@ -217,6 +222,7 @@ contains
     in_plane = .false.
     problem%begun = 0
     before = huge(before)
+    earlier = before
     call problem%begin(model, operator, old, new)
     do
       call operator%timers%start('element forces')
@@ -251,6 +257,7 @@ contains
         if (new%contact_iterations < equilibrium%max_iterations) cycle
       end if
       if (.not. norm <= huge(norm) .or. new%iterations - problem%begun >= equilibrium%max_iterations) exit
+      call watch(problem, new%iterations - problem%begun, norm, earlier)
       ! The impact force is found by the whole operator, and so is what a correction in the plane leaves.
       if (allocated(operator%membrane) .and. new%iterations > 0) then
         operator%membrane%fails = operator%membrane%fails .or. in_plane
@@ -283,4 +290,21 @@ contains
     end do
     if (converged) call problem%finish(model, old, energy, new)
   end subroutine solve_step
+
+  !> Notes before a correction whether the iteration stalls.
+  pure subroutine watch(problem, iterations, norm, earlier)
+    !> The problem
+    class(step_problem_t), intent(inout) :: problem
+    !> Iterations since plies followed last
+    integer, intent(in) :: iterations
+    !> Size of the residual
+    real(wp), intent(in) :: norm
+    !> The same when it was looked at last
+    real(wp), intent(inout) :: earlier
+
+    problem%stalls = .false.
+    if (modulo(iterations, watched) > 0) return
+    problem%stalls = iterations > 0 .and. norm > most_left*earlier
+    earlier = norm
+  end subroutine watch
 end module step_problems

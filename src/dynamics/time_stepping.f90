@@ -210,7 +210,7 @@ contains
     step = merge(1.0_wp/(1024*self%stepping%static_steps), self%stepping%time%step_min, model%scene%has_static)
   end function smallest_step
 
-  !> Tries one time step. One that fails or bursts is tried again, and the next begins, with the operator of its start.
+  !> Tries one time step. After a failure, a burst or a renewal on the way it begins with the operator of its start.
   subroutine try_step(self, model, event, step, converged, error)
     !> The time stepper
     class(time_stepper_t), intent(inout) :: self
@@ -250,7 +250,7 @@ contains
       if (converged .or. due .or. allocated(error)) exit
       due = .true.
     end do
-    if (problem%bursts) self%operator%ready = .false.
+    if (problem%bursts .or. problem%renewed .and. self%operator%condenses) self%operator%ready = .false.
     ! Steps of the smallest length are taken as they are: the energy watch tells what they create.
     self%haste = max(problem%rounds%haste, self%trial%plies%haste)
     if (converged .and. self%haste > 1) converged = step <= self%smallest_step(model)*(1 + 1.0e-9_wp)
