@@ -47,7 +47,7 @@ module dynamic_steps
     logical :: stays = .false., coasts = .false.
     !> True: internal forces follow from the motion, as one correction solves the step
     logical :: spares = .false.
-    !> True: the operator was renewed on the way to an equilibrium, so it hangs on that way
+    !> True: the operator was renewed on the way to an equilibrium, so how plies break next would hang on that way
     logical :: renewed = .false.
     !> Square of the patch's shares, of this rank's points
     real(wp) :: patch_square = 0
@@ -298,7 +298,7 @@ contains
     if (operator%condenses) follows = follows .and. .not. self%stalls
     if (follows) call operator%follow(model, new%interfaces, follows, error)
     if (follows .or. allocated(error)) return
-    self%renewed = .not. first
+    self%renewed = .not. first .and. operator%condenses .and. model%scene%has_crack_bands()
     call operator%renew(model, new%plies%stiffness, new%interfaces, new%motion%displacement, &
                         self%integrator%stiffness_factor(), self%integrator%mass_factor(self%step), error)
   end subroutine prepare_operator

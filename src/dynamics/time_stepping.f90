@@ -250,7 +250,7 @@ contains
       if (converged .or. due .or. allocated(error)) exit
       due = .true.
     end do
-    if (problem%bursts .or. problem%renewed .and. self%operator%condenses) self%operator%ready = .false.
+    if (problem%bursts .or. problem%renewed) self%operator%ready = .false.
     ! Steps of the smallest length are taken as they are: the energy watch tells what they create.
     self%haste = max(problem%rounds%haste, self%trial%plies%haste)
     if (converged .and. self%haste > 1) converged = step <= self%smallest_step(model)*(1 + 1.0e-9_wp)
