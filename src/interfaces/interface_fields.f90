@@ -32,8 +32,8 @@ module interface_fields
       &jumps of the cohesive interface on top of a layer.', &
     'energy_release_above | cells | - | '//field_energy_release//' | &delamination | G/G_c of the interface on top in &
       &the intact elements next to a front, 0 elsewhere.', &
-    'onset_index | cells | - | '//field_onset//' | - | Largest interlaminar shear stress over strength between the &
-      &plies of an element and on its top, by equilibrium through the thickness of layers that are joined.', &
+    'onset_index | cells | - | '//field_onset//' | - | Largest interlaminar stress over strength, shear and opening as &
+      &squares, in and on top of an element, by equilibrium through the thickness of joined layers.', &
     'onset_ply | cells | - | '//field_onset//' | - | Ply above the interface where onset_index is reached; 0 if no &
       &strength is known.']
 

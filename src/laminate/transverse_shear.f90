@@ -12,7 +12,7 @@ module transverse_shear
   use packed_matrices, only: unpacked, inverse, inverse_of_two
   implicit none
   private
-  public :: shear_stiffness_from_energy, shear_between_plies
+  public :: shear_stiffness_from_energy, find_unit_stresses
 
   !> Three Gauss points of the unit interval, exact for the fourth-degree energy density of a ply
   real(wp), parameter :: abscissae(3) = 0.5_wp + [-1, 0, 1]*sqrt(0.15_wp)
@@ -55,25 +55,35 @@ contains
     stiffness = inverse_of_two(compliance)
   end function shear_stiffness_from_energy
 
-  !> Shear stresses between the plies under unit shear forces.
-  pure function shear_between_plies(z, in_plane) result(stress)
+  !> Shear stresses between the plies under unit shear forces, and what of these the plies above carry.
+  pure subroutine find_unit_stresses(z, in_plane, stress, carried)
     !> z of the plies' faces, top of the first to bottom of the last, from any origin
     real(wp), intent(in) :: z(0:)
     !> Packed in-plane stiffness of each ply, shape (6, plies)
     real(wp), intent(in) :: in_plane(:, :)
-    !> tau_xz and tau_yz on the bottom of each ply but the last, for Qx = 1 and Qy = 1, (2, 2, plies - 1)
-    real(wp) :: stress(2, 2, size(in_plane, 2) - 1)
-    real(wp) :: constant(3, 2), slope(3, 2), flow(2, 2), middle
+    !> tau_xz and tau_yz (rows) on the bottom of each ply but the last, for Qx = 1 and Qy = 1 (columns), and their
+    !> integrals from the top of the first, (2, 2, plies - 1)
+    real(wp), allocatable, intent(out) :: stress(:, :, :), carried(:, :, :)
+    real(wp) :: constant(3, 2), slope(3, 2), flow(2, 2), half(2, 2), whole(2, 2), sum_above(2, 2), middle, top, bottom
     integer :: ply
 
+    allocate (stress(2, 2, size(in_plane, 2) - 1), carried(2, 2, size(in_plane, 2) - 1))
     middle = (z(0) + z(ubound(z, 1)))/2
     call strains_of_unit_shear(z - middle, in_plane, constant, slope)
     flow = 0
+    sum_above = 0
     do ply = 1, size(stress, 3)
-      flow = flow + flow_between(z(ply - 1) - middle, z(ply) - middle, unpacked(in_plane(:, ply)), constant, slope)
+      top = z(ply - 1) - middle
+      bottom = z(ply) - middle
+      half = flow + flow_between(top, (top + bottom)/2, unpacked(in_plane(:, ply)), constant, slope)
+      whole = flow + flow_between(top, bottom, unpacked(in_plane(:, ply)), constant, slope)
+      ! Simpson's rule is exact for the parabola.
+      sum_above = sum_above + (bottom - top)*(flow + 4*half + whole)/6
+      flow = whole
       stress(:, :, ply) = -flow
+      carried(:, :, ply) = -sum_above
     end do
-  end function shear_between_plies
+  end subroutine find_unit_stresses
 
   !> Growth of the in-plane strain, constant + slope z, along x for Qx = 1 (column 1) and along y for Qy = 1 (column 2).
   pure subroutine strains_of_unit_shear(z, in_plane, constant, slope)

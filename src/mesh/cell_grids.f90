@@ -25,7 +25,8 @@ module cell_grids
   contains
     !> Number of nodes.
     procedure :: nodes
-    !> Area of a cell.
+    !> Sides and area of a cell.
+    procedure :: cell_sides
     procedure :: cell_area
     !> True where a cell lies under the loaded patch.
     procedure :: in_patch
@@ -128,6 +129,18 @@ contains
     nodes = size(self%node_coordinates, 2)
   end function nodes
 
+  !> Sides of a cell along x and y.
+  pure function cell_sides(self, place) result(sides)
+    !> The grid
+    class(cell_grid_t), intent(in) :: self
+    !> Column and row, from 1
+    integer, intent(in) :: place(2)
+    !> Along x and y
+    real(wp) :: sides(2)
+
+    sides = [self%x_edges(place(1) + 1) - self%x_edges(place(1)), self%y_edges(place(2) + 1) - self%y_edges(place(2))]
+  end function cell_sides
+
   !> Area of a cell.
   pure real(wp) function cell_area(self, place) result(area)
     !> The grid
@@ -135,7 +148,7 @@ contains
     !> Column and row, from 1
     integer, intent(in) :: place(2)
 
-    area = (self%x_edges(place(1) + 1) - self%x_edges(place(1)))*(self%y_edges(place(2) + 1) - self%y_edges(place(2)))
+    area = product(self%cell_sides(place))
   end function cell_area
 
   !> Image of a node on the line at which a plate is cut that a turn by 180 degrees leaves as it is: at (0, -y) for

@@ -1,8 +1,8 @@
 !> Scales of a scene from its parameters alone: what its mesh and its steps have to resolve.
 module scene_scales
   use delamination_parameters, only: toughnesses
-  use interface_strengths, only: shear_strengths
-  use interlaminar_shear, only: onset_indices
+  use interface_strengths, only: interlaminar_strengths
+  use interlaminar_stresses, only: unit_stresses_t, unit_stresses_of
   use kinds, only: wp
   use mesh_parameters, only: edge_simple
   use modal_plates, only: modal_plate_t, modal_plate_of
@@ -36,7 +36,7 @@ module scene_scales
     real(wp) :: compliance = 0
     !> Force at which delaminations begin to grow; 0: no interface may delaminate
     real(wp) :: threshold = 0
-    !> Force at which interlaminar shear reaches its strength beside the patch; 0: no strength or no patch is known
+    !> Force at which interlaminar stresses reach the strength beside the patch; 0: no strength or no patch is known
     real(wp) :: onset = 0
   end type scene_scales_t
 
@@ -197,21 +197,26 @@ contains
     if (size(scene%delaminations) > 0) force = threshold_force(bending, least, size(scene%delaminations))
   end function growth_threshold
 
-  !> Force at which the shear between two plies reaches its strength just beside the loaded patch, where it is spread
-  !> evenly over the patch's four sides.
+  !> Force at which stresses between two plies reach the strength just beside the loaded patch. The shear force is
+  !> spread evenly over the patch's four sides, and decreases from there on as round a circle of that circumference.
   pure real(wp) function onset_force(scene) result(force)
     !> The scene
     type(scene_t), intent(in) :: scene
     type(ply_t), allocatable :: plies(:)
-    real(wp), allocatable :: strengths(:)
-    real(wp) :: index
+    type(unit_stresses_t) :: unit
+    real(wp) :: decrease, index
 
     force = 0
     plies = stacked_plies(scene%laminate, scene%materials)
     if (size(plies) < 2 .or. .not. scene%mesh%patch > 0) return
-    strengths = shear_strengths(plies, scene%materials, scene%delaminations)
-    index = max(maxval(onset_indices(plies, strengths, [1.0_wp, 0.0_wp])), &
-                maxval(onset_indices(plies, strengths, [0.0_wp, 1.0_wp])))
+    unit = unit_stresses_of(plies)
+    ! Q = P/(2 pi r): along the radius it decreases by Q/r, across it grows by as much.
+    decrease = pi/(2*scene%mesh%patch)
+    associate (strengths => interlaminar_strengths(plies, scene%materials, scene%delaminations), &
+               gradient => reshape([-decrease, 0.0_wp, 0.0_wp, decrease], [2, 2]))
+      index = max(maxval(unit%onset_indices(strengths, [1.0_wp, 0.0_wp], gradient)), &
+                  maxval(unit%onset_indices(strengths, [0.0_wp, 1.0_wp], -gradient)))
+    end associate
     if (index > 0) force = 4*scene%mesh%patch/index
   end function onset_force
 end module scene_scales

@@ -212,6 +212,48 @@ def check_onset(implam, folder):
         require(name != "apart" or (np.any(alone) and not np.any(index[alone])), "A single ply has an interface.")
 
 
+INDENTED = """&case name='indented' kinematics='linear' /
+&plate length=0.06, 0.06  edges='clamped'  symmetry='quarter' /
+&mesh elements=30, 30  patch=4e-3 /
+&material name='c'  density=1600  E1=130e9 E2=8e9 G12=5e9 G13=5e9 G23=4e9 nu12=0.3 YT=1e3 S12=1e12 /
+&laminate materials='c'  angles=0,90,0  thicknesses=0.5e-3,1e-3,0.5e-3 /
+&impactor travel=1e-3  radius=1 /
+&indentation law='hertz'  k=1e12 /
+&static steps=1 /
+"""
+LAYERED = """&delamination below_ply={}  G_c=1e13  law='cohesive'  zone=0.06,0.06  strength_opening=1e12
+  strength_shear=1e12  stiffness=1e15  contact='none' /
+"""
+
+
+def check_opening(implam, folder):
+    """The index where opening alone counts is the force that holds two layers together, beside the load."""
+    fields = {0: "onset", 1: "gap", 2: "gap"}
+    results = {}
+    for below, field in fields.items():
+        place = folder / f"indented_{below}"
+        place.mkdir(parents=True, exist_ok=True)
+        deck = INDENTED + f"&output fields='{field}' /\n" + LAYERED.format(below) * (below > 0)
+        (place / "deck.nml").write_text(deck, encoding="utf-8")
+        results[below] = Results(run_deck(implam, place / "deck.nml"))
+    weights = np.outer([1, 4, 1], [1, 4, 1]).ravel() / 36
+    middles = {below: np.round((found.low + found.high) / 2, 9) for below, found in results.items()}
+    held = np.zeros(len(middles[0]))
+    for below in (1, 2):
+        under = results[below].first_ply == below + 1
+        require(np.array_equal(middles[below][under], middles[0]), "The cells are others.")
+        gap = results[below].points["jump"][results[below].connectivity[under]][:, :, 2] @ weights
+        held = np.maximum(held, 1e15 * gap)
+    away = np.hypot(*middles[0].T)
+    opening = 1e3 * results[0].cells["onset_index"]
+    beside = (away > 5e-3) & np.all(middles[0] < 20e-3, axis=1)
+    worst = np.max(np.abs(opening - held)[beside]) / np.max(held[beside])
+    print(f"opening: up to {np.max(held[beside]):.3g}, {worst:.3f} of it off what holds the layers together")
+    require(worst < 0.1, "Opening isn't what holds the layers together.")
+    pressed = np.all(middles[0] < 2e-3, axis=1)
+    require(np.max(opening[pressed]) < 1e-3 * np.max(held), "A load from above opens what is under it.")
+
+
 def table_of(implam, topic):
     """Return the rows of a table of results, each a list of cells, without the heading."""
     command = [implam, "explain", topic, "--markdown"]
@@ -285,7 +327,7 @@ def check_columns(implam, folder):
 
 def main(implam, folder):
     """Run the trials; the exit code is 1 if one fails."""
-    trials = (check_navier, check_damaged_layers, check_energy_release, check_onset, check_table,
+    trials = (check_navier, check_damaged_layers, check_energy_release, check_onset, check_opening, check_table,
               check_columns)
     return max(exit_code_of(trial, implam, Path(folder)) for trial in trials)
 
