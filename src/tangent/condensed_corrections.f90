@@ -16,13 +16,16 @@ module condensed_corrections
   !> Force left at a point over that at its strength from which it becomes an unknown. With it
   !> crossply_cohesive_2mm.nml takes one iteration a step; ten times or a tenth of it dissipates the same area to 4e-9.
   real(wp), parameter :: noticed = 1.0e-4_wp
-  !> Unknowns at most, those that join together at most, and numbers in the operator's answers to forces on them.
+  !> Unknowns at most, and those that join together at most.
   integer, parameter :: most_unknowns = 500, most_joining = 300
+  !> Numbers in the operator's answers to forces on them at most, and to those that join together: with more than caches
+  !> hold answers take over a third of the time, 37 % in cohesive_threshold.nml with cells of .5 mm and 81 000 unknowns.
+  !> Not where plies break in rounds, which forget what a crowd has found: there it costs a third more.
+  real(wp), parameter :: most_numbers = 1.0e8_wp, most_joining_numbers = 8.0e6_wp
   !> Unknowns of failed points that join together at most. Their faces open or close, and do so again in the next step,
   !> while answers to the forces of a front serve many steps. It decides on cost alone: with 50 the free flight of
   !> peanut.nml takes .84 of the time that it takes with 300, and has the same energies to nine digits.
   integer, parameter :: most_clapping = 50
-  real(wp), parameter :: most_numbers = 1.0e8_wp
   !> Numbers that tell of an unknown.
   integer, parameter :: told = 18
 
@@ -199,7 +202,7 @@ contains
     !> True: there is no room for all of them
     logical, intent(out) :: crowded
     real(wp) :: error(3, model%distribution%owned), clapping(1)
-    integer :: i
+    integer :: i, most
 
     call old%mismatch(model, operator%stiffness_factor, operator%present, displacement, correction, error)
     call strike_columns(operator, error)
@@ -213,9 +216,11 @@ contains
     clapping = sum([(count(error(:, i) > noticed), i=1, size(error, 2))], &
                    mask=old%points(:size(error, 2))%damage >= 1)
     call model%communicator%sum(clapping)
-    crowded = clapping(1) > most_clapping .or. &
-              size(equations) > min(most_joining, min(most_unknowns, int(most_numbers/operator%numbering%total)) &
-                                                      - self%columns)
+    associate (total => operator%numbering%total)
+      most = min(most_joining, min(most_unknowns, int(most_numbers/total)) - self%columns)
+      if (.not. model%scene%has_crack_bands()) most = min(most, int(most_joining_numbers/total))
+    end associate
+    crowded = clapping(1) > most_clapping .or. size(equations) > most
   end subroutine wanting
 
   !> Leaves out what is an unknown already.
