@@ -9,6 +9,7 @@ module interface_fields
   use kinds, only: wp
   use models, only: model_t
   use motions, only: motion_t
+  use joined_stacks, only: joined_stacks_of
   use onset_index, only: onset_of_elements
   use output_parameters, only: output_t, field_gap, field_contact_pressure, field_delamination, field_energy_release, &
                                field_onset
@@ -90,7 +91,7 @@ contains
 
     allocate (delaminated(1, model%elements%elements), source=0.0_wp)
     if (model%map%layered) delaminated = delaminated_above(model, interfaces)
-    onset = onset_of_elements(model, stiffness, delaminated, motion%displacement)
+    onset = onset_of_elements(model, joined_stacks_of(model, stiffness, delaminated, motion%displacement))
     call fields%write_cell_field('onset_index', onset(1:1, :), error)
     call fields%write_cell_field('onset_ply', onset(2:2, :), error)
   end subroutine write_onset

@@ -3,6 +3,7 @@
 module layer_demand
   use interface_fields, only: delaminated_above
   use interface_states, only: interface_state_t
+  use joined_stacks, only: joined_stacks_of
   use kinds, only: wp
   use layer_extents, only: cells_ahead, cells_at_once, onset_of_layers, thicknesses_ahead, widened_extent
   use models, only: model_t
@@ -61,7 +62,8 @@ contains
     real(wp), allocatable :: onset(:, :)
     integer :: zone
 
-    onset = onset_of_joined_cells(model, stiffness, delaminated_above(model, interfaces), displacement)
+    onset = onset_of_joined_cells(model, joined_stacks_of(model, stiffness, delaminated_above(model, interfaces), &
+                                                          displacement))
     do zone = 1, size(extents, 2)
       extents(:, zone) = model%scene%delaminations(zone)%zone
       call extend(model, onset(:, zone), extents(:, zone))

@@ -2,7 +2,7 @@
 module onset_index
   use interface_strengths, only: interlaminar_strengths
   use interlaminar_stresses, only: unit_stresses_t, unit_stresses_of
-  use joined_stacks, only: joined_stacks_t, joined_stacks_of
+  use joined_stacks, only: joined_stacks_t
   use kinds, only: wp
   use models, only: model_t
   implicit none
@@ -23,22 +23,17 @@ module onset_index
 
 contains
 
-  !> Largest index in the interfaces within each element and on top of it, and the ply above that interface. Layers that
-  !> are joined make one stack. All ranks must call together.
-  function onset_of_elements(model, stiffness, delaminated, displacement) result(onset)
+  !> Largest index in the interfaces within each element and on top of it, and the ply above that interface.
+  pure function onset_of_elements(model, stacks) result(onset)
     type(model_t), intent(in) :: model
-    !> Section stiffness left in the elements, (lanes, 21, batches)
-    real(wp), intent(in) :: stiffness(:, :, :)
-    !> Part of each element's area that has delaminated above it, (1, elements)
-    real(wp), intent(in) :: delaminated(:, :)
-    !> Displacement, ghosts up to date, (5, points)
-    real(wp), intent(in) :: displacement(:, :)
+    !> The stacks of joined layers
+    type(joined_stacks_t), intent(in) :: stacks
     !> Index and ply; both 0 where no strength is known, (2, elements)
     real(wp), allocatable :: onset(:, :)
     type(onset_t) :: self
     integer :: i, range(2), place
 
-    self = new_onset(model, stiffness, delaminated, displacement)
+    self = new_onset(model, stacks)
     allocate (onset(2, model%elements%elements), source=0.0_wp)
     do i = 1, size(onset, 2)
       associate (element => model%distribution%elements(i))
@@ -54,22 +49,17 @@ contains
     end do
   end function onset_of_elements
 
-  !> The index of each interface in the cells of the mesh whose layers it does not part, 0 in the others. All ranks must
-  !> call together and find the same.
-  function onset_of_joined_cells(model, stiffness, delaminated, displacement) result(onset)
+  !> The index of each interface in the cells of the mesh whose layers it does not part, 0 in the others.
+  pure function onset_of_joined_cells(model, stacks) result(onset)
     type(model_t), intent(in) :: model
-    !> Section stiffness left in the elements, (lanes, 21, batches)
-    real(wp), intent(in) :: stiffness(:, :, :)
-    !> Part of each element's area that has delaminated above it, (1, elements)
-    real(wp), intent(in) :: delaminated(:, :)
-    !> Displacement, ghosts up to date, (5, points)
-    real(wp), intent(in) :: displacement(:, :)
+    !> The stacks of joined layers
+    type(joined_stacks_t), intent(in) :: stacks
     !> Stress over strength, (cells of the mesh, zones)
     real(wp), allocatable :: onset(:, :)
     type(onset_t) :: self
     integer :: element, zone, range(2)
 
-    self = new_onset(model, stiffness, delaminated, displacement)
+    self = new_onset(model, stacks)
     associate (mesh => model%mesh)
       allocate (onset(product(mesh%cells), size(mesh%zones)), source=0.0_wp)
       do element = 1, mesh%elements()
@@ -87,19 +77,15 @@ contains
     end associate
   end function onset_of_joined_cells
 
-  !> Gathers what indices are made from. All ranks must call together.
-  function new_onset(model, stiffness, delaminated, displacement) result(self)
+  !> Gathers what indices are made from.
+  pure function new_onset(model, stacks) result(self)
     type(model_t), intent(in) :: model
-    !> Section stiffness left in the elements, (lanes, 21, batches)
-    real(wp), intent(in) :: stiffness(:, :, :)
-    !> Part of each element's area that has delaminated above it, (1, elements)
-    real(wp), intent(in) :: delaminated(:, :)
-    !> Displacement, ghosts up to date, (5, points)
-    real(wp), intent(in) :: displacement(:, :)
+    !> The stacks of joined layers
+    type(joined_stacks_t), intent(in) :: stacks
     !> What was gathered
     type(onset_t) :: self
 
-    self%stacks = joined_stacks_of(model, stiffness, delaminated, displacement)
+    self%stacks = stacks
     self%strengths = interlaminar_strengths(model%plies, model%scene%materials, model%scene%delaminations)
     self%whole = unit_stresses_of(model%plies)
   end function new_onset

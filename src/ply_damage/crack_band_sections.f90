@@ -63,7 +63,7 @@ contains
     type(model_t), intent(in) :: model
     !> The plies
     type(crack_band_sections_t) :: self
-    integer :: i, cell(2)
+    integer :: i
 
     self%plies = model%plies
     allocate (self%bands(size(model%plies)))
@@ -81,9 +81,9 @@ contains
     allocate (self%sides(2, model%elements%elements), self%touched(model%elements%elements))
     self%touched = .false.
     do i = 1, model%elements%elements
-      cell = model%mesh%place_of(model%mesh%element_cell(model%distribution%elements(i)))
-      self%sides(:, i) = [model%mesh%x_edges(cell(1) + 1) - model%mesh%x_edges(cell(1)), &
-                          model%mesh%y_edges(cell(2) + 1) - model%mesh%y_edges(cell(2))]
+      associate (element => model%distribution%elements(i))
+        self%sides(:, i) = model%mesh%cell_sides(model%mesh%place_of(model%mesh%element_cell(element)))
+      end associate
     end do
   end function new_crack_band_sections
 

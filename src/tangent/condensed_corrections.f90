@@ -20,7 +20,7 @@ module condensed_corrections
   integer, parameter :: most_unknowns = 500, most_joining = 300
   !> Numbers in the operator's answers to forces on them at most, and to those that join together: with more than caches
   !> hold answers take over a third of the time, 37 % in cohesive_threshold.nml with cells of .5 mm and 81 000 unknowns.
-  !> Not where plies break in rounds, which forget what a crowd has found: there it costs a third more.
+  !> Not where plies break in rounds, which forget what a crowd has found: there the 25 J panel took 1.4 times as long.
   real(wp), parameter :: most_numbers = 1.0e8_wp, most_joining_numbers = 8.0e6_wp
   !> Unknowns of failed points that join together at most. Their faces open or close, and do so again in the next step,
   !> while answers to the forces of a front serve many steps. It decides on cost alone: with 50 the free flight of

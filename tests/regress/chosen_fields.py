@@ -250,6 +250,10 @@ def check_opening(implam, folder):
     worst = np.max(np.abs(opening - held)[beside]) / np.max(held[beside])
     print(f"opening: up to {np.max(held[beside]):.3g}, {worst:.3f} of it off what holds the layers together")
     require(worst < 0.1, "Opening isn't what holds the layers together.")
+    near = (away > 3e-3) & np.all(middles[0] < 20e-3, axis=1)
+    worst = np.max(np.abs(opening - held)[near]) / np.max(held[near])
+    print(f"nearer, up to {np.max(held[near]):.3g}, {worst:.3f} of it off")
+    require(worst < 0.28, "Opening is far from what holds the layers together near the patch.")
     pressed = np.all(middles[0] < 2e-3, axis=1)
     require(np.max(opening[pressed]) < 1e-3 * np.max(held), "A load from above opens what is under it.")
 
