@@ -16,15 +16,11 @@ module border_systems
     integer, private :: rows = 0
     !> Place on the border of each of this rank's rows there
     integer, allocatable, private :: place(:)
-    !> Lower factor of this rank's Schur complement with more on its diagonal, zero above, (its rows, its rows)
-    real(wp), allocatable, private :: lower(:, :)
     !> Factor of the sum over the ranks
     type(positive_factor_t), private :: factor
   contains
     !> Sets the border's size.
     procedure :: define
-    !> Takes this rank's Schur complement.
-    procedure :: take
     !> Adds the ranks' Schur complements up and factors the sum.
     procedure :: factorize
     !> Solves, between the two halves of the ranks' own solves.
@@ -44,21 +40,6 @@ module border_systems
       !> Not 0: an argument is wrong
       integer, intent(out) :: info
     end subroutine dlauum
-
-    !> BLAS: a triangular matrix times several columns.
-    subroutine dtrmm(side, uplo, trans, diag, m, n, alpha, a, lda, b, ldb)
-      import :: wp
-      !> 'L': from the left; 'L': lower; 'N' or 'T'; 'N': its diagonal counts
-      character, intent(in) :: side, uplo, trans, diag
-      !> Rows and columns, leading dimensions
-      integer, intent(in) :: m, n, lda, ldb
-      !> Factor
-      real(wp), intent(in) :: alpha
-      !> The triangle
-      real(wp), intent(in) :: a(lda, *)
-      !> The columns, overwritten by the product
-      real(wp), intent(inout) :: b(ldb, *)
-    end subroutine dtrmm
   end interface
 
 contains
@@ -78,18 +59,11 @@ contains
     self%place = place
   end subroutine define
 
-  !> Takes this rank's Schur complement.
-  subroutine take(self, lower)
-    class(border_system_t), intent(inout) :: self
-    !> Its lower factor, with more on its diagonal, zero above, (its rows, its rows); not kept
-    real(wp), allocatable, intent(inout) :: lower(:, :)
-
-    call move_alloc(lower, self%lower)
-  end subroutine take
-
   !> Adds the ranks' Schur complements up and factors the sum; called by all ranks together.
-  subroutine factorize(self, more, positive)
+  subroutine factorize(self, lower, more, positive)
     class(border_system_t), intent(inout) :: self
+    !> Lower factor of this rank's, with more on its diagonal, zero above, (its rows, its rows)
+    real(wp), intent(in) :: lower(:, :)
     !> What the diagonal of this rank's Schur complement has more, (its rows)
     real(wp), intent(in) :: more(:)
     !> Whether the sum is positive definite
@@ -97,9 +71,9 @@ contains
     real(wp), allocatable :: matrix(:, :), product(:, :)
     integer :: k, rows, info
 
-    rows = size(self%lower, 1)
+    rows = size(lower, 1)
     ! LAPACK multiplies an upper triangle by its transpose: that of the rows in the opposite order.
-    product = self%lower(rows:1:-1, rows:1:-1)
+    product = lower(rows:1:-1, rows:1:-1)
     if (rows > 0) call dlauum('U', rows, product, rows, info)
     allocate (matrix(self%rows, self%rows), source=0.0_wp)
     do k = 1, rows
@@ -120,25 +94,18 @@ contains
     !> This rank's right-hand sides on the border: those of the equations that it owns, else zero, (border, columns)
     real(wp), intent(in) :: forces(:, :)
     !> On entry what eliminating the inside of right-hand sides without border leaves on this rank's rows there, the
-    !> solution on return; of several columns solved with the lower factor, and times the upper one, (its rows, columns)
+    !> solution on return, (its rows, columns)
     real(wp), intent(inout) :: eliminated(:, :)
     real(wp), allocatable :: sums(:, :)
-    integer :: columns, rows
 
-    rows = size(eliminated, 1)
-    columns = size(eliminated, 2)
-    if (columns > 1 .and. rows > 0) &
-      call dtrmm('L', 'L', 'N', 'N', rows, columns, 1.0_wp, self%lower, rows, eliminated, rows)
     sums = forces
     sums(self%place, :) = sums(self%place, :) + eliminated
     call self%communicator%sum(sums)
-    if (columns == 1) then
+    if (size(sums, 2) == 1) then
       call self%factor%solve(sums(:, 1))
     else
       call self%factor%solve_many(sums)
     end if
     eliminated = sums(self%place, :)
-    if (columns > 1 .and. rows > 0) &
-      call dtrmm('L', 'L', 'T', 'N', rows, columns, 1.0_wp, self%lower, rows, eliminated, rows)
   end subroutine solve
 end module border_systems

@@ -1,6 +1,7 @@
 /* CHOLMOD behind procedures that Fortran can call: a symmetric positive definite matrix, whose lists stay the caller's,
    and its supernodal factor (Chen et al., ACM Trans. Math. Softw. 35, 2008). The last rows may be a border, which is
    eliminated last: the last columns of the factor are those of its Schur complement then. */
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <suitesparse/cholmod.h>
@@ -15,10 +16,12 @@ typedef struct {
   /* The matrix in the order of the factor, and where each of its values goes there. */
   cholmod_sparse *ordered;
   int *places;
-  /* What solves for several right-hand sides leave for the next: solution and work space. */
-  cholmod_dense *solution, *work, *spare;
   /* One right-hand side in the order of the factor, and work space behind it. */
   double *one;
+  /* The same for several, those of each row side by side, and where they have been; what was needed so far. */
+  double *several;
+  uint64_t *reached;
+  size_t room;
 } implam_cholmod;
 
 /* Outcomes of a factorization. */
@@ -140,24 +143,56 @@ static void solve_one(implam_cholmod *self, const double *right_hand_side, doubl
   for (int k = 0; k < rows; k++) solution[order[k]] = self->one[k];
 }
 
+/* Room for several right-hand sides and what solving for them needs; 0 without memory. */
+static int make_room(implam_cholmod *self, int count)
+{
+  const size_t needed = (size_t)count*(self->matrix.nrow + implam_supernodal_work(self->factor));
+  if (!self->reached) self->reached = malloc((self->factor->nsuper + 1)*sizeof(uint64_t));
+  if (needed > self->room) {
+    free(self->several);
+    self->several = malloc(needed*sizeof(double));
+    self->room = self->several ? needed : 0;
+  }
+  return self->reached && self->several;
+}
+
+/* Puts columns that stand one behind the other side by side, row `order[k]` of them in place k, or k without order. */
+static void side_by_side(size_t rows, size_t count, const int *order, const double *columns, double *several)
+{
+  for (size_t k = 0; k < rows; k++)
+    for (size_t c = 0; c < count; c++) several[k*count + c] = columns[c*rows + (order ? (size_t)order[k] : k)];
+}
+
+/* The opposite. */
+static void one_behind_the_other(size_t rows, size_t count, const int *order, const double *several, double *columns)
+{
+  for (size_t k = 0; k < rows; k++)
+    for (size_t c = 0; c < count; c++) columns[c*rows + (order ? (size_t)order[k] : k)] = several[k*count + c];
+}
+
 /* Solves for right-hand sides that stand one behind the other; 0 for success. */
-int implam_cholmod_solve(implam_cholmod *self, int count, double *right_hand_sides, double *solutions)
+int implam_cholmod_solve(implam_cholmod *self, int count, const double *right_hand_sides, double *solutions)
 {
   const size_t rows = self->matrix.nrow;
+  const int *order = self->factor->Perm;
   if (count == 1) {
     solve_one(self, right_hand_sides, solutions);
     return factored;
   }
-  cholmod_dense right = {.nrow = rows, .ncol = (size_t)count, .nzmax = rows*(size_t)count, .d = rows,
-                         .x = right_hand_sides, .xtype = CHOLMOD_REAL, .dtype = CHOLMOD_DOUBLE};
-  if (!cholmod_solve2(CHOLMOD_A, self->factor, &right, 0, &self->solution, 0, &self->work, &self->spare, &self->common))
-    return failed;
-  memcpy(solutions, self->solution->x, rows*(size_t)count*sizeof(double));
-  return 0;
+  for (int first = 0; first < count; first += implam_most_together) {
+    const int together = count - first < implam_most_together ? count - first : implam_most_together;
+    const size_t many = (size_t)together, before = (size_t)first*rows;
+    if (!make_room(self, together)) return failed;
+    double *work = self->several + many*rows;
+    side_by_side(rows, many, order, right_hand_sides + before, self->several);
+    implam_block_forward(self->factor, (int)rows, together, self->several, work, self->reached);
+    implam_block_backward(self->factor, (int)rows, together, self->several, work);
+    one_behind_the_other(rows, many, order, self->several, solutions + before);
+  }
+  return factored;
 }
 
-/* Half of a solve for columns one behind the other, in the order of the factor, which ends with the border; several
-   columns go through the border, too. 0 for success. */
+/* Half of a solve for columns one behind the other, in the order of the factor, but not for the border; 0 for success. */
 static int half_solve(implam_cholmod *self, int count, double *columns, int backward)
 {
   const size_t rows = self->matrix.nrow;
@@ -167,18 +202,21 @@ static int half_solve(implam_cholmod *self, int count, double *columns, int back
     else implam_supernodal_forward(self->factor, inside, columns, self->one + rows);
     return factored;
   }
-  cholmod_dense many = {.nrow = rows, .ncol = (size_t)count, .nzmax = rows*(size_t)count, .d = rows, .x = columns,
-                        .xtype = CHOLMOD_REAL, .dtype = CHOLMOD_DOUBLE};
-  cholmod_dense *work = cholmod_allocate_dense((size_t)count, self->factor->maxesize, (size_t)count, CHOLMOD_REAL,
-                                               &self->common);
-  const int done = work && (backward ? cholmod_super_ltsolve(self->factor, &many, work, &self->common) :
-                            cholmod_super_lsolve(self->factor, &many, work, &self->common));
-  cholmod_free_dense(&work, &self->common);
-  return done ? factored : failed;
+  for (int first = 0; first < count; first += implam_most_together) {
+    const int together = count - first < implam_most_together ? count - first : implam_most_together;
+    const size_t many = (size_t)together;
+    if (!make_room(self, together)) return failed;
+    double *work = self->several + many*rows, *its = columns + (size_t)first*rows;
+    side_by_side(rows, many, 0, its, self->several);
+    if (backward) implam_block_backward(self->factor, inside, together, self->several, work);
+    else implam_block_forward(self->factor, inside, together, self->several, work, self->reached);
+    one_behind_the_other(rows, many, 0, self->several, its);
+  }
+  return factored;
 }
 
 /* Eliminates what is inside the border from right-hand sides; they are left in the order of the factor, the border's
-   last. Of several the border is solved for with its lower factor, too. 0 for success. */
+   last. 0 for success. */
 int implam_cholmod_forward(implam_cholmod *self, int count, const double *right_hand_sides, double *eliminated)
 {
   const size_t rows = self->matrix.nrow;
@@ -188,8 +226,7 @@ int implam_cholmod_forward(implam_cholmod *self, int count, const double *right_
   return half_solve(self, count, eliminated, 0);
 }
 
-/* Solutions from what `implam_cholmod_forward` left and the border's solution, of several times its upper factor, in the
-   border's places; 0 for success. */
+/* Solutions from what `implam_cholmod_forward` left and the border's solution in the border's places; 0 for success. */
 int implam_cholmod_backward(implam_cholmod *self, int count, double *eliminated, double *solutions)
 {
   const size_t rows = self->matrix.nrow;
@@ -233,9 +270,8 @@ void implam_cholmod_free(implam_cholmod *self)
   cholmod_free_sparse(&self->ordered, &self->common);
   free(self->places);
   free(self->one);
-  cholmod_free_dense(&self->solution, &self->common);
-  cholmod_free_dense(&self->work, &self->common);
-  cholmod_free_dense(&self->spare, &self->common);
+  free(self->several);
+  free(self->reached);
   cholmod_finish(&self->common);
   free(self);
 }

@@ -54,7 +54,7 @@ module cholmod_library
       integer(c_int), value :: number
       !> The right-hand sides, one behind the other
       real(c_double), intent(in) :: right_hand_sides(*)
-      !> What is left of them, in CHOLMOD's order, the border last; of several that went through its lower factor
+      !> What is left of them, in CHOLMOD's order, the border last
       real(c_double), intent(inout) :: eliminated(*)
     end function cholmod_forward
 
@@ -66,7 +66,7 @@ module cholmod_library
       type(c_ptr), value :: package
       !> Number of right-hand sides
       integer(c_int), value :: number
-      !> What was left, on the border its solution, of several before its upper factor; overwritten
+      !> What was left, on the border its solution; overwritten
       real(c_double), intent(inout) :: eliminated(*)
       !> The solutions
       real(c_double), intent(inout) :: solutions(*)

@@ -137,8 +137,7 @@ contains
     if (outcome /= cholmod_done) return
     allocate (lower(size(more), size(more)))
     call cholmod_border(self%package, lower)
-    call self%border%take(lower)
-    call self%border%factorize(more, positive)
+    call self%border%factorize(lower, more, positive)
     if (.not. positive) outcome = cholmod_not_positive
   end subroutine factorize_all
 
