@@ -8,6 +8,7 @@ steps       the same with starter, steps of 20, 10 and 5 us
 crossply    the force when the area of reference/crossply_cohesive_2mm.nml passes a value, cells of 2 and 1 mm
 impact      input/crossply_threshold.nml, from nothing: cells of 2.5 and 1.25 mm, steps of 20 and 10 us, other strengths
 strips      pure end moments on strips of two arms, shear and opening, fine and coarse cells: moment over the exact one
+answers     share of the time that answers to unit forces take in thresholds, cross-plies and the peanut, on several cells
 
 Fields are read with h5py."""
 
@@ -16,6 +17,7 @@ import itertools
 import math
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -31,11 +33,11 @@ CLOSED_FORM = math.sqrt(8*math.pi**2*50e9*2e-3**3*800/(9*(1 - 0.3**2)))
 FORCES = {4: 1157, 20: 1279, 50: 1237, 100: 1217, 200: 1211, 300: 1198, 400: 1186, 600: 1165, 800: 1159}
 
 
-def run(program, text, folder):
+def run(program, text, folder, *options):
     """Run a deck; rows of its history, and seconds of the processor."""
     deck = pathlib.Path(folder, 'deck.nml')
     deck.write_text(text, encoding='utf-8')
-    process = subprocess.Popen([program, 'run', deck, '--output', folder], stdout=subprocess.DEVNULL,
+    process = subprocess.Popen([program, 'run', deck, '--output', folder, *options], stdout=subprocess.DEVNULL,
                                env=dict(os.environ, OMP_NUM_THREADS='1'))
     _, status, usage = os.wait4(process.pid, 0)
     process.returncode = os.waitstatus_to_exitcode(status)
@@ -173,7 +175,25 @@ def strips(program):
                   f'{max(grown):.4f} |', flush=True)
 
 
-STUDIES = {'thresholds': thresholds, 'steps': steps, 'crossply': crossply, 'impact': impact, 'strips': strips}
+def answers(program):
+    """Share of one part of the time, read from the profile in the log."""
+    print('| deck | cells, mm | unknowns | s | answers to unit forces |\n' + '|---'*5 + '|')
+    scenes = [(THRESHOLD, cell, [f'mesh%elements={number}, {number}', f'mesh%cell={cell}e-3'])
+              for cell, number in ((2, 15), (1.4, 19), (1.1, 24), (1, 26), (0.93, 27), (0.88, 29), (0.5, 50))]
+    scenes += [(CROSSPLY, 2, []), (CROSSPLY, 1, ['mesh%elements=50, 50'])]
+    scenes += [(ROOT/'input/peanut.nml', cell, [f'mesh%cell={cell}e-3', f'mesh%elements={along}, {across}'])
+               for cell, along, across in ((1.2, 23, 14), (0.8, 31, 17), (0.48, 48, 24))]
+    for deck, cell, settings in scenes:
+        with tempfile.TemporaryDirectory() as folder:
+            run(program, change_deck(deck.read_text(encoding='utf-8'), settings), folder, '--profile')
+            log = next(pathlib.Path(folder).glob('*.log')).read_text(encoding='utf-8')
+        unknowns = re.search(r'(\d+) unknowns', log)[1]
+        part, total = (float(re.search(rf'^{name}.* ([0-9.]+) s', log, re.MULTILINE)[1])
+                       for name in ('answers to unit forces', 'all of this rank'))
+        print(f'| {deck.stem} | {cell:g} | {unknowns} | {total:.1f} | {100*part/total:.0f} % |', flush=True)
+
+
+STUDIES = {'answers': answers, 'thresholds': thresholds, 'steps': steps, 'crossply': crossply, 'impact': impact, 'strips': strips}
 
 
 def main(program, *studies):
