@@ -18,9 +18,9 @@ module condensed_corrections
   real(wp), parameter :: noticed = 1.0e-4_wp
   !> Unknowns at most, and those that join together at most.
   integer, parameter :: most_unknowns = 500, most_joining = 300
-  !> Numbers in the operator's answers to forces on them at most, and to those that join together: with more than caches
-  !> hold answers take over a third of the time, 37 % in cohesive_threshold.nml with cells of .5 mm and 81 000 unknowns.
-  !> Not where plies break in rounds, which forget what a crowd has found: there the 25 J panel took 1.4 times as long.
+  !> Numbers in the operator's answers to forces on them at most, and to those that join together: with all that
+  !> `most_joining` allows cohesive_threshold.nml with cells of .5 mm and 81 000 unknowns takes 1.3 times as long. Not
+  !> where plies break in rounds, which forget what a crowd has found: there the 25 J panel took 1.4 times as long.
   real(wp), parameter :: most_numbers = 1.0e8_wp, most_joining_numbers = 8.0e6_wp
   !> Unknowns of failed points that join together at most. Their faces open or close, and do so again in the next step,
   !> while answers to the forces of a front serve many steps. It decides on cost alone: with 50 the free flight of
