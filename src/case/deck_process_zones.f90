@@ -7,7 +7,7 @@ module deck_process_zones
   use deck_remarks, only: remark, remark_idle
   use delaminated_regions, only: cells_within
   use interface_places, only: delamination_group
-  use delamination_deck, only: key_flaws
+  use delamination_deck, only: key_flaws, key_shear_cracks
   use delamination_parameters, only: delamination_t, law_cohesive, toughnesses
   use kinds, only: wp
   use layer_extents, only: largest_extents
@@ -50,7 +50,11 @@ contains
     if (problems%errors() > 0) return
     do i = 1, size(deck%delaminations)
       associate (d => deck%delaminations(i))
-        if (.not. d%cracks_as_flaws .or. d%law /= law_cohesive) cycle
+        if (d%law /= law_cohesive) cycle
+        if (d%shear_cracks .and. .not. deck%has_ply_damage) &
+          call remark_idle(deck%settings, problems, delamination_group, key_shear_cracks, 'has no effect without '// &
+                           '&ply_damage.', d%group)
+        if (.not. d%cracks_as_flaws) cycle
         d%flaw_strength = resolved_part(process_zone(deck, d))
         if (.not. deck%has_ply_damage) then
           call remark_idle(deck%settings, problems, delamination_group, key_flaws, 'has no effect without '// &

@@ -8,9 +8,9 @@ module delamination_deck
   use deck_vocabulary, only: group_row_length, key_row_length
   use delamination_parameters, only: delamination_t, law_front, law_cohesive, default_starter, toughnesses, &
                                      toughness_objection, release_two_state, release_vcct, growth_equilibrium, &
-                                     growth_one_per_step, tie_eliminate, &
-                                     tie_penalty, contact_augmented_lagrangian, contact_continuous_penalty, &
-                                     contact_none, unloading_contact, unloading_glued
+                                     growth_one_per_step, tie_eliminate, tie_penalty, &
+                                     contact_augmented_lagrangian, contact_continuous_penalty, contact_none, &
+                                     unloading_contact, unloading_glued
   use interface_places, only: delamination_group, key_below_ply, plies_above
   use kinds, only: wp
   use text, only: line_t, to_text, words_of
@@ -21,12 +21,13 @@ module delamination_deck
   !> Names that checks across groups use.
   character(len=*), parameter, public :: key_zone = 'zone', key_starter = 'starter', key_toughness = 'G_c', &
                                          key_toughness_shear = 'G_IIc', key_strip = 'starter_strip', &
-                                         key_starter_at = 'starter_at', &
-                                         key_smoothing = 'smoothing', key_flaws = 'cracks_as_flaws'
+                                         key_starter_at = 'starter_at', key_smoothing = 'smoothing', &
+                                         key_flaws = 'cracks_as_flaws', key_shear_cracks = 'shear_cracks'
   character(len=*), parameter :: group = delamination_group
-  !> Keys that have no effect on a cohesive interface.
-  character(len=*), parameter :: keys_of_fronts = &
-    'energy_release growth tie penalty unloading smoothing contact_exponent'
+  !> Keys that have no effect on a cohesive interface, and on one with a front.
+  character(len=*), parameter :: fronts_only = 'energy_release growth tie penalty unloading smoothing contact_exponent'
+  character(len=*), parameter :: &
+    law_only = 'strength_opening strength_shear stiffness friction '//key_flaws//' '//key_shear_cracks
   !> Row of the group.
   character(len=group_row_length), parameter, public :: delamination_group_row = &
     'delamination | several | Interfaces that may delaminate; one group for those that are alike.'
@@ -37,10 +38,8 @@ module delamination_deck
       &where the angle changes.', &
     'delamination | G_c | real | 1 | energy/area | none | > 0 | &
       &Critical energy release rate of every mode; given instead of G_Ic and G_IIc.', &
-    'delamination | G_Ic | real | 1 | energy/area | none | > 0 | &
-      &Critical energy release rate of pure opening.', &
-    'delamination | G_IIc | real | 1 | energy/area | none | > 0 | &
-      &Critical energy release rate of pure shear.', &
+    'delamination | G_Ic | real | 1 | energy/area | none | > 0 | Critical energy release rate of pure opening.', &
+    'delamination | G_IIc | real | 1 | energy/area | none | > 0 | Critical energy release rate of pure shear.', &
     'delamination | eta | real | 1 | - | 1.75 | > 0, <= 10 | &
       &Exponent of Benzeggagh and Kenane between opening and shear.', &
     'delamination | zone | real | 2 | length | = as the damage needs it, with law = cohesive | > 0 | &
@@ -65,6 +64,8 @@ module delamination_deck
       &Coulomb''s coefficient of friction between separated faces, and the damaged part of others.', &
     'delamination | cracks_as_flaws | logical | 1 | - | .false. | .true. .false. | &
       &Damage starts beside matrix cracks of the neighbouring plies at what the cells resolve of the strengths.', &
+    'delamination | shear_cracks | logical | 1 | - | .false. | .true. .false. | &
+      &Damage starts beside cracks by transverse shear in the neighbouring plies at the shear that they bear.', &
     'delamination | energy_release | choice | 1 | - | ''vcct'' | two_state vcct | &
       &Energy release rate: Eq. 11 with its sign put right, or virtual crack closure.', &
     'delamination | growth | choice | 1 | - | ''equilibrium'' | equilibrium one_per_step | &
@@ -136,6 +137,7 @@ contains
       d%mixing_exponent = s%real_of(group, 'eta', place)
       d%friction = s%real_of(group, 'friction', place)
       d%cracks_as_flaws = s%logical_of(group, key_flaws, place)
+      d%shear_cracks = s%logical_of(group, key_shear_cracks, place)
       if (s%is_known(group, key_zone, place)) d%zone = s%reals_of(group, key_zone, place)
       d%follows = d%law == law_cohesive .and. .not. s%is_given(group, key_zone, place)
       if (s%is_given(group, key_starter, place)) d%starter = s%real_of(group, key_starter, place)
@@ -204,7 +206,7 @@ contains
     type(line_t), allocatable :: names(:)
     integer :: i
 
-    names = words_of(key_starter//' '//keys_of_fronts, ' ')
+    names = words_of(key_starter//' '//fronts_only, ' ')
     asks_for_front = any([(settings%is_given(group, names(i)%text, place), i=1, size(names))])
   end function asks_for_front
 
@@ -370,9 +372,8 @@ contains
     type(problems_t), intent(inout) :: problems
 
     associate (d => delamination)
-      if (d%law == law_cohesive) call idle(keys_of_fronts, 'with law = ''cohesive''')
-      if (d%law /= law_cohesive) &
-        call idle('strength_opening strength_shear stiffness friction '//key_flaws, 'without law = ''cohesive''')
+      if (d%law == law_cohesive) call idle(fronts_only, 'with law = ''cohesive''')
+      if (d%law /= law_cohesive) call idle(law_only, 'without law = ''cohesive''')
       if (d%contact == contact_none) call idle('friction', 'as faces pass through each other')
       if (.not. d%starter > 0) call idle('starter_shape '//key_starter_at, 'without '//key_starter)
       if (d%toughness > 0) call idle('eta', 'as G_c is given')

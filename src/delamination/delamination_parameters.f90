@@ -57,6 +57,8 @@ module delamination_parameters
     real(wp) :: friction = 0
     !> True: damage starts earlier beside cracks of the neighbouring plies
     logical :: cracks_as_flaws = .false.
+    !> True: damage starts beside cracks of transverse shear in the neighbouring plies at the shear that opens them
+    logical :: shear_cracks = .false.
     !> What is left there of the strengths: the part that the cells resolve
     real(wp) :: flaw_strength = 1
     !> Growth of the cohesive law's shear strength with pressure, mu

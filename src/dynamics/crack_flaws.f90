@@ -1,12 +1,15 @@
 !> Cracks of plies next to an interface, and the flaws that they leave there.
 module crack_flaws
   use delamination_parameters, only: law_cohesive
+  use element_stresses, only: element_strains, stresses_of_ply
+  use in_situ_strengths, only: material_in_place
   use interface_flaws, only: weaken_beside
   use interface_states, only: interface_state_t
   use kinds, only: wp
+  use matrix_exposures, only: matrix_strengths_t, matrix_strengths, cracks_on_a_plane, shear_across_strength
   use models, only: model_t
   use ply_blocks, only: block_thickness
-  use ply_damage_parameters, only: matrix_cracking, matrix_crushing
+  use ply_damage_parameters, only: matrix_cracking, matrix_crushing, criteria_puck
   use ply_failures, only: ply_failure_t
   implicit none
   private
@@ -16,25 +19,75 @@ contains
 
   !> Weakens interfaces within a block's thickness of where the ply above or below has cracked across its fibres.
   !> Collective.
-  subroutine note_flaws(model, plies, interfaces)
+  subroutine note_flaws(model, plies, displacement, interfaces)
     type(model_t), intent(in) :: model
     !> Failures of the plies in the accepted state
     type(ply_failure_t), intent(in) :: plies
+    !> Displacement in the accepted state, ghosts up to date, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
     !> The interfaces in the accepted state
     type(interface_state_t), intent(inout) :: interfaces
+    real(wp), allocatable :: strains(:, :)
     integer :: zone, ply
 
     if (.not. (model%map%layered .and. model%scene%has_ply_damage)) return
+    if (any(model%scene%delaminations%shear_cracks)) strains = element_strains(model, plies, displacement)
     do zone = 1, size(model%mesh%zones)
       associate (delamination => model%scene%delaminations(zone), below => model%mesh%zones(zone)%below_ply)
-        if (delamination%law /= law_cohesive .or. .not. delamination%flaw_strength < 1) cycle
+        if (delamination%law /= law_cohesive) cycle
         do ply = below, below + 1
-          call weaken_beside(interfaces%cohesive, model, zone, cracked_cells(model, plies, ply), &
-                             block_thickness(model%plies, ply))
+          associate (reach => block_thickness(model%plies, ply))
+            if (delamination%flaw_strength < 1) &
+              call weaken_beside(interfaces%cohesive, model, zone, cracked_cells(model, plies, ply), reach, &
+                                 delamination%flaw_strength)
+            if (delamination%shear_cracks) &
+              call weaken_by_shear(model, plies, strains, zone, ply, reach, interfaces)
+          end associate
         end do
       end associate
     end do
   end subroutine note_flaws
+
+  !> Weakens an interface beside cracks of transverse shear in a ply: what bears no more shear cannot hand it on, so its
+  !> strength is that of the ply to transverse shear. Collective.
+  subroutine weaken_by_shear(model, plies, strains, zone, ply, reach, interfaces)
+    type(model_t), intent(in) :: model
+    !> Failures of the plies in the accepted state
+    type(ply_failure_t), intent(in) :: plies
+    !> Those of element_strains
+    real(wp), intent(in) :: strains(:, :)
+    !> Index of the zone, and ply of the laminate
+    integer, intent(in) :: zone, ply
+    !> Distance from a crack that is weakened, length
+    real(wp), intent(in) :: reach
+    !> The interfaces in the accepted state
+    type(interface_state_t), intent(inout) :: interfaces
+    type(matrix_strengths_t) :: strengths
+    real(wp) :: part
+
+    associate (scene => model%scene)
+      strengths = matrix_strengths(material_in_place(model%plies, ply, scene%materials, scene%ply_damage), &
+                                   criteria_puck)
+      part = shear_across_strength(strengths)/scene%delaminations(zone)%strength_shear
+    end associate
+    if (part < 1) call weaken_beside(interfaces%cohesive, model, zone, &
+                                     sheared_cells(model, strengths, stresses_of_ply(model, plies, strains, ply)), &
+                                     reach, part)
+  end subroutine weaken_by_shear
+
+  !> Cells in which the stresses of a ply crack it, transverse shear counted, on any rank. Collective.
+  function sheared_cells(model, strengths, stresses) result(cracked)
+    type(model_t), intent(in) :: model
+    !> Strengths of the ply
+    type(matrix_strengths_t), intent(in) :: strengths
+    !> Those of stresses_of_ply
+    real(wp), intent(in) :: stresses(:, :, :)
+    !> (cells of the mesh)
+    logical, allocatable :: cracked(:)
+    integer :: i
+
+    cracked = cells_of(model, [(cracks_on_a_plane(strengths, stresses(:, 1, i)), i=1, size(stresses, 3))])
+  end function sheared_cells
 
   !> Cells in which a ply has cracked across its fibres, on any rank. Collective.
   function cracked_cells(model, plies, ply) result(cracked)
@@ -46,16 +99,26 @@ contains
     !> (cells of the mesh)
     logical, allocatable :: cracked(:)
     logical, allocatable :: failed(:, :)
+
+    failed = plies%failed(ply)
+    cracked = cells_of(model, failed(matrix_cracking, :) .or. failed(matrix_crushing, :))
+  end function cracked_cells
+
+  !> Cells of elements, on any rank. Collective.
+  function cells_of(model, elements) result(cells)
+    type(model_t), intent(in) :: model
+    !> True for elements of this rank, (elements)
+    logical, intent(in) :: elements(:)
+    !> (cells of the mesh)
+    logical, allocatable :: cells(:)
     real(wp), allocatable :: found(:)
     integer :: i
 
-    failed = plies%failed(ply)
     allocate (found(product(model%mesh%cells)), source=0.0_wp)
-    do i = 1, size(failed, 2)
-      if (failed(matrix_cracking, i) .or. failed(matrix_crushing, i)) &
-        found(model%mesh%element_cell(model%distribution%elements(i))) = 1
+    do i = 1, size(elements)
+      if (elements(i)) found(model%mesh%element_cell(model%distribution%elements(i))) = 1
     end do
     call model%communicator%maximum(found)
-    cracked = found > 0
-  end function cracked_cells
+    cells = found > 0
+  end function cells_of
 end module crack_flaws

@@ -347,7 +347,7 @@ contains
     call self%trial%plies%grow(model, self%trial%motion%displacement)
     call model%profile%leave()
     if (self%trial%plies%softened) call book_failures(model, self%now, self%trial)
-    call note_flaws(model, self%trial%plies, self%trial%interfaces)
+    call note_flaws(model, self%trial%plies, self%trial%motion%displacement, self%trial%interfaces)
     if (model%scene%has_static) call find_release_ratio(model, self%trial%plies%stiffness, self%trial%motion, &
                                                         self%trial%interfaces)
     self%trial%interfaces%border_reached = self%trial%interfaces%border_reached .or. &

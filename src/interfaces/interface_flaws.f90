@@ -15,7 +15,7 @@ module interface_flaws
 contains
 
   !> Weakens the undamaged points of an interface beside cracks of a ply.
-  pure subroutine weaken_beside(interfaces, model, zone, cracked, reach)
+  pure subroutine weaken_beside(interfaces, model, zone, cracked, reach, part)
     !> The interfaces
     type(cohesive_interfaces_t), intent(inout) :: interfaces
     type(model_t), intent(in) :: model
@@ -25,14 +25,15 @@ contains
     logical, intent(in) :: cracked(:)
     !> Distance from a crack that is weakened, length
     real(wp), intent(in) :: reach
+    !> Part of the strengths that cracks leave
+    real(wp), intent(in) :: part
     integer :: i
 
     if (.not. any(cracked)) return
     do i = 1, model%distribution%owned
-      if (model%zone(i) /= zone .or. interfaces%strength(i) < 1 .or. interfaces%points(i)%damage > 0) cycle
+      if (model%zone(i) /= zone .or. interfaces%strength(i) <= part .or. interfaces%points(i)%damage > 0) cycle
       associate (place => model%mesh%node_coordinates(:, model%mesh%point_node(model%distribution%points(i))))
-        if (is_beside(model%mesh, cracked, place, reach)) &
-          interfaces%strength(i) = model%scene%delaminations(zone)%flaw_strength
+        if (is_beside(model%mesh, cracked, place, reach)) interfaces%strength(i) = part
       end associate
     end do
   end subroutine weaken_beside
@@ -99,7 +100,7 @@ contains
     real(wp), allocatable :: fields(:, :)
 
     if (.not. allocated(interfaces%strength)) return
-    if (.not. any(model%scene%delaminations%cracks_as_flaws)) return
+    if (.not. any(model%scene%delaminations%cracks_as_flaws .or. model%scene%delaminations%shear_cracks)) return
     fields = reshape(interfaces%strength, [1, size(interfaces%strength)])
     associate (share => model%distribution)
       call archive%field('cohesive/strength', share%points(:share%owned), model%mesh%points(), fields)

@@ -6,11 +6,14 @@ module matrix_exposures
   use ply_damage_parameters, only: criteria_hashin, criteria_puck
   implicit none
   private
-  public :: matrix_strengths_t, matrix_strengths, matrix_exposure, puck_exposure
+  public :: matrix_strengths_t, matrix_strengths, matrix_exposure, puck_exposure, plane_exposure, &
+            cracks_on_a_plane, shear_across_strength
 
   !> Inclinations of Puck's curve at no stress across the fibres, tension and compression, for carbon fibres
   !> (A. Puck, J. Kopp, M. Knops, Composites Science and Technology 62 (2002) 371-378).
   real(wp), parameter :: inclination_tension = 0.35_wp, inclination_compression = 0.30_wp
+  !> Planes that are looked at, a degree apart: between two of them the exposure is larger by less than 2e-4.
+  integer, parameter :: planes = 180
 
   !> What the criteria of the matrix ask for.
   type :: matrix_strengths_t
@@ -65,7 +68,7 @@ contains
     type(matrix_strengths_t), intent(in) :: strengths
     !> Stress across the fibres, and shear stress in the plane
     real(wp), intent(in) :: across, shear
-    real(wp) :: fracture_plane, ratio
+    real(wp) :: plane, ratio
 
     associate (s => strengths%shear, yc => strengths%compression, yt => strengths%tension, &
                pt => inclination_tension, pc => inclination_compression)
@@ -73,14 +76,87 @@ contains
         exposure = hypot(shear/s, (1 - pt*yt/s)*across/yt) + pt*across/s
         return
       end if
-      ! Strength of the plane of action across the fibres over S12, and the inclination that goes with it.
-      fracture_plane = (sqrt(1 + 2*pc*yc/s) - 1)/(2*pc)
-      ratio = pc*fracture_plane
-      if (abs(across)*sqrt(1 + 2*ratio) <= fracture_plane*abs(shear)) then
+      plane = action_plane(strengths)
+      ratio = pc*plane
+      if (abs(across)*sqrt(1 + 2*ratio) <= plane*abs(shear)) then
         exposure = (hypot(shear, pc*across) + pc*across)/s
       else
         exposure = ((shear/(2*(1 + ratio)*s))**2 + (across/yc)**2)*yc/abs(across)
       end if
     end associate
   end function puck_exposure
+
+  !> Strength of the plane of action to shear across the fibres over S12, from YC.
+  pure real(wp) function action_plane(strengths) result(plane)
+    !> Strengths
+    type(matrix_strengths_t), intent(in) :: strengths
+
+    associate (pc => inclination_compression)
+      plane = (sqrt(1 + 2*pc*strengths%compression/strengths%shear) - 1)/(2*pc)
+    end associate
+  end function action_plane
+
+  !> Exposure after Puck with transverse shear: the largest of all planes along the fibres (Puck, Schuermann, 1998). The
+  !> inclination over the strength is the same for shear along and across the fibres, as in modes A, B and C, which
+  !> it finds again without transverse shear.
+  pure real(wp) function plane_exposure(strengths, stress) result(exposure)
+    !> Strengths
+    type(matrix_strengths_t), intent(in) :: strengths
+    !> s11, s22, s12, s13, s23
+    real(wp), intent(in) :: stress(5)
+    real(wp), parameter :: pi = acos(-1.0_wp)
+    real(wp) :: c, s, normal, along, across, strength_across
+    integer :: i
+
+    exposure = 0
+    strength_across = action_plane(strengths)*strengths%shear
+    associate (s22 => stress(2), s23 => stress(5))
+      do i = 1, planes
+        c = cos(pi*i/planes)
+        s = sin(pi*i/planes)
+        normal = s22*c**2 + 2*s23*s*c
+        across = (s23*(c - s)*(c + s) - s22*s*c)/strength_across
+        along = (stress(3)*c + stress(4)*s)/strengths%shear
+        exposure = max(exposure, exposure_of(strengths, normal, norm2([along, across])))
+      end do
+    end associate
+  end function plane_exposure
+
+  !> True if stresses crack the matrix on a plane. Where no plane can be near to it none is looked at.
+  pure logical function cracks_on_a_plane(strengths, stress) result(cracks)
+    !> Strengths
+    type(matrix_strengths_t), intent(in) :: strengths
+    !> s11, s22, s12, s13, s23
+    real(wp), intent(in) :: stress(5)
+
+    associate (s => strengths%shear, s22 => stress(2), s23 => abs(stress(5)))
+      cracks = (max(0.0_wp, s22) + s23)/strengths%tension + (abs(s22)/2 + s23)/(action_plane(strengths)*s) + &
+               (abs(stress(3)) + abs(stress(4)))/s >= 1
+      if (cracks) cracks = plane_exposure(strengths, stress) >= 1
+    end associate
+  end function cracks_on_a_plane
+
+  !> Exposure of one plane.
+  pure real(wp) function exposure_of(strengths, normal, shear) result(exposure)
+    !> Strengths
+    type(matrix_strengths_t), intent(in) :: strengths
+    !> Stress normal to the plane, and shear stress in it over its strength
+    real(wp), intent(in) :: normal, shear
+
+    associate (s => strengths%shear, yt => strengths%tension, pt => inclination_tension, pc => inclination_compression)
+      if (normal >= 0) then
+        exposure = hypot(shear, (1 - pt*yt/s)*normal/yt) + pt*normal/s
+      else
+        exposure = hypot(shear, pc*normal/s) + pc*normal/s
+      end if
+    end associate
+  end function exposure_of
+
+  !> Transverse shear across the fibres alone that cracks the matrix: in tension at 45 degrees, mostly.
+  pure real(wp) function shear_across_strength(strengths) result(strength)
+    !> Strengths
+    type(matrix_strengths_t), intent(in) :: strengths
+
+    strength = 1/plane_exposure(strengths, [0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp])
+  end function shear_across_strength
 end module matrix_exposures
