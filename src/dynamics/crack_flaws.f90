@@ -8,6 +8,7 @@ module crack_flaws
   use kinds, only: wp
   use matrix_exposures, only: matrix_strengths_t, matrix_strengths, cracks_on_a_plane, shear_across_strength
   use models, only: model_t
+  use plies, only: elasticity_t
   use ply_blocks, only: block_thickness
   use ply_damage_parameters, only: matrix_cracking, matrix_crushing, criteria_puck
   use ply_failures, only: ply_failure_t
@@ -71,22 +72,36 @@ contains
       part = shear_across_strength(strengths)/scene%delaminations(zone)%strength_shear
     end associate
     if (part < 1) call weaken_beside(interfaces%cohesive, model, zone, &
-                                     sheared_cells(model, strengths, stresses_of_ply(model, plies, strains, ply)), &
-                                     reach, part)
+                                     sheared_cells(model, plies, strains, ply, strengths), reach, part)
   end subroutine weaken_by_shear
 
-  !> Cells in which the stresses of a ply crack it, transverse shear counted, on any rank. Collective.
-  function sheared_cells(model, strengths, stresses) result(cracked)
+  !> Cells in which a ply has begun to crack or bears no more of its stresses, transverse shear counted, on any rank.
+  !> Collective.
+  function sheared_cells(model, plies, strains, ply, strengths) result(cracked)
     type(model_t), intent(in) :: model
-    !> Strengths of the ply
+    !> Failures of the plies
+    type(ply_failure_t), intent(in) :: plies
+    !> Those of element_strains
+    real(wp), intent(in) :: strains(:, :)
+    !> Ply of the laminate
+    integer, intent(in) :: ply
+    !> Its strengths
     type(matrix_strengths_t), intent(in) :: strengths
-    !> Those of stresses_of_ply
-    real(wp), intent(in) :: stresses(:, :, :)
     !> (cells of the mesh)
     logical, allocatable :: cracked(:)
+    real(wp), allocatable :: stresses(:, :, :)
+    logical :: cracks(size(strains, 2))
+    type(elasticity_t) :: left
     integer :: i
 
-    cracked = cells_of(model, [(cracks_on_a_plane(strengths, stresses(:, 1, i)), i=1, size(stresses, 3))])
+    stresses = stresses_of_ply(model, plies, strains, ply)
+    do i = 1, size(cracks)
+      cracks(i) = cracks_on_a_plane(strengths, stresses(:, 1, i))
+      if (cracks(i)) cycle
+      left = plies%elasticity(model, ply, i)
+      cracks(i) = left%e2 < model%plies(ply)%elasticity%e2
+    end do
+    cracked = cells_of(model, cracks)
   end function sheared_cells
 
   !> Cells in which a ply has cracked across its fibres, on any rank. Collective.

@@ -2,6 +2,8 @@
 Usage: flaws.py whole|ranks|restart IMPLAM FOLDER [LAUNCHER...]
 (LAUNCHER takes the number of ranks as its last word)
 
+Each with cracks_as_flaws, and with shear_cracks.
+
 whole    flaws bring damage, and a quarter, a half and a plate cut and turned stand for the whole: to 1e-6
 ranks    on 1 and 2 ranks: to 1e-6
 restart  from a checkpoint while cracks grow: bitwise"""
@@ -21,19 +23,23 @@ from solver_runs import (
 
 DECK = "../small/cohesive.nml"
 CRACKS = ["ply_damage%d=100", "material%XT=1517e6", "material%XC=1590e6", "material%YC=253e6", "material%Sf=500e6",
-          "material%Sm23=105e6", "delamination%strength_opening=27e6", "delamination%strength_shear=60e6",
-          "material%YT=46e6", "material%S12=105e6", "time%end=200e-6"]
-SETTINGS = [*CRACKS, "delamination%cracks_as_flaws=.true."]
+          "material%Sm23=105e6", "material%YT=46e6", "material%S12=105e6"]
+# Settings with cracks, the key by which they are flaws, and time at which a checkpoint is written.
+WAYS = {"cracks_as_flaws": ([*CRACKS, "delamination%strength_opening=27e6", "delamination%strength_shear=60e6",
+                             "time%end=200e-6"], 160e-6),
+        "shear_cracks": ([*CRACKS, "time%end=280e-6"], 240e-6)}
 PARTS = {"quarter": "6, 6", "half_x": "6, 12", "point": "6, 12", "none": "12, 12"}
 
 
-def check_whole(implam, folder, _):
+def check_whole(implam, folder, key, _):
     """With flaws and without; on parts of the plate and on all of it."""
     found = {}
+    cracks = WAYS[key][0]
+    settings = [*cracks, f"delamination%{key}=.true."]
     for symmetry, elements in PARTS.items():
         found[symmetry] = read_history(run_deck(implam, write_deck(
-            folder / symmetry, DECK, [*SETTINGS, f"plate%symmetry='{symmetry}'", f"mesh%elements={elements}"])))
-    without = read_history(run_deck(implam, write_deck(folder / "without", DECK, CRACKS)))
+            folder / symmetry, DECK, [*settings, f"plate%symmetry='{symmetry}'", f"mesh%elements={elements}"])))
+    without = read_history(run_deck(implam, write_deck(folder / "without", DECK, cracks)))
     areas = [history["delaminated_area"][-1] for history in (without, found["quarter"])]
     print(f"delaminated {1e6*areas[0]:.3f} mm2 without flaws, {1e6*areas[1]:.3f} mm2 with them")
     require(areas[0] < 1e-6 and areas[1] > 20e-6, "Flaws make no difference.")
@@ -44,10 +50,11 @@ def check_whole(implam, folder, _):
             require(worst <= 1e-6, f"{name} of '{symmetry}' differs from the whole plate's by {worst:.2g}.")
 
 
-def check_ranks(implam, folder, launcher):
+def check_ranks(implam, folder, key, launcher):
     """One rank and two."""
+    cracks, end = WAYS[key]
     # Cracks of one rank have the other's points beside them only in the middle of a whole plate.
-    settings = [*SETTINGS, "plate%symmetry='none'", "mesh%elements=12, 12", "time%end=160e-6"]
+    settings = [*cracks, f"delamination%{key}=.true.", "plate%symmetry='none'", "mesh%elements=12, 12", f"time%end={end}"]
     one, two = (read_history(run_deck(implam, write_deck(folder / name, DECK, settings), launch))
                 for name, launch in (("one", ()), ("two", (*launcher, "2"))))
     left_out = [name for name in one if "iterations" in name or name in ("factorizations", "solves")]
@@ -56,16 +63,19 @@ def check_ranks(implam, folder, launcher):
     require(difference <= 1e-6, f"{name} differs by {difference:.2g} of its largest value.")
 
 
-def check_restart(implam, folder, _):
+def check_restart(implam, folder, key, _):
     """From the last checkpoint, while cracks grow."""
-    area = check_goes_on(implam, folder, DECK, [*SETTINGS, "output%checkpoint_every=160e-6"])["delaminated_area"]
+    cracks, time = WAYS[key]
+    settings = [*cracks, f"delamination%{key}=.true.", f"output%checkpoint_every={time}"]
+    area = check_goes_on(implam, folder, DECK, settings)["delaminated_area"]
     require(area[-1] > area[-4] > 0, "Nothing grows after the checkpoint.")
 
 
 def trial(kind, implam, folder, *launcher):
     """One of them."""
     checks = {"whole": check_whole, "ranks": check_ranks, "restart": check_restart}
-    checks[kind](implam, Path(folder), launcher)
+    for key in WAYS:
+        checks[kind](implam, Path(folder) / key, key, launcher)
 
 
 if __name__ == "__main__":
