@@ -8,7 +8,7 @@ steps       the same with starter, steps of 20, 10 and 5 us
 crossply    the force when the area of reference/crossply_cohesive_2mm.nml passes a value, cells of 2 and 1 mm
 impact      input/crossply_threshold.nml, from nothing: cells of 2.5 and 1.25 mm, steps of 20 and 10 us, other strengths
 strips      pure end moments on strips of two arms, shear and opening, fine and coarse cells: moment over the exact one
-answers     share of the time that answers to unit forces take in thresholds, cross-plies and the peanut, on several cells
+answers     share of the time that answers to unit forces take: thresholds, cross-plies and the peanut, several cells
 
 Fields are read with h5py."""
 
@@ -193,7 +193,7 @@ def answers(program):
         print(f'| {deck.stem} | {cell:g} | {unknowns} | {total:.1f} | {100*part/total:.0f} % |', flush=True)
 
 
-STUDIES = {'answers': answers, 'thresholds': thresholds, 'steps': steps, 'crossply': crossply, 'impact': impact, 'strips': strips}
+STUDIES = {study.__name__: study for study in (thresholds, steps, crossply, impact, strips, answers)}
 
 
 def main(program, *studies):

@@ -54,7 +54,8 @@ def check_ranks(implam, folder, key, launcher):
     """One rank and two."""
     cracks, end = WAYS[key]
     # Cracks of one rank have the other's points beside them only in the middle of a whole plate.
-    settings = [*cracks, f"delamination%{key}=.true.", "plate%symmetry='none'", "mesh%elements=12, 12", f"time%end={end}"]
+    settings = [*cracks, f"delamination%{key}=.true.", "plate%symmetry='none'", "mesh%elements=12, 12",
+                f"time%end={end}"]
     one, two = (read_history(run_deck(implam, write_deck(folder / name, DECK, settings), launch))
                 for name, launch in (("one", ()), ("two", (*launcher, "2"))))
     left_out = [name for name in one if "iterations" in name or name in ("factorizations", "solves")]
