@@ -9,9 +9,11 @@ module deck_process_zones
   use interface_places, only: delamination_group
   use delamination_deck, only: key_flaws, key_shear_cracks
   use delamination_parameters, only: delamination_t, law_cohesive, toughnesses
+  use in_situ_strengths, only: crack_strengths
   use kinds, only: wp
   use layer_extents, only: largest_extents
   use laminate_parameters, only: shear_five_sixths
+  use matrix_exposures, only: shear_across_strength
   use plies, only: ply_t
   use process_zones, only: process_zone_t, process_zone_warning, resolved_part
   use stacking, only: stacked_plies, section_stiffness
@@ -51,9 +53,7 @@ contains
     do i = 1, size(deck%delaminations)
       associate (d => deck%delaminations(i))
         if (d%law /= law_cohesive) cycle
-        if (d%shear_cracks .and. .not. deck%has_ply_damage) &
-          call remark_idle(deck%settings, problems, delamination_group, key_shear_cracks, 'has no effect without '// &
-                           '&ply_damage.', d%group)
+        if (d%shear_cracks) call remark_shear_cracks(deck, d, problems)
         if (.not. d%cracks_as_flaws) cycle
         d%flaw_strength = resolved_part(process_zone(deck, d))
         if (.not. deck%has_ply_damage) then
@@ -66,6 +66,31 @@ contains
       end associate
     end do
   end subroutine settle_flaws
+
+  !> Tells where cracks of the plies by transverse shear make no difference.
+  subroutine remark_shear_cracks(deck, delamination, problems)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> The interface
+    type(delamination_t), intent(in) :: delamination
+    !> Receives the remarks
+    type(problems_t), intent(inout) :: problems
+    type(ply_t), allocatable :: plies(:)
+    real(wp) :: least
+    integer :: ply
+
+    if (deck%has_ply_damage) then
+      plies = stacked_plies(deck%laminate, deck%materials)
+      least = minval([(shear_across_strength(crack_strengths(plies, ply, deck%materials, deck%ply_damage)), &
+                       ply=delamination%below_ply, delamination%below_ply + 1)])
+      if (least < delamination%strength_shear) return
+      call remark_idle(deck%settings, problems, delamination_group, key_shear_cracks, 'has no effect as the plies '// &
+                       'bear more transverse shear than the interface.', delamination%group)
+    else
+      call remark_idle(deck%settings, problems, delamination_group, key_shear_cracks, 'has no effect without '// &
+                       '&ply_damage.', delamination%group)
+    end if
+  end subroutine remark_shear_cracks
 
   !> What the process zone of an interface depends on.
   pure function process_zone(deck, delamination) result(zone)

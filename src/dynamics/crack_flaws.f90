@@ -2,15 +2,15 @@
 module crack_flaws
   use delamination_parameters, only: law_cohesive
   use element_stresses, only: element_strains, stresses_of_ply
-  use in_situ_strengths, only: material_in_place
+  use in_situ_strengths, only: crack_strengths
   use interface_flaws, only: weaken_beside
   use interface_states, only: interface_state_t
   use kinds, only: wp
-  use matrix_exposures, only: matrix_strengths_t, matrix_strengths, cracks_on_a_plane, shear_across_strength
+  use matrix_exposures, only: matrix_strengths_t, cracks_on_a_plane, shear_across_strength
   use models, only: model_t
   use plies, only: elasticity_t
   use ply_blocks, only: block_thickness
-  use ply_damage_parameters, only: matrix_cracking, matrix_crushing, criteria_puck
+  use ply_damage_parameters, only: matrix_cracking, matrix_crushing
   use ply_failures, only: ply_failure_t
   implicit none
   private
@@ -67,8 +67,7 @@ contains
     real(wp) :: part
 
     associate (scene => model%scene)
-      strengths = matrix_strengths(material_in_place(model%plies, ply, scene%materials, scene%ply_damage), &
-                                   criteria_puck)
+      strengths = crack_strengths(model%plies, ply, scene%materials, scene%ply_damage)
       part = shear_across_strength(strengths)/scene%delaminations(zone)%strength_shear
     end associate
     if (part < 1) call weaken_beside(interfaces%cohesive, model, zone, &

@@ -4,12 +4,13 @@
 module in_situ_strengths
   use kinds, only: wp
   use material_parameters, only: material_t
+  use matrix_exposures, only: matrix_strengths_t, matrix_strengths
   use plies, only: ply_t
   use ply_blocks, only: block_of, block_thickness
-  use ply_damage_parameters, only: ply_damage_t, matrix_tension, matrix_compression
+  use ply_damage_parameters, only: ply_damage_t, criteria_puck, matrix_tension, matrix_compression
   implicit none
   private
-  public :: strengths_in_place, material_in_place
+  public :: strengths_in_place, material_in_place, crack_strengths
 
   real(wp), parameter :: pi = acos(-1.0_wp)
   !> Factor of the stress intensity at a crack that reaches a free face, and the factor of the strength of a thin block
@@ -41,6 +42,22 @@ contains
     material%yt = strengths(1)
     material%s12 = strengths(2)
   end function material_in_place
+
+  !> Strengths by which cracks of a ply along its fibres are judged on all planes.
+  pure function crack_strengths(plies, ply, materials, damage) result(strengths)
+    !> All plies, from the struck face
+    type(ply_t), intent(in) :: plies(:)
+    !> The ply
+    integer, intent(in) :: ply
+    !> Materials that they refer to
+    type(material_t), intent(in) :: materials(:)
+    !> Tells whether strengths are those in place
+    type(ply_damage_t), intent(in) :: damage
+    !> The strengths
+    type(matrix_strengths_t) :: strengths
+
+    strengths = matrix_strengths(material_in_place(plies, ply, materials, damage), criteria_puck)
+  end function crack_strengths
 
   !> Strengths in place of a block of plies.
   pure function strengths_in_place(material, thickness, at_face) result(strengths)
