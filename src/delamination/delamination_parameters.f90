@@ -59,7 +59,7 @@ module delamination_parameters
     logical :: cracks_as_flaws = .false.
     !> True: damage starts beside cracks of transverse shear in the neighbouring plies at the shear that opens them
     logical :: shear_cracks = .false.
-    !> What is left there of the strengths: the part that the cells resolve
+    !> What cracks_as_flaws leaves of the strengths: the part that the cells resolve
     real(wp) :: flaw_strength = 1
     !> Growth of the cohesive law's shear strength with pressure, mu
     real(wp) :: pressure_strengthening = 0

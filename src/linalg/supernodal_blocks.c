@@ -1,7 +1,7 @@
 /* Solves with a supernodal factor L L' for several right-hand sides together. Each row's numbers of all right-hand sides
    stand side by side, so what a supernode needs of them is copied row by row. On the way there a supernode takes only
-   those right-hand sides that have reached it: a unit force reaches those between it and the root of the elimination tree, a
-   quarter of a plate's factor. CHOLMOD's own solves take all of it. */
+   those right-hand sides that have reached it: a unit force reaches those between it and the root of the elimination
+   tree. CHOLMOD's own solves take the whole factor. */
 #include <stdint.h>
 #include <string.h>
 #include "supernodal_solves.h"
