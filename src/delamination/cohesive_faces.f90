@@ -1,12 +1,12 @@
 !> Two faces at a point of a cohesive interface: the law while they part, the stiffness of the undamaged interface while
 !> they are pressed together, and friction between the damaged parts of faces that press on each other. Faces without
-!> contact pass through each other as far as they are damaged; what is intact holds them in both directions. What it
-!> stores as they close is let go as damage grows, and is found again in what the integrators take.
+!> contact pass through each other as far as they were damaged when the step began, so that tractions have a potential
+!> within a step; what is intact holds them in both directions. What it stores as they close is let go as damage grows,
+!> and is found again in what the integrators take.
 module cohesive_faces
   use cohesive_laws, only: cohesive_law_t, stiffness_of
-  use cohesive_points, only: cohesive_point_t, cohesive_reach, cohesive_reach_t, cohesive_traction, grown_damage, &
-                             stored_energy
-  use cohesive_tangents, only: damage_growth, operator_stiffness, traction_slopes
+  use cohesive_points, only: cohesive_point_t, cohesive_reach, cohesive_traction, grown_damage, stored_energy
+  use cohesive_tangents, only: operator_stiffness, traction_slopes
   use face_friction, only: friction_energy, friction_slopes, friction_traction
   use kinds, only: wp
   implicit none
@@ -53,7 +53,7 @@ contains
     real(wp) :: friction(2)
 
     call cohesive_traction(self%law, jumps, 0.0_wp, old, force, new)
-    if (jumps(3) < 0) force(3) = closing_stiffness(self, new)*jumps(3)
+    if (jumps(3) < 0) force(3) = closing_stiffness(self, old)*jumps(3)
     if (.not. self%friction > 0) return
     call friction_traction(self%law%stiffness_shear, jumps(:2), old%sliding, friction, new%sliding)
     force(:2) = force(:2) + friction
@@ -83,18 +83,9 @@ contains
     type(cohesive_point_t), intent(in) :: old
     !> Derivatives of each traction (row) by each jump (column)
     real(wp) :: slopes(3, 3)
-    type(cohesive_reach_t) :: reach
-    type(cohesive_point_t) :: new
 
-    reach = cohesive_reach(self%law, jumps, 0.0_wp)
-    slopes = traction_slopes(self%law, jumps, reach, old)
-    if (pressed(self, jumps)) then
-      slopes(3, 3) = self%law%stiffness_opening
-    else if (jumps(3) < 0) then
-      new%damage = grown_damage(self%law, reach, old)
-      slopes(3, 3) = closing_stiffness(self, new)
-      slopes(3, :) = slopes(3, :) - self%law%stiffness_opening*jumps(3)*damage_growth(self%law, reach, old)
-    end if
+    slopes = traction_slopes(self%law, jumps, cohesive_reach(self%law, jumps, 0.0_wp), old)
+    if (jumps(3) < 0) slopes(3, 3) = closing_stiffness(self, old)
     if (self%friction > 0) slopes(:2, :2) = slopes(:2, :2) + sticking(self, jumps, old)
   end function slopes
 
@@ -111,7 +102,7 @@ contains
     real(wp) :: secant(3)
 
     secant = (1 - grown_damage(self%law, cohesive_reach(self%law, jumps, 0.0_wp), old))*stiffness_of(self%law)
-    if (pressed(self, jumps)) secant(3) = self%law%stiffness_opening
+    if (jumps(3) < 0) secant(3) = closing_stiffness(self, old)
     if (self%friction > 0) secant(:2) = secant(:2) + self%law%stiffness_shear
   end function secant
 
@@ -128,7 +119,7 @@ contains
     real(wp) :: slopes(2, 2)
 
     diagonal = operator_stiffness(self%law, jumps, 0.0_wp, old)
-    if (pressed(self, jumps)) diagonal(3) = self%law%stiffness_opening
+    if (jumps(3) < 0) diagonal(3) = closing_stiffness(self, old)
     if (.not. self%friction > 0) return
     slopes = sticking(self, jumps, old)
     diagonal(:2) = diagonal(:2) + [slopes(1, 1), slopes(2, 2)]

@@ -7,7 +7,7 @@ module cohesive_tangents
   use kinds, only: wp
   implicit none
   private
-  public :: damage_growth, operator_stiffness, traction_slopes, toughness_slopes, dissipation_slopes
+  public :: operator_stiffness, traction_slopes, toughness_slopes, dissipation_slopes
 
 contains
 
@@ -42,23 +42,6 @@ contains
       slopes(:, i) = slopes(:, i) - stiffness*reach%unit*growth(i)
     end do
   end function traction_slopes
-
-  !> Derivative of the damage by the jumps: nothing unless it grows.
-  pure function damage_growth(law, reach, old) result(growth)
-    !> The law
-    type(cohesive_law_t), intent(in) :: law
-    !> Place of the jumps on the curve
-    type(cohesive_reach_t), intent(in) :: reach
-    !> The point in the last accepted state
-    type(cohesive_point_t), intent(in) :: old
-    !> Damage per jump
-    real(wp) :: growth(3)
-    type(cohesive_point_t) :: new
-
-    growth = 0
-    new%damage = grown_damage(law, reach, old)
-    if (point_class(old, new) == point_growing) growth = damage_slopes(law, reach)/reach%size
-  end function damage_growth
 
   !> Derivative of growing damage by the jumps over their size: with these nothing over- or underflows.
   pure function damage_slopes(law, reach) result(slopes)

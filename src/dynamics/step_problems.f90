@@ -19,6 +19,8 @@ module step_problems
   !> Iterations that should bring the residual down to a part, or the iteration stalls.
   integer, parameter :: watched = 4
   real(wp), parameter :: most_left = 0.5_wp
+  !> Stalls in a row with which a step is too long: the last of them with an operator made where the iteration stood.
+  integer, parameter :: most_stalls = 2
 
   !> One kind of step.
   type, abstract :: step_problem_t
@@ -34,6 +36,11 @@ module step_problems
     integer :: begun = 0
     !> True: the last iterations have not come nearer to equilibrium, so another operator is wanted
     logical :: stalls = .false.
+    !> How often in a row they have not
+    integer :: stalled = 0
+    !> True: a shorter step may follow; one of the smallest length is taken as it is, as the energy watch tells what it
+    !> creates
+    logical :: shortens = .false.
   contains
     !> First guess of the state at the end of the step.
     procedure(begin_step), deferred :: begin
@@ -258,6 +265,7 @@ contains
       end if
       if (.not. norm <= huge(norm) .or. new%iterations - problem%begun >= equilibrium%max_iterations) exit
       call watch(problem, new%iterations - problem%begun, norm, earlier)
+      if (operator%condenses .and. problem%shortens .and. problem%stalled >= most_stalls) exit
       ! The impact force is found by the whole operator, and so is what a correction in the plane leaves.
       if (allocated(operator%membrane) .and. new%iterations > 0) then
         operator%membrane%fails = operator%membrane%fails .or. in_plane
@@ -305,6 +313,7 @@ contains
     problem%stalls = .false.
     if (modulo(iterations, watched) > 0) return
     problem%stalls = iterations > 0 .and. norm > most_left*earlier
+    problem%stalled = merge(problem%stalled + 1, 0, problem%stalls)
     earlier = norm
   end subroutine watch
 end module step_problems

@@ -243,6 +243,7 @@ contains
       self%solves_begun = self%operator%solves
       problem = new_dynamic_step(self%integrator, step, self%stepping%adapt%iterations)
       problem%begins_fresh = due
+      problem%shortens = step > self%smallest_step(model)*(1 + 1.0e-9_wp)
       call solve_step(problem, model, self%stepping%equilibrium, self%operator, self%now, self%trial, converged, error)
       if (converged .and. model%map%layered) &
         call grow_in_step(problem, model, self%stepping%equilibrium, self%operator, self%now, self%trial, converged, &
@@ -251,9 +252,8 @@ contains
       due = .true.
     end do
     if (problem%bursts .or. problem%renewed) self%operator%ready = .false.
-    ! Steps of the smallest length are taken as they are: the energy watch tells what they create.
     self%haste = max(problem%rounds%haste, self%trial%plies%haste)
-    if (converged .and. self%haste > 1) converged = step <= self%smallest_step(model)*(1 + 1.0e-9_wp)
+    if (converged .and. self%haste > 1) converged = .not. problem%shortens
   end subroutine try_step
 
   !> Tries one load step.
@@ -348,13 +348,13 @@ contains
     call model%profile%leave()
     if (self%trial%plies%softened) call book_failures(model, self%now, self%trial)
     call note_flaws(model, self%trial%plies, self%trial%motion%displacement, self%trial%interfaces)
-    if (model%scene%has_static) call find_release_ratio(model, self%trial%plies%stiffness, self%trial%motion, &
-                                                        self%trial%interfaces)
-    self%trial%interfaces%border_reached = self%trial%interfaces%border_reached .or. &
-                                           self%trial%interfaces%cohesive%border_reached(model)
-    self%trial%interfaces%faces%glued = self%trial%interfaces%faces%glued .or. model%scene%has_impactor .and. &
-                                        .not. model%scene%has_static .and. &
-                                        self%trial%impactor%velocity <= 0 .and. self%trial%force < self%now%force
+    associate (interfaces => self%trial%interfaces)
+      if (model%scene%has_static) &
+        call find_release_ratio(model, self%trial%plies%stiffness, self%trial%motion, interfaces)
+      interfaces%border_reached = interfaces%border_reached .or. interfaces%cohesive%border_reached(model)
+      interfaces%faces%glued = interfaces%faces%glued .or. model%scene%has_impactor .and. .not. model%scene%has_static &
+        .and. self%trial%impactor%velocity <= 0 .and. self%trial%force < self%now%force
+    end associate
     extended = self%trial%ledger%delamination > self%now%ledger%delamination
     if (follows_error(self%stepping%adapt) .and. .not. model%scene%has_static) then
       call self%step_error%note(model, self%now, self%trial)

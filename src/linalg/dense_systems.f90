@@ -4,7 +4,10 @@ module dense_systems
   use kinds, only: wp
   implicit none
   private
-  public :: dense_factor_t, positive_factor_t, solve_dense
+  public :: dense_factor_t, positive_factor_t, solve_dense, solve_descending
+
+  !> Size of an eigenvalue over the largest below which it counts as that: what lies along it is unknown by rounding.
+  real(wp), parameter :: least_eigenvalue = 1.0e-10_wp
 
   !> A small matrix, factored.
   type :: dense_factor_t
@@ -119,6 +122,23 @@ module dense_systems
       !> Not 0: there is none
       integer, intent(out) :: info
     end subroutine dpotri
+
+    !> LAPACK: eigenvalues and eigenvectors of a symmetric matrix.
+    subroutine dsyevd(jobz, uplo, n, a, lda, w, work, lwork, iwork, liwork, info)
+      import :: wp
+      !> 'V': eigenvectors too; 'L': the lower triangle is given
+      character, intent(in) :: jobz, uplo
+      !> Order, leading dimension, sizes of the room to work in
+      integer, intent(in) :: n, lda, lwork, liwork
+      !> Matrix, overwritten by its eigenvectors
+      real(wp), intent(inout) :: a(lda, *)
+      !> Eigenvalues, room to work in
+      real(wp), intent(out) :: w(*), work(*)
+      !> Room to work in
+      integer, intent(out) :: iwork(*)
+      !> Not 0: they were not found
+      integer, intent(out) :: info
+    end subroutine dsyevd
   end interface
 
 contains
@@ -216,4 +236,28 @@ contains
     singular = factor%singular
     if (.not. singular) call factor%solve(x)
   end subroutine solve_dense
+
+  !> Solves with a symmetric matrix as if its eigenvalues had their sizes without their signs. So x = |A|^-1 f goes
+  !> along f whatever A is, and does what Newton's method does where A is positive (J. Nocedal, S. J. Wright, Numerical
+  !> Optimization, 2006, section 3.4).
+  subroutine solve_descending(matrix, x, found)
+    !> Matrix, (n, n)
+    real(wp), intent(in) :: matrix(:, :)
+    !> Right-hand side on entry, solution on return, (n)
+    real(wp), intent(inout) :: x(:)
+    !> False: there are no eigenvalues, x is what it was
+    logical, intent(out) :: found
+    real(wp), allocatable :: vectors(:, :), values(:), work(:)
+    integer, allocatable :: places(:)
+    integer :: n, info
+
+    n = size(x)
+    vectors = matrix
+    allocate (values(n), work(1 + 6*n + 2*n**2), places(3 + 5*n))
+    call dsyevd('V', 'L', n, vectors, n, values, work, size(work), places, size(places), info)
+    found = info == 0
+    if (.not. found) return
+    values = abs(values)
+    x = matmul(vectors, matmul(x, vectors)/max(values, least_eigenvalue*maxval(values), tiny(values)))
+  end subroutine solve_descending
 end module dense_systems

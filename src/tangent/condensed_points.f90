@@ -13,8 +13,9 @@ module condensed_points
   private
   public :: condensed_point_t, condensed_points_t
 
-  !> Forces left over those at the strength of a point: far below any tolerance of equilibrium.
-  real(wp), parameter :: settled = 1.0e-7_wp
+  !> Forces left over those at the strength of a point: far below any tolerance of equilibrium. With 1e-7 a tolerance of
+  !> 1e-9 of all forces is asked for at a point that counts as settled, and the iteration stands still.
+  real(wp), parameter :: settled = 1.0e-10_wp
 
   !> A cohesive point of the system; the stiffness that the operator has of its jumps is told by unknown.
   type, extends(softening_point_t) :: condensed_point_t

@@ -309,11 +309,16 @@ def stop_by_limit(implam, folder, command, seconds):
 
 def check_limit(implam, folder, _):
     """Stopped by the time on the wall: by the deck's, by the command line's, and after every single step."""
-    begun = time.monotonic()
-    reference = run_deck(implam, write_deck(folder / "uninterrupted", IMPACT, LONG))
-    # Two seconds of each are kept for the start and the end of the program.
-    seconds = max(0.25 * (time.monotonic() - begun), 3.0)
-    deck = write_deck(folder / "limited", IMPACT, [*LONG, f"time%wall_limit={seconds!r}"])
+    # Two seconds of each limit are kept for the start and the end of the program, so the whole must take longer.
+    took, step = 0, 1e-6
+    while took < 4:
+        step /= 2
+        settings = [*LONG, f"time%step={step!r}"]
+        begun = time.monotonic()
+        reference = run_deck(implam, write_deck(folder / "uninterrupted", IMPACT, settings))
+        took = time.monotonic() - begun
+    seconds = max(0.25 * took, 3.0)
+    deck = write_deck(folder / "limited", IMPACT, [*settings, f"time%wall_limit={seconds!r}"])
     rows = [stop_by_limit(implam, deck.parent, [deck, "--output", deck.parent], seconds)]
     checkpoint = checkpoint_of(deck.parent)
     seconds *= 1.2
