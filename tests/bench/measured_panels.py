@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 """Drops on measured panels of T700/M21, held against the measurement (doc/manual/experiments.md).
-Usage: measured_panels.py IMPLAM 6.5J|25J FOLDER [GROUP%KEY=VALUE ...] [-GROUP ...]
+Usage: measured_panels.py IMPLAM 6.5J|25J FOLDER [GROUP%KEY=VALUE ...] [-GROUP ...] [+'GROUP' ...]
        measured_panels.py FOLDER 6.5J|25J
 
 Runs the deck of input/experiments in FOLDER with the keys given, without the groups
-named behind a dash (those of one line, such as -ply_damage), and prints peak force, largest displacement of
-the tup, end of contact, projected area, absorbed energy, for 25 J the relative L2 error of the force history and
-the forces at some times beside the measured ones, what plies and delaminations took, steps and cost. Without
-IMPLAM it reads what a run has left in FOLDER."""
+named behind a dash (those of one line, such as -ply_damage) and with the groups written out behind a plus, such as
++'&delamination below_ply=14 ... /'. Prints peak force, largest displacement of the tup, end of contact, projected
+area, absorbed energy, the forces at some displacements as the tup goes in, for 25 J the relative L2 error of the
+force history and the forces at some times, each beside the measured ones, what plies and delaminations took, steps
+and cost. Without IMPLAM it reads what a run has left in FOLDER."""
 
 import csv
 import json
@@ -18,6 +19,7 @@ from pathlib import Path
 
 DECKS = Path(__file__).resolve().parents[2] / "input" / "experiments"
 TIMES = (0.4, 0.6, 0.8, 1.0, 1.1, 1.2, 1.6, 2.0, 2.5, 3.0)
+DISPLACEMENTS = (1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0)
 
 
 def rows_of(path):
@@ -48,6 +50,16 @@ def forces_at(rows):
     return {time: [value_at(1e-3*time, *curve)/1e3 for curve in (computed, measured_force())] for time in TIMES}
 
 
+def forces_over(rows, name):
+    """Computed and measured force, kN, at some displacements in mm that the tup has gone in."""
+    turned = max(range(len(rows)), key=lambda i: rows[i]["impactor_displacement"])
+    computed = [[row[key] for row in rows[:turned + 1]] for key in ("impactor_displacement", "force")]
+    measured = [list(row.values()) for row in rows_of(DECKS / f"t700_m21_{name}_force_displacement.csv")]
+    curve = [row[0] for row in measured], [row[1] for row in measured]
+    return {at: [value_at(1e-3*at, *computed)/1e3, value_at(1e-3*at, *curve)/1e3] for at in DISPLACEMENTS
+            if 1e-3*at <= computed[0][-1]}
+
+
 def history_error(rows):
     """Relative L2 error of the force of 25 J over the measured time."""
     times, forces = measured_force()
@@ -66,7 +78,8 @@ def run(implam, name, folder, settings):
     dropped = tuple(f"&{setting[1:]} " for setting in settings if setting.startswith("-"))
     lines = (DECKS / f"t700_m21_{name}.nml").read_text(encoding="utf-8").splitlines(keepends=True)
     text = change_deck("".join(line for line in lines if not line.startswith(dropped)),
-                       [setting for setting in settings if not setting.startswith("-")])
+                       [setting for setting in settings if not setting.startswith(("-", "+"))])
+    text += "".join(f"\n{setting[1:]}\n" for setting in settings if setting.startswith("+"))
     (folder / "deck.nml").write_text(text, encoding="utf-8")
     before = os.times()
     subprocess.run([implam, folder / "deck.nml", "--output", folder], check=True, stdout=subprocess.DEVNULL)
@@ -86,6 +99,8 @@ def show(name, folder):
                "largest displacement, mm": 1e3 * max(row["impactor_displacement"] for row in rows),
                "end of contact, ms": 1e3 * summary["contact_until"], "in contact": float(summary["in_contact"]),
                "projected area, mm2": 1e6 * last["projected_area"], "absorbed, J": begun - last["energy_impactor"]}
+    for at, pair in forces_over(rows, name).items():
+        figures[f"force at {at} mm, kN"], figures[f"measured at {at} mm, kN"] = pair
     if name == "25J":
         figures["force history, relative L2, %"] = 100 * history_error(rows)
         for time, (force, measured) in forces_at(rows).items():
