@@ -106,13 +106,14 @@ contains
     real(wp), intent(out) :: direction(:)
     type(positive_factor_t) :: symmetric
     type(dense_factor_t) :: whole
-    real(wp), allocatable :: matrix(:, :)
+    real(wp), allocatable :: matrix(:, :), even(:, :)
     logical :: found
     integer :: kind
 
     direction = -force
     call self%find_tangent(x, slopes_true, matrix)
-    call symmetric%factorize((matrix + transpose(matrix))/2)
+    even = (matrix + transpose(matrix))/2
+    call symmetric%factorize(even)
     if (symmetric%positive) then
       if (.not. is_symmetric(matrix)) then
         call whole%factorize(matrix)
@@ -126,7 +127,7 @@ contains
     end if
     self%snaps = .true.
     found = .false.
-    if (falls) call solve_descending((matrix + transpose(matrix))/2, direction, found)
+    if (falls) call solve_descending(even, direction, found)
     if (found) return
     do kind = slopes_rising, slopes_secant
       call self%find_tangent(x, kind, matrix)
