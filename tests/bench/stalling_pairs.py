@@ -2,8 +2,9 @@
 """Whether rounding decides where steps stall: input/small/stalling_steps.nml with other speeds, to two ends.
 Usage: stalling_pairs.py IMPLAM
 
-Each is run with residuals of 1e-9, .8e-9 and 2e-9, which makes two pairs that ought to be the same. Prints the time in ms
-at which times, forces (1e-5 of the largest) or areas (1e-4 mm2) part, and how many of the 32 pairs do; four minutes."""
+Each is run with residuals of 1e-9, .8e-9 and 2e-9, which makes two pairs that ought to be the same. Prints the time in
+ms at which times, forces (1e-5 of the largest) or areas (1e-4 mm2) part, and how many of the 32 pairs do; four
+minutes."""
 
 import csv
 import subprocess
