@@ -23,7 +23,7 @@ module tangent_operators
   !> Columns kept since a factorization, and numbers in all of them together: 0.8 GB however large the model.
   integer, parameter :: most_columns = 800
   real(wp), parameter :: most_numbers = 1.0e8_wp
-  !> Columns found at once: more no longer are found faster.
+  !> Columns found at once: more no longer are found faster, and ask for memory that is new to the process each time.
   integer, parameter :: columns_at_once = 64
 
   !> A factor of `stiffness_factor*tangent + mass_factor*mass`, with many components because it keeps what made it.
@@ -256,22 +256,28 @@ contains
     !> Set if a solve fails
     type(error_t), allocatable, intent(inout) :: error
     real(wp), allocatable :: forces(:, :), values(:, :), fields(:, :, :)
-    integer :: k
+    integer :: begin, number, k
 
-    allocate (forces(self%numbering%rows, size(equations)), source=0.0_wp)
-    allocate (values, mold=forces)
-    allocate (fields(5, size(self%response, 2), size(equations)), source=0.0_wp)
     if (size(equations) == 0) return
-    do k = 1, size(equations)
-      if (self%numbering%owns(equations(k))) forces(equations(k) - self%numbering%first_row + 1, k) = 1
-    end do
-    call self%timers%start('solve', part='answers to unit forces')
-    call self%solver%solve_many(forces, values, error)
-    call self%timers%stop('solve')
-    if (allocated(error)) return
-    do k = 1, size(equations)
-      call self%numbering%scatter(values(:, k), fields(:, :, k))
-      call model%halo%update(fields(:, :, k))
+    number = min(columns_at_once, size(equations))
+    allocate (forces(self%numbering%rows, number), values(self%numbering%rows, number))
+    allocate (fields(5, size(self%response, 2), size(equations)), source=0.0_wp)
+    do begin = 0, size(equations) - 1, columns_at_once
+      number = min(columns_at_once, size(equations) - begin)
+      forces = 0
+      do k = 1, number
+        associate (equation => equations(begin + k))
+          if (self%numbering%owns(equation)) forces(equation - self%numbering%first_row + 1, k) = 1
+        end associate
+      end do
+      call self%timers%start('solve', part='answers to unit forces')
+      call self%solver%solve_many(forces(:, :number), values(:, :number), error)
+      call self%timers%stop('solve')
+      if (allocated(error)) return
+      do k = 1, number
+        call self%numbering%scatter(values(:, k), fields(:, :, begin + k))
+        call model%halo%update(fields(:, :, begin + k))
+      end do
     end do
     call self%changes%keep(model%communicator, self%numbering, equations, fields)
   end subroutine find_columns
