@@ -10,6 +10,7 @@ module deck_crack_bands
   use kinds, only: wp
   use material_deck, only: material_group, key_shear_strain, toughness_keys
   use material_parameters, only: material_t
+  use mesh_parameters, only: is_halved
   use plies, only: ply_t
   use ply_blocks, only: block_of
   use ply_damage_deck, only: ply_damage_group, key_in_situ, keys_of_sudden_failure
@@ -178,19 +179,34 @@ contains
     end do
   end function strength_lines
 
-  !> Shortest and longest side of the cells.
+  !> Shortest and longest side of the cells, or of the two together that are one beside the struck point's lines.
   pure function element_lengths(deck) result(lengths)
     !> The deck
     type(deck_t), intent(in) :: deck
     !> Least and largest
     real(wp) :: lengths(2)
+    real(wp), allocatable :: edges(:)
+    logical :: joined(2)
     integer :: direction
 
     lengths = [huge(1.0_wp), 0.0_wp]
+    joined = is_halved(deck%plate%symmetry) .or. deck%has_impactor
     do direction = 1, 2
-      lengths = extremes(cell_edges(deck%plate, deck%mesh, direction), lengths)
+      edges = cell_edges(deck%plate, deck%mesh, direction)
+      lengths = extremes(edges, lengths)
+      if (joined(direction)) lengths(2) = max(lengths(2), longest_pair(edges - deck%mesh%struck(direction)))
     end do
   end function element_lengths
+
+  !> Twice the longest side that ends at the struck point; 0: none does.
+  pure real(wp) function longest_pair(edges) result(length)
+    !> Ascending coordinates from there
+    real(wp), intent(in) :: edges(:)
+
+    associate (sides => edges(2:) - edges(:size(edges) - 1))
+      length = 2*maxval([0.0_wp, pack(sides, min(abs(edges(2:)), abs(edges(:size(edges) - 1))) < 1e-6_wp*sides)])
+    end associate
+  end function longest_pair
 
   !> Least and largest distance of neighbouring edges, and of two before.
   pure function extremes(edges, before) result(lengths)

@@ -5,7 +5,10 @@ module ply_strains
   use plies, only: ply_t
   implicit none
   private
-  public :: strain_moments_t, strain_moments, strains_of_ply
+  public :: strain_moments_t, strain_moments, strains_of_ply, values_of, moments_from
+
+  !> Numbers that the means are
+  integer, parameter, public :: moment_values = 33
 
   !> Means over an element's area.
   type :: strain_moments_t
@@ -39,6 +42,29 @@ contains
       end do
     end do
   end function strain_moments
+
+  !> The means one behind the other.
+  pure function values_of(moments) result(values)
+    !> The means
+    type(strain_moments_t), intent(in) :: moments
+    !> Strains, then products
+    real(wp) :: values(moment_values)
+
+    values = [moments%mean, reshape(moments%membrane, [9]), reshape(moments%mixed, [9]), reshape(moments%curvature, [9])]
+  end function values_of
+
+  !> The means from what `values_of` made of them.
+  pure function moments_from(values) result(moments)
+    !> Strains, then products
+    real(wp), intent(in) :: values(moment_values)
+    !> The means
+    type(strain_moments_t) :: moments
+
+    moments%mean = values(:6)
+    moments%membrane = reshape(values(7:15), [3, 3])
+    moments%mixed = reshape(values(16:24), [3, 3])
+    moments%curvature = reshape(values(25:33), [3, 3])
+  end function moments_from
 
   !> Strains of a ply in its own axes, less those that go without stress.
   pure function strains_of_ply(ply, moments) result(strains)

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <suitesparse/cholmod.h>
+#include "border_orders.h"
 #include "supernodal_solves.h"
 
 typedef struct {
@@ -52,29 +53,11 @@ implam_cholmod *implam_cholmod_new(int rows, int border, int *start, int *column
   return self;
 }
 
-/* Orders the matrix, the border last, and finds the pattern of its factor. CAMD is minimum degree with constraints: it
-   counts what the border adds to the rows inside, and so leaves a tenth less in the factor than an order of these alone. */
+/* Orders the matrix, the border last, and finds the pattern of its factor; null without memory. */
 static cholmod_factor *analyze(implam_cholmod *self)
 {
-  const size_t rows = self->matrix.nrow;
-  if (!self->border) return cholmod_analyze(&self->matrix, &self->common);
-  int *order = malloc(2*rows*sizeof(int));
-  cholmod_factor *factor = 0;
-  if (order) {
-    int *set = order + rows;
-    for (size_t k = 0; k < rows; k++) set[k] = k >= rows - (size_t)self->border;
-    if (cholmod_camd(&self->matrix, 0, 0, set, order, &self->common)) {
-      /* The border is dense in the end, so its own order is free: it stays what it was. */
-      for (size_t k = rows - (size_t)self->border; k < rows; k++) order[k] = (int)k;
-      /* An order by the tree could take a part of the border before another's inside. */
-      self->common.nmethods = 1;
-      self->common.method[0].ordering = CHOLMOD_GIVEN;
-      self->common.postorder = 0;
-      factor = cholmod_analyze_p(&self->matrix, order, 0, 0, &self->common);
-    }
-  }
-  free(order);
-  return factor;
+  return self->border ? implam_border_analyze(&self->matrix, self->border, &self->common)
+                      : cholmod_analyze(&self->matrix, &self->common);
 }
 
 /* Finds once where the values go: cholmod_factorize would transpose the matrix twice each time, which takes up to 40 % of

@@ -30,6 +30,8 @@ module cell_grids
     procedure :: cell_area
     !> True where a cell lies under the loaded patch.
     procedure :: in_patch
+    !> On which side a cell borders on a line through the struck point.
+    procedure :: struck_side
     !> Node that moves as a node does on the line at which a turned plate is cut.
     procedure :: turned_node
     !> True for a node whose motion another one gives.
@@ -190,4 +192,23 @@ contains
     nodes = self%cell_nodes(cell)
     in_patch = all(abs(self%node_coordinates(:, nodes(5)) - self%struck) < patch/2)
   end function in_patch
+
+  !> Along x and y: -1 where a cell borders with its lower side on the line across that direction through the struck
+  !> point, 1 where with its upper one, 0 elsewhere.
+  pure function struck_side(self, place) result(side)
+    !> The grid
+    class(cell_grid_t), intent(in) :: self
+    !> Column and row, from 1
+    integer, intent(in) :: place(2)
+    !> Along x and y
+    integer :: side(2)
+    real(wp) :: distance(2, 2)
+    integer :: end
+
+    do end = 0, 1
+      distance(:, end + 1) = abs([self%x_edges(place(1) + end), self%y_edges(place(2) + end)] - self%struck) &
+                             /self%cell_sides(place)
+    end do
+    side = merge(-1, merge(1, 0, distance(:, 2) < 1e-6_wp), distance(:, 1) < 1e-6_wp)
+  end function struck_side
 end module cell_grids

@@ -35,6 +35,7 @@ contains
     real(wp) :: resultants(lanes, 7)
     integer :: b
 
+    if (present(law)) call tell_strains(batches, kinematics, u, law)
     energies = 0.0_wp
     do b = 1, batches%batches
       call gather(batches%points(:, :, b), u, r)
@@ -58,6 +59,28 @@ contains
     end do
     energy = sum(energies)
   end subroutine add_internal_force
+
+  !> Tells a law the strains that sections share. Collective.
+  subroutine tell_strains(batches, kinematics, u, law)
+    !> The elements
+    type(element_batches_t), intent(in) :: batches
+    !> One of the kinematics_* choices
+    integer, intent(in) :: kinematics
+    !> Unknowns (5, points)
+    real(wp), contiguous, intent(in) :: u(:, :)
+    !> The law
+    class(section_law_t), intent(inout) :: law
+    real(wp) :: r(lanes, 9, 5), strains(lanes, 9, 6), slopes(lanes, 9, 2)
+    integer :: b
+
+    do b = 1, batches%batches
+      if (.not. law%needs(b)) cycle
+      call gather(batches%points(:, :, b), u, r)
+      call in_plane_strains(batches%inverse_jacobian(:, :, :, b), kinematics, r, strains, slopes)
+      call law%take(b, batches%weight(:, :, b), strains)
+    end do
+    call law%exchange()
+  end subroutine tell_strains
 
   !> Turns the unknowns of a batch, whose in-plane strains are known, into its nodal forces.
   pure subroutine turn_into_forces(batches, b, c, kinematics, slopes, strains, r, energies, free)

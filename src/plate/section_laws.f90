@@ -9,11 +9,44 @@ module section_laws
   !> What the sections of the elements remember, and how they answer to trial strains.
   type, abstract :: section_law_t
   contains
+    !> True where the strains of a batch must be known before any section softens; takes them; tells them to all ranks.
+    procedure(asks_for_batch), deferred :: needs
+    procedure(take_batch), deferred :: take
+    procedure(tell_ranks), deferred :: exchange
     !> Stiffness of the sections of a batch under trial strains.
     procedure(soften_batch), deferred :: soften
   end type section_law_t
 
   abstract interface
+    !> True where the strains of a batch must be known before any section softens.
+    pure logical function asks_for_batch(self, b)
+      import :: section_law_t
+      !> The law
+      class(section_law_t), intent(in) :: self
+      !> Number of the batch
+      integer, intent(in) :: b
+    end function asks_for_batch
+
+    !> Takes the trial strains of a batch that is needed.
+    subroutine take_batch(self, b, weight, strains)
+      import :: section_law_t, wp, lanes
+      !> The law
+      class(section_law_t), intent(inout) :: self
+      !> Number of the batch
+      integer, intent(in) :: b
+      !> Area of each Gauss point
+      real(wp), intent(in) :: weight(lanes, 9)
+      !> Strains exx, eyy, gxy, kxx, kyy, kxy (lane, point, component)
+      real(wp), intent(in) :: strains(lanes, 9, 6)
+    end subroutine take_batch
+
+    !> Tells what was taken to all ranks. Collective.
+    subroutine tell_ranks(self)
+      import :: section_law_t
+      !> The law
+      class(section_law_t), intent(inout) :: self
+    end subroutine tell_ranks
+
     !> Stiffness of the sections of a batch under trial strains.
     subroutine soften_batch(self, b, weight, strains, stiffness, free)
       import :: section_law_t, wp, lanes

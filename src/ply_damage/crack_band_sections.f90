@@ -1,5 +1,5 @@
 !> Plies that soften by their fracture energies, in every element: one state a ply and element, driven by the mean over
-!> the ply's volume there of the squares of its strains. Energy and force are then those of one potential, and what
+!> the ply's volume there of the squares of its strains. Elements beside the struck point's lines are one with those beyond. Energy and force are then those of one potential, and what
 !> damage takes of it is what the law dissipates, however the strains vary within the element.
 module crack_band_sections
   use archives, only: archive_t
@@ -7,6 +7,7 @@ module crack_band_sections
   use element_batches, only: lanes, first_element
   use free_strains, only: free_resultants
   use in_situ_strengths, only: material_in_place
+  use joined_elements, only: joined_elements_t, find_joined_elements
   use kinds, only: wp
   use models, only: model_t
   use plies, only: ply_t, elasticity_t
@@ -32,8 +33,12 @@ module crack_band_sections
     type(crack_band_t), allocatable, private :: bands(:)
     !> First and last ply of each element, (2, elements)
     integer, allocatable, private :: range(:, :)
-    !> Sides of each element along x and y, (2, elements)
+    !> Sides along x and y of each element and those that are one with it, (2, elements)
     real(wp), allocatable, private :: sides(:, :)
+    !> Area of each element, (elements)
+    real(wp), allocatable, private :: area(:)
+    !> Elements that are one with others
+    type(joined_elements_t), private :: joined
     !> Strain below which no ply of the laminate can begin to be damaged
     real(wp), private :: onset = 0
     !> True where the trial is not the undamaged state, (elements)
@@ -41,6 +46,10 @@ module crack_band_sections
   contains
     !> Stiffness of the sections of a batch under trial strains.
     procedure :: soften
+    !> Strains of elements that are one with others.
+    procedure :: needs
+    procedure :: take
+    procedure :: exchange
     !> Makes the trial the accepted state.
     procedure :: commit
     !> Energy that the trial dissipates in each mode, on this rank.
@@ -78,14 +87,55 @@ contains
     self%trial = self%accepted
     self%stiffness = model%elements%stiffness
     self%range = model%mesh%element_plies(:, model%distribution%elements)
-    allocate (self%sides(2, model%elements%elements), self%touched(model%elements%elements))
-    self%touched = .false.
+    allocate (self%sides(2, model%elements%elements), self%area(model%elements%elements))
+    allocate (self%touched(model%elements%elements), source=.false.)
+    self%joined = find_joined_elements(model)
     do i = 1, model%elements%elements
-      associate (element => model%distribution%elements(i))
-        self%sides(:, i) = model%mesh%cell_sides(model%mesh%place_of(model%mesh%element_cell(element)))
+      associate (place => model%mesh%place_of(model%mesh%element_cell(model%distribution%elements(i))))
+        self%area(i) = model%mesh%cell_area(place)
+        self%sides(:, i) = model%mesh%cell_sides(place)*merge(2, 1, self%joined%joined(:, i))
       end associate
     end do
   end function new_crack_band_sections
+
+  !> True where a batch has elements that share their state with others.
+  pure logical function needs(self, b)
+    !> The plies
+    class(crack_band_sections_t), intent(in) :: self
+    !> Number of the batch
+    integer, intent(in) :: b
+
+    needs = self%joined%concerned(b)
+  end function needs
+
+  !> Takes the strains of elements that share their state.
+  subroutine take(self, b, weight, strains)
+    !> The plies
+    class(crack_band_sections_t), intent(inout) :: self
+    !> Number of the batch
+    integer, intent(in) :: b
+    !> Area of each Gauss point
+    real(wp), intent(in) :: weight(lanes, 9)
+    !> Strains exx, eyy, gxy, kxx, kyy, kxy (lane, point, component)
+    real(wp), intent(in) :: strains(lanes, 9, 6)
+    real(wp) :: bounds(lanes)
+    integer :: lane, element
+
+    bounds = largest_strains(self%plies, weight, strains)
+    do lane = 1, min(lanes, size(self%touched) - first_element(b) + 1)
+      element = first_element(b) + lane - 1
+      if (self%joined%shares(element)) &
+        call self%joined%take(element, strain_moments(weight(lane, :), strains(lane, :, :)), bounds(lane))
+    end do
+  end subroutine take
+
+  !> Tells them to all ranks. Collective.
+  subroutine exchange(self)
+    !> The plies
+    class(crack_band_sections_t), intent(inout) :: self
+
+    call self%joined%exchange()
+  end subroutine exchange
 
   !> Stiffness of the sections of a batch under trial strains.
   subroutine soften(self, b, weight, strains, stiffness, free)
@@ -101,14 +151,21 @@ contains
     real(wp), intent(inout) :: stiffness(lanes, 21)
     !> Resultants of strains without stress
     real(wp), intent(inout), optional :: free(lanes, 7)
+    type(strain_moments_t) :: moments
     real(wp) :: bounds(lanes)
     integer :: lane, element
 
     bounds = largest_strains(self%plies, weight, strains)
     do lane = 1, min(lanes, size(self%touched) - first_element(b) + 1)
       element = first_element(b) + lane - 1
+      if (self%joined%shares(element)) bounds(lane) = self%joined%bound_of(element)
       if (.not. self%touched(element) .and. bounds(lane) < self%onset) cycle
-      call soften_element(self, element, strain_moments(weight(lane, :), strains(lane, :, :)), stiffness(lane, :))
+      if (self%joined%shares(element)) then
+        moments = self%joined%strains_of(element)
+      else
+        moments = strain_moments(weight(lane, :), strains(lane, :, :))
+      end if
+      call soften_element(self, element, moments, stiffness(lane, :))
       if (present(free)) free(lane, :) = self%free_resultants_of(element)
     end do
     if (present(free)) self%free(:, :, b) = free
@@ -204,7 +261,7 @@ contains
     do element = 1, size(self%touched)
       if (.not. self%touched(element)) cycle
       do ply = self%range(1, element), self%range(2, element)
-        energies = energies + product(self%sides(:, element))*(self%plies(ply)%z_bottom - self%plies(ply)%z_top) &
+        energies = energies + self%area(element)*(self%plies(ply)%z_bottom - self%plies(ply)%z_top) &
                    *(self%trial(ply, element)%dissipated - self%accepted(ply, element)%dissipated)
       end do
     end do

@@ -1,0 +1,226 @@
+!> Elements on both sides of a line through the struck point, or of one at which the model is cut. They are strained
+!> alike, so that plies would break in both at once where only one crack is meant. As far as damage goes they are one
+!> element, as wide as both, with one state a ply that the strains of both drive. With its mirror image an element shares
+!> its state anyway. In a half that a turn makes whole, the element beyond the cut is the image of one on the other side
+!> of the middle.
+module joined_elements
+  use communicators, only: communicator_t
+  use element_batches, only: batch_of
+  use kinds, only: wp
+  use layered_meshes, only: layered_mesh_t
+  use models, only: model_t
+  use ply_strains, only: strain_moments_t, moment_values, values_of, moments_from
+  implicit none
+  private
+  public :: joined_elements_t, find_joined_elements
+
+  !> Most elements that are one
+  integer, parameter :: most = 4
+
+  !> Elements that are one with others, of this rank and of all.
+  type :: joined_elements_t
+    !> True along x and y where an element of this rank goes on beyond its side, (2, elements)
+    logical, allocatable :: joined(:, :)
+    !> Batches of this rank with elements that share their state with others
+    logical, allocatable :: concerned(:)
+    !> Number of each element of this rank among all that share their state; 0: it does not, (elements)
+    integer, allocatable, private :: number(:)
+    !> Numbers of those that are one, ascending, then zeros, (most, numbers), and the area of each, (numbers)
+    integer, allocatable, private :: parts(:, :)
+    real(wp), allocatable, private :: area(:)
+    !> Moments of the strains of each, a bound of its strains behind them, (moment_values + 1, numbers)
+    real(wp), allocatable, private :: moments(:, :)
+    !> The ranks that share the model
+    type(communicator_t), private :: communicator
+  contains
+    !> True where an element shares its state with others.
+    procedure :: shares
+    !> Takes an element's strains; tells them to all ranks; gives the strains of an element and those that are one with
+    !> it, and their largest bound.
+    procedure :: take
+    procedure :: exchange
+    procedure :: strains_of
+    procedure :: bound_of
+  end type joined_elements_t
+
+contains
+
+  !> Finds the elements that are one with others.
+  pure function find_joined_elements(model) result(self)
+    type(model_t), intent(in) :: model
+    !> The elements
+    type(joined_elements_t) :: self
+    integer, allocatable :: numbers(:), parts(:, :)
+    logical, allocatable :: joined(:, :)
+    integer :: element
+
+    associate (mesh => model%mesh, mine => model%distribution%elements)
+      allocate (parts(most, mesh%elements()), joined(2, mesh%elements()), numbers(mesh%elements()))
+      do element = 1, mesh%elements()
+        call find_parts(mesh, element, model%scene%has_impactor, parts(:, element), joined(:, element))
+      end do
+      numbers = unpack([(element, element=1, size(numbers))], parts(2, :) > 0, 0)
+      call number_them(numbers)
+      self%joined = joined(:, mine)
+      self%number = numbers(mine)
+      allocate (self%parts(most, maxval(numbers)), self%area(maxval(numbers)))
+      do element = 1, size(numbers)
+        if (numbers(element) == 0) cycle
+        self%parts(:, numbers(element)) = merge(numbers(max(parts(:, element), 1)), 0, parts(:, element) > 0)
+        self%area(numbers(element)) = mesh%cell_area(mesh%place_of(mesh%element_cell(element)))
+      end do
+    end associate
+    allocate (self%moments(moment_values + 1, size(self%area)), source=0.0_wp)
+    allocate (self%concerned(model%elements%batches), source=.false.)
+    do element = 1, size(self%number)
+      if (self%number(element) > 0) self%concerned(batch_of(element)) = .true.
+    end do
+    self%communicator = model%communicator
+  end function find_joined_elements
+
+  !> Numbers those that are not zero one after the other.
+  pure subroutine number_them(numbers)
+    !> Zeros stay
+    integer, intent(inout) :: numbers(:)
+    integer :: i, last
+
+    last = 0
+    do i = 1, size(numbers)
+      if (numbers(i) == 0) cycle
+      last = last + 1
+      numbers(i) = last
+    end do
+  end subroutine number_them
+
+  !> The modelled elements that are one with an element, itself among them, ascending, then zeros; and along which of x
+  !> and y it goes on beyond its side. Where another one has other layers it stands alone.
+  pure subroutine find_parts(mesh, element, is_struck, parts, joined)
+    !> The mesh
+    type(layered_mesh_t), intent(in) :: mesh
+    !> Element of the mesh
+    integer, intent(in) :: element
+    !> True where something strikes the plate
+    logical, intent(in) :: is_struck
+    !> Elements of the mesh
+    integer, intent(out) :: parts(most)
+    !> Along x and y
+    logical, intent(out) :: joined(2)
+    integer :: places(2, most), direction, known, i, other
+
+    places(:, 1) = mesh%place_of(mesh%element_cell(element))
+    joined = mesh%struck_side(places(:, 1)) /= 0 .and. (mesh%halved .or. is_struck)
+    known = 1
+    do direction = 1, 2
+      if (.not. joined(direction) .or. mesh%mirrored(direction)) cycle
+      do i = 1, known
+        places(:, known + i) = place_beyond(mesh, places(:, i), direction)
+      end do
+      known = 2*known
+    end do
+    parts = 0
+    do i = 1, known
+      other = mesh%element_at(mesh%cell_at(places(1, i), places(2, i)), mesh%element_plies(1, element))
+      if (any(mesh%element_plies(:, other) /= mesh%element_plies(:, element))) then
+        parts = 0
+        joined = .false.
+        return
+      end if
+      call insert(parts, other)
+    end do
+  end subroutine find_parts
+
+  !> Place of the modelled cell that lies beyond a cell's side on a line through the struck point, or whose image does.
+  pure function place_beyond(mesh, place, direction) result(beyond)
+    !> The mesh
+    type(layered_mesh_t), intent(in) :: mesh
+    !> Column and row of the cell
+    integer, intent(in) :: place(2), direction
+    !> Column and row
+    integer :: beyond(2), side(2)
+
+    beyond = place
+    if (mesh%halved(direction)) then
+      beyond(3 - direction) = mesh%cells(3 - direction) + 1 - place(3 - direction)
+    else
+      side = mesh%struck_side(place)
+      beyond(direction) = place(direction) + side(direction)
+    end if
+  end function place_beyond
+
+  !> Inserts an element into an ascending list with zeros behind it, once.
+  pure subroutine insert(list, element)
+    !> The list
+    integer, intent(inout) :: list(most)
+    !> The element
+    integer, intent(in) :: element
+    integer :: smaller
+
+    if (any(list == element)) return
+    smaller = count(list > 0 .and. list < element)
+    list(smaller + 2:) = list(smaller + 1:most - 1)
+    list(smaller + 1) = element
+  end subroutine insert
+
+  !> True where an element shares its state with others.
+  pure logical function shares(self, element)
+    class(joined_elements_t), intent(in) :: self
+    !> Element of this rank
+    integer, intent(in) :: element
+
+    shares = self%number(element) > 0
+  end function shares
+
+  !> Takes an element's strains.
+  pure subroutine take(self, element, moments, bound)
+    !> The elements
+    class(joined_elements_t), intent(inout) :: self
+    !> Element of this rank that shares its state
+    integer, intent(in) :: element
+    !> Its strains
+    type(strain_moments_t), intent(in) :: moments
+    !> What none of its plies is strained beyond
+    real(wp), intent(in) :: bound
+
+    self%moments(:, self%number(element)) = [values_of(moments), bound]
+  end subroutine take
+
+  !> Tells the strains of all that share their state to all ranks. Collective.
+  subroutine exchange(self)
+    !> The elements
+    class(joined_elements_t), intent(inout) :: self
+    logical :: mine(size(self%area))
+    integer :: i
+
+    if (self%communicator%size == 1 .or. size(mine) == 0) return
+    mine = .false.
+    mine(pack(self%number, self%number > 0)) = .true.
+    do i = 1, size(mine)
+      if (.not. mine(i)) self%moments(:, i) = 0
+    end do
+    call self%communicator%sum(self%moments)
+  end subroutine exchange
+
+  !> Strains of an element and those that are one with it: means over all their area.
+  pure function strains_of(self, element) result(moments)
+    class(joined_elements_t), intent(in) :: self
+    !> Element of this rank that shares its state
+    integer, intent(in) :: element
+    !> The means
+    type(strain_moments_t) :: moments
+    integer, allocatable :: its(:)
+
+    its = pack(self%parts(:, self%number(element)), self%parts(:, self%number(element)) > 0)
+    moments = moments_from(matmul(self%moments(:moment_values, its), self%area(its))/sum(self%area(its)))
+  end function strains_of
+
+  !> What no ply of an element and those that are one with it is strained beyond.
+  pure real(wp) function bound_of(self, element) result(bound)
+    class(joined_elements_t), intent(in) :: self
+    !> Element of this rank that shares its state
+    integer, intent(in) :: element
+    integer, allocatable :: its(:)
+
+    its = pack(self%parts(:, self%number(element)), self%parts(:, self%number(element)) > 0)
+    bound = maxval(self%moments(moment_values + 1, its))
+  end function bound_of
+end module joined_elements
