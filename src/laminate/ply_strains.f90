@@ -50,7 +50,8 @@ contains
     !> Strains, then products
     real(wp) :: values(moment_values)
 
-    values = [moments%mean, reshape(moments%membrane, [9]), reshape(moments%mixed, [9]), reshape(moments%curvature, [9])]
+    values = [moments%mean, reshape(moments%membrane, [9]), reshape(moments%mixed, [9]), &
+              reshape(moments%curvature, [9])]
   end function values_of
 
   !> The means from what `values_of` made of them.

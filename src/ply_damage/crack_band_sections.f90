@@ -1,6 +1,7 @@
 !> Plies that soften by their fracture energies, in every element: one state a ply and element, driven by the mean over
-!> the ply's volume there of the squares of its strains. Elements beside the struck point's lines are one with those beyond. Energy and force are then those of one potential, and what
-!> damage takes of it is what the law dissipates, however the strains vary within the element.
+!> the ply's volume there of the squares of its strains. Elements beside the struck point's lines are one with those
+!> beyond. Energy and force are then those of one potential, and what damage takes of it is what the law dissipates,
+!> however the strains vary within the element.
 module crack_band_sections
   use archives, only: archive_t
   use crack_bands, only: crack_band_t, band_state_t, create_crack_band, strain_band, elasticity_left, onset_strain

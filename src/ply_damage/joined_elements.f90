@@ -1,8 +1,8 @@
 !> Elements on both sides of a line through the struck point, or of one at which the model is cut. They are strained
 !> alike, so that plies would break in both at once where only one crack is meant. As far as damage goes they are one
-!> element, as wide as both, with one state a ply that the strains of both drive. With its mirror image an element shares
-!> its state anyway. In a half that a turn makes whole, the element beyond the cut is the image of one on the other side
-!> of the middle.
+!> element, as wide as both, with one state a ply that the strains of both drive. With its mirror image an element
+!> shares its state anyway. In a half that a turn makes whole, the element beyond the cut is the image of one on the
+!> other side of the middle.
 module joined_elements
   use communicators, only: communicator_t
   use element_batches, only: batch_of
@@ -25,8 +25,9 @@ module joined_elements
     logical, allocatable :: concerned(:)
     !> Number of each element of this rank among all that share their state; 0: it does not, (elements)
     integer, allocatable, private :: number(:)
-    !> Numbers of those that are one, ascending, then zeros, (most, numbers), and the area of each, (numbers)
+    !> Numbers of those that are one, ascending, then zeros, (most, numbers)
     integer, allocatable, private :: parts(:, :)
+    !> Area of each, (numbers)
     real(wp), allocatable, private :: area(:)
     !> Moments of the strains of each, a bound of its strains behind them, (moment_values + 1, numbers)
     real(wp), allocatable, private :: moments(:, :)
