@@ -18,7 +18,8 @@ def decks(steps):
     for kinematics, elements in (('linear', 131), ('von_karman', 100)):
         yield kinematics, DECK.format(kinematics=kinematics, elements=elements, step=1e-6, end=steps*1e-6,
                                       more='&solver /')
-    yield 'panel', re.sub(r'end=\S+', 'end=3.6e-4', PANEL.read_text())
+    panel = re.sub(r'(&mesh +).*', r'\1elements=26,40 patch=2e-3 core=48e-3,48e-3 cell=2e-3 /', PANEL.read_text())
+    yield 'panel', re.sub(r'end=\S+', 'end=3.6e-4', panel.replace('friction=0.3', 'friction=0.3 zone=48e-3,48e-3'))
 
 
 def phases_of(program, ranks, text):
