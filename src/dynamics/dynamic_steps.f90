@@ -248,7 +248,7 @@ contains
 
   !> Lets plies that soften follow. In a burst what comes then begins from the equilibrium reached alone: with answers
   !> of the way there, rounding on that way would choose among several ends.
-  subroutine soften(self, model, equilibrium, norm, new, softened)
+  subroutine soften(self, model, equilibrium, norm, energy, old, new, softened)
     !> The problem
     class(dynamic_step_t), intent(inout) :: self
     type(model_t), intent(in) :: model
@@ -256,12 +256,17 @@ contains
     type(equilibrium_t), intent(in) :: equilibrium
     !> Size of the residual
     real(wp), intent(in) :: norm
+    !> Strain energy of this rank's elements
+    real(wp), intent(in) :: energy
+    !> State at the start
+    type(state_t), intent(in) :: old
     !> State at the end
     type(state_t), intent(inout) :: new
     !> True: plies have changed
     logical, intent(out) :: softened
 
-    call self%rounds%go_on(model, equilibrium, norm, new, softened)
+    call self%rounds%go_on(model, equilibrium, norm, energy, old, new, softened)
+    self%gives_up = self%shortens .and. self%rounds%hopeless
     self%bursts = self%bursts .or. self%rounds%breaks .and. allocated(new%interfaces%cohesive%cohesive)
     if (softened .and. self%bursts) call self%memory%forget()
   end subroutine soften

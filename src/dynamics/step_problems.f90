@@ -41,6 +41,8 @@ module step_problems
     !> True: a shorter step may follow; one of the smallest length is taken as it is, as the energy watch tells what it
     !> creates
     logical :: shortens = .false.
+    !> True: a shorter step is wanted, whatever this one would find
+    logical :: gives_up = .false.
   contains
     !> First guess of the state at the end of the step.
     procedure(begin_step), deferred :: begin
@@ -184,7 +186,7 @@ module step_problems
 contains
 
   !> Plies have followed within the residual.
-  subroutine soften(self, model, equilibrium, norm, new, softened)
+  subroutine soften(self, model, equilibrium, norm, energy, old, new, softened)
     !> The problem
     class(step_problem_t), intent(inout) :: self
     type(model_t), intent(in) :: model
@@ -192,6 +194,10 @@ contains
     type(equilibrium_t), intent(in) :: equilibrium
     !> Size of the residual
     real(wp), intent(in) :: norm
+    !> Strain energy of this rank's elements
+    real(wp), intent(in) :: energy
+    !> State at the start
+    type(state_t), intent(in) :: old
     !> State at the end
     type(state_t), intent(inout) :: new
     !> True: plies have changed
@@ -239,7 +245,8 @@ contains
       call model%profile%leave()
       call operator%timers%stop('element forces')
       norm = problem%residual_norm(model, equilibrium, operator, residual, new)
-      call problem%soften(model, equilibrium, norm, new, softened)
+      call problem%soften(model, equilibrium, norm, energy, old, new, softened)
+      if (problem%gives_up) return
       if (softened) then
         if (problem%bursts .and. .not. problem%begins_fresh) return
         problem%begun = new%iterations

@@ -248,7 +248,7 @@ contains
       if (converged .and. model%map%layered) &
         call grow_in_step(problem, model, self%stepping%equilibrium, self%operator, self%now, self%trial, converged, &
                           error)
-      if (converged .or. due .or. allocated(error)) exit
+      if (converged .or. due .or. problem%gives_up .or. allocated(error)) exit
       due = .true.
     end do
     if (problem%bursts .or. problem%renewed) self%operator%ready = .false.
