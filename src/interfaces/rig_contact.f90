@@ -41,7 +41,8 @@ module rig_contact
 
 contains
 
-  !> The plate resting on its frames without weight. Slopes are those of contact, so that frames hold it from the start.
+  !> The plate resting on its frames without weight; below clamps that press by the pressure that bears them. Slopes are
+  !> those of contact, so that frames hold it from the start.
   pure function new_rig_contact(model) result(self)
     type(model_t), intent(in) :: model
     !> The state
@@ -51,6 +52,8 @@ contains
     allocate (self%multiplier(size(model%rig%bears)), self%pressure(size(model%rig%bears)), &
               self%slope(size(model%rig%bears)), source=0.0_wp)
     where (model%rig%bears > 0) self%slope = -model%rig_law%stiffness
+    where (model%rig%bears > 0 .and. model%rig%presses > 0) self%multiplier = model%rig%presses/model%rig_area
+    self%pressure = self%multiplier
   end function new_rig_contact
 
   !> Owned points that a frame bears by pressure.
@@ -86,7 +89,7 @@ contains
     end do
   end subroutine act
 
-  !> Adds the forces of springs to internal forces, and what they store to an energy.
+  !> Adds the forces of springs and of clamps that press to internal forces, and what they store to an energy.
   pure subroutine add_springs(self, model, displacement, force, energy)
     !> The state
     class(rig_contact_t), intent(in) :: self
@@ -103,6 +106,8 @@ contains
     do i = 1, model%distribution%owned
       force(1:3, i) = force(1:3, i) + model%rig%springs(:, i)*displacement(1:3, i)
       energy = energy + dot_product(model%rig%springs(:, i), displacement(1:3, i)**2)/2
+      force(3, i) = force(3, i) - model%rig%presses(i)
+      energy = energy - model%rig%presses(i)*displacement(3, i)
     end do
   end subroutine add_springs
 
@@ -205,7 +210,8 @@ contains
           reactions(holds) = reactions(holds) + loads(3, i) - internal(3, i) - inertia(3, i)
         else
           if (bears > 0) reactions(bears) = reactions(bears) + model%rig_area(i)*self%pressure(i)
-          if (clamps > 0) reactions(clamps) = reactions(clamps) + model%rig%springs(3, i)*displacement(3, i)
+          if (clamps > 0) reactions(clamps) = reactions(clamps) + model%rig%springs(3, i)*displacement(3, i) &
+                                              - model%rig%presses(i)
         end if
       end associate
     end do

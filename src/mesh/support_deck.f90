@@ -37,7 +37,9 @@ module support_deck
     'support | clamps | real | 1 or more | length | none | any | &
       &Points from the plate''s centre, x and y in turn, at which clamps hold u, v and w, or with in_plane = free w.', &
     'support | clamp_stiffness | real | 1 | force/length | none | > 0 | &
-      &Stiffness of each clamp along u, v and w; left out: clamps are rigid.']
+      &Stiffness of each clamp along u, v and w; left out: clamps are rigid.', &
+    'support | clamp_force | real | 1 | force | none | > 0 | &
+      &Force with which each clamp presses the plate on the frame below it, where more lifts it; left out: no limit.']
 
 contains
 
@@ -64,6 +66,7 @@ contains
           call settings%derive(group, 'bearing', trim(merge('face', 'edge', s%unilateral)), .true., place)
         s%bearing = code_of(settings%text_of(group, 'bearing', place), 'edge face', [bearing_edge, bearing_face])
         s%clamp_stiffness = settings%real_of(group, 'clamp_stiffness', place)
+        s%clamp_force = settings%real_of(group, 'clamp_force', place)
         clamps = settings%reals_of(group, key_clamps, place)
         if (size(clamps) > 1) s%clamps = reshape(clamps, [2, size(clamps)/2])
       end associate
@@ -128,7 +131,11 @@ contains
     if (support%shape == window_none) &
       call remark_idle(settings, problems, group, 'unilateral bearing', 'has no effect without a window.', place)
     if (.not. allocated(support%clamps)) &
-      call remark_idle(settings, problems, group, 'clamp_stiffness', 'has no effect without clamps.', place)
+      call remark_idle(settings, problems, group, 'clamp_stiffness clamp_force', 'has no effect without clamps.', &
+                       place)
+    if (support%clamp_stiffness > 0 .and. support%clamp_force > 0) &
+      call tell(settings, problems, group, 'clamp_force', 'says that clamps press, and clamp_stiffness that they are '// &
+                'springs; give one of them.', place)
   end subroutine check_parts
 
   !> A window that the plate covers.
@@ -191,7 +198,8 @@ contains
     if (problems%concern(group)) return
     clamps = 0
     do place = 1, size(supports)
-      if (allocated(supports(place)%clamps)) clamps = clamps + size(supports(place)%clamps, 2)
+      if (allocated(supports(place)%clamps) .and. .not. supports(place)%clamp_force > 0) &
+        clamps = clamps + size(supports(place)%clamps, 2)
     end do
     if (clamps == 1) then
       call tell(settings, problems, group, key_clamps, 'one clamp lets the plate turn in a static analysis; '// &

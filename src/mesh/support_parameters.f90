@@ -28,6 +28,8 @@ module support_parameters
     real(wp), allocatable :: clamps(:, :)
     !> Force per displacement of a clamp along u, v and w; 0: rigid
     real(wp) :: clamp_stiffness = 0
+    !> Force with which a clamp presses the plate on the frame below it; 0: it holds the plate, whatever that takes
+    real(wp) :: clamp_force = 0
   contains
     !> Distance of a point from the window's edge.
     procedure :: beyond

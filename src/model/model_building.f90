@@ -105,7 +105,8 @@ contains
              (.not. scene%plate%in_plane_fixed .or. all(scene%plate%edges == edge_free))
     if (allocated(scene%supports)) then
       do i = 1, size(scene%supports)
-        if (allocated(scene%supports(i)%clamps)) adrift = adrift .and. .not. scene%plate%in_plane_fixed
+        if (allocated(scene%supports(i)%clamps) .and. .not. scene%supports(i)%clamp_force > 0) &
+          adrift = adrift .and. .not. scene%plate%in_plane_fixed
       end do
     end if
     if (.not. allocated(scene%lines)) return

@@ -14,14 +14,16 @@ module rig_models
 
   !> The rigs at this rank's points. Only the first point of a node has any part in them.
   type :: rig_model_t
-    !> True if the plate rests on a frame that it may lift off
+    !> True if the plate rests on a frame, or below clamps that press, off which it may lift
     logical :: unilateral = .false.
-    !> True if clamps have springs
+    !> True if clamps have springs or press
     logical :: elastic = .false.
     !> The rig that holds w, or whose frame bears it by pressure; 0: none, (local points); unallocated: no rigs
     integer, allocatable :: holds(:), bears(:)
     !> Stiffness of clamps along u, v and w, (3, local points)
     real(wp), allocatable :: springs(:, :)
+    !> Force with which clamps press on the plate, (local points)
+    real(wp), allocatable :: presses(:)
     !> The rig that they belong to; 0: none, (local points)
     integer, allocatable :: clamps(:)
     !> Points of three nodes each, (3, lines), whose weighted unknown a stiffness holds, and the rig; 0: an elastic edge
@@ -57,7 +59,7 @@ contains
     if (size(supports) == 0 .and. all(plate%edges /= edge_elastic)) return
     allocate (self%holds(size(distribution%points)), self%bears(size(distribution%points)), &
               self%clamps(size(distribution%points)), source=0)
-    allocate (self%springs(3, size(distribution%points)), source=0.0_wp)
+    allocate (self%springs(3, size(distribution%points)), self%presses(size(distribution%points)), source=0.0_wp)
     do i = 1, size(supports)
       self%unilateral = self%unilateral .or. supports(i)%shape > 0 .and. supports(i)%unilateral
       nodes = pack([(k, k=1, mesh%nodes())], nodes_on_frame(mesh, supports(i)))
@@ -74,7 +76,11 @@ contains
       do k = 1, size(nodes)
         point = distribution%local(mesh%first_point(nodes(k)))
         if (point == 0) cycle
-        if (supports(i)%clamp_stiffness > 0) then
+        if (supports(i)%clamp_force > 0) then
+          self%unilateral = .true.
+          self%clamps(point) = i
+          self%presses(point) = self%presses(point) + supports(i)%clamp_force*clamp_share(mesh)
+        else if (supports(i)%clamp_stiffness > 0) then
           self%clamps(point) = i
           self%springs(:, point) = self%springs(:, point) + springs_of(mesh, plate, supports(i))
         else
@@ -83,9 +89,11 @@ contains
       end do
     end do
     call find_lines(mesh, plate, supports, distribution, rigid, self)
-    ! What is held needs no frame to bear it.
+    ! What a clamp presses on bears the plate; what is held needs no frame to bear it, and no clamp moves it.
+    where (self%presses > 0 .and. self%bears == 0) self%bears = self%clamps
     where (self%holds > 0) self%bears = 0
-    self%elastic = any(supports%clamp_stiffness > 0)
+    where (self%holds > 0) self%presses = 0
+    self%elastic = any(supports%clamp_stiffness > 0 .or. supports%clamp_force > 0)
   end function new_rig_model
 
   !> Finds what is held on the sides of this rank's cells: w on the edges of circular windows, and elastic edges.
@@ -203,7 +211,7 @@ contains
           if (borne(k)) held(3, mesh%first_point(k)) = .true.
         end do
       end if
-      if (supports(i)%clamp_stiffness > 0) cycle
+      if (supports(i)%clamp_stiffness > 0 .or. supports(i)%clamp_force > 0) cycle
       nodes = clamp_nodes(mesh, plate, supports(i))
       held(3, mesh%first_point(nodes)) = .true.
       if (plate%in_plane_fixed) held(1:2, mesh%first_point(nodes)) = .true.

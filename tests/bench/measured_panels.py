@@ -8,7 +8,8 @@ named behind a dash (those of one line, such as -ply_damage) and with the groups
 +'&delamination below_ply=14 ... /'. Prints peak force, largest displacement of the tup, end of contact, projected
 area, absorbed energy, the forces at some displacements as the tup goes in, for 25 J the relative L2 error of the
 force history and the forces at some times, each beside the measured ones, what plies and delaminations took, steps
-and cost. Without IMPLAM it reads what a run has left in FOLDER."""
+and cost. Beside the projected area by the toughness that is gone it tells the area in which an interface has lost half
+its stiffness, which has the process zones in it. Without IMPLAM it reads what a run has left in FOLDER."""
 
 import csv
 import json
@@ -16,6 +17,9 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+
+import h5py
+import numpy as np
 
 DECKS = Path(__file__).resolve().parents[2] / "input" / "experiments"
 TIMES = (0.4, 0.6, 0.8, 1.0, 1.1, 1.2, 1.6, 2.0, 2.5, 3.0)
@@ -70,6 +74,26 @@ def history_error(rows):
     return (sum(x**2 for x in off) / sum(x**2 for x in wanted))**0.5
 
 
+def softened_area(folder, plate_size):
+    """Projected area, m2, in which an interface has lost half its stiffness at the end; process zones are in it."""
+    with h5py.File(next(folder.glob("*.h5"))) as file:
+        last = file["times"][max(file["times"])]
+        mesh = file["meshes"][f"{last['mesh'][()]:08d}"]
+        points, corners = mesh["coordinates"][:, :2], mesh["connectivity"][:]
+        damage = last["points/damage_above"][:]
+    # Layers lie above each other: each place counts once, with the worst of its interfaces.
+    _, place = np.unique(np.round(1e7 * points).astype(int), axis=0, return_inverse=True)
+    place = place.ravel()
+    worst = np.zeros(place.max() + 1)
+    np.maximum.at(worst, place, damage)
+    _, cells = np.unique(place[corners[:, 8]], return_index=True)
+    sides = np.ptp(points[corners[cells, :4]], axis=1)
+    shares = np.outer(sides[:, 0] * sides[:, 1], np.array([1, 1, 1, 1, 4, 4, 4, 4, 16]) / 36)
+    area = np.zeros_like(worst)
+    np.add.at(area, place[corners[cells]], shares)
+    return area[worst >= 0.5].sum() * plate_size[0] * plate_size[1] / area.sum()
+
+
 def run(implam, name, folder, settings):
     """Run a deck; its seconds of the processor."""
     sys.path.insert(0, str(Path(__file__).parents[1] / "regress"))
@@ -98,7 +122,9 @@ def show(name, folder):
                "at, ms": 1e3 * max(rows, key=lambda row: row["force"])["time"],
                "largest displacement, mm": 1e3 * max(row["impactor_displacement"] for row in rows),
                "end of contact, ms": 1e3 * summary["contact_until"], "in contact": float(summary["in_contact"]),
-               "projected area, mm2": 1e6 * last["projected_area"], "absorbed, J": begun - last["energy_impactor"]}
+               "projected area, mm2": 1e6 * last["projected_area"],
+               "half the stiffness lost, mm2": 1e6 * softened_area(folder, summary["plate_size"]),
+               "absorbed, J": begun - last["energy_impactor"]}
     for at, pair in forces_over(rows, name).items():
         figures[f"force at {at} mm, kN"], figures[f"measured at {at} mm, kN"] = pair
     if name == "25J":

@@ -15,7 +15,7 @@ from pathlib import Path
 from measured_panels import DECKS, rows_of
 
 # Those that decide most come first.
-INPUTS = {"delamination": ("G_IIc", "G_Ic", "eta"),
+INPUTS = {"delamination": ("G_IIc", "G_Ic", "eta", "friction"),
           "material": ("S12", "YT", "E1", "E2", "G12", "G13", "G23", "XC", "G_fc", "XT", "G_ft", "G_mt", "G_mc", "YC",
                        "nu12", "density"),
           "indentation": ("k", "alpha_cr")}
