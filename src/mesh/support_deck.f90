@@ -134,8 +134,8 @@ contains
       call remark_idle(settings, problems, group, 'clamp_stiffness clamp_force', 'has no effect without clamps.', &
                        place)
     if (support%clamp_stiffness > 0 .and. support%clamp_force > 0) &
-      call tell(settings, problems, group, 'clamp_force', 'says that clamps press, and clamp_stiffness that they are '// &
-                'springs; give one of them.', place)
+      call tell(settings, problems, group, 'clamp_force', 'says that clamps press, and clamp_stiffness that they '// &
+                'are springs; give one of them.', place)
   end subroutine check_parts
 
   !> A window that the plate covers.
