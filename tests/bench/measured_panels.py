@@ -3,13 +3,13 @@
 Usage: measured_panels.py IMPLAM 6.5J|25J FOLDER [GROUP%KEY=VALUE ...] [-GROUP ...] [+'GROUP' ...]
        measured_panels.py FOLDER 6.5J|25J
 
-Runs the deck of input/experiments in FOLDER with the keys given, without the groups
-named behind a dash (those of one line, such as -ply_damage) and with the groups written out behind a plus, such as
-+'&delamination below_ply=14 ... /'. Prints peak force, largest displacement of the tup, end of contact, projected
+Runs the deck of input/experiments in FOLDER with the keys given, without the groups whose beginning stands behind a
+dash (those of one line, such as -ply_damage or '-support clamps') and with the groups written out behind a plus, such
+as +'&delamination below_ply=14 ... /'. Prints peak force, largest displacement of the tup, end of contact, projected
 area, absorbed energy, the forces at some displacements as the tup goes in, for 25 J the relative L2 error of the
 force history and the forces at some times, each beside the measured ones, what plies and delaminations took, steps
-and cost. Beside the projected area by the toughness that is gone it tells the area in which an interface has lost half
-its stiffness, which has the process zones in it. Without IMPLAM it reads what a run has left in FOLDER."""
+and cost. Beside the projected area by the toughness that is gone it tells the area in which an interface has lost
+half its stiffness, which has the process zones in it. Without IMPLAM it reads what a run has left in FOLDER."""
 
 import csv
 import json
@@ -99,9 +99,9 @@ def run(implam, name, folder, settings):
     sys.path.insert(0, str(Path(__file__).parents[1] / "regress"))
     from solver_runs import change_deck  # pylint: disable=import-outside-toplevel,import-error
     folder.mkdir(parents=True, exist_ok=True)
-    dropped = tuple(f"&{setting[1:]} " for setting in settings if setting.startswith("-"))
+    dropped = tuple(f"&{setting[1:]}" for setting in settings if setting.startswith("-"))
     lines = (DECKS / f"t700_m21_{name}.nml").read_text(encoding="utf-8").splitlines(keepends=True)
-    text = change_deck("".join(line for line in lines if not line.startswith(dropped)),
+    text = change_deck("".join(line for line in lines if not " ".join(line.split()).startswith(dropped)),
                        [setting for setting in settings if not setting.startswith(("-", "+"))])
     text += "".join(f"\n{setting[1:]}\n" for setting in settings if setting.startswith("+"))
     (folder / "deck.nml").write_text(text, encoding="utf-8")
