@@ -61,7 +61,8 @@ contains
     if (.not. record%has_warned(warning_torn, 0) .and. abs(now%deflection) > deepest*thickness) then
       if (is_torn(deck, model, now)) call tell(warning_torn, 0)
     end if
-    if (.not. record%has_warned(warning_hole, 0) .and. deck%has_ply_damage .and. deck%has_impactor) then
+    ! Once the impactor has left, what it pressed on says nothing.
+    if (.not. record%has_warned(warning_hole, 0) .and. deck%has_ply_damage .and. now%force > 0) then
       if (has_hole(model, now)) call tell(warning_hole, 0)
     end if
     if (deck%has_static) return
