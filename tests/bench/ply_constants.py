@@ -22,7 +22,7 @@ CONTROLLERS, PROBLEMS = "src/dynamics/step_controllers.f90", "src/dynamics/step_
 # File, constant, and the values it takes.
 CONSTANTS = ((ROUNDS, "most_rounds", ("15", "45")),
              (ROUNDS, "noticed", ("0.5e-4_wp", "2.0e-4_wp")), (ROUNDS, "most_lost", ("0.5e-3_wp", "2.0e-3_wp")),
-             (ROUNDS, "most_missed", ("1.0_wp", "4.0_wp")),
+             (ROUNDS, "most_missed", ("2.0_wp", "8.0_wp")),
              (FAILURES, "path_tolerance", ("0.05_wp", "0.2_wp")), (FAILURES, "noticed", ("1.5e-4_wp", "6.0e-4_wp")),
              (CONTROLLERS, "spare_in_breaking", ("0.125_wp", "0.5_wp")),
              (PROBLEMS, "watched", ("2", "8")), (PROBLEMS, "most_left", ("0.25_wp", "0.75_wp")),
