@@ -96,8 +96,28 @@ contains
       if (.not. are_clear(settings, problems, plate_group, key_length)) cycle
       call check_window(settings, plate, supports(place), place, problems)
       call check_clamps(settings, plate, supports(place), place, problems)
+      if (presses_in_vain(supports(place), supports)) &
+        call remark_idle(settings, problems, group, 'clamp_force', 'has no effect where a frame holds the plate; '// &
+                         'with unilateral = .true. it may lift off.', place)
     end do
   end subroutine check_rigs
+
+  !> True if clamps press only where a frame holds the plate both ways.
+  pure logical function presses_in_vain(clamped, supports)
+    !> The rig with the clamps
+    type(support_t), intent(in) :: clamped
+    !> All rigs
+    type(support_t), intent(in) :: supports(:)
+    integer :: i, j
+
+    presses_in_vain = .false.
+    if (.not. clamped%clamp_force > 0 .or. .not. allocated(clamped%clamps)) return
+    do i = 1, size(supports)
+      if (supports(i)%shape == window_none .or. supports(i)%unilateral .or. supports(i)%bearing == bearing_edge) cycle
+      presses_in_vain = presses_in_vain .or. &
+                        all([(supports(i)%beyond(clamped%clamps(:, j)) >= 0, j=1, size(clamped%clamps, 2))])
+    end do
+  end function presses_in_vain
 
   !> A rig that has something to hold the plate by, and no key that its shape has no use for.
   subroutine check_parts(settings, support, place, problems)
