@@ -4,7 +4,8 @@ Usage: panel_sensitivity.py IMPLAM 6.5J|25J FOLDER [GROUP%KEY=VALUE ...]
 
 Runs the deck of measured_panels.py as it is and with each figure of material, interface and indentation 10 %
 larger, each in a folder of its own, and prints a row of a table: peak force, largest displacement and projected area,
-for the changed ones in per cent of the deck's. With time%end=2e-3 behind it a run ends when the tup has turned back.
+for the changed ones in per cent of the deck's. The first rows change one figure by parts of a million, which tells what
+chance does. With time%end=2e-3 behind it a run ends when the tup has turned back.
 What has ended in FOLDER is not run again."""
 
 import re
@@ -19,14 +20,17 @@ INPUTS = {"delamination": ("G_IIc", "G_Ic", "eta", "friction"),
           "material": ("S12", "YT", "E1", "E2", "G12", "G13", "G23", "XC", "G_fc", "XT", "G_ft", "G_mt", "G_mc", "YC",
                        "nu12", "density"),
           "indentation": ("k", "alpha_cr")}
+CHANCE = -1e-6, 1e-6, 2e-6  # parts of the density, which decide nothing
 
 
 def changes(text):
-    """Each input of a deck, 10 % larger."""
-    for group, keys in INPUTS.items():
-        for key in keys:
-            value = float(re.search(rf"\b{key}=([\d.e+-]+)", text)[1])
-            yield f"{group}%{key}={1.1*value:.10g}"
+    """The name of a row, a folder and a setting: what chance does, then each input 10 % larger."""
+    for group, key, more in ([("material", "density", part) for part in CHANCE]
+                             + [(group, key, None) for group, keys in INPUTS.items() for key in keys]):
+        value = float(re.search(rf"\b{key}=([\d.e+-]+)", text)[1])
+        row = key if more is None else f"{key}, but {more:+.0e} of it"
+        folder = f"{group}_{key}" if more is None else f"{group}_{key}_{more:+.0e}"
+        yield row, folder, f"{group}%{key}={(1 + (more or 0.1))*value:.10g}"
 
 
 def figures(folder):
@@ -58,12 +62,11 @@ def main(arguments):
         sys.exit(f"The deck as it is did not end: see {folder / 'as_it_is'}.")
     print("| 10 % more of | peak force | largest displacement | projected area |\n" + "|---"*4 + "|")
     print(f"| none | {base[0]/1e3:.2f} kN | {1e3*base[1]:.2f} mm | {1e6*base[2]:.0f} mm2 |", flush=True)
-    for change in changes(text):
-        name = change.split("=")[0].replace("%", "_")
+    for row, name, change in changes(text):
         changed = run(arguments, folder / name, [*given, change])
         parts = "no end" if changed is None else \
             " | ".join(f"{100*(a/b - 1):+.1f} %" for a, b in zip(changed, base, strict=True))
-        print(f"| {name.split('_', 1)[1]} | {parts} |", flush=True)
+        print(f"| {row} | {parts} |", flush=True)
 
 
 if __name__ == "__main__":
