@@ -5,7 +5,7 @@ Usage: panel_sensitivity.py IMPLAM 6.5J|25J FOLDER [GROUP%KEY=VALUE ...]
 Runs the deck of measured_panels.py as it is and with each figure of material, interface and indentation 10 %
 larger, each in a folder of its own, and prints a row of a table: peak force, largest displacement and projected area,
 for the changed ones in per cent of the deck's. The first rows change one figure by parts of a million, which tells what
-chance does. With time%end=2e-3 behind it a run ends when the tup has turned back.
+rounding does. With time%end=2e-3 behind it a run ends when the tup has turned back.
 What has ended in FOLDER is not run again."""
 
 import re
@@ -20,12 +20,12 @@ INPUTS = {"delamination": ("G_IIc", "G_Ic", "eta", "friction"),
           "material": ("S12", "YT", "E1", "E2", "G12", "G13", "G23", "XC", "G_fc", "XT", "G_ft", "G_mt", "G_mc", "YC",
                        "nu12", "density"),
           "indentation": ("k", "alpha_cr")}
-CHANCE = -1e-6, 1e-6, 2e-6  # parts of the density, which decide nothing
+TRIFLES = -1e-6, 1e-6, 2e-6  # parts of the density, which decide nothing
 
 
 def changes(text):
-    """The name of a row, a folder and a setting: what chance does, then each input 10 % larger."""
-    for group, key, more in ([("material", "density", part) for part in CHANCE]
+    """The name of a row, a folder and a setting: what trifles do, then each input 10 % larger."""
+    for group, key, more in ([("material", "density", part) for part in TRIFLES]
                              + [(group, key, None) for group, keys in INPUTS.items() for key in keys]):
         value = float(re.search(rf"\b{key}=([\d.e+-]+)", text)[1])
         row = key if more is None else f"{key}, but {more:+.0e} of it"
