@@ -27,21 +27,6 @@ module border_systems
     procedure :: solve
   end type border_system_t
 
-  interface
-    !> LAPACK: u u' of an upper triangle.
-    subroutine dlauum(uplo, n, a, lda, info)
-      import :: wp
-      !> 'U': an upper triangle
-      character, intent(in) :: uplo
-      !> Order, leading dimension
-      integer, intent(in) :: n, lda
-      !> The triangle, overwritten by that of the product
-      real(wp), intent(inout) :: a(lda, *)
-      !> Not 0: an argument is wrong
-      integer, intent(out) :: info
-    end subroutine dlauum
-  end interface
-
 contains
 
   !> Sets the border's size.
@@ -60,28 +45,19 @@ contains
   end subroutine define
 
   !> Adds the ranks' Schur complements up and factors the sum; called by all ranks together.
-  subroutine factorize(self, lower, more, positive)
+  subroutine factorize(self, complement, positive)
     class(border_system_t), intent(inout) :: self
-    !> Lower factor of this rank's, with more on its diagonal, zero above, (its rows, its rows)
-    real(wp), intent(in) :: lower(:, :)
-    !> What the diagonal of this rank's Schur complement has more, (its rows)
-    real(wp), intent(in) :: more(:)
+    !> Schur complement of this rank's part, its lower triangle is read, (its rows, its rows)
+    real(wp), intent(in) :: complement(:, :)
     !> Whether the sum is positive definite
     logical, intent(out) :: positive
-    real(wp), allocatable :: matrix(:, :), product(:, :)
-    integer :: k, rows, info
+    real(wp), allocatable :: matrix(:, :)
+    integer :: k
 
-    rows = size(lower, 1)
-    ! LAPACK multiplies an upper triangle by its transpose: that of the rows in the opposite order.
-    product = lower(rows:1:-1, rows:1:-1)
-    if (rows > 0) call dlauum('U', rows, product, rows, info)
     allocate (matrix(self%rows, self%rows), source=0.0_wp)
-    do k = 1, rows
-      associate (column => product(rows + 1 - k:1:-1, rows + 1 - k))
-        ! Places ascend, so that the lower triangle stays the lower one.
-        matrix(self%place(k:), self%place(k)) = column
-        matrix(self%place(k), self%place(k)) = column(1) - more(k)
-      end associate
+    ! Places ascend, so that the lower triangle stays the lower one.
+    do k = 1, size(complement, 1)
+      matrix(self%place(k:), self%place(k)) = complement(k:, k)
     end do
     call self%communicator%sum(matrix)
     call self%factor%factorize(matrix)

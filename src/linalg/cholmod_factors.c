@@ -1,11 +1,12 @@
 /* CHOLMOD behind procedures that Fortran can call: a symmetric positive definite matrix, whose lists stay the caller's,
    and its supernodal factor (Chen et al., ACM Trans. Math. Softw. 35, 2008). The last rows may be a border, which is
-   eliminated last: the last columns of the factor are those of its Schur complement then. */
+   left over: its Schur complement is found instead of its factor. */
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <suitesparse/cholmod.h>
 #include "border_orders.h"
+#include "substructures.h"
 #include "supernodal_solves.h"
 
 typedef struct {
@@ -24,9 +25,6 @@ typedef struct {
   uint64_t *reached;
   size_t room;
 } implam_cholmod;
-
-/* Outcomes of a factorization. */
-enum { factored = 0, not_positive = 1, failed = 2 };
 
 /* A matrix by its lower triangle in compressed columns, from 0, which is its upper one in compressed rows, and how many
    of its last rows are a border; null without memory. */
@@ -98,22 +96,40 @@ static int order_matrix(implam_cholmod *self)
   return self->places != 0;
 }
 
-/* Factors the matrix as its values are now; orders it the first time. */
-int implam_cholmod_factorize(implam_cholmod *self)
+/* Puts the values as they are now in the order of the factor, which is found the first time; 0 without memory. */
+static int order_values(implam_cholmod *self)
 {
-  double none[2] = {0, 0};
   self->common.status = CHOLMOD_OK;
   if (!self->factor) self->factor = analyze(self);
-  if (!self->factor) return failed;
-  if (!self->places && !order_matrix(self)) return failed;
+  if (!self->factor) return 0;
+  if (!self->places && !order_matrix(self)) return 0;
   if (!self->one) self->one = malloc((self->matrix.nrow + implam_supernodal_work(self->factor))*sizeof(double));
-  if (!self->one) return failed;
+  if (!self->one) return 0;
   const double *values = self->matrix.x;
   double *ordered = self->ordered->x;
   for (size_t k = 0; k < self->matrix.nzmax; k++) ordered[self->places[k]] = values[k];
-  if (!cholmod_super_numeric(self->ordered, 0, none, self->factor, &self->common)) return failed;
-  if (self->common.status == CHOLMOD_NOT_POSDEF || self->factor->minor < self->factor->n) return not_positive;
-  return self->common.status == CHOLMOD_OK ? factored : failed;
+  return 1;
+}
+
+/* Factors a matrix without border as its values are now. */
+int implam_cholmod_factorize(implam_cholmod *self)
+{
+  double none[2] = {0, 0};
+  if (!order_values(self)) return implam_failed;
+  if (!cholmod_super_numeric(self->ordered, 0, none, self->factor, &self->common)) return implam_failed;
+  if (self->common.status == CHOLMOD_NOT_POSDEF || self->factor->minor < self->factor->n) return implam_not_positive;
+  return self->common.status == CHOLMOD_OK ? implam_factored : implam_failed;
+}
+
+/* Eliminates what is inside the border from the matrix as its values are now. Leaves the lower triangle of the border's
+   Schur complement, by columns; numbers above its diagonal are left as they are. */
+int implam_cholmod_eliminate(implam_cholmod *self, double *complement)
+{
+  if (!order_values(self)) return implam_failed;
+  /* The first time: room for the numbers. */
+  if (self->factor->xtype == CHOLMOD_PATTERN &&
+      !cholmod_change_factor(CHOLMOD_REAL, 1, 1, 1, 1, self->factor, &self->common)) return implam_failed;
+  return implam_eliminate(self->factor, self->ordered, (int)self->matrix.nrow - self->border, complement);
 }
 
 /* Solves for one right-hand side. */
@@ -160,19 +176,19 @@ int implam_cholmod_solve(implam_cholmod *self, int count, const double *right_ha
   const int *order = self->factor->Perm;
   if (count == 1) {
     solve_one(self, right_hand_sides, solutions);
-    return factored;
+    return implam_factored;
   }
   for (int first = 0; first < count; first += implam_most_together) {
     const int together = count - first < implam_most_together ? count - first : implam_most_together;
     const size_t many = (size_t)together, before = (size_t)first*rows;
-    if (!make_room(self, together)) return failed;
+    if (!make_room(self, together)) return implam_failed;
     double *work = self->several + many*rows;
     side_by_side(rows, many, order, right_hand_sides + before, self->several);
     implam_block_forward(self->factor, (int)rows, together, self->several, work, self->reached);
     implam_block_backward(self->factor, (int)rows, together, self->several, work);
     one_behind_the_other(rows, many, order, self->several, solutions + before);
   }
-  return factored;
+  return implam_factored;
 }
 
 /* Half of a solve for columns one behind the other, in the order of the factor, but not for the border; 0 for success. */
@@ -183,19 +199,19 @@ static int half_solve(implam_cholmod *self, int count, double *columns, int back
   if (count == 1) {
     if (backward) implam_supernodal_backward(self->factor, inside, columns, self->one + rows);
     else implam_supernodal_forward(self->factor, inside, columns, self->one + rows);
-    return factored;
+    return implam_factored;
   }
   for (int first = 0; first < count; first += implam_most_together) {
     const int together = count - first < implam_most_together ? count - first : implam_most_together;
     const size_t many = (size_t)together;
-    if (!make_room(self, together)) return failed;
+    if (!make_room(self, together)) return implam_failed;
     double *work = self->several + many*rows, *its = columns + (size_t)first*rows;
     side_by_side(rows, many, 0, its, self->several);
     if (backward) implam_block_backward(self->factor, inside, together, self->several, work);
     else implam_block_forward(self->factor, inside, together, self->several, work, self->reached);
     one_behind_the_other(rows, many, 0, self->several, its);
   }
-  return factored;
+  return implam_factored;
 }
 
 /* Eliminates what is inside the border from right-hand sides; they are left in the order of the factor, the border's
@@ -217,25 +233,6 @@ int implam_cholmod_backward(implam_cholmod *self, int count, double *eliminated,
   for (size_t c = 0; c < (size_t)count; c++)
     for (size_t k = 0; k < rows; k++) solutions[c*rows + (size_t)order[k]] = eliminated[c*rows + k];
   return outcome;
-}
-
-/* Lower factor of the border's Schur complement, by columns, zero above its diagonal. */
-void implam_cholmod_border(const implam_cholmod *self, double *lower)
-{
-  const cholmod_factor *factor = self->factor;
-  const int *first = factor->super, *list = factor->pi, *place = factor->px, *row = factor->s;
-  const int border = self->border, inside = (int)self->matrix.nrow - border;
-  const double *values = factor->x;
-  memset(lower, 0, (size_t)border*(size_t)border*sizeof(double));
-  for (int k = 0; k < (int)factor->nsuper; k++) {
-    const int rows = list[k + 1] - list[k];
-    for (int j = 0; j < first[k + 1] - first[k]; j++) {
-      const int column = first[k] + j - inside;
-      for (int i = j; column >= 0 && i < rows; i++)
-        lower[(size_t)column*(size_t)border + (size_t)(row[list[k] + i] - inside)] =
-          values[place[k] + j*rows + i];
-    }
-  }
 }
 
 /* Entries stored in the factor, and the most memory that was in use, in bytes. */

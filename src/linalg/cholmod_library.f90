@@ -3,8 +3,8 @@ module cholmod_library
   use, intrinsic :: iso_c_binding, only: c_double, c_int, c_ptr
   implicit none
   private
-  public :: cholmod_new, cholmod_factorize, cholmod_solve, cholmod_forward, cholmod_backward, cholmod_border, &
-            cholmod_size, cholmod_free
+  public :: cholmod_new, cholmod_factorize, cholmod_solve, cholmod_forward, cholmod_backward, &
+            cholmod_eliminate, cholmod_size, cholmod_free
 
   !> Outcomes of a factorization or a solve
   integer, parameter, public :: cholmod_done = 0, cholmod_not_positive = 1
@@ -23,7 +23,7 @@ module cholmod_library
       type(c_ptr) :: package
     end function cholmod_new
 
-    !> Factors the matrix as its values are now.
+    !> Factors a matrix without border as its values are now.
     integer(c_int) function cholmod_factorize(package) bind(c, name='implam_cholmod_factorize')
       import :: c_int, c_ptr
       !> CHOLMOD's side
@@ -72,14 +72,14 @@ module cholmod_library
       real(c_double), intent(inout) :: solutions(*)
     end function cholmod_backward
 
-    !> Lower factor of what eliminating the rest leaves of the border's matrix.
-    subroutine cholmod_border(package, lower) bind(c, name='implam_cholmod_border')
-      import :: c_double, c_ptr
+    !> Eliminates all but the border from the matrix as its values are now.
+    integer(c_int) function cholmod_eliminate(package, complement) bind(c, name='implam_cholmod_eliminate')
+      import :: c_double, c_int, c_ptr
       !> CHOLMOD's side
       type(c_ptr), value :: package
-      !> The factor, by columns
-      real(c_double), intent(inout) :: lower(*)
-    end subroutine cholmod_border
+      !> What is left of the border's matrix, by columns, its lower triangle; the rest is left as it is
+      real(c_double), intent(inout) :: complement(*)
+    end function cholmod_eliminate
 
     !> Size of the factor.
     subroutine cholmod_size(package, entries, bytes) bind(c, name='implam_cholmod_size')

@@ -5,7 +5,7 @@ module cholmod_parts
   use border_rows, only: border_rows_t
   use border_systems, only: border_system_t
   use cholmod_library, only: cholmod_new, cholmod_factorize, cholmod_solve, cholmod_forward, cholmod_backward, &
-                             cholmod_border, cholmod_size, cholmod_free, cholmod_done, cholmod_not_positive
+                             cholmod_eliminate, cholmod_size, cholmod_free, cholmod_done, cholmod_not_positive
   use communicators, only: communicator_t
   use kinds, only: wp
   use symmetric_rows, only: symmetric_rows_t
@@ -120,24 +120,14 @@ contains
     class(cholmod_part_t), intent(inout) :: self
     !> The worst outcome of all ranks
     integer, intent(out) :: outcome
-    real(wp), allocatable :: more(:), its_diagonal(:), lower(:, :)
+    real(wp), allocatable :: complement(:, :)
     logical :: positive
 
-    associate (diagonals => self%matrix%start(self%rows%inside + 1:self%rows%rows) + 1)
-      ! A part by itself may be able to move freely where the whole can't, so its border is held meanwhile.
-      its_diagonal = self%matrix%values(diagonals)
-      more = its_diagonal
-      ! A row that this rank has without adding to it: any number will do.
-      where (.not. more > 0) more = minval([1.0_wp, pack(more, more > 0)])
-      self%matrix%values(diagonals) = its_diagonal + more
-      outcome = cholmod_factorize(self%package)
-      self%matrix%values(diagonals) = its_diagonal
-    end associate
+    allocate (complement(self%rows%rows - self%rows%inside, self%rows%rows - self%rows%inside))
+    outcome = cholmod_eliminate(self%package, complement)
     call self%communicator%maximum(outcome)
     if (outcome /= cholmod_done) return
-    allocate (lower(size(more), size(more)))
-    call cholmod_border(self%package, lower)
-    call self%border%factorize(lower, more, positive)
+    call self%border%factorize(complement, positive)
     if (.not. positive) outcome = cholmod_not_positive
   end subroutine factorize_all
 

@@ -13,8 +13,7 @@ extern void dtrsm_(const char *, const char *, const char *, const char *, const
 
 static const double one = 1, minus_one = -1, zero = 0;
 
-/* The supernode of a column. */
-static int supernode_of(const cholmod_factor *factor, int column)
+int implam_supernode_of(const cholmod_factor *factor, int column)
 {
   const int *first = factor->super;
   int low = 0, high = (int)factor->nsuper;
@@ -72,7 +71,7 @@ void implam_block_forward(const cholmod_factor *factor, int end, int count, doub
       for (int c = 0; c < number; c++) its[some[c]] -= others[i*number + c];
     }
     /* All rows below are in supernodes between this one's parent and the root. */
-    reached[supernode_of(factor, its_row[columns])] |= reached[k];
+    reached[implam_supernode_of(factor, its_row[columns])] |= reached[k];
   }
 }
 

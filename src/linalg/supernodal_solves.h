@@ -10,6 +10,9 @@ enum { implam_most_together = 64 };
 /* Numbers of work space that a factor asks for: the rows of its longest supernode. */
 size_t implam_supernodal_work(const cholmod_factor *factor);
 
+/* The supernode of a column. */
+int implam_supernode_of(const cholmod_factor *factor, int column);
+
 /* The two halves of a solve in place, with L and with L', by the columns before `end`: numbers in the order of the factor,
    which is supernodal, L L' and whole. Forward leaves on the others what eliminating these columns leaves of them, and
    backward begins with their solution. */
