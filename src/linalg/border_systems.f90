@@ -16,7 +16,8 @@ module border_systems
     integer, private :: rows = 0
     !> Place on the border of each of this rank's rows there
     integer, allocatable, private :: place(:)
-    !> Factor of the sum over the ranks
+    !> The sum over the ranks, kept for its memory, and its factor
+    real(wp), allocatable, private :: matrix(:, :)
     type(positive_factor_t), private :: factor
   contains
     !> Sets the border's size.
@@ -42,6 +43,7 @@ contains
     self%communicator = communicator
     self%rows = rows
     self%place = place
+    if (allocated(self%matrix)) deallocate (self%matrix)
   end subroutine define
 
   !> Adds the ranks' Schur complements up and factors the sum; called by all ranks together.
@@ -51,16 +53,16 @@ contains
     real(wp), intent(in) :: complement(:, :)
     !> Whether the sum is positive definite
     logical, intent(out) :: positive
-    real(wp), allocatable :: matrix(:, :)
     integer :: k
 
-    allocate (matrix(self%rows, self%rows), source=0.0_wp)
+    if (.not. allocated(self%matrix)) allocate (self%matrix(self%rows, self%rows))
+    self%matrix = 0
     ! Places ascend, so that the lower triangle stays the lower one.
     do k = 1, size(complement, 1)
-      matrix(self%place(k:), self%place(k)) = complement(k:, k)
+      self%matrix(self%place(k:), self%place(k)) = complement(k:, k)
     end do
-    call self%communicator%sum(matrix)
-    call self%factor%factorize(matrix)
+    call self%communicator%sum(self%matrix)
+    call self%factor%factorize(self%matrix)
     positive = self%communicator%all(self%factor%positive)
   end subroutine factorize
 

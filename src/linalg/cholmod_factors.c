@@ -18,6 +18,9 @@ typedef struct {
   /* The matrix in the order of the factor, and where each of its values goes there. */
   cholmod_sparse *ordered;
   int *places;
+  /* Lists and work space of an elimination, kept as new memory takes time. */
+  int *lists;
+  double *work;
   /* One right-hand side in the order of the factor, and work space behind it. */
   double *one;
   /* The same for several, those of each row side by side, and where they have been; what was needed so far. */
@@ -126,10 +129,14 @@ int implam_cholmod_factorize(implam_cholmod *self)
 int implam_cholmod_eliminate(implam_cholmod *self, double *complement)
 {
   if (!order_values(self)) return implam_failed;
+  const int inside = (int)self->matrix.nrow - self->border;
   /* The first time: room for the numbers. */
   if (self->factor->xtype == CHOLMOD_PATTERN &&
       !cholmod_change_factor(CHOLMOD_REAL, 1, 1, 1, 1, self->factor, &self->common)) return implam_failed;
-  return implam_eliminate(self->factor, self->ordered, (int)self->matrix.nrow - self->border, complement);
+  if (!self->lists) self->lists = malloc((implam_elimination_lists(self->factor) + 1)*sizeof(int));
+  if (!self->work) self->work = malloc((implam_elimination_work(self->factor, inside) + 1)*sizeof(double));
+  if (!self->lists || !self->work) return implam_failed;
+  return implam_eliminate(self->factor, self->ordered, inside, self->lists, self->work, complement);
 }
 
 /* Solves for one right-hand side. */
@@ -249,6 +256,8 @@ void implam_cholmod_free(implam_cholmod *self)
   cholmod_free_factor(&self->factor, &self->common);
   cholmod_free_sparse(&self->ordered, &self->common);
   free(self->places);
+  free(self->lists);
+  free(self->work);
   free(self->one);
   free(self->several);
   free(self->reached);

@@ -23,7 +23,8 @@ module cholmod_parts
     type(symmetric_rows_t) :: matrix
     !> Which rows these are, on several ranks
     type(border_rows_t) :: rows
-    !> The border's equations, on several ranks
+    !> Schur complement of this rank's part, kept for its memory, and the border's equations, on several ranks
+    real(wp), allocatable, private :: complement(:, :)
     type(border_system_t), private :: border
     !> CHOLMOD's side
     type(c_ptr), private :: package = c_null_ptr
@@ -76,6 +77,7 @@ contains
       call self%rows%pattern(row_start, columns, start, its_columns)
       call self%matrix%define(start, its_columns)
       call self%border%define(communicator, self%rows%border, self%rows%place)
+      if (allocated(self%complement)) deallocate (self%complement)
     end if
     self%package = cholmod_new(size(self%matrix%start, kind=c_int) - 1_c_int, &
                                int(self%rows%rows - self%rows%inside, c_int), self%matrix%start, &
@@ -120,14 +122,14 @@ contains
     class(cholmod_part_t), intent(inout) :: self
     !> The worst outcome of all ranks
     integer, intent(out) :: outcome
-    real(wp), allocatable :: complement(:, :)
     logical :: positive
 
-    allocate (complement(self%rows%rows - self%rows%inside, self%rows%rows - self%rows%inside))
-    outcome = cholmod_eliminate(self%package, complement)
+    if (.not. allocated(self%complement)) &
+      allocate (self%complement(self%rows%rows - self%rows%inside, self%rows%rows - self%rows%inside))
+    outcome = cholmod_eliminate(self%package, self%complement)
     call self%communicator%maximum(outcome)
     if (outcome /= cholmod_done) return
-    call self%border%factorize(complement, positive)
+    call self%border%factorize(self%complement, positive)
     if (.not. positive) outcome = cholmod_not_positive
   end subroutine factorize_all
 

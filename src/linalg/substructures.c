@@ -2,7 +2,6 @@
    factor before those of the border, and the border's Schur complement. CHOLMOD factors the border too, which takes
    b^3/3 operations, and as many to multiply that out again. Left-looking: a supernode is brought up to date by those
    before it that reach it, which hang in its list (Ng and Peyton, SIAM J. Sci. Comput. 14, 1993). */
-#include <stdlib.h>
 #include "substructures.h"
 #include "supernodal_solves.h"
 
@@ -152,25 +151,26 @@ static void find_complement(const elimination *e, const cholmod_sparse *matrix, 
   }
 }
 
-int implam_eliminate(cholmod_factor *factor, const cholmod_sparse *matrix, int inside, double *complement)
+size_t implam_elimination_lists(const cholmod_factor *factor)
 {
-  const size_t n = factor->n, border = n - (size_t)inside, most = factor->nsuper;
-  const size_t largest = factor->maxcsize > border*border ? factor->maxcsize : border*border;
-  int *lists = malloc((n + 3*most + 1)*sizeof(int));
-  double *update = malloc((largest + 1)*sizeof(double));
-  int outcome = lists && update ? implam_factored : implam_failed;
-  if (outcome == implam_factored) {
-    elimination e = {factor, inside, lists, lists + n, lists + n + most, lists + n + 2*most, update};
-    int supernodes = 0;
-    for (size_t k = 0; k < most; k++) e.reaching[k] = -1;
-    for (; supernodes < (int)most && ((const int *)factor->super)[supernodes] < inside; supernodes++)
-      if (!factor_supernode(&e, matrix, supernodes)) {
-        outcome = implam_not_positive;
-        break;
-      }
-    if (outcome == implam_factored) find_complement(&e, matrix, supernodes, complement);
-  }
-  free(lists);
-  free(update);
-  return outcome;
+  return factor->n + 3*factor->nsuper;
+}
+
+size_t implam_elimination_work(const cholmod_factor *factor, int inside)
+{
+  const size_t border = factor->n - (size_t)inside;
+  return factor->maxcsize > border*border ? factor->maxcsize : border*border;
+}
+
+int implam_eliminate(cholmod_factor *factor, const cholmod_sparse *matrix, int inside, int *lists, double *work,
+                     double *complement)
+{
+  const size_t n = factor->n, most = factor->nsuper;
+  elimination e = {factor, inside, lists, lists + n, lists + n + most, lists + n + 2*most, work};
+  int supernodes = 0;
+  for (size_t k = 0; k < most; k++) e.reaching[k] = -1;
+  for (; supernodes < (int)most && ((const int *)factor->super)[supernodes] < inside; supernodes++)
+    if (!factor_supernode(&e, matrix, supernodes)) return implam_not_positive;
+  find_complement(&e, matrix, supernodes, complement);
+  return implam_factored;
 }
