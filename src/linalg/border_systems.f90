@@ -16,8 +16,9 @@ module border_systems
     integer, private :: rows = 0
     !> Place on the border of each of this rank's rows there
     integer, allocatable, private :: place(:)
-    !> The sum over the ranks, kept for its memory, and its factor
+    !> The sum over the ranks, kept for its memory
     real(wp), allocatable, private :: matrix(:, :)
+    !> Its factor
     type(positive_factor_t), private :: factor
   contains
     !> Sets the border's size.

@@ -23,8 +23,9 @@ module cholmod_parts
     type(symmetric_rows_t) :: matrix
     !> Which rows these are, on several ranks
     type(border_rows_t) :: rows
-    !> Schur complement of this rank's part, kept for its memory, and the border's equations, on several ranks
+    !> Schur complement of this rank's part, on several ranks; kept for its memory
     real(wp), allocatable, private :: complement(:, :)
+    !> The border's equations, on several ranks
     type(border_system_t), private :: border
     !> CHOLMOD's side
     type(c_ptr), private :: package = c_null_ptr
