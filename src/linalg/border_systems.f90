@@ -2,8 +2,8 @@
 !> ranks' Schur complements, factored densely on every rank (substructuring, Przemieniecki, AIAA J. 1, 1963).
 module border_systems
   use communicators, only: communicator_t
-  use dense_systems, only: positive_factor_t
   use kinds, only: wp
+  use shared_triangles, only: shared_triangle_t
   implicit none
   private
   public :: border_system_t
@@ -12,14 +12,10 @@ module border_systems
   type :: border_system_t
     !> All ranks
     type(communicator_t), private :: communicator
-    !> Rows of the border
-    integer, private :: rows = 0
     !> Place on the border of each of this rank's rows there
     integer, allocatable, private :: place(:)
-    !> The sum over the ranks, kept for its memory
-    real(wp), allocatable, private :: matrix(:, :)
-    !> Its factor
-    type(positive_factor_t), private :: factor
+    !> The sum over the ranks, and its factor
+    type(shared_triangle_t), private :: factor
   contains
     !> Sets the border's size.
     procedure :: define
@@ -42,9 +38,8 @@ contains
     integer, intent(in) :: place(:)
 
     self%communicator = communicator
-    self%rows = rows
     self%place = place
-    if (allocated(self%matrix)) deallocate (self%matrix)
+    call self%factor%define(communicator, rows)
   end subroutine define
 
   !> Adds the ranks' Schur complements up and factors the sum; called by all ranks together.
@@ -56,15 +51,14 @@ contains
     logical, intent(out) :: positive
     integer :: k
 
-    if (.not. allocated(self%matrix)) allocate (self%matrix(self%rows, self%rows))
-    self%matrix = 0
+    self%factor%numbers = 0
     ! Places ascend, so that the lower triangle stays the lower one.
     do k = 1, size(complement, 1)
-      self%matrix(self%place(k:), self%place(k)) = complement(k:, k)
+      self%factor%numbers(self%place(k:), self%place(k)) = complement(k:, k)
     end do
-    call self%communicator%sum(self%matrix)
-    call self%factor%factorize(self%matrix)
-    positive = self%communicator%all(self%factor%positive)
+    call self%communicator%sum(self%factor%numbers)
+    call self%factor%factorize()
+    positive = self%factor%positive
   end subroutine factorize
 
   !> Solves the border's equations; called by all ranks together.

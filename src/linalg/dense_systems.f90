@@ -35,7 +35,6 @@ module dense_systems
     procedure :: factorize => factorize_positive
     !> Solves with the factors.
     procedure :: solve => solve_positive
-    procedure :: solve_many
     !> The inverse of the matrix.
     procedure :: inverse
   end type positive_factor_t
@@ -83,21 +82,6 @@ module dense_systems
       !> Greater than 0: not positive definite
       integer, intent(out) :: info
     end subroutine dpotrf
-
-    !> LAPACK: solves with the factor of dpotrf.
-    subroutine dpotrs(uplo, n, columns, a, lda, b, ldb, info)
-      import :: wp
-      !> 'L': the lower factor
-      character, intent(in) :: uplo
-      !> Order, right-hand sides, leading dimensions
-      integer, intent(in) :: n, columns, lda, ldb
-      !> Factor
-      real(wp), intent(in) :: a(lda, *)
-      !> Right-hand sides, overwritten by the solution
-      real(wp), intent(inout) :: b(ldb, *)
-      !> Not 0: an argument is wrong
-      integer, intent(out) :: info
-    end subroutine dpotrs
 
     !> Solves with the factor of dpotrf for one right-hand side, which LAPACK takes longer for.
     subroutine dense_solve(rows, lower, x) bind(c, name='implam_dense_solve')
@@ -194,17 +178,6 @@ contains
 
     if (size(x) > 0) call dense_solve(int(size(x), c_int), self%factors, x)
   end subroutine solve_positive
-
-  !> Solves with the factor of a positive definite matrix for several right-hand sides.
-  subroutine solve_many(self, x)
-    !> The factor
-    class(positive_factor_t), intent(in) :: self
-    !> Right-hand sides on entry, solutions on return, (n, columns)
-    real(wp), contiguous, intent(inout) :: x(:, :)
-    integer :: info
-
-    if (size(x) > 0) call dpotrs('L', size(x, 1), size(x, 2), self%factors, size(x, 1), x, size(x, 1), info)
-  end subroutine solve_many
 
   !> The inverse of a positive definite matrix.
   function inverse(self)
