@@ -149,10 +149,10 @@ static void solve_one(implam_cholmod *self, const double *right_hand_side, doubl
   for (int k = 0; k < rows; k++) solution[order[k]] = self->one[k];
 }
 
-/* Room for several right-hand sides and what solving for them needs; 0 without memory. */
+/* Room for several right-hand sides and what solving for a block of them needs; 0 without memory. */
 static int make_room(implam_cholmod *self, int count)
 {
-  const size_t needed = (size_t)count*(self->matrix.nrow + implam_supernodal_work(self->factor));
+  const size_t needed = (size_t)count*self->matrix.nrow + implam_most_together*implam_supernodal_work(self->factor);
   if (!self->reached) self->reached = malloc((self->factor->nsuper + 1)*sizeof(uint64_t));
   if (needed > self->room) {
     free(self->several);
@@ -162,18 +162,24 @@ static int make_room(implam_cholmod *self, int count)
   return self->reached && self->several;
 }
 
-/* Puts columns that stand one behind the other side by side, row `order[k]` of them in place k, or k without order. */
+/* Puts columns that stand one behind the other side by side, row `order[k]` of them in place k. */
 static void side_by_side(size_t rows, size_t count, const int *order, const double *columns, double *several)
 {
   for (size_t k = 0; k < rows; k++)
-    for (size_t c = 0; c < count; c++) several[k*count + c] = columns[c*rows + (order ? (size_t)order[k] : k)];
+    for (size_t c = 0; c < count; c++) several[k*count + c] = columns[c*rows + (size_t)order[k]];
 }
 
 /* The opposite. */
 static void one_behind_the_other(size_t rows, size_t count, const int *order, const double *several, double *columns)
 {
   for (size_t k = 0; k < rows; k++)
-    for (size_t c = 0; c < count; c++) columns[c*rows + (order ? (size_t)order[k] : k)] = several[k*count + c];
+    for (size_t c = 0; c < count; c++) columns[c*rows + (size_t)order[k]] = several[k*count + c];
+}
+
+/* Right-hand sides of a block that begins with one of them. */
+static int block_at(int first, int count)
+{
+  return count - first < implam_most_together ? count - first : implam_most_together;
 }
 
 /* Solves for right-hand sides that stand one behind the other; 0 for success. */
@@ -186,7 +192,7 @@ int implam_cholmod_solve(implam_cholmod *self, int count, const double *right_ha
     return implam_factored;
   }
   for (int first = 0; first < count; first += implam_most_together) {
-    const int together = count - first < implam_most_together ? count - first : implam_most_together;
+    const int together = block_at(first, count);
     const size_t many = (size_t)together, before = (size_t)first*rows;
     if (!make_room(self, together)) return implam_failed;
     double *work = self->several + many*rows;
@@ -198,48 +204,54 @@ int implam_cholmod_solve(implam_cholmod *self, int count, const double *right_ha
   return implam_factored;
 }
 
-/* Half of a solve for columns one behind the other, in the order of the factor, but not for the border; 0 for success. */
-static int half_solve(implam_cholmod *self, int count, double *columns, int backward)
+/* Eliminates what is inside the border from right-hand sides, one behind the other, and keeps that for
+   `implam_cholmod_backward`. Gives what is left of them on the border; 0 for success. */
+int implam_cholmod_forward(implam_cholmod *self, int count, const double *right_hand_sides, double *left)
 {
-  const size_t rows = self->matrix.nrow;
-  const int inside = (int)rows - self->border;
+  const size_t rows = self->matrix.nrow, border = (size_t)self->border, inside = rows - border;
+  const int *order = self->factor->Perm;
   if (count == 1) {
-    if (backward) implam_supernodal_backward(self->factor, inside, columns, self->one + rows);
-    else implam_supernodal_forward(self->factor, inside, columns, self->one + rows);
+    for (size_t k = 0; k < rows; k++) self->one[k] = right_hand_sides[order[k]];
+    implam_supernodal_forward(self->factor, (int)inside, self->one, self->one + rows);
+    memcpy(left, self->one + inside, border*sizeof(double));
     return implam_factored;
   }
+  if (!make_room(self, count)) return implam_failed;
+  double *work = self->several + (size_t)count*rows;
   for (int first = 0; first < count; first += implam_most_together) {
-    const int together = count - first < implam_most_together ? count - first : implam_most_together;
-    const size_t many = (size_t)together;
-    if (!make_room(self, together)) return implam_failed;
-    double *work = self->several + many*rows, *its = columns + (size_t)first*rows;
-    side_by_side(rows, many, 0, its, self->several);
-    if (backward) implam_block_backward(self->factor, inside, together, self->several, work);
-    else implam_block_forward(self->factor, inside, together, self->several, work, self->reached);
-    one_behind_the_other(rows, many, 0, self->several, its);
+    const int together = block_at(first, count);
+    double *its = self->several + (size_t)first*rows, *left_of_it = left + (size_t)first*border;
+    side_by_side(rows, (size_t)together, order, right_hand_sides + (size_t)first*rows, its);
+    implam_block_forward(self->factor, (int)inside, together, its, work, self->reached);
+    for (size_t k = 0; k < border; k++)
+      for (size_t c = 0; c < (size_t)together; c++)
+        left_of_it[c*border + k] = its[(inside + k)*(size_t)together + c];
   }
   return implam_factored;
 }
 
-/* Eliminates what is inside the border from right-hand sides; they are left in the order of the factor, the border's
-   last. 0 for success. */
-int implam_cholmod_forward(implam_cholmod *self, int count, const double *right_hand_sides, double *eliminated)
+/* Solutions from what `implam_cholmod_forward` kept and the border's solutions, as many. */
+void implam_cholmod_backward(implam_cholmod *self, int count, const double *on_border, double *solutions)
 {
-  const size_t rows = self->matrix.nrow;
+  const size_t rows = self->matrix.nrow, border = (size_t)self->border, inside = rows - border;
   const int *order = self->factor->Perm;
-  for (size_t c = 0; c < (size_t)count; c++)
-    for (size_t k = 0; k < rows; k++) eliminated[c*rows + k] = right_hand_sides[c*rows + (size_t)order[k]];
-  return half_solve(self, count, eliminated, 0);
-}
-
-/* Solutions from what `implam_cholmod_forward` left and the border's solution in the border's places; 0 for success. */
-int implam_cholmod_backward(implam_cholmod *self, int count, double *eliminated, double *solutions)
-{
-  const size_t rows = self->matrix.nrow;
-  const int *order = self->factor->Perm, outcome = half_solve(self, count, eliminated, 1);
-  for (size_t c = 0; c < (size_t)count; c++)
-    for (size_t k = 0; k < rows; k++) solutions[c*rows + (size_t)order[k]] = eliminated[c*rows + k];
-  return outcome;
+  if (count == 1) {
+    memcpy(self->one + inside, on_border, border*sizeof(double));
+    implam_supernodal_backward(self->factor, (int)inside, self->one, self->one + rows);
+    for (size_t k = 0; k < rows; k++) solutions[order[k]] = self->one[k];
+    return;
+  }
+  double *work = self->several + (size_t)count*rows;
+  for (int first = 0; first < count; first += implam_most_together) {
+    const int together = block_at(first, count);
+    const double *its_border = on_border + (size_t)first*border;
+    double *its = self->several + (size_t)first*rows;
+    for (size_t k = 0; k < border; k++)
+      for (size_t c = 0; c < (size_t)together; c++)
+        its[(inside + k)*(size_t)together + c] = its_border[c*border + k];
+    implam_block_backward(self->factor, (int)inside, together, its, work);
+    one_behind_the_other(rows, (size_t)together, order, its, solutions + (size_t)first*rows);
+  }
 }
 
 /* Entries stored in the factor, and the most memory that was in use, in bytes. */

@@ -44,8 +44,8 @@ module cholmod_library
       real(c_double), intent(inout) :: solutions(*)
     end function cholmod_solve
 
-    !> Eliminates all but the border; 0 for success.
-    integer(c_int) function cholmod_forward(package, number, right_hand_sides, eliminated) &
+    !> Eliminates all but the border from right-hand sides, and keeps that; 0 for success.
+    integer(c_int) function cholmod_forward(package, number, right_hand_sides, left) &
       bind(c, name='implam_cholmod_forward')
       import :: c_int, c_double, c_ptr
       !> CHOLMOD's side
@@ -54,23 +54,22 @@ module cholmod_library
       integer(c_int), value :: number
       !> The right-hand sides, one behind the other
       real(c_double), intent(in) :: right_hand_sides(*)
-      !> What is left of them, in CHOLMOD's order, the border last
-      real(c_double), intent(inout) :: eliminated(*)
+      !> What is left of them on the border
+      real(c_double), intent(inout) :: left(*)
     end function cholmod_forward
 
-    !> Goes back from there; 0 for success.
-    integer(c_int) function cholmod_backward(package, number, eliminated, solutions) &
-      bind(c, name='implam_cholmod_backward')
+    !> Goes back from there.
+    subroutine cholmod_backward(package, number, on_border, solutions) bind(c, name='implam_cholmod_backward')
       import :: c_int, c_double, c_ptr
       !> CHOLMOD's side
       type(c_ptr), value :: package
-      !> Number of right-hand sides
+      !> Number of right-hand sides, those that went forward last
       integer(c_int), value :: number
-      !> What was left, on the border its solution; overwritten
-      real(c_double), intent(inout) :: eliminated(*)
+      !> Their solutions on the border
+      real(c_double), intent(in) :: on_border(*)
       !> The solutions
       real(c_double), intent(inout) :: solutions(*)
-    end function cholmod_backward
+    end subroutine cholmod_backward
 
     !> Eliminates all but the border from the matrix as its values are now.
     integer(c_int) function cholmod_eliminate(package, complement) bind(c, name='implam_cholmod_eliminate')

@@ -164,17 +164,18 @@ contains
     real(wp), intent(inout) :: solutions(self%owned, number)
     !> 0 for success on this rank
     integer, intent(out) :: outcome
-    real(wp), allocatable :: values(:, :), forces(:, :), eliminated(:, :)
+    real(wp), allocatable :: values(:, :), forces(:, :), left(:, :)
 
     associate (rows => self%rows)
       allocate (values(rows%rows, number), forces(rows%border, number), source=0.0_wp)
-      allocate (eliminated(rows%rows, number))
+      allocate (left(rows%rows - rows%inside, number), source=0.0_wp)
       values(rows%owned, :) = right_hand_sides
       forces(rows%place, :) = values(rows%inside + 1:, :)
       values(rows%inside + 1:, :) = 0
-      outcome = cholmod_forward(self%package, int(number, c_int), values, eliminated)
-      call self%border%solve(forces, eliminated(rows%inside + 1:, :))
-      outcome = max(outcome, cholmod_backward(self%package, int(number, c_int), eliminated, values))
+      outcome = cholmod_forward(self%package, int(number, c_int), values, left)
+      ! A rank without memory goes on with the others, which wait for it.
+      call self%border%solve(forces, left)
+      if (outcome == cholmod_done) call cholmod_backward(self%package, int(number, c_int), left, values)
       solutions = values(rows%owned, :)
     end associate
   end subroutine solve_all
