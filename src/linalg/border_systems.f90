@@ -1,5 +1,5 @@
 !> The equations of a border between ranks, once each rank has eliminated what is inside its own part: the sum of the
-!> ranks' Schur complements, factored densely on every rank (substructuring, Przemieniecki, AIAA J. 1, 1963).
+!> ranks' Schur complements, which they factor densely together (substructuring, Przemieniecki, AIAA J. 1, 1963).
 module border_systems
   use communicators, only: communicator_t
   use kinds, only: wp
@@ -14,7 +14,7 @@ module border_systems
     type(communicator_t), private :: communicator
     !> Place on the border of each of this rank's rows there
     integer, allocatable, private :: place(:)
-    !> The sum over the ranks, and its factor
+    !> Their factor
     type(shared_triangle_t), private :: factor
   contains
     !> Sets the border's size.
@@ -56,7 +56,6 @@ contains
     do k = 1, size(complement, 1)
       self%factor%numbers(self%place(k:), self%place(k)) = complement(k:, k)
     end do
-    call self%communicator%sum(self%factor%numbers)
     call self%factor%factorize()
     positive = self%factor%positive
   end subroutine factorize

@@ -14,7 +14,7 @@ module communicators
   !> A group of ranks that tell each other what they have. By default one rank, without MPI.
   type, extends(rank_group_t) :: communicator_t
   contains
-    !> Copies a value of rank 0 to every rank.
+    !> Copies a value of rank 0, or a list of any rank, to every rank.
     generic :: broadcast => broadcast_real, broadcast_reals, broadcast_integer, broadcast_integers, &
       broadcast_logical, broadcast_characters
     !> Copies a text of rank 0, whatever its length, to every rank.
@@ -100,13 +100,18 @@ contains
     if (self%size > 1) call MPI_Bcast(value, 1, MPI_DOUBLE_PRECISION, 0, self%group)
   end subroutine broadcast_real
 
-  !> Copies a list of reals of rank 0 to every rank.
-  subroutine broadcast_reals(self, values)
+  !> Copies a list of reals of one rank to every rank.
+  subroutine broadcast_reals(self, values, from)
     class(communicator_t), intent(in) :: self
-    !> The list, equally long on every rank; read on rank 0 only
+    !> The list, equally long on every rank; read on that rank only
     real(wp), contiguous, intent(inout) :: values(:)
+    !> The rank; rank 0 if absent
+    integer, intent(in), optional :: from
+    integer :: rank
 
-    if (self%size > 1) call MPI_Bcast(values, size(values), MPI_DOUBLE_PRECISION, 0, self%group)
+    rank = 0
+    if (present(from)) rank = from
+    if (self%size > 1) call MPI_Bcast(values, size(values), MPI_DOUBLE_PRECISION, rank, self%group)
   end subroutine broadcast_reals
 
   !> Copies an integer of rank 0 to every rank.
