@@ -47,7 +47,7 @@ def panel_as_it_is(program, end, repeat):
         # Both are counted in full, also the solves inside other parts.
         likened = two['steps'][1] + sum((one[part][0]/two[part][0] - 1)*two[part][1]
                                         for part in ('factorization', 'solve'))
-        totals = [sum(pair) for pair in zip(totals, (one['steps'][1], two['steps'][1], likened))]
+        totals = [sum(pair) for pair in zip(totals, (one['steps'][1], two['steps'][1], likened), strict=True)]
         print(*(f'{run["steps"][1]:.1f} s with {run["factorization"][0]} factorizations and {run["solve"][0]} solves'
                 for run in (one, two)), sep=', on two ranks ', flush=True)
     print(f'one over two: {totals[0]/totals[1]:.2f}; for as many factorizations and solves {totals[0]/totals[2]:.2f}')
