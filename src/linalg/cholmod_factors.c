@@ -139,16 +139,6 @@ int implam_cholmod_eliminate(implam_cholmod *self, double *complement)
   return implam_eliminate(self->factor, self->ordered, inside, self->lists, self->work, complement);
 }
 
-/* Solves for one right-hand side. */
-static void solve_one(implam_cholmod *self, const double *right_hand_side, double *solution)
-{
-  const int rows = (int)self->matrix.nrow, *order = self->factor->Perm;
-  for (int k = 0; k < rows; k++) self->one[k] = right_hand_side[order[k]];
-  implam_supernodal_forward(self->factor, rows, self->one, self->one + rows);
-  implam_supernodal_backward(self->factor, rows, self->one, self->one + rows);
-  for (int k = 0; k < rows; k++) solution[order[k]] = self->one[k];
-}
-
 /* Room for several right-hand sides and what solving for a block of them needs; 0 without memory. */
 static int make_room(implam_cholmod *self, int count)
 {
@@ -180,28 +170,6 @@ static void one_behind_the_other(size_t rows, size_t count, const int *order, co
 static int block_at(int first, int count)
 {
   return count - first < implam_most_together ? count - first : implam_most_together;
-}
-
-/* Solves for right-hand sides that stand one behind the other; 0 for success. */
-int implam_cholmod_solve(implam_cholmod *self, int count, const double *right_hand_sides, double *solutions)
-{
-  const size_t rows = self->matrix.nrow;
-  const int *order = self->factor->Perm;
-  if (count == 1) {
-    solve_one(self, right_hand_sides, solutions);
-    return implam_factored;
-  }
-  for (int first = 0; first < count; first += implam_most_together) {
-    const int together = block_at(first, count);
-    const size_t many = (size_t)together, before = (size_t)first*rows;
-    if (!make_room(self, together)) return implam_failed;
-    double *work = self->several + many*rows;
-    side_by_side(rows, many, order, right_hand_sides + before, self->several);
-    implam_block_forward(self->factor, (int)rows, together, self->several, work, self->reached);
-    implam_block_backward(self->factor, (int)rows, together, self->several, work);
-    one_behind_the_other(rows, many, order, self->several, solutions + before);
-  }
-  return implam_factored;
 }
 
 /* Eliminates what is inside the border from right-hand sides, one behind the other, and keeps that for
@@ -252,6 +220,15 @@ void implam_cholmod_backward(implam_cholmod *self, int count, const double *on_b
     implam_block_backward(self->factor, (int)inside, together, its, work);
     one_behind_the_other(rows, (size_t)together, order, its, solutions + (size_t)first*rows);
   }
+}
+
+/* Solves for right-hand sides of a matrix without border, one behind the other; 0 for success. */
+int implam_cholmod_solve(implam_cholmod *self, int count, const double *right_hand_sides, double *solutions)
+{
+  double none;
+  const int outcome = implam_cholmod_forward(self, count, right_hand_sides, &none);
+  if (outcome == implam_factored) implam_cholmod_backward(self, count, &none, solutions);
+  return outcome;
 }
 
 /* Entries stored in the factor, and the most memory that was in use, in bytes. */

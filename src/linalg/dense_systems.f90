@@ -1,6 +1,7 @@
 !> Small dense systems.
 module dense_systems
   use, intrinsic :: iso_c_binding, only: c_double, c_int
+  use blas_interfaces, only: dgetrf, dgetrs, dpotrf, dpotri, dsyevd
   use kinds, only: wp
   implicit none
   private
@@ -40,49 +41,6 @@ module dense_systems
   end type positive_factor_t
 
   interface
-    !> LAPACK: factors a general matrix by elimination with pivoting.
-    subroutine dgetrf(m, n, a, lda, pivots, info)
-      import :: wp
-      !> Rows, columns, leading dimension
-      integer, intent(in) :: m, n, lda
-      !> Matrix, overwritten by its factors
-      real(wp), intent(inout) :: a(lda, *)
-      !> Row exchanges
-      integer, intent(out) :: pivots(*)
-      !> Greater than 0: singular
-      integer, intent(out) :: info
-    end subroutine dgetrf
-
-    !> LAPACK: solves with the factors of dgetrf.
-    subroutine dgetrs(trans, n, columns, a, lda, pivots, b, ldb, info)
-      import :: wp
-      !> 'N': the matrix itself
-      character, intent(in) :: trans
-      !> Order, right-hand sides, leading dimensions
-      integer, intent(in) :: n, columns, lda, ldb
-      !> Factors
-      real(wp), intent(in) :: a(lda, *)
-      !> Row exchanges
-      integer, intent(in) :: pivots(*)
-      !> Right-hand sides, overwritten by the solution
-      real(wp), intent(inout) :: b(ldb, *)
-      !> Not 0: an argument is wrong
-      integer, intent(out) :: info
-    end subroutine dgetrs
-
-    !> LAPACK: factors a symmetric matrix that is positive definite.
-    subroutine dpotrf(uplo, n, a, lda, info)
-      import :: wp
-      !> 'L': its lower triangle is given
-      character, intent(in) :: uplo
-      !> Order, leading dimension
-      integer, intent(in) :: n, lda
-      !> Matrix, overwritten by its factor
-      real(wp), intent(inout) :: a(lda, *)
-      !> Greater than 0: not positive definite
-      integer, intent(out) :: info
-    end subroutine dpotrf
-
     !> Solves with the factor of dpotrf for one right-hand side, which LAPACK takes longer for.
     subroutine dense_solve(rows, lower, x) bind(c, name='implam_dense_solve')
       import :: c_double, c_int
@@ -93,36 +51,6 @@ module dense_systems
       !> Right-hand side, overwritten by the solution
       real(c_double), intent(inout) :: x(*)
     end subroutine dense_solve
-
-    !> LAPACK: the inverse from the factor of dpotrf.
-    subroutine dpotri(uplo, n, a, lda, info)
-      import :: wp
-      !> 'L': the lower factor
-      character, intent(in) :: uplo
-      !> Order, leading dimension
-      integer, intent(in) :: n, lda
-      !> Factor, its triangle overwritten by that of the inverse
-      real(wp), intent(inout) :: a(lda, *)
-      !> Not 0: there is none
-      integer, intent(out) :: info
-    end subroutine dpotri
-
-    !> LAPACK: eigenvalues and eigenvectors of a symmetric matrix.
-    subroutine dsyevd(jobz, uplo, n, a, lda, w, work, lwork, iwork, liwork, info)
-      import :: wp
-      !> 'V': eigenvectors too; 'L': the lower triangle is given
-      character, intent(in) :: jobz, uplo
-      !> Order, leading dimension, sizes of the room to work in
-      integer, intent(in) :: n, lda, lwork, liwork
-      !> Matrix, overwritten by its eigenvectors
-      real(wp), intent(inout) :: a(lda, *)
-      !> Eigenvalues, room to work in
-      real(wp), intent(out) :: w(*), work(*)
-      !> Room to work in
-      integer, intent(out) :: iwork(*)
-      !> Not 0: they were not found
-      integer, intent(out) :: info
-    end subroutine dsyevd
   end interface
 
 contains

@@ -1,41 +1,10 @@
 !> Many fields of one shape against one: products and combinations, by BLAS, which reads several of them at once.
 module field_products
+  use blas_interfaces, only: dgemm, dgemv
   use kinds, only: wp
   implicit none
   private
   public :: products_with, products_of, add_combination
-
-  interface
-    !> BLAS: y = alpha A x + beta y, or with the transpose of A.
-    subroutine dgemv(trans, m, n, alpha, a, lda, x, incx, beta, y, incy)
-      import :: wp
-      !> 'N': the matrix itself, 'T': its transpose
-      character, intent(in) :: trans
-      !> Rows, columns, leading dimension, strides
-      integer, intent(in) :: m, n, lda, incx, incy
-      !> Factors
-      real(wp), intent(in) :: alpha, beta
-      !> Matrix and vector
-      real(wp), intent(in) :: a(lda, *), x(*)
-      !> Result
-      real(wp), intent(inout) :: y(*)
-    end subroutine dgemv
-
-    !> BLAS: C = alpha A B + beta C, or with transposes.
-    subroutine dgemm(transa, transb, m, n, k, alpha, a, lda, b, ldb, beta, c, ldc)
-      import :: wp
-      !> 'N': the matrix itself, 'T': its transpose
-      character, intent(in) :: transa, transb
-      !> Rows and columns of C, length of the sums, leading dimensions
-      integer, intent(in) :: m, n, k, lda, ldb, ldc
-      !> Factors
-      real(wp), intent(in) :: alpha, beta
-      !> Matrices
-      real(wp), intent(in) :: a(lda, *), b(ldb, *)
-      !> Result
-      real(wp), intent(inout) :: c(ldc, *)
-    end subroutine dgemm
-  end interface
 
 contains
 

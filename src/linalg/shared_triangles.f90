@@ -1,5 +1,6 @@
 !> A dense lower factor that every rank has. The ranks share the work of making it and of solving with it.
 module shared_triangles
+  use blas_interfaces, only: dgemm, dgemv, dpotrf, dpotrs, dtrsm, dtrsv
   use communicators, only: communicator_t
   use kinds, only: wp
   implicit none
@@ -11,7 +12,8 @@ module shared_triangles
   !> asks for .76 ms of one rank; of two it takes .52 ms with 4 parts and .49 with 8.
   integer, parameter :: parts = 4
 
-  !> Columns of a panel. Panels are dealt out to the ranks in turn.
+  !> Columns of a panel. Panels are dealt out to the ranks in turn. The owners' work on them, for which the others wait,
+  !> is 1.5 panel/n of all operations.
   integer, parameter :: panel = 64
 
   !> The factor.
@@ -32,96 +34,8 @@ module shared_triangles
     procedure :: solve
     !> Solves for several right-hand sides.
     procedure :: solve_many
-    procedure, private :: exchange, owner, find_panel, follow_panel, share_below
+    procedure, private :: exchange, owner, find_panel, follow_panel, find_share
   end type shared_triangle_t
-
-  interface
-    !> LAPACK: factors a symmetric matrix that is positive definite.
-    subroutine dpotrf(uplo, n, a, lda, info)
-      import :: wp
-      !> 'L': its lower triangle is given
-      character, intent(in) :: uplo
-      !> Order, leading dimension
-      integer, intent(in) :: n, lda
-      !> Matrix, overwritten by its factor
-      real(wp), intent(inout) :: a(lda, *)
-      !> Greater than 0: not positive definite
-      integer, intent(out) :: info
-    end subroutine dpotrf
-
-    !> BLAS: solves X L' = B and the like.
-    subroutine dtrsm(side, uplo, trans, diag, m, n, alpha, a, lda, b, ldb)
-      import :: wp
-      !> 'R': L stands on the right; 'L': the lower triangle; 'T': its transpose; 'N': its diagonal is given
-      character, intent(in) :: side, uplo, trans, diag
-      !> Rows and columns of B, leading dimensions
-      integer, intent(in) :: m, n, lda, ldb
-      !> Factor of B
-      real(wp), intent(in) :: alpha
-      !> The triangle
-      real(wp), intent(in) :: a(lda, *)
-      !> B, overwritten by X
-      real(wp), intent(inout) :: b(ldb, *)
-    end subroutine dtrsm
-
-    !> BLAS: C = alpha A B' + beta C and the like.
-    subroutine dgemm(transa, transb, m, n, k, alpha, a, lda, b, ldb, beta, c, ldc)
-      import :: wp
-      !> 'N': the matrix itself, 'T': its transpose
-      character, intent(in) :: transa, transb
-      !> Rows and columns of C, columns of A, leading dimensions
-      integer, intent(in) :: m, n, k, lda, ldb, ldc
-      !> Factors
-      real(wp), intent(in) :: alpha, beta
-      !> A and B
-      real(wp), intent(in) :: a(lda, *), b(ldb, *)
-      !> C
-      real(wp), intent(inout) :: c(ldc, *)
-    end subroutine dgemm
-
-    !> LAPACK: solves with the factor of dpotrf.
-    subroutine dpotrs(uplo, n, columns, a, lda, b, ldb, info)
-      import :: wp
-      !> 'L': the lower factor
-      character, intent(in) :: uplo
-      !> Order, right-hand sides, leading dimensions
-      integer, intent(in) :: n, columns, lda, ldb
-      !> Factor
-      real(wp), intent(in) :: a(lda, *)
-      !> Right-hand sides, overwritten by the solution
-      real(wp), intent(inout) :: b(ldb, *)
-      !> Not 0: an argument is wrong
-      integer, intent(out) :: info
-    end subroutine dpotrs
-
-    !> BLAS: solves with a triangle.
-    subroutine dtrsv(uplo, trans, diag, n, a, lda, x, incx)
-      import :: wp
-      !> 'L': the lower triangle; 'N': itself, 'T': its transpose; 'N': its diagonal is given
-      character, intent(in) :: uplo, trans, diag
-      !> Order, leading dimension, stride
-      integer, intent(in) :: n, lda, incx
-      !> The triangle
-      real(wp), intent(in) :: a(lda, *)
-      !> Right-hand side, overwritten by the solution
-      real(wp), intent(inout) :: x(*)
-    end subroutine dtrsv
-
-    !> BLAS: y = alpha A x + beta y, or with the transpose of A.
-    subroutine dgemv(trans, m, n, alpha, a, lda, x, incx, beta, y, incy)
-      import :: wp
-      !> 'N': the matrix itself, 'T': its transpose
-      character, intent(in) :: trans
-      !> Rows, columns, leading dimension, strides
-      integer, intent(in) :: m, n, lda, incx, incy
-      !> Factors
-      real(wp), intent(in) :: alpha, beta
-      !> Matrix and vector
-      real(wp), intent(in) :: a(lda, *), x(*)
-      !> Result
-      real(wp), intent(inout) :: y(*)
-    end subroutine dgemv
-  end interface
 
 contains
 
@@ -239,14 +153,14 @@ contains
       if (k > 1) call self%communicator%sum(taken(a:b))
       x(a:b) = x(a:b) - taken(a:b)
       if (b >= a) call dtrsv('L', 'N', 'N', b - a + 1, self%numbers(a, a), n, x(a:b), 1)
-      call self%share_below(b, first, last)
+      call self%find_share(b, n - b, first, last)
       if (last >= first) call dgemv('N', last - first + 1, b - a + 1, 1.0_wp, self%numbers(first, a), n, x(a:b), 1, &
                                     1.0_wp, taken(first:last), 1)
     end do
     do k = parts, 1, -1
       a = (k - 1)*n/parts + 1
       b = k*n/parts
-      call self%share_below(b, first, last)
+      call self%find_share(b, n - b, first, last)
       taken(a:b) = 0
       if (last >= first) call dgemv('T', last - first + 1, b - a + 1, 1.0_wp, self%numbers(first, a), n, &
                                     x(first:last), 1, 0.0_wp, taken(a:b), 1)
@@ -256,19 +170,19 @@ contains
     end do
   end subroutine solve
 
-  !> Rows of this rank among those below a row.
-  pure subroutine share_below(self, row, first, last)
+  !> This rank's share of a number of things.
+  pure subroutine find_share(self, before, number, first, last)
     class(shared_triangle_t), intent(in) :: self
-    !> The row
-    integer, intent(in) :: row
-    !> The first and the last of them
+    !> Things before the first one, and how many there are
+    integer, intent(in) :: before, number
+    !> The first and the last of this rank
     integer, intent(out) :: first, last
 
-    associate (below => size(self%numbers, 1) - row, rank => self%communicator%rank, ranks => self%communicator%size)
-      first = row + rank*below/ranks + 1
-      last = row + (rank + 1)*below/ranks
+    associate (rank => self%communicator%rank, ranks => self%communicator%size)
+      first = before + rank*number/ranks + 1
+      last = before + (rank + 1)*number/ranks
     end associate
-  end subroutine share_below
+  end subroutine find_share
 
   !> Solves for several right-hand sides, each of which one rank solves for; called by all ranks together.
   subroutine solve_many(self, x)
@@ -277,10 +191,7 @@ contains
     real(wp), contiguous, intent(inout) :: x(:, :)
     integer :: first, last, info
 
-    associate (columns => size(x, 2), rank => self%communicator%rank, ranks => self%communicator%size)
-      first = rank*columns/ranks + 1
-      last = (rank + 1)*columns/ranks
-    end associate
+    call self%find_share(0, size(x, 2), first, last)
     if (last >= first .and. size(x, 1) > 0) &
       call dpotrs('L', size(x, 1), last - first + 1, self%numbers, size(x, 1), x(:, first:last), size(x, 1), info)
     x(:, :first - 1) = 0

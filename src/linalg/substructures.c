@@ -3,12 +3,9 @@
    b^3/3 operations, and as many to multiply that out again. Left-looking: a supernode is brought up to date by those
    before it that reach it, which hang in its list (Ng and Peyton, SIAM J. Sci. Comput. 14, 1993). */
 #include <string.h>
+#include "blas.h"
 #include "substructures.h"
 #include "supernodal_solves.h"
-
-extern void dgemm_(const char *, const char *, const int *, const int *, const int *, const double *, const double *,
-                   const int *, const double *, const int *, const double *, double *, const int *);
-extern void dpotrf_(const char *, const int *, double *, const int *, int *);
 
 static const double one = 1, minus_one = -1, zero = 0;
 

@@ -4,12 +4,8 @@
    tree. CHOLMOD's own solves take the whole factor. */
 #include <stdint.h>
 #include <string.h>
+#include "blas.h"
 #include "supernodal_solves.h"
-
-extern void dgemm_(const char *, const char *, const int *, const int *, const int *, const double *, const double *,
-                   const int *, const double *, const int *, const double *, double *, const int *);
-extern void dtrsm_(const char *, const char *, const char *, const char *, const int *, const int *, const double *,
-                   const double *, const int *, double *, const int *);
 
 static const double one = 1, minus_one = -1, zero = 0;
 
