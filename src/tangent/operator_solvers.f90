@@ -14,8 +14,8 @@ module operator_solvers
   private
   public :: set_solver_up, solve_field
 
-  !> Rows on the borders between ranks that are taken together. Each rank makes their dense factor, which is work that
-  !> is not shared: 72 MB and nearly two seconds (2000 rows take half a second on the measured panel).
+  !> Rows on the borders between ranks that are taken together. The ranks share the work on their dense factor, but each
+  !> has all of it, and what its own elements leave there: 72 MB each for so many.
   integer, parameter :: longest_border = 3000
 
 contains
