@@ -43,16 +43,23 @@ contains
   end subroutine log_echo
 
   !> Says in the log how large the model is, and what factors its operator.
-  subroutine log_model(model, operator, log)
+  subroutine log_model(model, stepper, log)
     type(model_t), intent(in) :: model
-    !> The factored operator
-    type(tangent_operator_t), intent(in) :: operator
+    !> The time stepper
+    type(time_stepper_t), intent(in) :: stepper
     !> The log
     type(log_t), intent(inout) :: log
 
+    if (allocated(stepper%explicit)) then
+      call log%note('Model: '//to_text(model%mesh%elements())//' elements, '//to_text(count(.not. model%held))// &
+                    ' unknowns, '//to_text(model%communicator%size)//' rank(s).')
+      return
+    end if
+    associate (operator => stepper%operator)
     call log%note('Model: '//to_text(model%mesh%elements())//' elements, '//to_text(operator%numbering%total)// &
                   ' unknowns, '//to_text(model%communicator%size)//' rank(s), factored by '// &
                   operator%solver%package_used()//'.')
+    end associate
   end subroutine log_model
 
   !> Lists in the log what the profile has found, the parts that took longest first.
@@ -90,10 +97,12 @@ contains
     real(wp) :: factor_entries, megabytes
     integer :: matrix_entries, i
 
-    call operator%solver%statistics(factor_entries, megabytes)
-    matrix_entries = operator%numbering%row_start(operator%numbering%rows + 1) - 1
-    call log%detail('Factor: '//to_text(factor_entries)//' numbers, '//to_text(megabytes)//' MB; matrix: '// &
-                    to_text(matrix_entries)//' numbers on this rank.')
+    if (allocated(operator%solver)) then
+      call operator%solver%statistics(factor_entries, megabytes)
+      matrix_entries = operator%numbering%row_start(operator%numbering%rows + 1) - 1
+      call log%detail('Factor: '//to_text(factor_entries)//' numbers, '//to_text(megabytes)//' MB; matrix: '// &
+                      to_text(matrix_entries)//' numbers on this rank.')
+    end if
     associate (lines => [timers%lines(), operator%timers%lines()])
       call log%detail(repeat(' ', 37)//'times    on the wall      processor')
       do i = 1, size(lines)
@@ -111,6 +120,8 @@ contains
     character(len=:), allocatable :: line
 
     associate (now => stepper%now, operator => stepper%operator)
+      line = to_text(now%step)//' steps by central differences.'
+      if (allocated(stepper%explicit)) return
       line = to_text(now%step)//' steps ('//to_text(stepper%rejected)//' rejected), '// &
              to_text(now%all_iterations)//' iterations of equilibrium, '//to_text(now%all_force_iterations)// &
              ' of the force, '//to_text(operator%factorizations)//' factorizations, '// &

@@ -166,7 +166,7 @@ contains
     call self%stepper%start(self%model, deck%stepping, deck%linear_solver, error)
     if (allocated(error)) return
     self%record = new_run_record(self%model)
-    call log_model(self%model, self%stepper%operator, self%log)
+    call log_model(self%model, self%stepper, self%log)
     call self%progress%start(0.0_wp)
   end subroutine prepare
 
@@ -302,6 +302,7 @@ contains
     logical :: row_due, fields_due, checkpoint_due
 
     call self%record%observe(self%model, self%stepper%now)
+    call self%stepper%look(self%model)
     call warn(self, error)
     row_due = self%history_clock%interval <= 0 .or. self%stepper%now%time >= end_of(self)
     fields_due = .false.

@@ -295,7 +295,7 @@ contains
     real(wp), intent(in) :: seconds
 
     call json%open_object('costs')
-    call json%put('unknowns', stepper%operator%numbering%total)
+    call json%put('unknowns', stepper%unknowns)
     call json%put('rejected', stepper%rejected)
     call json%put('total_iterations', stepper%now%all_iterations)
     call json%put('total_force_iterations', stepper%now%all_force_iterations)

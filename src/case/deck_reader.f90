@@ -40,7 +40,8 @@ module deck_reader
   use pressure_deck, only: fill_pressure, check_pressure, pressure_group
   use static_deck, only: fill_static, static_group
   use rigs, only: window_lines
-  use stepping_parameters, only: follows_error
+  use plate_options, only: mass_lumped
+  use stepping_parameters, only: follows_error, is_explicit
   use support_deck, only: fill_supports, check_rigs
   use thermal_deck, only: fill_thermal, check_thermal, thermal_group
   use time_deck, only: fill_time, check_time, time_group
@@ -202,7 +203,8 @@ contains
     if (deck%accuracy > 0) call choose_by_accuracy(deck, problems)
     call fill_adapt(deck%settings, deck%stepping%adapt)
     if (deck%has_time) call fill_time(deck%settings, natural_rho_infinity(deck), follows_error(deck%stepping%adapt), &
-                                      deck%stepping%time)
+                                      deck%stepping%time, deck%stepping%central)
+    if (is_explicit(deck%stepping)) deck%mesh%mass = mass_lumped
     call fill_pressure(deck%settings, deck%stepping%time%end, deck%pressure)
     if (deck%has_thermal) call fill_thermal(deck%settings, deck%temperature_change)
     call fill_lines(deck%settings, deck%lines)

@@ -25,6 +25,9 @@ module layer_switches
   private
   public :: advance_with_layers
 
+  !> Steps of central differences between two looks at the layers that damage asks for.
+  integer, parameter :: between_demands = 16
+
 contains
 
   !> Takes a step, and gives the plate the layers that its damage then needs. A step in which damage has come to the
@@ -47,6 +50,10 @@ contains
     logical :: again, more
 
     switched = .false.
+    if (allocated(stepper%explicit)) then
+      call advance_explicit(model, stepper, linear_solver, event, switched, error)
+      return
+    end if
     again = follows(model)
     if (.not. again) call stepper%advance(model, event, error)
     do while (again)
@@ -67,6 +74,36 @@ contains
     end do
     if (.not. allocated(error)) call follow_contact(model, stepper%now, stepper%operator, error)
   end subroutine advance_with_layers
+
+  !> Takes a step by central differences, and looks from time to time whether the plate needs more layers. Damage moves on
+  !> by less than a cell in a step, so that it does not cross the cells ahead of it meanwhile. Collective.
+  subroutine advance_explicit(model, stepper, linear_solver, event, switched, error)
+    !> The model; receives larger zones
+    type(model_t), intent(inout) :: model
+    !> What evolves
+    type(time_stepper_t), intent(inout) :: stepper
+    !> The linear solver
+    type(linear_solver_parameters_t), intent(in) :: linear_solver
+    !> Time not to be passed
+    real(wp), intent(in) :: event
+    !> True if layers have appeared
+    logical, intent(out) :: switched
+    !> Set if the model cannot be built
+    type(error_t), allocatable, intent(out) :: error
+    real(wp) :: extents(2, size(model%mesh%zones))
+
+    switched = .false.
+    call stepper%advance(model, event, error)
+    if (allocated(error) .or. .not. follows(model)) return
+    if (modulo(stepper%now%step, between_demands) > 0) return
+    call model%profile%enter('layers')
+    associate (now => stepper%now)
+      extents = demanded_extents(model, now%plies%stiffness, now%interfaces, now%motion%displacement)
+    end associate
+    switched = any(extents > present_extents(model%scene))
+    if (switched) call switch(model, stepper, linear_solver, extents, error)
+    call model%profile%leave()
+  end subroutine advance_explicit
 
   !> True if layers follow their damage somewhere.
   pure logical function follows(model)
@@ -110,6 +147,7 @@ contains
     integer :: zone
 
     transfer%communicator = model%communicator
+    call stepper%look(model)
     stepper%operator%ready = .false.
     call stepper%visit(transfer, model, error)
     if (allocated(error)) return
@@ -129,9 +167,14 @@ contains
     if (allocated(error)) return
     call transfer%turn_to(mesh, model%mesh)
     call stepper%visit(transfer, model, error)
-    if (.not. allocated(error)) call take_contact(model, stepper%now, stepper%operator, error)
+    if (.not. (allocated(error) .or. allocated(stepper%explicit))) &
+      call take_contact(model, stepper%now, stepper%operator, error)
     if (allocated(error)) return
     stepper%operator%timers = timers
+    if (allocated(stepper%explicit)) then
+      call settle_explicit(model, transfer, stepper)
+      return
+    end if
     call settle(model, transfer, stepper%now)
     if (allocated(stepper%now%path%change)) call move_with_plate(model, transfer, stepper%now%path%change)
   end subroutine switch
@@ -168,6 +211,27 @@ contains
       if (.not. model%scene%has_static) call hold_joined(model, transfer, now)
     end associate
   end subroutine settle
+
+  !> Lets the new layers move with the plate that they were, and finds their forces. Collective.
+  subroutine settle_explicit(model, transfer, stepper)
+    type(model_t), intent(in) :: model
+    !> Where points and elements come from
+    type(layer_transfer_t), intent(in) :: transfer
+    !> What evolves, loaded
+    type(time_stepper_t), intent(inout) :: stepper
+    real(wp) :: before
+
+    associate (now => stepper%now, explicit => stepper%explicit)
+      before = now%ledger%kinetic + now%ledger%strain
+      call move_with_plate(model, transfer, now%motion%displacement)
+      call move_with_plate(model, transfer, now%motion%velocity)
+      call now%plies%restack(model, transfer%is_split(model%distribution%elements))
+      call explicit%resume(model, now)
+      call explicit%find_forces(model, now)
+      call stepper%look(model)
+      now%ledger%layers = now%ledger%layers + before - now%ledger%kinetic - now%ledger%strain
+    end associate
+  end subroutine settle_explicit
 
   !> Gives the new layers the rotations of the layer above, and no jumps.
   subroutine move_with_plate(model, transfer, field)

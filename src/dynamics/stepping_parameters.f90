@@ -1,12 +1,14 @@
 !> Time integration of the plate, load steps, adaptivity and convergence of equilibrium, as the deck gives them.
 module stepping_parameters
+  use central_difference_parameters, only: central_difference_parameters_t
   use kinds, only: wp
   implicit none
   private
-  public :: time_t, adapt_t, equilibrium_t, outlook_t, stepping_t, follows_error
+  public :: time_t, adapt_t, equilibrium_t, outlook_t, stepping_t, follows_error, is_explicit
 
   !> Time integrators of the plate.
-  integer, parameter, public :: integrator_newmark = 1, integrator_generalized_alpha = 2
+  integer, parameter, public :: integrator_newmark = 1, integrator_generalized_alpha = 2, &
+                                integrator_central_difference = 3
   !> Rules for renewing the factored operator.
   integer, parameter, public :: refactor_deflection = 1, refactor_iterations = 2
   !> What an adaptive step follows: the stress at the struck point (the paper's), or the error of each step.
@@ -20,7 +22,7 @@ module stepping_parameters
     real(wp) :: step = 0
     !> Smallest step tried before giving up, and largest step taken
     real(wp) :: step_min = 0, step_max = 0
-    !> integrator_newmark or integrator_generalized_alpha
+    !> One of the integrators above
     integer :: integrator = integrator_generalized_alpha
     !> Newmark's parameters
     real(wp) :: beta = 0.25_wp, gamma = 0.5_wp
@@ -72,6 +74,8 @@ module stepping_parameters
   type :: stepping_t
     !> Time integration
     type(time_t) :: time
+    !> Central differences
+    type(central_difference_parameters_t) :: central
     !> Load steps of a static analysis
     integer :: static_steps = 1
     !> Energy dissipated at which a static analysis ends; 0: it is taken by load alone
@@ -83,7 +87,16 @@ module stepping_parameters
     !> Convergence of equilibrium
     type(equilibrium_t) :: equilibrium
   end type stepping_t
+
 contains
+
+  !> True: central differences move the plate.
+  elemental logical function is_explicit(stepping)
+    !> How steps are taken
+    type(stepping_t), intent(in) :: stepping
+
+    is_explicit = stepping%time%integrator == integrator_central_difference
+  end function is_explicit
 
   !> True: steps follow the error that each makes.
   elemental logical function follows_error(adapt)

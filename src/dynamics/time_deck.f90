@@ -1,12 +1,14 @@
 !> Time integration of the plate in the deck: rows of its table, filling and checks.
 module time_deck
+  use central_difference_parameters, only: central_difference_parameters_t
   use deck_choices, only: code_of
   use deck_problems, only: problems_t
   use deck_remarks, only: tell, remark_idle, are_clear
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
   use kinds, only: wp
-  use stepping_parameters, only: time_t, integrator_newmark, integrator_generalized_alpha
+  use stepping_parameters, only: time_t, integrator_newmark, integrator_generalized_alpha, &
+                                 integrator_central_difference
   use text, only: to_text
   implicit none
   private
@@ -29,14 +31,18 @@ module time_deck
       &Largest step taken.', &
     'time | wall_limit | real | 1 | s | none | > 0 | &
       &Seconds on the wall by which the run ends with a checkpoint; --wall-limit overrides it.', &
-    'time | integrator | choice | 1 | - | ''generalized_alpha'' | newmark generalized_alpha | &
+    'time | integrator | choice | 1 | - | ''generalized_alpha'' | newmark generalized_alpha central_difference | &
       &Time integrator of the plate.', &
     'time | beta | real | 1 | - | 0.25 | > 0, <= 1 | &
       &Newmark''s beta; 2 beta >= gamma keeps every step stable.', &
     'time | gamma | real | 1 | - | 0.5 | >= 0.5, <= 1 | &
       &Newmark''s gamma; above 0.5 it damps.', &
     'time | rho_inf | real | 1 | - | = 1, with &delamination 0.5, with a front 0 | >= 0, <= 1 | &
-      &Generalised-alpha''s spectral radius at high frequency: 1 damps nothing, 0 most.']
+      &Generalised-alpha''s spectral radius at high frequency: 1 damps nothing, 0 most.', &
+    'time | step_factor | real | 1 | - | 0.9 | > 0, <= 1 | &
+      &Part of the stable step that central differences take.', &
+    'time | mass_scaling | real | 1 | - | 1 | >= 1, <= 1000 | &
+      &Factor of in-plane and rotary inertia for central differences, never of the inertia of w; 1: none.']
 
   !> Most steps of a run: more pass the range of default integers.
   real(wp), parameter :: most_steps = 1.0e8_wp
@@ -44,7 +50,7 @@ module time_deck
 contains
 
   !> Time integration of the plate.
-  subroutine fill_time(settings, rho_infinity, grows, time)
+  subroutine fill_time(settings, rho_infinity, grows, time, central)
     !> Keys in effect; gets what the deck doesn't give
     type(settings_t), intent(inout) :: settings
     !> What is left a step of the highest frequencies unless the deck says so
@@ -53,6 +59,8 @@ contains
     logical, intent(in) :: grows
     !> Receives them
     type(time_t), intent(inout) :: time
+    !> Receives what central differences need
+    type(central_difference_parameters_t), intent(inout) :: central
 
     associate (s => settings)
       time%end = s%real_of(time_group, key_end)
@@ -64,13 +72,16 @@ contains
       time%step_min = s%real_of(time_group, 'step_min')
       time%step_max = s%real_of(time_group, 'step_max')
       time%wall_limit = s%real_of(time_group, 'wall_limit')
-      time%integrator = code_of(s%text_of(time_group, 'integrator'), 'newmark generalized_alpha', &
-                                [integrator_newmark, integrator_generalized_alpha])
+      time%integrator = code_of(s%text_of(time_group, 'integrator'), 'newmark generalized_alpha central_difference', &
+                                [integrator_newmark, integrator_generalized_alpha, integrator_central_difference])
       time%beta = s%real_of(time_group, 'beta')
       time%gamma = s%real_of(time_group, 'gamma')
       if (.not. s%is_given(time_group, 'rho_inf')) &
         call s%derive(time_group, 'rho_inf', to_text(rho_infinity), .false.)
       time%rho_infinity = s%real_of(time_group, 'rho_inf')
+      central%step_factor = s%real_of(time_group, 'step_factor')
+      central%mass_scaling = s%real_of(time_group, 'mass_scaling')
+      central%longest = time%step
     end associate
   end subroutine fill_time
 

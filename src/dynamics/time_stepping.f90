@@ -6,7 +6,9 @@ module time_stepping
   use text, only: rounded_text
   use initial_equilibrium, only: find_initial_equilibrium
   use step_errors, only: step_error_t
-  use stepping_parameters, only: stepping_t, follows_error
+  use central_difference_energies, only: book_energies
+  use central_differences, only: central_difference_t
+  use stepping_parameters, only: stepping_t, follows_error, is_explicit
   use linear_solver_parameters, only: linear_solver_parameters_t
   use newmark_integrators, only: plate_integrator_t, plate_integrator
   use models, only: model_t
@@ -34,6 +36,8 @@ module time_stepping
   !> Answers to unit forces on cohesive points with which the operator goes into a step: more make each iteration dearer
   !> than a factorization, into which those go that have failed.
   integer, parameter :: most_answers = 400
+  !> Steps of central differences between two looks for cracks that are flaws of interfaces.
+  integer, parameter :: between_flaws = 8
 
   !> All that evolves during a run.
   type :: time_stepper_t
@@ -57,8 +61,12 @@ module time_stepping
     integer, private :: factorizations_begun = 0, solves_begun = 0
     !> Steps that were tried in vain
     integer :: rejected = 0
+    !> Unknowns that are free to move
+    integer :: unknowns = 0
     !> Room for the state that is being tried
     type(state_t), allocatable, private :: trial
+    !> Central differences; unallocated: steps are implicit
+    type(central_difference_t), allocatable :: explicit
   contains
     !> The plate at rest.
     procedure :: start
@@ -66,6 +74,8 @@ module time_stepping
     procedure :: advance
     !> Smallest step worth trying.
     procedure :: smallest_step
+    !> Completes what a step by central differences leaves until somebody looks.
+    procedure :: look
     !> Energy to be dissipated per time.
     procedure, private :: energy_rate
     !> Time of a step by dissipation over that of one by load.
@@ -90,10 +100,17 @@ contains
 
     self%stepping = stepping
     allocate (self%now, source=new_state(model))
+    if (is_explicit(stepping)) then
+      allocate (self%explicit)
+      self%unknowns = count(.not. model%held)
+      call self%explicit%start(model, stepping%central, self%now)
+      return
+    end if
     allocate (self%trial, source=self%now)
     self%controller%wanted = 1.0_wp/self%stepping%static_steps
     if (self%stepping%dissipation > 0) allocate (self%now%path%change, source=self%now%motion%displacement)
     call self%operator%create(model, linear_solver%factorization, error)
+    self%unknowns = self%operator%numbering%total
     if (.not. allocated(error) .and. model%scene%has_thermal) &
       call find_initial_equilibrium(model, self%operator, self%now, error)
     if (allocated(error) .or. model%scene%has_static) return
@@ -143,6 +160,10 @@ contains
     real(wp) :: step, shortest
     logical :: converged, follows
 
+    if (allocated(self%explicit)) then
+      call advance_explicit(self, model, event)
+      return
+    end if
     follows = follows_error(self%stepping%adapt) .and. .not. model%scene%has_static
     if (follows .and. self%now%step == 0) call self%controller%begin(self%stepping, event)
     do
@@ -179,6 +200,32 @@ contains
     if (model%scene%has_static .and. self%now%plies%softened) call settle(self, model, error)
   end subroutine advance
 
+  !> Takes one step by central differences. Collective.
+  subroutine advance_explicit(self, model, event)
+    !> The time stepper
+    class(time_stepper_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> Time not to be passed
+    real(wp), intent(in) :: event
+
+    call self%explicit%advance(model, event, self%now)
+    self%controller%last = self%explicit%steps%now
+    associate (now => self%now)
+      if (model%scene%has_ply_damage .and. .not. allocated(now%plies%bands)) then
+        call model%profile%enter('ply criteria')
+        call now%plies%grow(model, now%motion%displacement)
+        call model%profile%leave()
+        if (now%plies%softened) call self%explicit%book_failures(model, now)
+      end if
+      if (modulo(now%step, between_flaws) == 0) then
+        call model%profile%enter('flaws')
+        call note_flaws(model, now%plies, now%motion%displacement, now%interfaces)
+        if (model%map%layered) call self%explicit%stacks%find_onsets(model, now%interfaces%cohesive)
+        call model%profile%leave()
+      end if
+    end associate
+  end subroutine advance_explicit
+
   !> Brings a plate whose plies have failed under a load back into equilibrium with it, until no more of them fail.
   subroutine settle(self, model, error)
     !> The time stepper
@@ -200,6 +247,18 @@ contains
       call accept(self, model, 0.0_wp)
     end do
   end subroutine settle
+
+  !> Completes what a step by central differences leaves until somebody looks: energies and stress. Collective.
+  subroutine look(self, model)
+    !> The time stepper
+    class(time_stepper_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+
+    if (.not. allocated(self%explicit)) return
+    call book_energies(self%explicit, model, self%now)
+    self%now%stress = struck_stress(model, self%now%motion%displacement)
+    self%now%largest_stress = max(self%now%largest_stress, self%now%stress)
+  end subroutine look
 
   !> Smallest step worth trying.
   pure real(wp) function smallest_step(self, model) result(step)
@@ -392,6 +451,11 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     call self%now%visit(archive, model)
+    if (allocated(self%explicit)) then
+      call self%explicit%visit(archive, model)
+      if (archive%loading) call self%explicit%resume(model, self%now)
+      return
+    end if
     call self%controller%visit(archive)
     if (allocated(self%step_error%share)) call self%step_error%visit(archive, model)
     call archive%item('stepper/rejected', self%rejected)

@@ -6,15 +6,13 @@
 module numberings
   use kinds, only: wp
   use layered_meshes, only: layered_mesh_t
+  use leading_points, only: find_leading_points
   use distributions, only: distribution_t
   use matrix_patterns, only: find_pattern
   use symmetry_images, only: symmetry_images_t
   implicit none
   private
   public :: numbering_t, number_equations
-
-  !> Sign of u, v, w, theta_x, theta_y of a point at which a turned plate is cut that follows another one.
-  real(wp), parameter :: turned(5) = [-1.0_wp, -1.0_wp, 1.0_wp, -1.0_wp, -1.0_wp]
 
   !> Equation numbers and the rows of this rank.
   type :: numbering_t
@@ -67,12 +65,11 @@ contains
     integer :: equation(5, mesh%points()), leader(mesh%points()), point, i
     logical :: free(5, mesh%points()), folded
 
-    leader = [(mesh%leader(point), point=1, size(leader))]
-    signs = reshape([(turned, point=1, size(leader))], shape(signs))
     folded = .false.
     if (present(images)) folded = allocated(images%points)
-    free = .not. held
-    if (folded) call follow_images(images, leader, signs, free)
+    free = held
+    call find_leading_points(mesh, leader, signs, free, images)
+    free = .not. free
     do point = 1, size(leader)
       if (leader(point) > 0) free(:, point) = .false.
     end do
@@ -102,30 +99,6 @@ contains
     call find_pattern(mesh, equation, mesh%point_node(distribution%points(self%places(1, :))), &
                       self%row_start, self%columns, folded)
   end subroutine number_equations
-
-  !> Has each point follow the first of its images, if that comes before it. What a point that is its own image would
-  !> turn round is held.
-  pure subroutine follow_images(images, leader, signs, free)
-    !> The images
-    type(symmetry_images_t), intent(in) :: images
-    !> Receives the leaders, (points)
-    integer, intent(inout) :: leader(:)
-    !> Receives the signs of the points' motion, (5, points)
-    real(wp), intent(inout) :: signs(:, :)
-    !> Loses what is held, (5, points)
-    logical, intent(inout) :: free(:, :)
-    integer :: point, k
-
-    do point = 1, size(leader)
-      do k = 1, size(images%signs, 2)
-        if (images%points(point, k) == point) free(:, point) = free(:, point) .and. images%signs(:, k) > 0
-      end do
-      k = minloc(images%points(point, :), dim=1)
-      if (images%points(point, k) >= point) cycle
-      leader(point) = images%points(point, k)
-      signs(:, point) = images%signs(:, k)
-    end do
-  end subroutine follow_images
 
   !> Point and component of each row.
   pure subroutine find_places(self)

@@ -1,7 +1,7 @@
 !> Internal force of the plate: the exact gradient of its strain energy, evaluated without any matrix.
 module internal_forces
   use kinds, only: wp
-  use plate_options, only: shear_assumed
+  use plate_options, only: kinematics_linear, shear_assumed
   use element_batches, only: element_batches_t, lanes
   use reference_fields, only: gather, scatter
   use batch_strains, only: in_plane_strains, add_in_plane_forces, shear_strains, add_shear_forces
@@ -9,7 +9,7 @@ module internal_forces
   use section_laws, only: section_law_t
   implicit none
   private
-  public :: add_internal_force
+  public :: add_internal_force, batch_force
 
 contains
 
@@ -81,6 +81,23 @@ contains
     end do
     call law%exchange()
   end subroutine tell_strains
+
+  !> Turns the unknowns of a batch into its nodal forces, for linear strains.
+  pure subroutine batch_force(batches, b, c, r)
+    !> The elements
+    type(element_batches_t), intent(in) :: batches
+    !> Number of the batch
+    integer, intent(in) :: b
+    !> Section stiffness
+    real(wp), intent(in) :: c(lanes, 21)
+    !> Unknowns of the nodes on entry, forces on them on return (lane, node, component)
+    real(wp), intent(inout) :: r(lanes, 9, 5)
+    real(wp) :: strains(lanes, 9, 6), slopes(lanes, 9, 2), energies(lanes)
+
+    energies = 0
+    call in_plane_strains(batches%inverse_jacobian(:, :, :, b), kinematics_linear, r, strains, slopes)
+    call turn_into_forces(batches, b, c, kinematics_linear, slopes, strains, r, energies)
+  end subroutine batch_force
 
   !> Turns the unknowns of a batch, whose in-plane strains are known, into its nodal forces.
   pure subroutine turn_into_forces(batches, b, c, kinematics, slopes, strains, r, energies, free)

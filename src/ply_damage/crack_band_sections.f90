@@ -5,7 +5,7 @@
 module crack_band_sections
   use archives, only: archive_t
   use crack_bands, only: crack_band_t, band_state_t, create_crack_band, strain_band, elasticity_left, onset_strain
-  use element_batches, only: lanes, first_element
+  use element_batches, only: batch_of, first_element, lane_of, lanes
   use free_strains, only: free_resultants
   use in_situ_strengths, only: material_in_place
   use joined_elements, only: joined_elements_t, find_joined_elements
@@ -51,10 +51,13 @@ module crack_band_sections
     procedure :: needs
     procedure :: take
     procedure :: exchange
-    !> Makes the trial the accepted state.
+    !> Makes the trial the accepted state; with what it changes of the sections.
     procedure :: commit
+    procedure :: hand_over
     !> Energy that the trial dissipates in each mode, on this rank.
     procedure :: dissipation
+    !> Energy dissipated so far in each mode, on this rank.
+    procedure :: dissipated
     !> Where fibres and matrix of one ply bear nothing any more, and where compression took most of its matrix.
     procedure :: broken
     procedure :: mostly_pressed
@@ -246,9 +249,31 @@ contains
   pure subroutine commit(self)
     !> The plies
     class(crack_band_sections_t), intent(inout) :: self
+    integer :: element
 
-    self%accepted = self%trial
+    do element = 1, size(self%touched)
+      if (self%touched(element)) self%accepted(:, element) = self%trial(:, element)
+    end do
   end subroutine commit
+
+  !> Makes the trial the accepted state, and hands over the sections of elements that it has changed.
+  pure subroutine hand_over(self, stiffness, free)
+    !> The plies
+    class(crack_band_sections_t), intent(inout) :: self
+    !> Section stiffness, (lanes, 21, batches)
+    real(wp), intent(inout) :: stiffness(:, :, :)
+    !> Resultants of strains without stress, (lanes, 7, batches); unallocated: there are none
+    real(wp), allocatable, intent(inout) :: free(:, :, :)
+    integer :: element
+
+    do element = 1, size(self%touched)
+      if (.not. self%touched(element)) cycle
+      self%accepted(:, element) = self%trial(:, element)
+      stiffness(lane_of(element), :, batch_of(element)) = self%stiffness(lane_of(element), :, batch_of(element))
+      if (allocated(free)) &
+        free(lane_of(element), :, batch_of(element)) = self%free(lane_of(element), :, batch_of(element))
+    end do
+  end subroutine hand_over
 
   !> Energy that the trial dissipates in each mode beyond the accepted state, of this rank's elements.
   pure function dissipation(self) result(energies)
@@ -267,6 +292,24 @@ contains
       end do
     end do
   end function dissipation
+
+  !> Energy dissipated so far in each mode, of this rank's elements.
+  pure function dissipated(self) result(energies)
+    !> The plies
+    class(crack_band_sections_t), intent(in) :: self
+    !> In the order of the modes
+    real(wp) :: energies(energy_modes)
+    integer :: element, ply
+
+    energies = 0
+    do element = 1, size(self%touched)
+      if (.not. self%touched(element)) cycle
+      do ply = self%range(1, element), self%range(2, element)
+        energies = energies + self%area(element)*(self%plies(ply)%z_bottom - self%plies(ply)%z_top) &
+                   *self%accepted(ply, element)%dissipated
+      end do
+    end do
+  end function dissipated
 
   !> Elements of this rank where fibres and matrix of one ply bear nothing any more.
   pure function broken(self, ply)

@@ -1,6 +1,7 @@
 !> Failure of plies: the stiffness it takes from the elements, and the energy lost with it.
 module ply_failures
   use free_strains, only: free_resultants
+  use internal_forces, only: add_internal_force
   use kinds, only: wp
   use archives, only: archive_t
   use crack_band_sections, only: crack_band_sections_t, new_crack_band_sections
@@ -43,11 +44,15 @@ module ply_failures
   contains
     !> Internal forces of the plate, with the stiffness that softening leaves under this displacement.
     procedure :: find_forces
+    !> Forces of the elements on the layers, with plies that soften as they are strained.
+    procedure :: add_layer_forces
     !> Lets plies that lag follow a displacement.
     procedure :: follow
     !> Books what softening dissipates in a step, and judges whether the step has followed it.
     procedure :: book
     procedure :: judge
+    !> Finds what plies that soften have dissipated so far.
+    procedure :: total_dissipation
     !> Modes that have occurred in a ply, and constants left in it.
     procedure :: failed
     procedure :: elasticity
@@ -103,6 +108,29 @@ contains
     self%energy = energy
   end subroutine find_forces
 
+  !> Adds the forces of the elements on the layers, with plies that soften as they are strained; what they remember is
+  !> accepted at once. Collective.
+  subroutine add_layer_forces(self, model, motion, force, energy)
+    !> The failures
+    class(ply_failure_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> Motion of the layers, ghosts up to date, (5, points)
+    real(wp), contiguous, intent(in) :: motion(:, :)
+    !> Internal forces on the layers, (5, points), added to
+    real(wp), contiguous, intent(inout) :: force(:, :)
+    !> Strain energy of this rank's elements
+    real(wp), intent(out) :: energy
+
+    if (allocated(self%bands)) then
+      call add_internal_force(model%elements, self%stiffness, model%scene%kinematics, motion, force, energy, self%bands, &
+                              self%free)
+      call self%bands%hand_over(self%stiffness, self%free)
+    else
+      call add_internal_force(model%elements, self%stiffness, model%scene%kinematics, motion, force, energy, &
+                              free=self%free)
+    end if
+  end subroutine add_layer_forces
+
   !> Lets plies that lag follow the displacement at which forces were found last. Collective.
   subroutine follow(self, model, displacement, lost, excess)
     !> The failures
@@ -143,6 +171,17 @@ contains
     self%dissipated = self%dissipated + energies
     energy = sum(energies)
   end subroutine book
+
+  !> Finds what plies that soften have dissipated so far in each mode. Collective.
+  subroutine total_dissipation(self, model)
+    !> The failures
+    class(ply_failure_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+
+    self%dissipated = self%bands%dissipated()
+    call model%communicator%sum(self%dissipated)
+    self%dissipated = self%dissipated*model%mesh%multiplicity
+  end subroutine total_dissipation
 
   !> Judges whether a step has followed how plies soften: the work on them is then what they store and dissipate. A step
   !> over a jump would find the state behind it without the work that leads there.

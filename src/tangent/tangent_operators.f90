@@ -317,7 +317,7 @@ contains
     !> The operator
     class(tangent_operator_t), intent(inout) :: self
 
-    call self%solver%release()
+    if (allocated(self%solver)) call self%solver%release()
     if (allocated(self%membrane)) call self%membrane%release()
   end subroutine release
 end module tangent_operators

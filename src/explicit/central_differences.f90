@@ -1,0 +1,305 @@
+!> Central differences in time: layers move by the forces on them, interfaces by tractions that are implicit node by node,
+!> and plies and interfaces are damaged as they are strained. Nothing is iterated and nothing factored.
+!>
+!> Velocities belong to the middles of steps. A step finds them from the forces F at its start,
+!>   v(n+1/2) = v(n-1/2) + h M^-1 (F(n) - B^T lambda(n+1)),   u(n+1) = u(n) + h v(n+1/2),
+!> and then the forces at its end (K. J. Bathe, Finite Element Procedures, 1996, section 9.2.1, with the tractions lambda of
+!> the end of the step on the jumps B u).
+module central_differences
+  use archives, only: archive_t
+  use central_difference_parameters, only: central_difference_parameters_t
+  use interface_stacks, only: interface_stacks_t, create_interface_stacks
+  use kinds, only: wp
+  use models, only: model_t
+  use nodal_inertia, only: nodal_inertia_t, create_nodal_inertia
+  use rig_steps, only: rig_steps_t, create_rig_steps
+  use stable_steps, only: highest_element_frequency, highest_frequency
+  use stack_motions, only: accelerate, move_stacks, new_workspaces
+  use stack_solutions, only: stack_t
+  use states, only: state_t
+  use step_lengths, only: step_lengths_t
+  use tan_sun_indentation, only: commit_indentation, indentation_force, indentation_stiffness
+  implicit none
+  private
+  public :: central_difference_t
+
+  !> Growth of the contact's stiffness that a new length of the step allows for, so that it changes a few times only.
+  real(wp), parameter :: slope_reserve = 2
+
+  !> What central differences know beside the state.
+  type :: central_difference_t
+    !> How steps are taken
+    type(central_difference_parameters_t) :: parameters
+    !> Lumped inertia of the points
+    type(nodal_inertia_t) :: inertia
+    !> Nodes with several layers
+    type(interface_stacks_t) :: stacks
+    !> Forces on the layers at the end of the last step, loads less internal forces, (5, points)
+    real(wp), allocatable :: force(:, :)
+    !> What frames and springs do
+    type(rig_steps_t) :: rigs
+    !> The step taken last and the one before it
+    type(step_lengths_t) :: steps
+    !> Step for which inertia and stacks are prepared
+    type(step_lengths_t), private :: prepared
+    !> Velocity of the impactor in the middle of the last step
+    real(wp) :: impactor_velocity = 0
+    !> Highest frequency of the elements, and the element that has it
+    real(wp) :: frequency = 0
+    integer :: element = 0
+    !> Stiffness of the contact that the step allows for
+    real(wp) :: contact_stiffness = 0
+    !> Strain energy of this rank's elements
+    real(wp) :: strain = 0
+    !> Work of loads so far, of this rank's points
+    real(wp) :: work = 0
+    !> Room for the motion of the layers, and for stacks
+    real(wp), allocatable, private :: motion(:, :)
+    type(stack_t), allocatable, private :: workspaces(:)
+  contains
+    !> Sets up for a state.
+    procedure :: start
+    !> Longest stable step, times the part of it that is taken.
+    procedure :: longest_step
+    !> Takes one step.
+    procedure :: advance
+    !> Finds the forces on the layers.
+    procedure :: find_forces
+    !> Books what failed plies have lost.
+    procedure :: book_failures
+    !> Takes up a state that has been loaded.
+    procedure :: resume
+    !> Saves or loads.
+    procedure :: visit
+  end type central_difference_t
+
+contains
+
+  !> Sets up for a state. Collective.
+  subroutine start(self, model, parameters, now)
+    !> The method
+    class(central_difference_t), intent(out) :: self
+    type(model_t), intent(in) :: model
+    !> How steps are taken
+    type(central_difference_parameters_t), intent(in) :: parameters
+    !> The state; receives the forces
+    type(state_t), intent(inout) :: now
+    integer :: points
+
+    points = size(model%distribution%points)
+    self%parameters = parameters
+    self%inertia = create_nodal_inertia(model, parameters%mass_scaling)
+    call self%inertia%invert(0.0_wp)
+    call highest_element_frequency(model, now%plies%stiffness, parameters%mass_scaling, self%frequency, self%element)
+    print '(a,3es12.4)', 'steps: element, assembled', 2/self%frequency, &
+      2/highest_frequency(model, now%plies%stiffness, self%inertia)
+    self%stacks = create_interface_stacks(model, now%interfaces%cohesive, self%inertia)
+    self%workspaces = new_workspaces(self%stacks)
+    self%rigs = create_rig_steps(model)
+    allocate (self%force(5, points), self%motion(5, points), source=0.0_wp)
+    self%impactor_velocity = now%impactor%velocity
+    call self%find_forces(model, now)
+  end subroutine start
+
+  !> Step that the elements and the contact bear, times the part of it that is taken. Frequencies of springs added to each
+  !> other are at most the root of the sum of their squares.
+  real(wp) function longest_step(self, model, now) result(step)
+    !> The method
+    class(central_difference_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> The state
+    type(state_t), intent(in) :: now
+    real(wp) :: slope, compliance, square
+    integer :: i
+
+    square = self%frequency**2
+    if (model%scene%has_impactor) then
+      slope = indentation_stiffness(model%scene%indentation, now%indentation, now%indentation%alpha)
+      if (slope > self%contact_stiffness) self%contact_stiffness = slope_reserve*slope
+      compliance = 0
+      do i = 1, size(model%patch_points)
+        associate (point => model%patch_points(i))
+          if (point <= model%distribution%owned) compliance = compliance + &
+            model%patch(point)**2*self%inertia%inverse(7, point)/model%mesh%multiplicity
+        end associate
+      end do
+      call model%communicator%sum(compliance)
+      square = square + self%contact_stiffness*(compliance + 1/model%scene%impactor%mass)
+    end if
+    step = self%parameters%step_factor*2/sqrt(square)
+    if (self%parameters%longest > 0) step = min(step, self%parameters%longest)
+  end function longest_step
+
+  !> Takes one step, of which a whole number reaches an event. Collective.
+  subroutine advance(self, model, event, now)
+    !> The method
+    class(central_difference_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> Time not to be passed
+    real(wp), intent(in) :: event
+    !> The state
+    type(state_t), intent(inout) :: now
+    real(wp) :: step, remaining
+
+    remaining = event - now%time
+    step = self%longest_step(model, now)
+    step = remaining/max(1.0_wp, real(ceiling(remaining/step*(1 - 1.0e-9_wp)), wp))
+    ! Rounding of the time is no other step.
+    if (abs(step - self%steps%now) <= 1.0e-9_wp*step) step = self%steps%now
+    self%steps = step_lengths_t(now=step, last=self%steps%now)
+    call prepare(self)
+    associate (u => now%motion%displacement, v => now%motion%velocity)
+      call model%profile%enter('nodes')
+      if (allocated(self%inertia%springs)) call self%rigs%pull(self%inertia%springs, self%steps, u, v, self%force)
+      call move_single(self, model, u, v)
+      call move_stacks(self%stacks, self%workspaces, self%rigs, model, self%inertia, self%steps, self%force, &
+                       now%interfaces%cohesive, u, v)
+      if (allocated(self%inertia%springs)) call self%rigs%book_springs(self%inertia%springs, self%steps, u, v)
+      call self%inertia%spread(u)
+      call self%inertia%spread(v)
+      call model%profile%leave()
+      call model%halo%update(u)
+    end associate
+    now%time = now%time + step
+    if (abs(now%time - event) <= 1.0e-9_wp*step) now%time = event
+    now%step = now%step + 1
+    now%load_factor = now%time/model%scene%ramp_time
+    call move_impactor(self, model, now)
+    call self%find_forces(model, now)
+  end subroutine advance
+
+  !> Inverse inertia and compliances for the length of the step.
+  subroutine prepare(self)
+    !> The method
+    type(central_difference_t), intent(inout) :: self
+
+    if (abs(self%prepared%now - self%steps%now) <= 0 .and. abs(self%prepared%last - self%steps%last) <= 0) return
+    call self%inertia%invert(self%steps%now*self%steps%mean())
+    call self%stacks%prepare(self%inertia, self%steps%now*self%steps%mean())
+    self%prepared = self%steps
+  end subroutine prepare
+
+  !> Moves nodes with one layer.
+  subroutine move_single(self, model, u, v)
+    !> The method
+    type(central_difference_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> Unknowns and their rates, (5, points)
+    real(wp), intent(inout) :: u(:, :), v(:, :)
+    integer :: i, p
+
+    do i = 1, size(self%stacks%single)
+      p = self%stacks%single(i)
+      call accelerate(self%inertia%inverse(:, p), self%steps%mean(), self%force(:, p), v(:, p))
+      if (self%rigs%bears(p)) then
+        if (u(3, p) + self%steps%now*v(3, p) > 0 .or. self%rigs%reaction(p) > 0) &
+          call self%rigs%bear(p, self%steps, self%inertia%inverse(7, p), u(3, p), v(3, p))
+      end if
+      u(:, p) = u(:, p) + self%steps%now*v(:, p)
+    end do
+  end subroutine move_single
+
+  !> Moves the impactor, and finds the force at the end of the step.
+  subroutine move_impactor(self, model, now)
+    !> The method
+    type(central_difference_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> The state
+    type(state_t), intent(inout) :: now
+    real(wp) :: acceleration, alpha
+
+    now%deflection = model%deflection(now%motion%displacement)
+    now%patch_mean = model%contact_deflection(now%motion%displacement)
+    if (.not. model%scene%has_impactor) return
+    associate (impactor => now%impactor, parameters => model%scene%impactor)
+      acceleration = parameters%gravity - now%force/parameters%mass
+      self%impactor_velocity = self%impactor_velocity + self%steps%mean()*acceleration
+      impactor%displacement = impactor%displacement + self%steps%now*self%impactor_velocity
+      alpha = impactor%displacement - now%patch_mean
+      now%force = indentation_force(model%scene%indentation, now%indentation, alpha)
+      call commit_indentation(model%scene%indentation, now%indentation, alpha)
+      impactor%force = now%force
+      impactor%velocity = self%impactor_velocity + self%steps%now/2*(parameters%gravity - now%force/parameters%mass)
+    end associate
+  end subroutine move_impactor
+
+  !> Finds the forces on the layers. Collective.
+  subroutine find_forces(self, model, now)
+    !> The method
+    class(central_difference_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> The state; its plies soften
+    type(state_t), intent(inout) :: now
+
+    call model%profile%enter('elements')
+    self%motion = now%motion%displacement
+    if (model%map%layered) call model%map%to_motion(self%motion)
+    self%force = 0
+    call now%plies%add_layer_forces(model, self%motion, self%force, self%strain)
+    call model%halo%accumulate(self%force)
+    self%force = -self%force
+    call model%profile%leave()
+    call model%push_patch(now%force, self%force)
+    if (model%rig%elastic) self%force(3, :) = self%force(3, :) + model%rig%presses
+    if (allocated(model%pressure)) self%force = self%force + model%scene%pressure%amplitude(now%time)*model%pressure
+    call self%inertia%fold(self%force)
+  end subroutine find_forces
+
+  !> Books the strain energy that failed plies have lost, and finds the forces that are left. Collective.
+  subroutine book_failures(self, model, now)
+    !> The method
+    class(central_difference_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> The state; receives the energy in its ledger
+    type(state_t), intent(inout) :: now
+    real(wp) :: lost
+
+    lost = self%strain
+    call self%find_forces(model, now)
+    lost = lost - self%strain
+    call model%communicator%sum(lost)
+    now%ledger%ply_damage = now%ledger%ply_damage + lost*model%mesh%multiplicity
+  end subroutine book_failures
+
+  !> Takes up a state that has been loaded: with it, damage may begin elsewhere. Collective.
+  subroutine resume(self, model, now)
+    !> The method
+    class(central_difference_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> The state
+    type(state_t), intent(in) :: now
+
+    call self%stacks%find_onsets(model, now%interfaces%cohesive)
+    call self%stacks%find_damaged(now%interfaces%cohesive)
+    self%prepared = step_lengths_t()
+  end subroutine resume
+
+  !> Saves or loads.
+  subroutine visit(self, archive, model)
+    !> The method
+    class(central_difference_t), intent(inout) :: self
+    !> Where to or where from
+    class(archive_t), intent(inout) :: archive
+    type(model_t), intent(in) :: model
+    real(wp), allocatable :: interfaces(:, :)
+
+    call archive%item('explicit/step', self%steps%now)
+    call archive%item('explicit/step_before', self%steps%last)
+    call archive%item('explicit/impactor_velocity', self%impactor_velocity)
+    call archive%item('explicit/contact_stiffness', self%contact_stiffness)
+    call archive%item('explicit/work', self%work)
+    associate (owned => model%distribution%points(:model%distribution%owned), points => model%mesh%points())
+      call archive%field('explicit/forces', owned, points, self%force)
+      call self%rigs%visit(archive, owned, points)
+      if (.not. model%map%layered) return
+      allocate (interfaces(8, size(self%force, 2)))
+      interfaces(1:3, :) = self%stacks%forces
+      interfaces(4:6, :) = self%stacks%change
+      interfaces(7:8, :) = self%stacks%lost
+      call archive%field('explicit/interfaces', owned, points, interfaces)
+      self%stacks%forces = interfaces(1:3, :)
+      self%stacks%change = interfaces(4:6, :)
+      self%stacks%lost = interfaces(7:8, :)
+    end associate
+  end subroutine visit
+end module central_differences

@@ -1,0 +1,180 @@
+!> Nodes with several layers, and the interfaces between these: what couples the jumps of one node in a step.
+module interface_stacks
+  use cohesive_interfaces, only: cohesive_interfaces_t
+  use cohesive_laws, only: cohesive_law_t
+  use kinds, only: wp
+  use models, only: model_t
+  use nodal_inertia, only: nodal_inertia_t, along_x, along_y, along_z
+  use tridiagonal_systems, only: factorize
+  implicit none
+  private
+  public :: interface_stacks_t, create_interface_stacks
+
+  !> Stacks of layers. Points of a stack follow each other downwards; each but the first carries the interface above it.
+  type :: interface_stacks_t
+    !> First point and number of layers of each stack that moves by itself, (stacks)
+    integer, allocatable :: first(:), layers(:)
+    !> Points of nodes with one layer that move by themselves
+    integer, allocatable :: single(:)
+    !> Height z of the interface above a point, (points)
+    real(wp), allocatable :: height(:)
+    !> Area of that interface at the node, with that of points that follow, (points)
+    real(wp), allocatable :: area(:)
+    !> Stiffness of the undamaged interface against shear and opening, force per jump, (2, points)
+    real(wp), allocatable :: stiffness(:, :)
+    !> Energy per area of the undamaged interface below which no damage begins or grows, (points)
+    real(wp), allocatable :: least_onset(:)
+    !> True where some interface of a stack is damaged, (stacks)
+    logical, allocatable :: damaged(:)
+    !> Square of the step times the compliance of the layers, its diagonal and the entries beside it, along x, y and z,
+    !> (3, points)
+    real(wp), allocatable :: diagonal(:, :), beside(:, :)
+    !> Factors of the undamaged stacks, (2, 3, points)
+    real(wp), allocatable :: factors(:, :, :)
+    !> Forces on the jumps in the last step, and change of the jumps in it, (3, points)
+    real(wp), allocatable :: forces(:, :), change(:, :)
+    !> Energy lost so far where faces meet, and to the rest of the implicit treatment, (2, points)
+    real(wp), allocatable :: lost(:, :)
+  contains
+    !> Finds the compliances for a step.
+    procedure :: prepare
+    !> Finds which stacks are damaged.
+    procedure :: find_damaged
+    !> Finds the onsets, which flaws lower.
+    procedure :: find_onsets
+  end type interface_stacks_t
+
+contains
+
+  !> Stacks of a model.
+  function create_interface_stacks(model, cohesive, inertia) result(self)
+    type(model_t), intent(in) :: model
+    !> The interfaces
+    type(cohesive_interfaces_t), intent(in) :: cohesive
+    !> Lumped inertia, with the points that follow
+    type(nodal_inertia_t), intent(in) :: inertia
+    !> The stacks
+    type(interface_stacks_t) :: self
+    logical :: follows(model%distribution%owned)
+    integer :: i, points
+
+    associate (above => model%map%above, owned => model%distribution%owned)
+      points = size(model%distribution%points)
+      follows = .false.
+      follows(inertia%followers) = .true.
+      self%single = pack([(i, i=1, owned)], .not. follows .and. above(:owned) == 0 .and. &
+                         [(.not. has_layer_below(above, i), i=1, owned)])
+      self%first = pack([(i, i=1, owned)], .not. follows .and. above(:owned) == 0 .and. &
+                        [(has_layer_below(above, i), i=1, owned)])
+      allocate (self%layers(size(self%first)), self%damaged(size(self%first)))
+      do i = 1, size(self%first)
+        self%layers(i) = 1
+        do while (has_layer_below(above, self%first(i) + self%layers(i) - 1))
+          self%layers(i) = self%layers(i) + 1
+        end do
+      end do
+    end associate
+    self%height = model%map%height
+    self%area = model%contact_area
+    do i = 1, size(inertia%followers)
+      self%area(inertia%leaders(i)) = self%area(inertia%leaders(i)) + self%area(inertia%followers(i))
+      self%area(inertia%followers(i)) = 0
+    end do
+    allocate (self%stiffness(2, points), self%least_onset(points), self%diagonal(3, points), self%beside(3, points), &
+              self%factors(2, 3, points), self%forces(3, points), self%change(3, points), self%lost(2, points), &
+              source=0.0_wp)
+    do i = 1, model%distribution%owned
+      if (model%zone(i) == 0) cycle
+      associate (law => model%cohesive_laws(model%zone(i)))
+        self%stiffness(:, i) = self%area(i)*[law%stiffness_shear, law%stiffness_opening]
+      end associate
+    end do
+    call self%find_onsets(model, cohesive)
+    call self%find_damaged(cohesive)
+  end function create_interface_stacks
+
+  !> True if the point after a point of this rank is the next layer of the same node.
+  pure logical function has_layer_below(above, i)
+    !> Point above each point; 0: none
+    integer, intent(in) :: above(:)
+    !> The point
+    integer, intent(in) :: i
+
+    has_layer_below = .false.
+    if (i < size(above)) has_layer_below = above(i + 1) == i
+  end function has_layer_below
+
+  !> Energies of onset: N Y = G_c there, and no mixture of modes is less tough than the weaker of the pure ones.
+  pure subroutine find_onsets(self, model, cohesive)
+    !> The stacks
+    class(interface_stacks_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> The interfaces
+    type(cohesive_interfaces_t), intent(in) :: cohesive
+    type(cohesive_law_t) :: law
+    integer :: i
+
+    if (.not. allocated(cohesive%cohesive)) return
+    do i = 1, model%distribution%owned
+      if (model%zone(i) == 0) cycle
+      law = cohesive%law_at(model, i)
+      self%least_onset(i) = min(law%toughness_opening, law%toughness_shear)/law%failure_ratio
+    end do
+  end subroutine find_onsets
+
+  !> Finds which stacks are damaged.
+  pure subroutine find_damaged(self, cohesive)
+    !> The stacks
+    class(interface_stacks_t), intent(inout) :: self
+    !> The interfaces
+    type(cohesive_interfaces_t), intent(in) :: cohesive
+    integer :: i
+
+    do i = 1, size(self%first)
+      associate (from => self%first(i) + 1, to => self%first(i) + self%layers(i) - 1)
+        self%damaged(i) = any(cohesive%points(from:to)%damage > 0)
+      end associate
+    end do
+  end subroutine find_damaged
+
+  !> Compliances of the layers between interfaces for steps of a length, and factors of stacks without damage.
+  pure subroutine prepare(self, inertia, step_square)
+    !> The stacks
+    class(interface_stacks_t), intent(inout) :: self
+    !> Lumped inertia, inverted for this step
+    type(nodal_inertia_t), intent(in) :: inertia
+    !> Product of the step and the mean of it and the step before
+    real(wp), intent(in) :: step_square
+    integer :: i, p, k
+
+    do i = 1, size(self%first)
+      do p = self%first(i) + 1, self%first(i) + self%layers(i) - 1
+        associate (upper => inertia%inverse(:, p - 1), lower => inertia%inverse(:, p), z => self%height(p))
+          self%diagonal(:, p) = step_square*[coupling(upper(along_x:), z, z) + coupling(lower(along_x:), z, z), &
+                                             coupling(upper(along_y:), z, z) + coupling(lower(along_y:), z, z), &
+                                             upper(along_z) + lower(along_z)]
+          self%beside(:, p) = 0
+          if (p < self%first(i) + self%layers(i) - 1) self%beside(:, p) = -step_square* &
+            [coupling(lower(along_x:), z, self%height(p + 1)), coupling(lower(along_y:), z, self%height(p + 1)), &
+             lower(along_z)]
+        end associate
+      end do
+      associate (from => self%first(i) + 1, to => self%first(i) + self%layers(i) - 1)
+        do k = 1, 3
+          call factorize(self%stiffness(merge(2, 1, k == 3), from:to), self%diagonal(k, from:to), &
+                         self%beside(k, from:to), self%factors(:, k, from:to))
+        end do
+      end associate
+    end do
+  end subroutine prepare
+
+  !> Displacement of a layer at one height by a unit force at another, over the square of the time.
+  pure real(wp) function coupling(inverse, z1, z2)
+    !> Inverse inertia of displacement, of both, of rotation
+    real(wp), intent(in) :: inverse(3)
+    !> The heights
+    real(wp), intent(in) :: z1, z2
+
+    coupling = inverse(1) + inverse(2)*(z1 + z2) + inverse(3)*z1*z2
+  end function coupling
+end module interface_stacks

@@ -1,0 +1,188 @@
+!> Lumped inertia of the layers at each node, and the inverse that turns forces on a layer into its accelerations.
+!>
+!> In each direction in the plane a layer has a displacement u of the mid-plane z = 0 and a rotation theta, coupled where
+!> the layer lies off the mid-plane: M = [I0 I1; I1 I2]. In-plane and rotary inertia may be scaled, which lengthens the
+!> stable step (L. Olovsson, K. Simonsson, M. Unosson, International Journal for Numerical Methods in Engineering 63 (2005)
+!> 1436-1445); the mass of w is never scaled. Points that take their motion from others add their inertia to these.
+module nodal_inertia
+  use kinds, only: wp
+  use leading_points, only: find_leading_points
+  use models, only: model_t
+  implicit none
+  private
+  public :: nodal_inertia_t, create_nodal_inertia
+
+  !> Positions in `inverse`: u-u, u-theta_x, theta_x-theta_x, v-v, v-theta_y, theta_y-theta_y, w-w.
+  integer, parameter, public :: along_x = 1, along_y = 4, along_z = 7
+
+  !> Inertia of this rank's points.
+  type :: nodal_inertia_t
+    !> I0, I1, I2 of motion in the plane and of rotation, scaled, and I0 of w, (4, points); zero where a point follows
+    real(wp), allocatable :: mass(:, :)
+    !> Unknowns held at zero, (5, points)
+    logical, allocatable :: held(:, :)
+    !> Springs that hold the unknowns of the first layer, treated implicitly, (5, points); unallocated: none
+    real(wp), allocatable :: springs(:, :)
+    !> Inverse of inertia and implicit springs, zero for what is held, (7, points)
+    real(wp), allocatable :: inverse(:, :)
+    !> Points that follow others, their leaders, and the signs of their motion, (followers) and (5, followers)
+    integer, allocatable :: followers(:), leaders(:)
+    real(wp), allocatable :: signs(:, :)
+  contains
+    !> Finds the inverse for a step.
+    procedure :: invert
+    !> Adds forces on points that follow to those on their leaders; gives them their leaders' motion.
+    procedure :: fold
+    procedure :: spread
+  end type nodal_inertia_t
+
+contains
+
+  !> Inertia of the points of a model with a lumped mass.
+  function create_nodal_inertia(model, scaling) result(self)
+    type(model_t), intent(in) :: model
+    !> Factor of in-plane and rotary inertia, at least 1
+    real(wp), intent(in) :: scaling
+    !> The inertia
+    type(nodal_inertia_t) :: self
+    integer :: points
+
+    points = size(model%distribution%points)
+    allocate (self%mass(4, points), self%inverse(7, points))
+    self%mass(1:3, :) = scaling*model%lumped
+    self%mass(4, :) = model%lumped(1, :)
+    call find_followers(model, self)
+    call fold_mass(self, self%mass)
+    call find_springs(model, self)
+  end function create_nodal_inertia
+
+  !> Points of this rank that follow others, and what supports and symmetry hold.
+  subroutine find_followers(model, self)
+    type(model_t), intent(in) :: model
+    !> Receives them
+    type(nodal_inertia_t), intent(inout) :: self
+    integer :: leader(model%mesh%points()), i
+    real(wp) :: signs(5, model%mesh%points())
+    logical :: held(5, model%mesh%points())
+
+    held = model%held
+    call find_leading_points(model%mesh, leader, signs, held, model%images)
+    associate (share => model%distribution)
+      self%held = held(:, share%points)
+      self%followers = pack([(i, i=1, share%owned)], leader(share%points(:share%owned)) > 0)
+      self%leaders = share%local(leader(share%points(self%followers)))
+      self%signs = signs(:, share%points(self%followers))
+    end associate
+  end subroutine find_followers
+
+  !> Adds the inertia of followers to that of their leaders, whose motion has the same energy.
+  pure subroutine fold_mass(self, mass)
+    !> The inertia
+    type(nodal_inertia_t), intent(in) :: self
+    !> A nodal quantity that has no sign, (:, points)
+    real(wp), intent(inout) :: mass(:, :)
+    integer :: i
+
+    do i = 1, size(self%followers)
+      mass(:, self%leaders(i)) = mass(:, self%leaders(i)) + mass(:, self%followers(i))
+      mass(:, self%followers(i)) = 0
+    end do
+  end subroutine fold_mass
+
+  !> Springs of clamps and of elastic edges at the points of the first layer. Those of edges are lumped as the mass is.
+  subroutine find_springs(model, self)
+    type(model_t), intent(in) :: model
+    !> Receives them
+    type(nodal_inertia_t), intent(inout) :: self
+    integer :: i, k
+
+    if (.not. (model%rig%elastic .or. allocated(model%rig%line_rig))) return
+    allocate (self%springs(5, size(self%mass, 2)), source=0.0_wp)
+    if (allocated(model%rig%line_rig)) then
+      do i = 1, size(model%rig%line_rig)
+        if (model%rig%line_rig(i) /= 0) cycle
+        associate (component => model%rig%line_component(i), points => model%rig%line_points(:, i))
+          do k = 1, 3
+            self%springs(component, points(k)) = self%springs(component, points(k)) &
+                                                 + model%rig%line_stiffness(i)*model%rig%line_weights(k, i)
+          end do
+        end associate
+      end do
+      call model%halo%accumulate(self%springs)
+    end if
+    if (model%rig%elastic) self%springs(1:3, :) = self%springs(1:3, :) + model%rig%springs
+    call fold_mass(self, self%springs)
+  end subroutine find_springs
+
+  !> Finds the inverse for steps of a length: what springs add to the inertia goes with its square.
+  pure subroutine invert(self, step_square)
+    !> The inertia
+    class(nodal_inertia_t), intent(inout) :: self
+    !> Product of the step and the mean of it and the step before
+    real(wp), intent(in) :: step_square
+    real(wp) :: added(5)
+    integer :: i
+
+    added = 0
+    do i = 1, size(self%mass, 2)
+      if (allocated(self%springs)) added = step_square*self%springs(:, i)
+      associate (m => self%mass(:, i), held => self%held(:, i), inverse => self%inverse(:, i))
+        inverse(1:3) = inverse_block([m(1) + added(1), m(2), m(3) + added(4)], held([1, 4]))
+        inverse(4:6) = inverse_block([m(1) + added(2), m(2), m(3) + added(5)], held([2, 5]))
+        inverse(7) = 0
+        if (m(4) > 0 .and. .not. held(3)) inverse(7) = 1/(m(4) + added(3))
+      end associate
+    end do
+  end subroutine invert
+
+  !> Inverse of the inertia of displacement and rotation, with what is held out of it.
+  pure function inverse_block(mass, held) result(inverse)
+    !> I0, I1, I2
+    real(wp), intent(in) :: mass(3)
+    !> True for what is held: displacement, rotation
+    logical, intent(in) :: held(2)
+    !> Of displacement, of both, of rotation
+    real(wp) :: inverse(3)
+    real(wp) :: determinant
+
+    inverse = 0
+    if (.not. mass(1) > 0) return
+    determinant = mass(1)*mass(3) - mass(2)**2
+    if (.not. any(held)) then
+      inverse = [mass(3), -mass(2), mass(1)]/determinant
+    else if (held(1) .and. .not. held(2)) then
+      inverse(3) = 1/mass(3)
+    else if (held(2) .and. .not. held(1)) then
+      inverse(1) = 1/mass(1)
+    end if
+  end function inverse_block
+
+  !> Adds forces on points that follow to those on their leaders.
+  pure subroutine fold(self, forces)
+    !> The inertia
+    class(nodal_inertia_t), intent(in) :: self
+    !> Forces, (5, points); those on followers become zero
+    real(wp), intent(inout) :: forces(:, :)
+    integer :: i
+
+    do i = 1, size(self%followers)
+      associate (follower => self%followers(i), leader => self%leaders(i))
+        forces(:, leader) = forces(:, leader) + self%signs(:, i)*forces(:, follower)
+        forces(:, follower) = 0
+      end associate
+    end do
+  end subroutine fold
+
+  !> Gives points that follow their leaders' motion.
+  pure subroutine spread(self, motion)
+    !> The inertia
+    class(nodal_inertia_t), intent(in) :: self
+    !> Displacement or velocity, (5, points)
+    real(wp), intent(inout) :: motion(:, :)
+    integer :: i
+
+    do i = 1, size(self%followers)
+      motion(:, self%followers(i)) = self%signs(:, i)*motion(:, self%leaders(i))
+    end do
+  end subroutine spread
+end module nodal_inertia

@@ -1,0 +1,125 @@
+!> Frames that the plate may lift off, clamps and elastic edges in a step, node by node.
+!>
+!> A frame bears the first layer of its nodes by a bound, w <= 0: what would pass it comes to rest on it. Springs follow
+!> the motion at the end of the step, so that their stiffness sets no limit to it.
+module rig_steps
+  use archives, only: archive_t
+  use kinds, only: wp
+  use models, only: model_t
+  use step_lengths, only: step_lengths_t
+  implicit none
+  private
+  public :: rig_steps_t, create_rig_steps
+
+  !> State of frames and springs at this rank's points, (points) each.
+  type :: rig_steps_t
+    !> True where a frame bears the plate
+    logical, allocatable :: bears(:)
+    !> Reaction of the frame in the last step, force, and change of w in it
+    real(wp), allocatable :: reaction(:), approach(:)
+    !> Energy lost so far on frames, and to the implicit treatment of springs
+    real(wp), allocatable :: frame_loss(:), spring_loss(:)
+  contains
+    !> Brings a node to rest on its frame.
+    procedure :: bear
+    !> Adds the forces of springs, and books what they take.
+    procedure :: pull
+    procedure :: book_springs
+    !> Saves or loads.
+    procedure :: visit
+  end type rig_steps_t
+
+contains
+
+  !> Frames of a model.
+  pure function create_rig_steps(model) result(self)
+    type(model_t), intent(in) :: model
+    !> Their state
+    type(rig_steps_t) :: self
+    integer :: points
+
+    points = size(model%distribution%points)
+    allocate (self%bears(points), source=.false.)
+    if (model%rig%unilateral) self%bears = model%rig%bears > 0
+    allocate (self%reaction(points), self%approach(points), self%frame_loss(points), self%spring_loss(points), &
+              source=0.0_wp)
+  end function create_rig_steps
+
+  !> Brings a node that would pass its frame to rest on it, and books what it loses there.
+  pure subroutine bear(self, p, steps, inverse, w, rate)
+    !> The frames
+    class(rig_steps_t), intent(inout) :: self
+    !> The point
+    integer, intent(in) :: p
+    !> The step and the one before
+    type(step_lengths_t), intent(in) :: steps
+    !> Inverse inertia of w
+    real(wp), intent(in) :: inverse
+    !> Deflection at the start of the step
+    real(wp), intent(in) :: w
+    !> Its rate without the frame on entry, with it on return
+    real(wp), intent(inout) :: rate
+    real(wp) :: free, reaction
+
+    free = rate
+    if (w + steps%now*rate > 0) rate = -w/steps%now
+    reaction = 0
+    if (inverse > 0) reaction = (free - rate)/(steps%mean()*inverse)
+    if (.not. w + steps%now*free > 0) reaction = 0
+    self%frame_loss(p) = self%frame_loss(p) + reaction*steps%now*rate &
+                         + (reaction - self%reaction(p))*self%approach(p)/2
+    self%reaction(p) = reaction
+    self%approach(p) = steps%now*rate
+  end subroutine bear
+
+  !> Adds the forces of springs at the end of the step, as far as its start tells them; the rest is in the inverse inertia.
+  pure subroutine pull(self, springs, steps, u, v, force)
+    !> The springs' state
+    class(rig_steps_t), intent(in) :: self
+    !> Stiffness, (5, points)
+    real(wp), intent(in) :: springs(:, :)
+    !> The step and the one before
+    type(step_lengths_t), intent(in) :: steps
+    !> Unknowns and their rates, (5, points)
+    real(wp), intent(in) :: u(:, :), v(:, :)
+    !> Forces on the layers, (5, points)
+    real(wp), intent(inout) :: force(:, :)
+
+    force = force - springs*(u + steps%now*v)
+  end subroutine pull
+
+  !> Books what springs did in a step beyond what they store, as for interfaces.
+  pure subroutine book_springs(self, springs, steps, u, v)
+    !> The springs' state
+    class(rig_steps_t), intent(inout) :: self
+    !> Stiffness, (5, points)
+    real(wp), intent(in) :: springs(:, :)
+    !> The step and the one before
+    type(step_lengths_t), intent(in) :: steps
+    !> Unknowns and their rates at the end of the step, (5, points)
+    real(wp), intent(in) :: u(:, :), v(:, :)
+
+    self%spring_loss = self%spring_loss + sum(springs*(steps%now*v)**2, 1)
+  end subroutine book_springs
+
+  !> Saves or loads.
+  subroutine visit(self, archive, owned, points)
+    !> The frames
+    class(rig_steps_t), intent(inout) :: self
+    !> Where to or where from
+    class(archive_t), intent(inout) :: archive
+    !> Points of the mesh that this rank owns, and all points
+    integer, intent(in) :: owned(:), points
+    real(wp) :: fields(4, size(self%reaction))
+
+    fields(1, :) = self%reaction
+    fields(2, :) = self%approach
+    fields(3, :) = self%frame_loss
+    fields(4, :) = self%spring_loss
+    call archive%field('explicit/frames', owned, points, fields)
+    self%reaction = fields(1, :)
+    self%approach = fields(2, :)
+    self%frame_loss = fields(3, :)
+    self%spring_loss = fields(4, :)
+  end subroutine visit
+end module rig_steps

@@ -1,0 +1,219 @@
+!> Stable step of central differences: 2/omega of the highest frequency that elements have on lumped inertia.
+!>
+!> No frequency of the assembled plate lies above the highest of a single element with its own part of the inertia (I. Fried,
+!> 1972; T. J. R. Hughes, The Finite Element Method, 1987, section 9.4.2). That of the assembled plate is found by power
+!> iteration too. Interfaces, clamps and frames are implicit and set no limit.
+module stable_steps
+  use element_batches, only: lanes
+  use internal_forces, only: add_internal_force, batch_force
+  use kinds, only: long, wp
+  use lagrange9, only: gauss_shapes
+  use models, only: model_t
+  use nodal_inertia, only: nodal_inertia_t
+  use plate_options, only: kinematics_linear
+  use stack_motions, only: accelerate
+  implicit none
+  private
+  public :: highest_frequency, highest_element_frequency
+
+  !> Products of the iterations. The estimate rises from below; after these it changes by less than 1e-3 a product.
+  integer, parameter :: products = 60, element_products = 40
+
+contains
+
+  !> Highest angular frequency of the assembled plate. Collective.
+  real(wp) function highest_frequency(model, stiffness, inertia) result(omega)
+    type(model_t), intent(in) :: model
+    !> Section stiffness left in the elements, (lanes, 21, batches)
+    real(wp), contiguous, intent(in) :: stiffness(:, :, :)
+    !> Lumped inertia, inverted without springs
+    type(nodal_inertia_t), intent(in) :: inertia
+    real(wp), allocatable :: x(:, :), force(:, :)
+    real(wp) :: size_of_x, energy
+    integer :: i, k, product
+
+    allocate (x(5, size(model%distribution%points)), force(5, size(model%distribution%points)))
+    do i = 1, size(x, 2)
+      do k = 1, 5
+        x(k, i) = scattered(5*model%distribution%points(i) + k)
+        ! Motion of like energy: rotations turn the layer's thickness.
+        if (inertia%inverse(7, i) > 0 .and. k > 3) x(k, i) = x(k, i)*sqrt(inertia%inverse(3, i)/inertia%inverse(7, i))
+      end do
+      where (inertia%held(:, i)) x(:, i) = 0
+    end do
+    call inertia%spread(x)
+    omega = 0
+    do product = 1, products
+      call model%halo%update(x)
+      force = 0
+      call add_internal_force(model%elements, stiffness, kinematics_linear, x, force, energy)
+      call model%halo%accumulate(force)
+      call inertia%fold(force)
+      x = 0
+      do i = 1, model%distribution%owned
+        call accelerate(inertia%inverse(:, i), 1.0_wp, force(:, i), x(:, i))
+      end do
+      call inertia%spread(x)
+      size_of_x = maxval(abs(x(:, :model%distribution%owned)))
+      call model%communicator%maximum(size_of_x)
+      if (.not. size_of_x > 0) return
+      x = x/size_of_x
+    end do
+    omega = sqrt(rayleigh(model, stiffness, inertia, x))
+  end function highest_frequency
+
+  !> Rayleigh's quotient of a field. Collective.
+  real(wp) function rayleigh(model, stiffness, inertia, x) result(quotient)
+    type(model_t), intent(in) :: model
+    !> Section stiffness left in the elements, (lanes, 21, batches)
+    real(wp), contiguous, intent(in) :: stiffness(:, :, :)
+    !> Lumped inertia
+    type(nodal_inertia_t), intent(in) :: inertia
+    !> The field, (5, points)
+    real(wp), contiguous, intent(inout) :: x(:, :)
+    real(wp) :: force(5, size(x, 2)), sums(2), energy
+    integer :: i
+
+    call model%halo%update(x)
+    force = 0
+    call add_internal_force(model%elements, stiffness, kinematics_linear, x, force, energy)
+    sums = [2*energy, 0.0_wp]
+    do i = 1, model%distribution%owned
+      associate (m => inertia%mass(:, i), a => x(:, i))
+        sums(2) = sums(2) + m(1)*(a(1)**2 + a(2)**2) + 2*m(2)*(a(1)*a(4) + a(2)*a(5)) + m(3)*(a(4)**2 + a(5)**2) &
+                  + m(4)*a(3)**2
+      end associate
+    end do
+    call model%communicator%sum(sums)
+    quotient = sums(1)/sums(2)
+  end function rayleigh
+
+  !> A number between -1 and 1 that goes with another one, the same everywhere (G. Marsaglia, Journal of Statistical Software
+  !> 8 (2003) 14, xorshift).
+  pure real(wp) function scattered(number)
+    !> The other number
+    integer, intent(in) :: number
+    integer(long) :: bits
+
+    bits = number*2654435761_long
+    bits = ieor(bits, ishft(bits, 13))
+    bits = ieor(bits, ishft(bits, -7))
+    bits = ieor(bits, ishft(bits, 17))
+    scattered = real(iand(bits, 2_long**31 - 1), wp)/2.0_wp**30 - 1
+  end function scattered
+
+  !> Highest angular frequency of any element of all ranks, and the element of the mesh that has it. Collective.
+  subroutine highest_element_frequency(model, stiffness, scaling, omega, element)
+    type(model_t), intent(in) :: model
+    !> Section stiffness left in the elements, (lanes, 21, batches)
+    real(wp), intent(in) :: stiffness(:, :, :)
+    !> Factor of in-plane and rotary inertia
+    real(wp), intent(in) :: scaling
+    !> The frequency
+    real(wp), intent(out) :: omega
+    !> The element
+    integer, intent(out) :: element
+    real(wp) :: squares(lanes), largest
+    integer :: b, lane
+
+    largest = 0
+    element = 0
+    do b = 1, model%elements%batches
+      squares = batch_frequencies(model, b, stiffness(:, :, b), scaling)
+      do lane = 1, model%elements%lanes_used(b)
+        if (.not. squares(lane) > largest) cycle
+        largest = squares(lane)
+        element = model%distribution%elements((b - 1)*lanes + lane)
+      end do
+    end do
+    omega = largest
+    call model%communicator%maximum(omega)
+    if (largest < omega) element = huge(element)
+    call model%communicator%minimum(element)
+    omega = sqrt(omega)
+  end subroutine highest_element_frequency
+
+  !> Squares of the highest frequencies of the elements of a batch.
+  function batch_frequencies(model, b, stiffness, scaling) result(squares)
+    type(model_t), intent(in) :: model
+    !> Number of the batch
+    integer, intent(in) :: b
+    !> Section stiffness
+    real(wp), intent(in) :: stiffness(lanes, 21)
+    !> Factor of in-plane and rotary inertia
+    real(wp), intent(in) :: scaling
+    !> (lane)
+    real(wp) :: squares(lanes)
+    real(wp) :: r(lanes, 9, 5), inverse(lanes, 9, 4), before(lanes, 9, 5), share(lanes), length(lanes)
+    integer :: a, k, product
+
+    associate (mass => model%elements%mass(:, :, b), weight => model%elements%weight(:, :, b))
+      do a = 1, 9
+        share = max(tiny(share)**0.25_wp, matmul(weight, gauss_shapes(a, :)))
+        length = scaling*share*max(tiny(share)**0.25_wp, mass(:, 1)*mass(:, 3) - mass(:, 2)**2)
+        inverse(:, a, 1) = mass(:, 3)/length
+        inverse(:, a, 2) = -mass(:, 2)/length
+        inverse(:, a, 3) = mass(:, 1)/length
+        inverse(:, a, 4) = 1/(share*max(tiny(share)**0.25_wp, mass(:, 1)))
+        do k = 1, 5
+          r(:, a, k) = scattered(5*a + k)
+          if (k > 3) r(:, a, k) = r(:, a, k)*sqrt(inverse(:, a, 3)/inverse(:, a, 4))
+        end do
+      end do
+    end associate
+    do product = 1, element_products
+      before = r
+      call batch_force(model%elements, b, stiffness, r)
+      squares = sum(sum(r*before, 3), 2)
+      call divide(inverse, r)
+      length = sqrt(squares)
+      if (product == element_products) squares = squares_of(model, b, stiffness, inverse, r)
+      do k = 1, 5
+        do a = 1, 9
+          r(:, a, k) = r(:, a, k)/max(length, tiny(length)**0.25_wp)
+        end do
+      end do
+    end do
+  end function batch_frequencies
+
+  !> Rayleigh's quotients r K M^-1 K r over r K r of a batch.
+  function squares_of(model, b, stiffness, inverse, r) result(squares)
+    type(model_t), intent(in) :: model
+    !> Number of the batch
+    integer, intent(in) :: b
+    !> Section stiffness
+    real(wp), intent(in) :: stiffness(lanes, 21)
+    !> Inverse inertia of the nodes: of displacement, both, rotation, and w
+    real(wp), intent(in) :: inverse(lanes, 9, 4)
+    !> The motion
+    real(wp), intent(in) :: r(lanes, 9, 5)
+    !> (lane)
+    real(wp) :: squares(lanes)
+    real(wp) :: force(lanes, 9, 5), answer(lanes, 9, 5)
+
+    force = r
+    call batch_force(model%elements, b, stiffness, force)
+    answer = force
+    call divide(inverse, answer)
+    squares = sum(sum(force*answer, 3), 2)/max(tiny(squares), sum(sum(force*r, 3), 2))
+  end function squares_of
+
+  !> Turns forces into accelerations.
+  pure subroutine divide(inverse, r)
+    !> Inverse inertia of the nodes
+    real(wp), intent(in) :: inverse(lanes, 9, 4)
+    !> Forces on entry, accelerations on return
+    real(wp), intent(inout) :: r(lanes, 9, 5)
+    real(wp) :: moment(lanes)
+    integer :: a, k
+
+    do k = 1, 2
+      do a = 1, 9
+        moment = r(:, a, 3 + k)
+        r(:, a, 3 + k) = inverse(:, a, 2)*r(:, a, k) + inverse(:, a, 3)*moment
+        r(:, a, k) = inverse(:, a, 1)*r(:, a, k) + inverse(:, a, 2)*moment
+      end do
+    end do
+    r(:, :, 3) = inverse(:, :, 4)*r(:, :, 3)
+  end subroutine divide
+end module stable_steps

@@ -1,0 +1,392 @@
+!> Moves the layers of a node by one step: velocities from the forces on each layer, tractions between them, jumps.
+module stack_motions
+  use cohesive_faces, only: cohesive_faces_t
+  use cohesive_interfaces, only: cohesive_interfaces_t
+  use cohesive_points, only: cohesive_point_t
+  use interface_stacks, only: interface_stacks_t
+  use kinds, only: wp
+  use models, only: model_t
+  use nodal_inertia, only: nodal_inertia_t
+  use stack_solutions, only: stack_t, solve_openings, solve_shears
+  use step_lengths, only: step_lengths_t
+  use rig_steps, only: rig_steps_t
+  use tridiagonal_systems, only: solve_factored, solve_tractions
+  implicit none
+  private
+  public :: move_stacks, new_workspaces, accelerate
+
+contains
+
+  !> Room for the stacks of a model, one for each number of interfaces.
+  pure function new_workspaces(stacks) result(work)
+    !> The stacks
+    type(interface_stacks_t), intent(in) :: stacks
+    !> (most interfaces)
+    type(stack_t), allocatable :: work(:)
+    integer :: n
+
+    allocate (work(maxval([1, stacks%layers]) - 1))
+    do n = 1, size(work)
+      work(n)%n = n
+      allocate (work(n)%area(n), work(n)%stiffness(2, n), work(n)%diagonal(3, n), work(n)%beside(3, n), &
+                work(n)%free(3, n), work(n)%start(3, n), work(n)%points(n), work(n)%closing(n), work(n)%friction(n), &
+                work(n)%forces(3, n), work(n)%limit(n))
+    end do
+  end function new_workspaces
+
+  !> Moves all stacks.
+  subroutine move_stacks(stacks, work, rigs, model, inertia, steps, force, cohesive, u, v)
+    !> The stacks; receive forces, changes of the jumps and losses
+    type(interface_stacks_t), intent(inout) :: stacks
+    !> Room, one for each number of interfaces
+    type(stack_t), intent(inout) :: work(:)
+    !> Frames
+    type(rig_steps_t), intent(inout) :: rigs
+    type(model_t), intent(in) :: model
+    !> Lumped inertia, inverted for the step
+    type(nodal_inertia_t), intent(in) :: inertia
+    !> The step and the one before
+    type(step_lengths_t), intent(in) :: steps
+    !> Forces on the layers, without tractions, (5, points)
+    real(wp), intent(in) :: force(:, :)
+    !> The interfaces; damage grows
+    type(cohesive_interfaces_t), intent(inout) :: cohesive
+    !> Unknowns and their rates, (5, points)
+    real(wp), intent(inout) :: u(:, :), v(:, :)
+    integer :: i
+
+    do i = 1, size(stacks%first)
+      call move_stack(stacks, i, work(stacks%layers(i) - 1), rigs, model, inertia, steps, force, cohesive, u, v)
+    end do
+  end subroutine move_stacks
+
+  !> Moves one stack.
+  subroutine move_stack(stacks, i, work, rigs, model, inertia, steps, force, cohesive, u, v)
+    !> The stacks
+    type(interface_stacks_t), intent(inout) :: stacks
+    !> Which of them
+    integer, intent(in) :: i
+    !> Room
+    type(stack_t), intent(inout) :: work
+    !> Frames
+    type(rig_steps_t), intent(inout) :: rigs
+    type(model_t), intent(in) :: model
+    !> Lumped inertia
+    type(nodal_inertia_t), intent(in) :: inertia
+    !> The step and the one before
+    type(step_lengths_t), intent(in) :: steps
+    !> Forces on the layers, (5, points)
+    real(wp), intent(in) :: force(:, :)
+    !> The interfaces
+    type(cohesive_interfaces_t), intent(inout) :: cohesive
+    !> Unknowns and their rates, (5, points)
+    real(wp), intent(inout) :: u(:, :), v(:, :)
+    real(wp) :: layer(5, stacks%layers(i)), free(3, work%n), forces(3, work%n)
+    integer :: n, p, q, k
+
+    n = work%n
+    p = stacks%first(i)
+    q = p + n
+    call to_layers(stacks%height(p:q), v(:, p:q), layer)
+    do k = 0, n
+      call accelerate(inertia%inverse(:, p + k), steps%mean(), force(:, p + k), layer(:, k + 1))
+    end do
+    free = u(1:3, p + 1:q) + steps%now*rates(n, stacks%height(p:q), layer)
+    if (stacks%damaged(i)) then
+      call load_stack(stacks, work, model, cohesive, p, u, free)
+      call solve_openings(work)
+      call solve_shears(work)
+      forces = work%forces
+    else
+      do k = 1, 3
+        call solve_factored(n, stacks%factors(:, k, p + 1:q), free(k, :), forces(k, :))
+      end do
+    end if
+    if (rigs%bears(p)) call rest_on_frame(stacks, i, rigs, inertia, steps, u(3, p), u(3, p + 1), free(3, :), layer, &
+                                          forces(3, :))
+    call push_layers(n, stacks%height(p:q), inertia%inverse(:, p:q), steps%mean(), forces, layer)
+    if (rigs%bears(p)) layer(3, 1) = rigs%approach(p)/steps%now
+    v(:, p) = layer(:, 1)
+    v(1:3, p + 1:q) = rates(n, stacks%height(p:q), layer)
+    v(4:5, p + 1:q) = layer(4:5, 2:)
+    if (stacks%damaged(i)) then
+      call advance_points(stacks, i, model, steps, work%limit, forces, cohesive, u, v)
+    else
+      call advance_intact(stacks, i, model, steps, forces, cohesive, u, v)
+    end if
+    u(4:5, p + 1:q) = u(4:5, p + 1:q) + steps%now*v(4:5, p + 1:q)
+    u(:, p) = u(:, p) + steps%now*v(:, p)
+  end subroutine move_stack
+
+  !> Lets the first layer rest on a frame if it would pass it: then it does not give way to what is below.
+  pure subroutine rest_on_frame(stacks, i, rigs, inertia, steps, w, jump, free, layer, forces)
+    !> The stacks
+    type(interface_stacks_t), intent(in) :: stacks
+    !> Which of them
+    integer, intent(in) :: i
+    !> Frames
+    type(rig_steps_t), intent(inout) :: rigs
+    !> Lumped inertia
+    type(nodal_inertia_t), intent(in) :: inertia
+    !> The step and the one before
+    type(step_lengths_t), intent(in) :: steps
+    !> Deflection of the first layer and jump to the second at the start of the step
+    real(wp), intent(in) :: w, jump
+    !> Openings without tractions, (n)
+    real(wp), intent(inout) :: free(:)
+    !> Velocities of the layers without tractions, (5, n + 1)
+    real(wp), intent(in) :: layer(:, :)
+    !> Forces on the openings, (n)
+    real(wp), intent(inout) :: forces(:)
+    real(wp) :: rate, diagonal(size(free)), stiffness(size(free)), none(size(free))
+
+    associate (p => stacks%first(i), inverse => inertia%inverse(7, stacks%first(i)), n => size(free))
+      rate = layer(3, 1) + steps%mean()*inverse*forces(1)
+      if (w + steps%now*rate > 0) then
+        rate = layer(3, 1)
+        free(1) = jump + steps%now*(layer(3, 2) + w/steps%now)
+        diagonal = stacks%diagonal(3, p + 1:p + n)
+        diagonal(1) = diagonal(1) - steps%now*steps%mean()*inverse
+        stiffness = stacks%stiffness(2, p + 1:p + n)
+        none = 0
+        call solve_tractions(n, stiffness, none, diagonal, stacks%beside(3, p + 1:p + n), free, forces)
+        rate = rate + steps%mean()*inverse*forces(1)
+        if (.not. w + steps%now*rate > 0) rate = -w/steps%now + tiny(rate)
+      end if
+      call rigs%bear(p, steps, inverse, w, rate)
+    end associate
+  end subroutine rest_on_frame
+
+  !> Velocities of the layers from the rates of the unknowns.
+  pure subroutine to_layers(height, v, layer)
+    !> Height of the interface above each layer, (layers)
+    real(wp), intent(in) :: height(:)
+    !> Rates of the unknowns, (5, layers)
+    real(wp), intent(in) :: v(:, :)
+    !> Velocities of the layers, (5, layers)
+    real(wp), intent(out) :: layer(:, :)
+    integer :: l
+
+    layer(:, 1) = v(:, 1)
+    do l = 2, size(height)
+      layer(1:2, l) = v(1:2, l) + layer(1:2, l - 1) + height(l)*(layer(4:5, l - 1) - v(4:5, l))
+      layer(3, l) = v(3, l) + layer(3, l - 1)
+      layer(4:5, l) = v(4:5, l)
+    end do
+  end subroutine to_layers
+
+  !> Adds to the velocity of a layer what a force on it gives in a time.
+  pure subroutine accelerate(inverse, time, force, velocity)
+    !> Inverse inertia, as in nodal_inertia_t
+    real(wp), intent(in) :: inverse(7)
+    !> The time
+    real(wp), intent(in) :: time
+    !> Forces and moments
+    real(wp), intent(in) :: force(5)
+    !> Velocity of the layer
+    real(wp), intent(inout) :: velocity(5)
+
+    velocity(1) = velocity(1) + time*(inverse(1)*force(1) + inverse(2)*force(4))
+    velocity(4) = velocity(4) + time*(inverse(2)*force(1) + inverse(3)*force(4))
+    velocity(2) = velocity(2) + time*(inverse(4)*force(2) + inverse(5)*force(5))
+    velocity(5) = velocity(5) + time*(inverse(5)*force(2) + inverse(6)*force(5))
+    velocity(3) = velocity(3) + time*inverse(7)*force(3)
+  end subroutine accelerate
+
+  !> Rates of the jumps across the interfaces.
+  pure function rates(n, height, layer)
+    !> Interfaces
+    integer, intent(in) :: n
+    !> Height of the interface above each layer, (n + 1)
+    real(wp), intent(in) :: height(n + 1)
+    !> Velocities of the layers, (5, n + 1)
+    real(wp), intent(in) :: layer(5, n + 1)
+    !> Rates of the jumps, (3, n)
+    real(wp) :: rates(3, n)
+    integer :: j
+
+    do j = 1, n
+      rates(1:2, j) = layer(1:2, j + 1) - layer(1:2, j) + height(j + 1)*(layer(4:5, j + 1) - layer(4:5, j))
+      rates(3, j) = layer(3, j + 1) - layer(3, j)
+    end do
+  end function rates
+
+  !> Adds to the velocities of the layers what the tractions between them give in a time.
+  pure subroutine push_layers(n, height, inverse, time, forces, layer)
+    !> Interfaces
+    integer, intent(in) :: n
+    !> Height of the interface above each layer, (n + 1)
+    real(wp), intent(in) :: height(n + 1)
+    !> Inverse inertia of the layers, (7, n + 1)
+    real(wp), intent(in) :: inverse(7, n + 1)
+    !> The time
+    real(wp), intent(in) :: time
+    !> Forces that pull the jumps back, (3, n)
+    real(wp), intent(in) :: forces(3, n)
+    !> Velocities of the layers, (5, n + 1)
+    real(wp), intent(inout) :: layer(5, n + 1)
+    real(wp) :: pull(5)
+    integer :: l
+
+    do l = 1, n + 1
+      pull = 0
+      if (l > 1) pull = [-forces(:, l - 1), -height(l)*forces(1:2, l - 1)]
+      if (l <= n) pull = pull + [forces(:, l), height(l + 1)*forces(1:2, l)]
+      call accelerate(inverse(:, l), time, pull, layer(:, l))
+    end do
+  end subroutine push_layers
+
+  !> Takes the state of a damaged stack.
+  pure subroutine load_stack(stacks, work, model, cohesive, p, u, free)
+    !> The stacks
+    type(interface_stacks_t), intent(in) :: stacks
+    !> Receives it
+    type(stack_t), intent(inout) :: work
+    type(model_t), intent(in) :: model
+    !> The interfaces
+    type(cohesive_interfaces_t), intent(in) :: cohesive
+    !> First point of the stack
+    integer, intent(in) :: p
+    !> Unknowns, (5, points)
+    real(wp), intent(in) :: u(:, :)
+    !> Jumps without tractions, (3, n)
+    real(wp), intent(in) :: free(:, :)
+    type(cohesive_faces_t) :: faces
+    integer :: j
+
+    associate (q => p + work%n)
+      work%area = stacks%area(p + 1:q)
+      work%stiffness = stacks%stiffness(:, p + 1:q)
+      work%diagonal = stacks%diagonal(:, p + 1:q)
+      work%beside = stacks%beside(:, p + 1:q)
+      work%free = free
+      work%start = u(1:3, p + 1:q)
+      work%points = cohesive%points(p + 1:q)
+    end associate
+    do j = 1, work%n
+      faces = cohesive%faces_of(model, model%zone(p + j), 1.0_wp)
+      work%closing(j) = faces%closing
+      work%friction(j) = faces%friction
+    end do
+  end subroutine load_stack
+
+  !> Moves the jumps of a stack without damage, and finds where some begins.
+  subroutine advance_intact(stacks, i, model, steps, forces, cohesive, u, v)
+    !> The stacks
+    type(interface_stacks_t), intent(inout) :: stacks
+    !> Which of them
+    integer, intent(in) :: i
+    type(model_t), intent(in) :: model
+    !> The step and the one before
+    type(step_lengths_t), intent(in) :: steps
+    !> Forces on the jumps, (3, n)
+    real(wp), intent(in) :: forces(:, :)
+    !> The interfaces
+    type(cohesive_interfaces_t), intent(inout) :: cohesive
+    !> Unknowns and their rates, (5, points)
+    real(wp), intent(inout) :: u(:, :), v(:, :)
+    real(wp) :: change(3)
+    integer :: j, p
+
+    do j = 1, size(forces, 2)
+      p = stacks%first(i) + j
+      change = steps%now*v(1:3, p)
+      u(1:3, p) = u(1:3, p) + change
+      ! The work of a linear spring beyond what it stores, as in `advance_points`.
+      stacks%lost(2, p) = stacks%lost(2, p) + sum(stacks%stiffness([1, 1, 2], p)*change*(change + stacks%change(:, p)))/2
+      stacks%forces(:, p) = forces(:, j)
+      stacks%change(:, p) = change
+      associate (k => stacks%stiffness(:, p), jump => u(1:3, p))
+        if (k(1)*(jump(1)**2 + jump(2)**2) + k(2)*max(jump(3), 0.0_wp)**2 &
+            < 2*stacks%area(p)*stacks%least_onset(p)) cycle
+      end associate
+      cohesive%points(p)%sliding%slip = u(1:2, p)
+      call damage_point(stacks, model, p, u(1:3, p), 0.0_wp, cohesive)
+      if (cohesive%points(p)%damage > 0) stacks%damaged(i) = .true.
+    end do
+    if (.not. stacks%damaged(i)) return
+    do j = 1, size(forces, 2)
+      p = stacks%first(i) + j
+      cohesive%points(p)%sliding%slip = u(1:2, p)
+    end do
+  end subroutine advance_intact
+
+  !> Damage of a point under new jumps; the energy that it takes is booked with the losses.
+  subroutine damage_point(stacks, model, p, jumps, limit, cohesive)
+    !> The stacks
+    type(interface_stacks_t), intent(inout) :: stacks
+    type(model_t), intent(in) :: model
+    !> The point
+    integer, intent(in) :: p
+    !> Its jumps at the end of the step
+    real(wp), intent(in) :: jumps(3)
+    !> Most that friction bears, force per area
+    real(wp), intent(in) :: limit
+    !> The interfaces
+    type(cohesive_interfaces_t), intent(inout) :: cohesive
+    type(cohesive_faces_t) :: faces
+    type(cohesive_point_t) :: old
+    real(wp) :: traction(3)
+
+    faces = cohesive%faces_of(model, model%zone(p), cohesive%strength(p))
+    old = cohesive%points(p)
+    old%sliding%limit = limit
+    call faces%traction(jumps, old, traction, cohesive%points(p))
+    ! What damage and slip leave stored, and what they dissipate, is no longer lost otherwise.
+    stacks%lost(2, p) = stacks%lost(2, p) - stacks%area(p)*(faces%stored(jumps, cohesive%points(p)) - &
+      faces%stored(jumps, old) + cohesive%points(p)%dissipated - old%dissipated + &
+      cohesive%points(p)%sliding%heat - old%sliding%heat)
+  end subroutine damage_point
+
+  !> Moves the jumps of a damaged stack and its damage, and books what the forces on them did beyond what is stored. The
+  !> kinetic energy of the layers, taken at whole steps with the forces F of interfaces and elements there, changes by
+  !> minus F dJ - (F - F_old) dJ_old/2 (doc/theory): what of that is not stored or dissipated is lost.
+  subroutine advance_points(stacks, i, model, steps, limit, forces, cohesive, u, v)
+    !> The stacks
+    type(interface_stacks_t), intent(inout) :: stacks
+    !> Which of them
+    integer, intent(in) :: i
+    type(model_t), intent(in) :: model
+    !> The step and the one before
+    type(step_lengths_t), intent(in) :: steps
+    !> Most that friction bears, force, (n)
+    real(wp), intent(in) :: limit(:)
+    !> Forces on the jumps, (3, n)
+    real(wp), intent(in) :: forces(:, :)
+    !> The interfaces
+    type(cohesive_interfaces_t), intent(inout) :: cohesive
+    !> Unknowns and their rates, (5, points)
+    real(wp), intent(inout) :: u(:, :), v(:, :)
+    type(cohesive_faces_t) :: faces
+    real(wp) :: change(3), work(3), stored(2), before(3)
+    integer :: j, p
+
+    do j = 1, size(forces, 2)
+      p = stacks%first(i) + j
+      faces = cohesive%faces_of(model, model%zone(p), cohesive%strength(p))
+      change = steps%now*v(1:3, p)
+      before = u(1:3, p)
+      u(1:3, p) = before + change
+      work = forces(:, j)*change + (forces(:, j) - stacks%forces(:, p))*stacks%change(:, p)/2
+      stored(1) = stacks%area(p)*(faces%stored([0.0_wp, 0.0_wp, u(3, p)], without_slip(cohesive%points(p))) &
+                                  - faces%stored([0.0_wp, 0.0_wp, before(3)], without_slip(cohesive%points(p))))
+      stored(2) = stacks%area(p)*(faces%stored([u(1:2, p), 0.0_wp], cohesive%points(p)) &
+                                  - faces%stored([before(1:2), 0.0_wp], cohesive%points(p)))
+      stacks%lost(:, p) = stacks%lost(:, p) + [work(3) - stored(1), work(1) + work(2) - stored(2)]
+      stacks%forces(:, p) = forces(:, j)
+      stacks%change(:, p) = change
+      call damage_point(stacks, model, p, u(1:3, p), limit(j)/stacks%area(p), cohesive)
+    end do
+  end subroutine advance_points
+
+  !> The point without sliding, so that it stores nothing but its opening.
+  pure function without_slip(point) result(plain)
+    !> The point
+    type(cohesive_point_t), intent(in) :: point
+    !> The same with no slip
+    type(cohesive_point_t) :: plain
+
+    plain = point
+    plain%sliding%slip = 0
+  end function without_slip
+end module stack_motions

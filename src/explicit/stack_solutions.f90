@@ -1,0 +1,128 @@
+!> Forces between the layers of one node at the end of a step.
+!>
+!> Tractions are implicit: they follow the jumps at the end of the step, with the damage of its start. So the stiffness of
+!> interfaces, of faces that press on each other and of friction sets no limit to the step. Openings are found first; the
+!> pressure that goes with them limits friction of the same step (return mapping of the predicted shear traction).
+module stack_solutions
+  use cohesive_points, only: cohesive_point_t
+  use kinds, only: wp
+  use tridiagonal_systems, only: solve_tractions
+  implicit none
+  private
+  public :: stack_t, solve_openings, solve_shears
+
+  !> The interfaces of one node in a step, from the struck side downwards, (n) each.
+  type :: stack_t
+    !> Number of interfaces
+    integer :: n = 0
+    !> Areas, and stiffness of shear and opening, force per jump, (2, n)
+    real(wp), allocatable :: area(:), stiffness(:, :)
+    !> Square of the step times the compliance of the layers along x, y and z: diagonal, and entries beside it, (3, n)
+    real(wp), allocatable :: diagonal(:, :), beside(:, :)
+    !> Jumps at the end of the step without tractions, and those at its start, (3, n)
+    real(wp), allocatable :: free(:, :), start(:, :)
+    !> Damage and sliding at the start
+    type(cohesive_point_t), allocatable :: points(:)
+    !> True: faces do not pass through each other where they are damaged
+    logical, allocatable :: closing(:)
+    !> Coefficient of friction
+    real(wp), allocatable :: friction(:)
+    !> Forces on the jumps found, (3, n)
+    real(wp), allocatable :: forces(:, :)
+    !> Most that friction bears in this step, force
+    real(wp), allocatable :: limit(:)
+  end type stack_t
+
+contains
+
+  !> Forces normal to the faces. Which of them press on each other is taken from the last solution until it stays; the
+  !> law rises with the opening, so that each change goes the right way.
+  pure subroutine solve_openings(stack)
+    !> The stack; receives normal forces and the limits of friction
+    type(stack_t), intent(inout) :: stack
+    logical :: closed(stack%n), before(stack%n)
+    real(wp) :: stiffness(stack%n), opening(stack%n), none(stack%n)
+    integer :: round, j
+
+    none = 0
+    closed = stack%start(3, :) < 0
+    do round = 0, stack%n + 1
+      do j = 1, stack%n
+        stiffness(j) = stack%stiffness(2, j)
+        if (.not. (closed(j) .and. stack%closing(j))) stiffness(j) = (1 - stack%points(j)%damage)*stiffness(j)
+      end do
+      call solve_tractions(stack%n, stiffness, none, stack%diagonal(3, :), stack%beside(3, :), stack%free(3, :), &
+                           stack%forces(3, :))
+      opening = stack%free(3, :) - reached(stack, 3)
+      before = closed
+      closed = opening < 0
+      if (all((before .eqv. closed) .or. .not. stack%points%damage > 0)) exit
+    end do
+    do j = 1, stack%n
+      stack%limit(j) = 0
+      if (stack%closing(j)) stack%limit(j) = stack%friction(j)*stack%points(j)%damage*max(0.0_wp, -stack%forces(3, j))
+    end do
+  end subroutine solve_openings
+
+  !> What the forces take off the jumps.
+  pure function reached(stack, k) result(change)
+    !> The stack with its forces
+    type(stack_t), intent(in) :: stack
+    !> Direction, 1 to 3
+    integer, intent(in) :: k
+    !> H C lambda, (n)
+    real(wp) :: change(stack%n)
+    integer :: j
+
+    change = stack%diagonal(k, :)*stack%forces(k, :)
+    do j = 1, stack%n - 1
+      change(j) = change(j) + stack%beside(k, j)*stack%forces(k, j + 1)
+      change(j + 1) = change(j + 1) + stack%beside(k, j)*stack%forces(k, j)
+    end do
+  end function reached
+
+  !> Forces along the faces: of the law, and of friction, which sticks elastically up to its limit.
+  pure subroutine solve_shears(stack)
+    !> The stack with the limits of friction; receives the forces
+    type(stack_t), intent(inout) :: stack
+    real(wp) :: stiffness(stack%n), given(2, stack%n), tried(2)
+    integer :: j
+    logical :: slips
+
+    do j = 1, stack%n
+      stiffness(j) = (1 - stack%points(j)%damage)*stack%stiffness(1, j)
+      given(:, j) = 0
+      if (.not. stack%limit(j) > 0) cycle
+      stiffness(j) = stiffness(j) + stack%stiffness(1, j)
+      given(:, j) = -stack%stiffness(1, j)*stack%points(j)%sliding%slip
+    end do
+    call solve_both(stack, stiffness, given)
+    if (.not. any(stack%limit > 0)) return
+    slips = .false.
+    associate (jumps => stack%free(1:2, :) - reshape([reached(stack, 1), reached(stack, 2)], [2, stack%n], order=[2, 1]))
+      do j = 1, stack%n
+        if (.not. stack%limit(j) > 0) cycle
+        tried = stack%stiffness(1, j)*(jumps(:, j) - stack%points(j)%sliding%slip)
+        if (.not. norm2(tried) > stack%limit(j)) cycle
+        slips = .true.
+        stiffness(j) = (1 - stack%points(j)%damage)*stack%stiffness(1, j)
+        given(:, j) = stack%limit(j)*(tried/norm2(tried))
+      end do
+    end associate
+    if (slips) call solve_both(stack, stiffness, given)
+  end subroutine solve_shears
+
+  !> Solves along x and along y.
+  pure subroutine solve_both(stack, stiffness, given)
+    !> The stack; receives the forces
+    type(stack_t), intent(inout) :: stack
+    !> Stiffness, and given parts of the forces along x and y
+    real(wp), intent(in) :: stiffness(:), given(:, :)
+    integer :: k
+
+    do k = 1, 2
+      call solve_tractions(stack%n, stiffness, given(k, :), stack%diagonal(k, :), stack%beside(k, :), &
+                           stack%free(k, :), stack%forces(k, :))
+    end do
+  end subroutine solve_both
+end module stack_solutions

@@ -1,0 +1,60 @@
+!> Points that take their motion from others: on the line at which a turned plate is cut, and on all of a full plate that
+!> keeps its symmetry.
+module leading_points
+  use kinds, only: wp
+  use layered_meshes, only: layered_mesh_t
+  use symmetry_images, only: symmetry_images_t
+  implicit none
+  private
+  public :: find_leading_points
+
+  !> Sign of u, v, w, theta_x, theta_y of a point at which a turned plate is cut that follows another one.
+  real(wp), parameter :: turned(5) = [-1.0_wp, -1.0_wp, 1.0_wp, -1.0_wp, -1.0_wp]
+
+contains
+
+  !> Finds the point that leads each point. What a point that is its own image would reverse is held.
+  pure subroutine find_leading_points(mesh, leader, signs, held, images)
+    !> The mesh
+    type(layered_mesh_t), intent(in) :: mesh
+    !> Point that gives a point its motion; 0: none, (points)
+    integer, intent(out) :: leader(:)
+    !> Signs by which its motion is multiplied, (5, points)
+    real(wp), intent(out) :: signs(:, :)
+    !> Held unknowns; receives those that symmetry holds, (5, points)
+    logical, intent(inout) :: held(:, :)
+    !> Images of the points; left out or empty: none
+    type(symmetry_images_t), intent(in), optional :: images
+    integer :: point
+
+    do point = 1, size(leader)
+      leader(point) = mesh%leader(point)
+      signs(:, point) = turned
+    end do
+    if (.not. present(images)) return
+    if (allocated(images%points)) call follow_images(images, leader, signs, held)
+  end subroutine find_leading_points
+
+  !> Has each point follow the first of its images, if that comes before it.
+  pure subroutine follow_images(images, leader, signs, held)
+    !> The images
+    type(symmetry_images_t), intent(in) :: images
+    !> Receives the leaders, (points)
+    integer, intent(inout) :: leader(:)
+    !> Receives the signs of the points' motion, (5, points)
+    real(wp), intent(inout) :: signs(:, :)
+    !> Receives what is held, (5, points)
+    logical, intent(inout) :: held(:, :)
+    integer :: point, k
+
+    do point = 1, size(leader)
+      do k = 1, size(images%signs, 2)
+        if (images%points(point, k) == point) held(:, point) = held(:, point) .or. images%signs(:, k) < 0
+      end do
+      k = minloc(images%points(point, :), dim=1)
+      if (images%points(point, k) >= point) cycle
+      leader(point) = images%points(point, k)
+      signs(:, point) = images%signs(:, k)
+    end do
+  end subroutine follow_images
+end module leading_points
