@@ -214,7 +214,7 @@ contains
 
   !> Lets the new layers move with the plate that they were, and finds their forces. Collective.
   subroutine settle_explicit(model, transfer, stepper)
-    type(model_t), intent(in) :: model
+    type(model_t), intent(inout) :: model
     !> Where points and elements come from
     type(layer_transfer_t), intent(in) :: transfer
     !> What evolves, loaded

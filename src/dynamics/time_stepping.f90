@@ -252,9 +252,12 @@ contains
   subroutine look(self, model)
     !> The time stepper
     class(time_stepper_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    !> Receives how the impactor's force is spread
+    type(model_t), intent(inout) :: model
 
     if (.not. allocated(self%explicit)) return
+    if (allocated(model%nose)) &
+      call model%spread_force(self%explicit%patch%local_weights(size(model%patch)), self%explicit%patch%offset)
     call book_energies(self%explicit, model, self%now)
     self%now%stress = struck_stress(model, self%now%motion%displacement)
     self%now%largest_stress = max(self%now%largest_stress, self%now%stress)

@@ -18,6 +18,7 @@ module central_differences
   use stack_solutions, only: stack_t
   use states, only: state_t
   use step_lengths, only: step_lengths_t
+  use struck_patches, only: struck_patch_t, create_struck_patch
   use tan_sun_indentation, only: commit_indentation, indentation_force, indentation_stiffness
   implicit none
   private
@@ -36,6 +37,8 @@ module central_differences
     type(interface_stacks_t) :: stacks
     !> Forces on the layers at the end of the last step, loads less internal forces, (5, points)
     real(wp), allocatable :: force(:, :)
+    !> Where the impactor presses
+    type(struck_patch_t) :: patch
     !> What frames and springs do
     type(rig_steps_t) :: rigs
     !> The step taken last and the one before it
@@ -96,6 +99,7 @@ contains
     self%stacks = create_interface_stacks(model, now%interfaces%cohesive, self%inertia)
     self%workspaces = new_workspaces(self%stacks)
     self%rigs = create_rig_steps(model)
+    self%patch = create_struck_patch(model)
     allocate (self%force(5, points), self%motion(5, points), source=0.0_wp)
     self%impactor_velocity = now%impactor%velocity
     call self%find_forces(model, now)
@@ -109,21 +113,19 @@ contains
     type(model_t), intent(in) :: model
     !> The state
     type(state_t), intent(in) :: now
-    real(wp) :: slope, compliance, square
+    real(wp) :: slope, compliance, square, inverse(size(self%patch%local))
     integer :: i
 
     square = self%frequency**2
     if (model%scene%has_impactor) then
       slope = indentation_stiffness(model%scene%indentation, now%indentation, now%indentation%alpha)
       if (slope > self%contact_stiffness) self%contact_stiffness = slope_reserve*slope
-      compliance = 0
-      do i = 1, size(model%patch_points)
-        associate (point => model%patch_points(i))
-          if (point <= model%distribution%owned) compliance = compliance + &
-            model%patch(point)**2*self%inertia%inverse(7, point)/model%mesh%multiplicity
-        end associate
+      inverse = 0
+      do i = 1, size(inverse)
+        if (self%patch%local(i) > 0) inverse(i) = self%inertia%inverse(7, self%patch%local(i))
       end do
-      call model%communicator%sum(compliance)
+      call model%communicator%sum(inverse)
+      compliance = sum(self%patch%weights**2*inverse)/model%mesh%multiplicity
       square = square + self%contact_stiffness*(compliance + 1/model%scene%impactor%mass)
     end if
     step = self%parameters%step_factor*2/sqrt(square)
@@ -206,10 +208,11 @@ contains
     type(model_t), intent(in) :: model
     !> The state
     type(state_t), intent(inout) :: now
-    real(wp) :: acceleration, alpha
+    real(wp) :: acceleration, alpha, w(size(self%patch%local))
 
     now%deflection = model%deflection(now%motion%displacement)
-    now%patch_mean = model%contact_deflection(now%motion%displacement)
+    w = self%patch%deflections(model, now%motion%displacement)
+    now%patch_mean = self%patch%mean(w)
     if (.not. model%scene%has_impactor) return
     associate (impactor => now%impactor, parameters => model%scene%impactor)
       acceleration = parameters%gravity - now%force/parameters%mass
@@ -219,6 +222,7 @@ contains
       now%force = indentation_force(model%scene%indentation, now%indentation, alpha)
       call commit_indentation(model%scene%indentation, now%indentation, alpha)
       impactor%force = now%force
+      call self%patch%spread(w, alpha)
       impactor%velocity = self%impactor_velocity + self%steps%now/2*(parameters%gravity - now%force/parameters%mass)
     end associate
   end subroutine move_impactor
@@ -239,7 +243,7 @@ contains
     call model%halo%accumulate(self%force)
     self%force = -self%force
     call model%profile%leave()
-    call model%push_patch(now%force, self%force)
+    call self%patch%push(model%mesh%multiplicity, now%force, self%force)
     if (model%rig%elastic) self%force(3, :) = self%force(3, :) + model%rig%presses
     if (allocated(model%pressure)) self%force = self%force + model%scene%pressure%amplitude(now%time)*model%pressure
     call self%inertia%fold(self%force)
@@ -291,6 +295,7 @@ contains
     associate (owned => model%distribution%points(:model%distribution%owned), points => model%mesh%points())
       call archive%field('explicit/forces', owned, points, self%force)
       call self%rigs%visit(archive, owned, points)
+      call self%patch%visit(archive)
       if (.not. model%map%layered) return
       allocate (interfaces(8, size(self%force, 2)))
       interfaces(1:3, :) = self%stacks%forces

@@ -13,7 +13,7 @@ module contact_areas
   public :: contact_area_t, new_contact_area
 
   !> Part of the indentation by which surfaces are farther apart at the edge of a Hertzian contact.
-  real(wp), parameter :: edge_gap = 0.5_wp
+  real(wp), parameter, public :: edge_gap = 0.5_wp
   !> Weight over the largest from which a place counts as touched: as contact ends, weights fade.
   real(wp), parameter :: noticed = 1.0e-3_wp
 
@@ -22,11 +22,11 @@ module contact_areas
     !> Weights of the deck's patch, whose product with w is its mean deflection, (local points); ghosts zero
     real(wp), allocatable :: under(:)
     !> Area beside the patch that belongs to each point within reach of the nose, (local points); ghosts zero
-    real(wp), allocatable, private :: beside(:)
+    real(wp), allocatable :: beside(:)
     !> Height of the nose's surface above its tip, (local points)
-    real(wp), allocatable, private :: rise(:)
+    real(wp), allocatable :: rise(:)
     !> Area of the modelled part of the patch
-    real(wp), private :: area = 0
+    real(wp) :: area = 0
   contains
     !> Weights by which the force is spread.
     procedure :: weights

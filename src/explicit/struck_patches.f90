@@ -1,0 +1,176 @@
+!> Where the impactor presses in steps by central differences: the deck's patch, or what a nose reaches of the plate.
+!>
+!> The points within reach are listed in the order of the mesh and known to every rank, so that the mean deflection and the
+!> spreading of the force are the same to the last digit on any number of them. A nose spreads its force by the deflection
+!> at the end of each step (`contact_areas`): a spreading that lags behind would be a spring that feeds motion.
+module struck_patches
+  use archives, only: archive_t
+  use contact_areas, only: edge_gap
+  use kinds, only: wp
+  use models, only: model_t
+  implicit none
+  private
+  public :: struck_patch_t, create_struck_patch
+
+  !> The points within reach.
+  type :: struck_patch_t
+    !> Position of each point among those that this rank owns; 0: another rank has it, (reached)
+    integer, allocatable :: local(:)
+    !> Weights of the deck's patch, area beside it, and height of the nose's surface above its tip, (reached)
+    real(wp), allocatable, private :: under(:), beside(:), rise(:)
+    !> Weights by which the force is spread, (reached)
+    real(wp), allocatable :: weights(:)
+    !> What the mean deflection had more when the weights were others
+    real(wp) :: offset = 0
+    !> True: the force follows the nose
+    logical, private :: follows = .false.
+    !> Area of the modelled part of the deck's patch
+    real(wp), private :: area = 0
+  contains
+    !> Deflections of the points.
+    procedure :: deflections
+    !> Deflection under the impactor.
+    procedure :: mean
+    !> Spreads the force anew.
+    procedure :: spread
+    !> Adds the nodal forces of a force.
+    procedure :: push
+    !> Weights at this rank's points.
+    procedure :: local_weights
+    !> Saves or loads.
+    procedure :: visit
+  end type struck_patch_t
+
+contains
+
+  !> The points within reach of the impactor. Collective.
+  function create_struck_patch(model) result(self)
+    type(model_t), intent(in) :: model
+    !> The points
+    type(struck_patch_t) :: self
+    real(wp) :: fields(4, model%mesh%points()), list(4*model%mesh%points())
+    integer, allocatable :: reached(:)
+    integer :: i
+
+    fields = 0
+    associate (share => model%distribution)
+      do i = 1, share%owned
+        if (allocated(model%nose)) then
+          fields(1:3, share%points(i)) = [model%nose%under(i), model%nose%beside(i), model%nose%rise(i)]
+        else
+          fields(1, share%points(i)) = model%patch(i)
+        end if
+        fields(4, share%points(i)) = i
+      end do
+      list = reshape(fields, [size(list)])
+      where (.not. abs(list) > 0) list = 0
+      if (model%communicator%size > 1) then
+        list(4::4) = 0
+        call model%communicator%sum(list)
+      end if
+      fields = reshape(list, shape(fields))
+      reached = pack([(i, i=1, size(fields, 2))], abs(fields(1, :)) + abs(fields(2, :)) > 0)
+      self%local = share%local(reached)
+      where (self%local > share%owned) self%local = 0
+    end associate
+    self%under = fields(1, reached)
+    self%beside = fields(2, reached)
+    self%rise = fields(3, reached)
+    self%weights = self%under
+    self%follows = allocated(model%nose)
+    if (self%follows) self%area = model%nose%area
+  end function create_struck_patch
+
+  !> Deflections of the points, the same on every rank.
+  function deflections(self, model, displacement) result(w)
+    !> The points
+    class(struck_patch_t), intent(in) :: self
+    type(model_t), intent(in) :: model
+    !> Unknowns, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> (reached)
+    real(wp) :: w(size(self%local))
+    integer :: i
+
+    w = 0
+    do i = 1, size(w)
+      if (self%local(i) > 0) w(i) = displacement(3, self%local(i))
+    end do
+    call model%communicator%sum(w)
+  end function deflections
+
+  !> Deflection under the impactor.
+  pure real(wp) function mean(self, w)
+    !> The points
+    class(struck_patch_t), intent(in) :: self
+    !> Their deflections, (reached)
+    real(wp), intent(in) :: w(:)
+
+    mean = dot_product(self%weights, w) + self%offset
+  end function mean
+
+  !> Spreads the force as the nose meets the deflected plate. The indentation goes on from what it was.
+  pure subroutine spread(self, w, indentation)
+    !> The points
+    class(struck_patch_t), intent(inout) :: self
+    !> Their deflections, (reached)
+    real(wp), intent(in) :: w(:)
+    !> The indentation; the patch alone is pressed without it
+    real(wp), intent(in) :: indentation
+    real(wp) :: pressure(size(w)), weights(size(w)), sums(2)
+
+    if (.not. self%follows) return
+    weights = self%under
+    if (indentation > 0) then
+      pressure = max(0.0_wp, edge_gap*indentation + minval(w + self%rise) - (w + self%rise))
+      sums = [self%area*dot_product(self%under, pressure), dot_product(self%beside, pressure)]
+      if (sum(sums) > 0) weights = (sums(1)*self%under + self%beside*pressure)/sum(sums)
+    end if
+    self%offset = self%offset - dot_product(weights - self%weights, w)
+    self%weights = weights
+  end subroutine spread
+
+  !> Adds the nodal forces of a force on the full plate.
+  pure subroutine push(self, multiplicity, force, forces)
+    !> The points
+    class(struck_patch_t), intent(in) :: self
+    !> Models that make up the full plate
+    integer, intent(in) :: multiplicity
+    !> The force
+    real(wp), intent(in) :: force
+    !> Forces on the layers, (5, points)
+    real(wp), intent(inout) :: forces(:, :)
+    integer :: i
+
+    do i = 1, size(self%local)
+      if (self%local(i) > 0) forces(3, self%local(i)) = forces(3, self%local(i)) + force/multiplicity*self%weights(i)
+    end do
+  end subroutine push
+
+  !> Weights at this rank's points.
+  pure function local_weights(self, points) result(weights)
+    !> The points
+    class(struck_patch_t), intent(in) :: self
+    !> Number of points of this rank
+    integer, intent(in) :: points
+    !> (points)
+    real(wp) :: weights(points)
+    integer :: i
+
+    weights = 0
+    do i = 1, size(self%local)
+      if (self%local(i) > 0) weights(self%local(i)) = self%weights(i)
+    end do
+  end function local_weights
+
+  !> Saves or loads.
+  subroutine visit(self, archive)
+    !> The points
+    class(struck_patch_t), intent(inout) :: self
+    !> Where to or where from
+    class(archive_t), intent(inout) :: archive
+
+    call archive%item('explicit/patch_weights', self%weights)
+    call archive%item('explicit/patch_offset', self%offset)
+  end subroutine visit
+end module struck_patches
