@@ -227,7 +227,7 @@ contains
       call move_with_plate(model, transfer, now%motion%velocity)
       call now%plies%restack(model, transfer%is_split(model%distribution%elements))
       call explicit%resume(model, now)
-      call explicit%find_forces(model, now)
+      call explicit%renew_forces(model, now)
       call stepper%look(model)
       now%ledger%layers = now%ledger%layers + before - now%ledger%kinetic - now%ledger%strain
     end associate

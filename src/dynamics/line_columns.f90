@@ -31,6 +31,11 @@ contains
     if (size(model%lines) == 0) return
     values = [(model%lines(i)%totals(now%motion%displacement, now%load_factor), i=1, size(model%lines))]
     call model%communicator%sum(values)
+    if (allocated(now%line_reactions)) then
+      do i = 1, size(model%lines)
+        if (model%lines(i)%load%prescribed) values(2*i - 1) = now%line_reactions(i)
+      end do
+    end if
     values = [now%load_factor, values]
   end function line_values
 end module line_columns

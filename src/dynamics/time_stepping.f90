@@ -259,6 +259,7 @@ contains
     if (allocated(model%nose)) &
       call model%spread_force(self%explicit%patch%local_weights(size(model%patch)), self%explicit%patch%offset)
     call book_energies(self%explicit, model, self%now)
+    if (size(model%lines) > 0) self%now%line_reactions = self%explicit%lines%totals(model)
     self%now%stress = struck_stress(model, self%now%motion%displacement)
     self%now%largest_stress = max(self%now%largest_stress, self%now%stress)
   end subroutine look

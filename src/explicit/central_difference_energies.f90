@@ -35,7 +35,7 @@ contains
     end if
     sums(6) = sum(method%stacks%lost(1, :)) + sum(method%rigs%frame_loss)
     sums(7) = sum(method%stacks%lost(2, :)) + sum(method%rigs%spring_loss)
-    sums(8) = method%work
+    sums(8) = sum(method%lines%work)
     call model%communicator%sum(sums)
     sums = sums*model%mesh%multiplicity
     associate (ledger => now%ledger)
@@ -83,6 +83,8 @@ contains
     end do
     energies(1) = energies(1) - sum(method%stacks%forces*method%stacks%change)/2 &
                   - sum(method%rigs%reaction*method%rigs%approach)/2
+    if (size(method%lines%pins) > 0) &
+      energies(1) = energies(1) + sum(method%lines%pins%reaction*method%lines%pins%change)/2
     if (allocated(method%inertia%springs)) energies(1) = energies(1) - method%steps%now/2* &
       sum(method%inertia%springs*now%motion%displacement*now%motion%velocity)
   end function kinetic_energies

@@ -10,6 +10,7 @@ module central_differences
   use central_difference_parameters, only: central_difference_parameters_t
   use interface_stacks, only: interface_stacks_t, create_interface_stacks
   use kinds, only: wp
+  use line_steps, only: line_steps_t, create_line_steps
   use models, only: model_t
   use nodal_inertia, only: nodal_inertia_t, create_nodal_inertia
   use rig_steps, only: rig_steps_t, create_rig_steps
@@ -39,6 +40,8 @@ module central_differences
     real(wp), allocatable :: force(:, :)
     !> Where the impactor presses
     type(struck_patch_t) :: patch
+    !> What lines do
+    type(line_steps_t) :: lines
     !> What frames and springs do
     type(rig_steps_t) :: rigs
     !> The step taken last and the one before it
@@ -54,8 +57,6 @@ module central_differences
     real(wp) :: contact_stiffness = 0
     !> Strain energy of this rank's elements
     real(wp) :: strain = 0
-    !> Work of loads so far, of this rank's points
-    real(wp) :: work = 0
     !> Room for the motion of the layers, and for stacks
     real(wp), allocatable, private :: motion(:, :)
     type(stack_t), allocatable, private :: workspaces(:)
@@ -68,6 +69,9 @@ module central_differences
     procedure :: advance
     !> Finds the forces on the layers.
     procedure :: find_forces
+    procedure :: add_loads
+    !> Finds them anew where the plate has changed.
+    procedure :: renew_forces
     !> Books what failed plies have lost.
     procedure :: book_failures
     !> Takes up a state that has been loaded.
@@ -99,10 +103,12 @@ contains
     self%stacks = create_interface_stacks(model, now%interfaces%cohesive, self%inertia)
     self%workspaces = new_workspaces(self%stacks)
     self%rigs = create_rig_steps(model)
+    self%lines = create_line_steps(model, self%inertia)
     self%patch = create_struck_patch(model)
     allocate (self%force(5, points), self%motion(5, points), source=0.0_wp)
     self%impactor_velocity = now%impactor%velocity
     call self%find_forces(model, now)
+    call self%add_loads(model, now, [0.0_wp, 0.0_wp])
   end subroutine start
 
   !> Step that the elements and the contact bear, times the part of it that is taken. Frequencies of springs added to each
@@ -141,7 +147,7 @@ contains
     real(wp), intent(in) :: event
     !> The state
     type(state_t), intent(inout) :: now
-    real(wp) :: step, remaining
+    real(wp) :: step, remaining, load_factors(2)
 
     remaining = event - now%time
     step = self%longest_step(model, now)
@@ -150,11 +156,13 @@ contains
     if (abs(step - self%steps%now) <= 1.0e-9_wp*step) step = self%steps%now
     self%steps = step_lengths_t(now=step, last=self%steps%now)
     call prepare(self)
+    load_factors = [now%load_factor, (now%time + step)/model%scene%ramp_time]
+    call self%lines%find_rates(model, self%steps, load_factors(2), self%motion)
     associate (u => now%motion%displacement, v => now%motion%velocity)
       call model%profile%enter('nodes')
       if (allocated(self%inertia%springs)) call self%rigs%pull(self%inertia%springs, self%steps, u, v, self%force)
       call move_single(self, model, u, v)
-      call move_stacks(self%stacks, self%workspaces, self%rigs, model, self%inertia, self%steps, self%force, &
+      call move_stacks(self%stacks, self%workspaces, self%rigs, self%lines, model, self%inertia, self%steps, self%force, &
                        now%interfaces%cohesive, u, v)
       if (allocated(self%inertia%springs)) call self%rigs%book_springs(self%inertia%springs, self%steps, u, v)
       call self%inertia%spread(u)
@@ -165,9 +173,10 @@ contains
     now%time = now%time + step
     if (abs(now%time - event) <= 1.0e-9_wp*step) now%time = event
     now%step = now%step + 1
-    now%load_factor = now%time/model%scene%ramp_time
+    now%load_factor = load_factors(2)
     call move_impactor(self, model, now)
     call self%find_forces(model, now)
+    call add_loads(self, model, now, load_factors)
   end subroutine advance
 
   !> Inverse inertia and compliances for the length of the step.
@@ -177,6 +186,7 @@ contains
 
     if (abs(self%prepared%now - self%steps%now) <= 0 .and. abs(self%prepared%last - self%steps%last) <= 0) return
     call self%inertia%invert(self%steps%now*self%steps%mean())
+    call self%lines%project(self%inertia%inverse)
     call self%stacks%prepare(self%inertia, self%steps%now*self%steps%mean())
     self%prepared = self%steps
   end subroutine prepare
@@ -188,11 +198,17 @@ contains
     type(model_t), intent(in) :: model
     !> Unknowns and their rates, (5, points)
     real(wp), intent(inout) :: u(:, :), v(:, :)
+    real(wp) :: before(5)
     integer :: i, p
 
     do i = 1, size(self%stacks%single)
       p = self%stacks%single(i)
+      if (self%lines%is_pinned(p)) before = v(:, p)
       call accelerate(self%inertia%inverse(:, p), self%steps%mean(), self%force(:, p), v(:, p))
+      if (self%lines%is_pinned(p)) then
+        call self%lines%prescribe(p, v(:, p))
+        call self%lines%react(p, self%steps, self%inertia%mass(:, p), before, v(:, p), self%force(:, p))
+      end if
       if (self%rigs%bears(p)) then
         if (u(3, p) + self%steps%now*v(3, p) > 0 .or. self%rigs%reaction(p) > 0) &
           call self%rigs%bear(p, self%steps, self%inertia%inverse(7, p), u(3, p), v(3, p))
@@ -245,9 +261,34 @@ contains
     call model%profile%leave()
     call self%patch%push(model%mesh%multiplicity, now%force, self%force)
     if (model%rig%elastic) self%force(3, :) = self%force(3, :) + model%rig%presses
-    if (allocated(model%pressure)) self%force = self%force + model%scene%pressure%amplitude(now%time)*model%pressure
     call self%inertia%fold(self%force)
   end subroutine find_forces
+
+  !> Adds the forces of pressure and lines to those on the layers, and books their work in the step.
+  subroutine add_loads(self, model, now, load_factors)
+    !> The method
+    class(central_difference_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> The state
+    type(state_t), intent(in) :: now
+    !> Ramps over their full values at the start and at the end of the step
+    real(wp), intent(in) :: load_factors(2)
+    real(wp), allocatable :: loads(:, :), change(:, :)
+    real(wp) :: amplitudes(2)
+
+    if (.not. (allocated(model%pressure) .or. any(.not. model%lines%load%prescribed))) return
+    allocate (loads, mold=self%force)
+    loads = 0
+    change = self%steps%now*model%motion_of(now%motion%velocity)
+    call self%lines%press(model, load_factors, change, loads)
+    if (allocated(model%pressure)) then
+      amplitudes = model%scene%pressure%amplitude([now%time - self%steps%now, now%time])
+      loads = loads + amplitudes(2)*model%pressure
+      self%lines%work = self%lines%work + sum(amplitudes)/2*model%pressure(3, :)*change(3, :)
+    end if
+    call self%inertia%fold(loads)
+    self%force = self%force + loads
+  end subroutine add_loads
 
   !> Books the strain energy that failed plies have lost, and finds the forces that are left. Collective.
   subroutine book_failures(self, model, now)
@@ -259,11 +300,26 @@ contains
     real(wp) :: lost
 
     lost = self%strain
-    call self%find_forces(model, now)
+    call self%renew_forces(model, now)
     lost = lost - self%strain
     call model%communicator%sum(lost)
     now%ledger%ply_damage = now%ledger%ply_damage + lost*model%mesh%multiplicity
   end subroutine book_failures
+
+  !> Finds the forces anew after plies have failed or layers have appeared; loads do no work then. Collective.
+  subroutine renew_forces(self, model, now)
+    !> The method
+    class(central_difference_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> The state
+    type(state_t), intent(inout) :: now
+    real(wp) :: work(size(self%force, 2))
+
+    call self%find_forces(model, now)
+    work = self%lines%work
+    call self%add_loads(model, now, [now%load_factor, now%load_factor])
+    self%lines%work = work
+  end subroutine renew_forces
 
   !> Takes up a state that has been loaded: with it, damage may begin elsewhere. Collective.
   subroutine resume(self, model, now)
@@ -291,11 +347,11 @@ contains
     call archive%item('explicit/step_before', self%steps%last)
     call archive%item('explicit/impactor_velocity', self%impactor_velocity)
     call archive%item('explicit/contact_stiffness', self%contact_stiffness)
-    call archive%item('explicit/work', self%work)
     associate (owned => model%distribution%points(:model%distribution%owned), points => model%mesh%points())
       call archive%field('explicit/forces', owned, points, self%force)
       call self%rigs%visit(archive, owned, points)
       call self%patch%visit(archive)
+      if (size(model%lines) > 0 .or. allocated(model%pressure)) call self%lines%visit(archive, owned, points)
       if (.not. model%map%layered) return
       allocate (interfaces(8, size(self%force, 2)))
       interfaces(1:3, :) = self%stacks%forces

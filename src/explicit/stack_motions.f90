@@ -5,6 +5,7 @@ module stack_motions
   use cohesive_points, only: cohesive_point_t
   use interface_stacks, only: interface_stacks_t
   use kinds, only: wp
+  use line_steps, only: line_steps_t
   use models, only: model_t
   use nodal_inertia, only: nodal_inertia_t
   use stack_solutions, only: stack_t, solve_openings, solve_shears
@@ -35,13 +36,15 @@ contains
   end function new_workspaces
 
   !> Moves all stacks.
-  subroutine move_stacks(stacks, work, rigs, model, inertia, steps, force, cohesive, u, v)
+  subroutine move_stacks(stacks, work, rigs, lines, model, inertia, steps, force, cohesive, u, v)
     !> The stacks; receive forces, changes of the jumps and losses
     type(interface_stacks_t), intent(inout) :: stacks
     !> Room, one for each number of interfaces
     type(stack_t), intent(inout) :: work(:)
     !> Frames
     type(rig_steps_t), intent(inout) :: rigs
+    !> Lines
+    type(line_steps_t), intent(inout) :: lines
     type(model_t), intent(in) :: model
     !> Lumped inertia, inverted for the step
     type(nodal_inertia_t), intent(in) :: inertia
@@ -56,12 +59,12 @@ contains
     integer :: i
 
     do i = 1, size(stacks%first)
-      call move_stack(stacks, i, work(stacks%layers(i) - 1), rigs, model, inertia, steps, force, cohesive, u, v)
+      call move_stack(stacks, i, work(stacks%layers(i) - 1), rigs, lines, model, inertia, steps, force, cohesive, u, v)
     end do
   end subroutine move_stacks
 
   !> Moves one stack.
-  subroutine move_stack(stacks, i, work, rigs, model, inertia, steps, force, cohesive, u, v)
+  subroutine move_stack(stacks, i, work, rigs, lines, model, inertia, steps, force, cohesive, u, v)
     !> The stacks
     type(interface_stacks_t), intent(inout) :: stacks
     !> Which of them
@@ -70,6 +73,8 @@ contains
     type(stack_t), intent(inout) :: work
     !> Frames
     type(rig_steps_t), intent(inout) :: rigs
+    !> Lines
+    type(line_steps_t), intent(inout) :: lines
     type(model_t), intent(in) :: model
     !> Lumped inertia
     type(nodal_inertia_t), intent(in) :: inertia
@@ -90,6 +95,7 @@ contains
     call to_layers(stacks%height(p:q), v(:, p:q), layer)
     do k = 0, n
       call accelerate(inertia%inverse(:, p + k), steps%mean(), force(:, p + k), layer(:, k + 1))
+      if (lines%is_pinned(p + k)) call lines%prescribe(p + k, layer(:, k + 1))
     end do
     free = u(1:3, p + 1:q) + steps%now*rates(n, stacks%height(p:q), layer)
     if (stacks%damaged(i)) then
@@ -106,6 +112,8 @@ contains
                                           forces(3, :))
     call push_layers(n, stacks%height(p:q), inertia%inverse(:, p:q), steps%mean(), forces, layer)
     if (rigs%bears(p)) layer(3, 1) = rigs%approach(p)/steps%now
+    if (any([(lines%is_pinned(k), k=p, q)])) &
+      call book_reactions(stacks, i, lines, inertia, steps, force(:, p:q), forces, v(:, p:q), layer)
     v(:, p) = layer(:, 1)
     v(1:3, p + 1:q) = rates(n, stacks%height(p:q), layer)
     v(4:5, p + 1:q) = layer(4:5, 2:)
@@ -225,16 +233,59 @@ contains
     real(wp), intent(in) :: forces(3, n)
     !> Velocities of the layers, (5, n + 1)
     real(wp), intent(inout) :: layer(5, n + 1)
-    real(wp) :: pull(5)
     integer :: l
 
     do l = 1, n + 1
-      pull = 0
-      if (l > 1) pull = [-forces(:, l - 1), -height(l)*forces(1:2, l - 1)]
-      if (l <= n) pull = pull + [forces(:, l), height(l + 1)*forces(1:2, l)]
-      call accelerate(inverse(:, l), time, pull, layer(:, l))
+      call accelerate(inverse(:, l), time, pull_on(n, height, forces, l), layer(:, l))
     end do
   end subroutine push_layers
+
+  !> Force of the tractions on a layer.
+  pure function pull_on(n, height, forces, l) result(pull)
+    !> Interfaces
+    integer, intent(in) :: n
+    !> Height of the interface above each layer, (n + 1)
+    real(wp), intent(in) :: height(n + 1)
+    !> Forces that pull the jumps back, (3, n)
+    real(wp), intent(in) :: forces(3, n)
+    !> The layer
+    integer, intent(in) :: l
+    !> Forces and moments
+    real(wp) :: pull(5)
+
+    pull = 0
+    if (l > 1) pull = [-forces(:, l - 1), -height(l)*forces(1:2, l - 1)]
+    if (l <= n) pull = pull + [forces(:, l), height(l + 1)*forces(1:2, l)]
+  end function pull_on
+
+  !> Books the reactions of lines on the layers of a stack.
+  pure subroutine book_reactions(stacks, i, lines, inertia, steps, force, forces, before, after)
+    !> The stacks
+    type(interface_stacks_t), intent(in) :: stacks
+    !> Which of them
+    integer, intent(in) :: i
+    !> The lines
+    type(line_steps_t), intent(inout) :: lines
+    !> Lumped inertia
+    type(nodal_inertia_t), intent(in) :: inertia
+    !> The step and the one before
+    type(step_lengths_t), intent(in) :: steps
+    !> Forces on the layers, (5, n + 1), and on the jumps, (3, n)
+    real(wp), intent(in) :: force(:, :), forces(:, :)
+    !> Rates of the unknowns before the step, and velocities of the layers after it, (5, n + 1)
+    real(wp), intent(in) :: before(:, :), after(:, :)
+    real(wp) :: layer(5, size(force, 2))
+    integer :: l, p
+
+    associate (height => stacks%height(stacks%first(i):stacks%first(i) + stacks%layers(i) - 1))
+      call to_layers(height, before, layer)
+      do l = 1, size(force, 2)
+        p = stacks%first(i) + l - 1
+        if (lines%is_pinned(p)) call lines%react(p, steps, inertia%mass(:, p), layer(:, l), after(:, l), &
+                                                 force(:, l) + pull_on(size(forces, 2), height, forces, l))
+      end do
+    end associate
+  end subroutine book_reactions
 
   !> Takes the state of a damaged stack.
   pure subroutine load_stack(stacks, work, model, cohesive, p, u, free)

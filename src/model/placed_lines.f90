@@ -30,6 +30,8 @@ module placed_lines
     real(wp) :: stiffness = 0
     !> Each node's part of the modelled line, all ranks together 1, (nodes of this rank)
     real(wp), allocatable :: weight(:)
+    !> Height z of the middle of the layer acted on, (nodes of this rank)
+    real(wp), allocatable :: height(:)
     !> Where the unknowns that move a node begin in the next two, (nodes of this rank + 1)
     integer, allocatable :: first(:)
     !> Points whose unknowns move a node
@@ -80,7 +82,7 @@ contains
     mirrored = is_mirrored(symmetry)
     if (mirrored(along)) self%share = self%share/2
     if (mirrored(across) .and. crossing == 0) self%share = self%share/2
-    allocate (self%weight(0), self%first(1), self%point(0), self%coefficient(5, 0))
+    allocate (self%weight(0), self%height(0), self%first(1), self%point(0), self%coefficient(5, 0))
     self%first(1) = 1
     do i = 1, distribution%owned
       if (mesh%point_zone(distribution%points(i)) /= 0) cycle
@@ -196,6 +198,7 @@ contains
       bottom = plies(size(plies))%z_bottom
       if (point < last) bottom = plies(mesh%zones(mesh%point_zone(point + 1))%below_ply)%z_bottom
       self%weight = [self%weight, weight*merge((bottom - top)/total, 1.0_wp, self%load%layer == all_layers)]
+      self%height = [self%height, (top + bottom)/2]
       call add_unknowns(self, map, local + point - first_point, (top + bottom)/2)
       self%first = [self%first, size(self%point) + 1]
     end do

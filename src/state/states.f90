@@ -38,6 +38,8 @@ module states
     real(wp), allocatable :: patch(:)
     !> What the mean deflection of the patch had more when the patch was another
     real(wp) :: patch_offset = 0
+    !> Reactions of lines that prescribe motion, where they are no springs, of the full plate, (lines)
+    real(wp), allocatable :: line_reactions(:)
     !> Mean deflection of the patch, and deflection of the struck point
     real(wp) :: patch_mean = 0, deflection = 0
     !> Bending stress at the struck point, and its largest value so far

@@ -1,0 +1,298 @@
+!> Lines in steps by central differences: those that press add forces to their layers, those that hold or move the plate
+!> prescribe the velocity of a layer at each node.
+!>
+!> What a line prescribes is one component of a layer's motion, u + z theta_x at the layer's middle, v + z theta_y, w or a
+!> rotation: c v = q. The inverse inertia of the layer loses that direction, M^-1 - M^-1 c c^T M^-1/(c^T M^-1 c), so that no
+!> other force moves it, and the velocity is corrected along M^-1 c. The reaction is what the layer's momentum then lacks.
+module line_steps
+  use archives, only: archive_t
+  use kinds, only: wp
+  use models, only: model_t
+  use nodal_inertia, only: nodal_inertia_t
+  use step_lengths, only: step_lengths_t
+  implicit none
+  private
+  public :: line_steps_t, create_line_steps
+
+  !> A component of a layer's motion that a line prescribes.
+  type :: pin_t
+    !> Point of the layer, and the line
+    integer :: point = 0, line = 0
+    !> Component of the motion, 1 to 5, and height at which it is prescribed
+    integer :: component = 0
+    real(wp) :: height = 0
+    !> Velocity that a unit of the component's velocity takes: of the displacement and of the rotation, or of w alone
+    real(wp) :: gain(2) = 0
+    !> Value at the end of the step, and rate in it
+    real(wp) :: rate = 0
+    !> Reaction in the last step, and change of the component in it
+    real(wp) :: reaction = 0, change = 0
+  end type pin_t
+
+  !> The lines of a model.
+  type :: line_steps_t
+    !> What they prescribe, those of one point after each other
+    type(pin_t), allocatable :: pins(:)
+    !> First of the pins of each point, (points + 1)
+    integer, allocatable, private :: first(:)
+    !> Work of the lines so far, (points)
+    real(wp), allocatable :: work(:)
+  contains
+    !> True: a line prescribes some motion of a point.
+    procedure :: is_pinned
+    !> Takes the pinned directions out of the inverse inertia.
+    procedure :: project
+    !> Finds the rates of a step.
+    procedure :: find_rates
+    !> Gives the layer of a point the velocity that is prescribed.
+    procedure :: prescribe
+    !> Books the reactions on a point.
+    procedure :: react
+    !> Adds the forces of lines that press.
+    procedure :: press
+    !> Force of each line on the full plate.
+    procedure :: totals
+    !> Saves or loads.
+    procedure :: visit
+  end type line_steps_t
+
+contains
+
+  !> The lines of a model.
+  function create_line_steps(model, inertia) result(self)
+    type(model_t), intent(in) :: model
+    !> Lumped inertia, with what is held and which points follow
+    type(nodal_inertia_t), intent(in) :: inertia
+    !> The lines
+    type(line_steps_t) :: self
+    type(pin_t), allocatable :: pins(:)
+    logical :: follows(size(model%distribution%points))
+    integer :: line, node, p
+
+    follows = .false.
+    follows(inertia%followers) = .true.
+    allocate (pins(0), self%work(size(follows)), self%first(size(follows) + 1))
+    self%work = 0
+    do line = 1, size(model%lines)
+      associate (its => model%lines(line))
+        if (.not. its%load%prescribed) cycle
+        do node = 1, size(its%weight)
+          p = its%point(its%first(node))
+          if (follows(p) .or. inertia%held(its%load%component, p)) cycle
+          pins = [pins, pin_t(point=p, line=line, component=its%load%component, &
+                              height=merge(its%height(node), 0.0_wp, its%load%component <= 2))]
+        end do
+      end associate
+    end do
+    allocate (self%pins(0))
+    do p = 1, size(follows)
+      self%first(p) = size(self%pins) + 1
+      if (size(pins) > 0) self%pins = [self%pins, pack(pins, pins%point == p)]
+    end do
+    self%first(p) = size(self%pins) + 1
+  end function create_line_steps
+
+  !> True: a line prescribes some motion of a point.
+  pure logical function is_pinned(self, p)
+    !> The lines
+    class(line_steps_t), intent(in) :: self
+    !> The point
+    integer, intent(in) :: p
+
+    is_pinned = self%first(p + 1) > self%first(p)
+  end function is_pinned
+
+  !> Takes the pinned directions out of the inverse inertia.
+  pure subroutine project(self, inverse)
+    !> The lines
+    class(line_steps_t), intent(inout) :: self
+    !> Inverse inertia, (7, points)
+    real(wp), intent(inout) :: inverse(:, :)
+    real(wp) :: direction(2), compliance
+    integer :: i, from
+
+    do i = 1, size(self%pins)
+      associate (pin => self%pins(i), m => inverse(:, self%pins(i)%point))
+        if (pin%component == 3) then
+          pin%gain = [1.0_wp, 0.0_wp]
+          m(7) = 0
+          cycle
+        end if
+        from = merge(1, 4, pin%component == 1 .or. pin%component == 4)
+        direction = merge([1.0_wp, pin%height], [0.0_wp, 1.0_wp], pin%component <= 2)
+        pin%gain = [m(from)*direction(1) + m(from + 1)*direction(2), &
+                    m(from + 1)*direction(1) + m(from + 2)*direction(2)]
+        compliance = dot_product(pin%gain, direction)
+        if (.not. compliance > 0) cycle
+        m(from:from + 2) = m(from:from + 2) - [pin%gain(1)**2, product(pin%gain), pin%gain(2)**2]/compliance
+        pin%gain = pin%gain/compliance
+      end associate
+    end do
+  end subroutine project
+
+  !> Finds the rates that bring each pinned component to its value at the end of the step.
+  pure subroutine find_rates(self, model, steps, load_factor, motion)
+    !> The lines
+    class(line_steps_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> The step and the one before
+    type(step_lengths_t), intent(in) :: steps
+    !> Ramps over their full values at the end of the step
+    real(wp), intent(in) :: load_factor
+    !> Motion of the layers at the start of the step, (5, points)
+    real(wp), intent(in) :: motion(:, :)
+    integer :: i
+
+    do i = 1, size(self%pins)
+      associate (pin => self%pins(i))
+        pin%rate = (model%lines(pin%line)%load%at_factor(load_factor) - component_of(pin, motion(:, pin%point)))/steps%now
+      end associate
+    end do
+  end subroutine find_rates
+
+  !> The pinned component of a layer's motion.
+  pure real(wp) function component_of(pin, motion) result(value)
+    !> The pin
+    type(pin_t), intent(in) :: pin
+    !> Motion or velocity of the layer
+    real(wp), intent(in) :: motion(5)
+
+    value = motion(pin%component)
+    if (pin%component <= 2) value = value + pin%height*motion(pin%component + 3)
+  end function component_of
+
+  !> Gives the layer of a point the velocity that is prescribed.
+  pure subroutine prescribe(self, p, velocity)
+    !> The lines
+    class(line_steps_t), intent(in) :: self
+    !> The point
+    integer, intent(in) :: p
+    !> Velocity of its layer
+    real(wp), intent(inout) :: velocity(5)
+    real(wp) :: missing
+    integer :: i, k
+
+    do i = self%first(p), self%first(p + 1) - 1
+      associate (pin => self%pins(i))
+        missing = pin%rate - component_of(pin, velocity)
+        k = pin%component
+        if (k == 3) then
+          velocity(3) = pin%rate
+        else
+          if (k > 3) k = k - 3
+          velocity([k, k + 3]) = velocity([k, k + 3]) + pin%gain*missing
+        end if
+      end associate
+    end do
+  end subroutine prescribe
+
+  !> Books the reactions on a point: what its layer's momentum has gained beyond the other forces.
+  pure subroutine react(self, p, steps, mass, before, after, force)
+    !> The lines
+    class(line_steps_t), intent(inout) :: self
+    !> The point
+    integer, intent(in) :: p
+    !> The step and the one before
+    type(step_lengths_t), intent(in) :: steps
+    !> Inertia of the layer
+    real(wp), intent(in) :: mass(4)
+    !> Velocities of the layer before and after, and the other forces on it
+    real(wp), intent(in) :: before(5), after(5), force(5)
+    real(wp) :: gained(5), missing(5), reaction, change
+    integer :: i
+
+    gained = (after - before)/steps%mean()
+    missing = [mass(1)*gained(1:2) + mass(2)*gained(4:5), mass(4)*gained(3), mass(2)*gained(1:2) + mass(3)*gained(4:5)] &
+              - force
+    do i = self%first(p), self%first(p + 1) - 1
+      associate (pin => self%pins(i))
+        reaction = missing(pin%component)
+        if (pin%component <= 2) missing(pin%component + 3) = missing(pin%component + 3) - pin%height*reaction
+        change = steps%now*component_of(pin, after)
+        self%work(p) = self%work(p) + reaction*change + (reaction - pin%reaction)*pin%change/2
+        pin%reaction = reaction
+        pin%change = change
+      end associate
+    end do
+  end subroutine react
+
+  !> Adds the forces of lines that press, and their work in a step under the mean of the forces at its ends.
+  pure subroutine press(self, model, load_factors, change, forces)
+    !> The lines
+    class(line_steps_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> Ramps over their full values at the start and at the end of the step
+    real(wp), intent(in) :: load_factors(2)
+    !> Change of the motion of the layers in the step, (5, points)
+    real(wp), intent(in) :: change(:, :)
+    !> Forces on the layers, (5, points)
+    real(wp), intent(inout) :: forces(:, :)
+    real(wp) :: values(2), share
+    integer :: line, node
+    type(pin_t) :: place
+
+    do line = 1, size(model%lines)
+      associate (its => model%lines(line))
+        if (its%load%prescribed) cycle
+        values = its%load%at_factor(load_factors)
+        do node = 1, size(its%weight)
+          place = pin_t(point=its%point(its%first(node)), component=its%load%component, &
+                        height=merge(its%height(node), 0.0_wp, its%load%component <= 2))
+          share = its%share*its%weight(node)
+          associate (p => place%point, k => place%component)
+            forces(k, p) = forces(k, p) + share*values(2)
+            if (k <= 2) forces(k + 3, p) = forces(k + 3, p) + place%height*share*values(2)
+            self%work(p) = self%work(p) + share*sum(values)/2*component_of(place, change(:, p))
+          end associate
+        end do
+      end associate
+    end do
+  end subroutine press
+
+  !> Force of each line on the full plate. Collective.
+  function totals(self, model) result(forces)
+    !> The lines
+    class(line_steps_t), intent(in) :: self
+    type(model_t), intent(in) :: model
+    !> Reactions of lines that prescribe motion, 0 for others
+    real(wp) :: forces(size(model%lines))
+    integer :: i
+
+    forces = 0
+    do i = 1, size(self%pins)
+      associate (pin => self%pins(i))
+        forces(pin%line) = forces(pin%line) + pin%reaction/model%lines(pin%line)%share
+      end associate
+    end do
+    call model%communicator%sum(forces)
+  end function totals
+
+  !> Saves or loads reactions, changes and work.
+  subroutine visit(self, archive, owned, points)
+    !> The lines
+    class(line_steps_t), intent(inout) :: self
+    !> Where to or where from
+    class(archive_t), intent(inout) :: archive
+    !> Points of the mesh that this rank owns, and all points
+    integer, intent(in) :: owned(:), points
+    real(wp) :: fields(11, size(self%work))
+    integer :: i
+
+    fields = 0
+    fields(11, :) = self%work
+    do i = 1, size(self%pins)
+      associate (pin => self%pins(i))
+        fields(pin%component, pin%point) = pin%reaction
+        fields(pin%component + 5, pin%point) = pin%change
+      end associate
+    end do
+    call archive%field('explicit/lines', owned, points, fields)
+    self%work = fields(11, :)
+    do i = 1, size(self%pins)
+      associate (pin => self%pins(i))
+        pin%reaction = fields(pin%component, pin%point)
+        pin%change = fields(pin%component + 5, pin%point)
+      end associate
+    end do
+  end subroutine visit
+end module line_steps
