@@ -8,6 +8,7 @@ module time_stepping
   use step_errors, only: step_error_t
   use central_difference_energies, only: book_energies
   use central_differences, only: central_difference_t
+  use rig_reactions, only: reactions_of
   use stepping_parameters, only: stepping_t, follows_error, is_explicit
   use linear_solver_parameters, only: linear_solver_parameters_t
   use newmark_integrators, only: plate_integrator_t, plate_integrator
@@ -103,7 +104,8 @@ contains
     if (is_explicit(stepping)) then
       allocate (self%explicit)
       self%unknowns = count(.not. model%held)
-      call self%explicit%start(model, stepping%central, self%now)
+      if (model%scene%has_thermal) call settle_stresses(self, model, linear_solver, error)
+      if (.not. allocated(error)) call self%explicit%start(model, stepping%central, self%now)
       return
     end if
     allocate (self%trial, source=self%now)
@@ -120,6 +122,22 @@ contains
     if (follows_error(stepping%adapt)) call self%step_error%start(model, stepping%time%step)
     if (allocated(model%pressure) .or. size(model%lines) > 0) call start_acceleration(self, model, error)
   end subroutine start
+
+  !> Brings a plate that central differences are to move into equilibrium with its residual stresses, so that nothing
+  !> rings. Collective.
+  subroutine settle_stresses(self, model, linear_solver, error)
+    !> The time stepper
+    class(time_stepper_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> The linear solver
+    type(linear_solver_parameters_t), intent(in) :: linear_solver
+    !> Set if there is no equilibrium
+    type(error_t), allocatable, intent(out) :: error
+
+    call self%operator%create(model, linear_solver%factorization, error)
+    if (.not. allocated(error)) call find_initial_equilibrium(model, self%operator, self%now, error)
+    call self%operator%release()
+  end subroutine settle_stresses
 
   !> Acceleration of the plate under a pressure or lines that are there from the start.
   subroutine start_acceleration(self, model, error)
@@ -259,6 +277,7 @@ contains
     if (allocated(model%nose)) &
       call model%spread_force(self%explicit%patch%local_weights(size(model%patch)), self%explicit%patch%offset)
     call book_energies(self%explicit, model, self%now)
+    self%now%interfaces%rig%found = reactions_of(self%explicit, model, self%now)
     if (size(model%lines) > 0) self%now%line_reactions = self%explicit%lines%totals(model)
     self%now%stress = struck_stress(model, self%now%motion%displacement)
     self%now%largest_stress = max(self%now%largest_stress, self%now%stress)

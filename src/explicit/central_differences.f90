@@ -8,6 +8,7 @@
 module central_differences
   use archives, only: archive_t
   use central_difference_parameters, only: central_difference_parameters_t
+  use circle_frames, only: circle_frames_t, create_circle_frames
   use interface_stacks, only: interface_stacks_t, create_interface_stacks
   use kinds, only: wp
   use line_steps, only: line_steps_t, create_line_steps
@@ -44,6 +45,8 @@ module central_differences
     type(line_steps_t) :: lines
     !> What frames and springs do
     type(rig_steps_t) :: rigs
+    !> Points that circular windows hold
+    type(circle_frames_t) :: circles
     !> The step taken last and the one before it
     type(step_lengths_t) :: steps
     !> Step for which inertia and stacks are prepared
@@ -103,6 +106,7 @@ contains
     self%stacks = create_interface_stacks(model, now%interfaces%cohesive, self%inertia)
     self%workspaces = new_workspaces(self%stacks)
     self%rigs = create_rig_steps(model)
+    self%circles = create_circle_frames(model)
     self%lines = create_line_steps(model, self%inertia)
     self%patch = create_struck_patch(model)
     allocate (self%force(5, points), self%motion(5, points), source=0.0_wp)
@@ -155,7 +159,7 @@ contains
     ! Rounding of the time is no other step.
     if (abs(step - self%steps%now) <= 1.0e-9_wp*step) step = self%steps%now
     self%steps = step_lengths_t(now=step, last=self%steps%now)
-    call prepare(self)
+    call prepare(self, model)
     load_factors = [now%load_factor, (now%time + step)/model%scene%ramp_time]
     call self%lines%find_rates(model, self%steps, load_factors(2), self%motion)
     associate (u => now%motion%displacement, v => now%motion%velocity)
@@ -165,6 +169,7 @@ contains
       call move_stacks(self%stacks, self%workspaces, self%rigs, self%lines, model, self%inertia, self%steps, self%force, &
                        now%interfaces%cohesive, u, v)
       if (allocated(self%inertia%springs)) call self%rigs%book_springs(self%inertia%springs, self%steps, u, v)
+      call self%circles%hold(model, self%steps, u(3, :), v(3, :))
       call self%inertia%spread(u)
       call self%inertia%spread(v)
       call model%profile%leave()
@@ -187,6 +192,7 @@ contains
     if (abs(self%prepared%now - self%steps%now) <= 0 .and. abs(self%prepared%last - self%steps%last) <= 0) return
     call self%inertia%invert(self%steps%now*self%steps%mean())
     call self%lines%project(self%inertia%inverse)
+    call self%circles%prepare(model, self%inertia%inverse(7, :))
     call self%stacks%prepare(self%inertia, self%steps%now*self%steps%mean())
     self%prepared = self%steps
   end subroutine prepare

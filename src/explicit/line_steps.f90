@@ -209,7 +209,8 @@ contains
         reaction = missing(pin%component)
         if (pin%component <= 2) missing(pin%component + 3) = missing(pin%component + 3) - pin%height*reaction
         change = steps%now*component_of(pin, after)
-        self%work(p) = self%work(p) + reaction*change + (reaction - pin%reaction)*pin%change/2
+        self%work(p) = self%work(p) + reaction*(change + steps%shift(pin%change, change)) &
+                       + (reaction - pin%reaction)*pin%change/2
         pin%reaction = reaction
         pin%change = change
       end associate

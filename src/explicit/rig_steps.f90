@@ -66,7 +66,7 @@ contains
     reaction = 0
     if (inverse > 0) reaction = (free - rate)/(steps%mean()*inverse)
     if (.not. w + steps%now*free > 0) reaction = 0
-    self%frame_loss(p) = self%frame_loss(p) + reaction*steps%now*rate &
+    self%frame_loss(p) = self%frame_loss(p) + reaction*(steps%now*rate + steps%shift(self%approach(p), steps%now*rate)) &
                          + (reaction - self%reaction(p))*self%approach(p)/2
     self%reaction(p) = reaction
     self%approach(p) = steps%now*rate

@@ -344,7 +344,8 @@ contains
       change = steps%now*v(1:3, p)
       u(1:3, p) = u(1:3, p) + change
       ! The work of a linear spring beyond what it stores, as in `advance_points`.
-      stacks%lost(2, p) = stacks%lost(2, p) + sum(stacks%stiffness([1, 1, 2], p)*change*(change + stacks%change(:, p)))/2
+      stacks%lost(2, p) = stacks%lost(2, p) + sum(stacks%stiffness([1, 1, 2], p)*change &
+                            *(change + stacks%change(:, p)))/2 + sum(forces(:, j)*steps%shift(stacks%change(:, p), change))
       stacks%forces(:, p) = forces(:, j)
       stacks%change(:, p) = change
       associate (k => stacks%stiffness(:, p), jump => u(1:3, p))
@@ -418,7 +419,8 @@ contains
       change = steps%now*v(1:3, p)
       before = u(1:3, p)
       u(1:3, p) = before + change
-      work = forces(:, j)*change + (forces(:, j) - stacks%forces(:, p))*stacks%change(:, p)/2
+      work = forces(:, j)*(change + steps%shift(stacks%change(:, p), change)) &
+             + (forces(:, j) - stacks%forces(:, p))*stacks%change(:, p)/2
       stored(1) = stacks%area(p)*(faces%stored([0.0_wp, 0.0_wp, u(3, p)], without_slip(cohesive%points(p))) &
                                   - faces%stored([0.0_wp, 0.0_wp, before(3)], without_slip(cohesive%points(p))))
       stored(2) = stacks%area(p)*(faces%stored([u(1:2, p), 0.0_wp], cohesive%points(p)) &

@@ -12,6 +12,8 @@ module step_lengths
   contains
     !> Time between the velocities in the middles of both steps.
     procedure :: mean
+    !> Way that a force at the end of the step works over beyond those of steps of one length.
+    procedure :: shift
   end type step_lengths_t
 
 contains
@@ -23,4 +25,20 @@ contains
 
     mean = (self%now + self%last)/2
   end function mean
+
+  !> Way that a force R at the end of the step works over beyond those of steps of one length. Kinetic energy taken at
+  !> whole steps, v M v/2 + h R v/2, changes by R (h_mean (v_old + v)/2 + h v/2) - h_old R_old v_old/2; in steps of one
+  !> length that is R dq + (R - R_old) dq_old/2.
+  elemental real(wp) function shift(self, before, after)
+    !> The steps
+    class(step_lengths_t), intent(in) :: self
+    !> Change of the coordinate in the step before, and in this step
+    real(wp), intent(in) :: before, after
+
+    shift = 0
+    if (.not. abs(self%now - self%last) > 0) return
+    shift = -after/self%now
+    if (self%last > 0) shift = shift + before/self%last
+    shift = (self%now - self%last)/4*shift
+  end function shift
 end module step_lengths

@@ -20,6 +20,8 @@ module rig_contact
     real(wp), allocatable :: slope(:)
     !> Largest pressure so far
     real(wp) :: peak = 0
+    !> Forces of the rigs where a step has found them itself, (most_supports)
+    real(wp), allocatable :: found(:)
   contains
     !> Adds the pressure's forces to a residual.
     procedure :: act
@@ -204,6 +206,10 @@ contains
 
     reactions = 0
     if (.not. allocated(model%rig%holds)) return
+    if (allocated(self%found)) then
+      reactions = self%found
+      return
+    end if
     do i = 1, model%distribution%owned
       associate (holds => model%rig%holds(i), bears => model%rig%bears(i), clamps => model%rig%clamps(i))
         if (holds > 0) then

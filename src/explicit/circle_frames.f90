@@ -1,0 +1,139 @@
+!> Frames with a circular window in steps by central differences: w is held where the edge of the window crosses the sides
+!> of cells, a mean of three nodes each. The forces that hold all of these points are found together, from a matrix that
+!> stays what it is.
+module circle_frames
+  use dense_systems, only: positive_factor_t
+  use kinds, only: wp
+  use models, only: model_t
+  use rigs, only: crossing_t, circle_crossings
+  use step_lengths, only: step_lengths_t
+  implicit none
+  private
+  public :: circle_frames_t, create_circle_frames
+
+  !> Points at which frames hold the plate, the same list on every rank.
+  type :: circle_frames_t
+    !> Points of the mesh of the three nodes of each, (3, crossings), and where this rank has them; 0: elsewhere
+    integer, allocatable :: points(:, :), local(:, :)
+    !> Weights of their w, (3, crossings)
+    real(wp), allocatable :: weights(:, :)
+    !> The rig of each
+    integer, allocatable :: rig(:)
+    !> Inverse inertia of w at the nodes, (3, crossings), and the factored matrix
+    real(wp), allocatable, private :: inverse(:, :)
+    type(positive_factor_t), private :: factor
+    !> Forces of the last step
+    real(wp), allocatable :: forces(:)
+  contains
+    !> Finds the matrix for an inertia.
+    procedure :: prepare
+    !> Holds the points at the end of a step.
+    procedure :: hold
+  end type circle_frames_t
+
+contains
+
+  !> Points at which the frames of a model hold the plate.
+  function create_circle_frames(model) result(self)
+    type(model_t), intent(in) :: model
+    !> The points
+    type(circle_frames_t) :: self
+    type(crossing_t), allocatable :: crossings(:)
+    integer :: i, k, cell, nodes(9)
+
+    allocate (self%points(3, 0), self%weights(3, 0), self%rig(0))
+    if (allocated(model%scene%supports)) then
+      do i = 1, size(model%scene%supports)
+        if (model%scene%supports(i)%unilateral) cycle
+        do cell = 1, product(model%mesh%cells)
+          crossings = circle_crossings(model%mesh, model%scene%supports(i), cell)
+          nodes = model%mesh%cell_nodes(cell)
+          do k = 1, size(crossings)
+            self%rig = [self%rig, i]
+            self%points = reshape([self%points, model%mesh%first_point(nodes(crossings(k)%nodes))], [3, size(self%rig)])
+            self%weights = reshape([self%weights, crossings(k)%weights], [3, size(self%rig)])
+          end do
+        end do
+      end do
+    end if
+    self%local = reshape(model%distribution%local([self%points]), shape(self%points))
+    where (self%local > model%distribution%owned) self%local = 0
+    allocate (self%inverse(3, size(self%rig)), self%forces(size(self%rig)), source=0.0_wp)
+  end function create_circle_frames
+
+  !> Finds the matrix for an inertia. Collective.
+  subroutine prepare(self, model, inverse)
+    !> The points
+    class(circle_frames_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> Inverse inertia of w, (points)
+    real(wp), intent(in) :: inverse(:)
+    real(wp) :: matrix(size(self%rig), size(self%rig))
+    integer :: i, j, k, l
+
+    if (size(self%rig) == 0) return
+    self%inverse = gathered(self, model, inverse)
+    matrix = 0
+    do j = 1, size(self%rig)
+      do i = 1, size(self%rig)
+        do k = 1, 3
+          do l = 1, 3
+            if (self%points(k, i) == self%points(l, j)) matrix(i, j) = matrix(i, j) &
+              + self%weights(k, i)*self%inverse(k, i)*self%weights(l, j)
+          end do
+        end do
+      end do
+      ! A point whose nodes are all held needs no force.
+      if (.not. matrix(j, j) > 0) matrix(j, j) = 1
+    end do
+    call self%factor%factorize(matrix)
+  end subroutine prepare
+
+  !> Values at the nodes of all points, the same on every rank. Collective.
+  function gathered(self, model, values)
+    !> The points
+    type(circle_frames_t), intent(in) :: self
+    type(model_t), intent(in) :: model
+    !> (points)
+    real(wp), intent(in) :: values(:)
+    !> (3, crossings)
+    real(wp) :: gathered(3, size(self%rig))
+    real(wp) :: list(3*size(self%rig))
+    integer :: i, k
+
+    gathered = 0
+    do i = 1, size(self%rig)
+      do k = 1, 3
+        if (self%local(k, i) > 0) gathered(k, i) = values(self%local(k, i))
+      end do
+    end do
+    list = reshape(gathered, [size(list)])
+    call model%communicator%sum(list)
+    gathered = reshape(list, shape(gathered))
+  end function gathered
+
+  !> Holds the points at the end of a step. Collective.
+  subroutine hold(self, model, steps, w, rate)
+    !> The points; receive their forces
+    class(circle_frames_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> The step and the one before
+    type(step_lengths_t), intent(in) :: steps
+    !> Deflection at the end of the step, and its rate, (points); corrected
+    real(wp), intent(inout) :: w(:), rate(:)
+    real(wp) :: change
+    integer :: i, k
+
+    if (size(self%rig) == 0 .or. .not. self%factor%positive) return
+    self%forces = sum(self%weights*gathered(self, model, w), 1)/(steps%now*steps%mean())
+    call self%factor%solve(self%forces)
+    do i = 1, size(self%rig)
+      do k = 1, 3
+        if (self%local(k, i) == 0) cycle
+        change = -steps%mean()*self%inverse(k, i)*self%weights(k, i)*self%forces(i)
+        rate(self%local(k, i)) = rate(self%local(k, i)) + change
+        w(self%local(k, i)) = w(self%local(k, i)) + steps%now*change
+      end do
+    end do
+  end subroutine hold
+end module circle_frames

@@ -1,0 +1,59 @@
+!> Forces of rigs on the plate in steps by central differences.
+module rig_reactions
+  use central_differences, only: central_difference_t
+  use kinds, only: wp
+  use models, only: model_t
+  use states, only: state_t
+  use support_parameters, only: most_supports
+  implicit none
+  private
+  public :: reactions_of
+
+contains
+
+  !> Force of each rig on the full plate, positive against the impact: what a held w takes of the forces on its layer, the
+  !> reactions of frames, springs and clamps. Collective.
+  function reactions_of(method, model, now) result(reactions)
+    !> The method
+    type(central_difference_t), intent(in) :: method
+    type(model_t), intent(in) :: model
+    !> The state
+    type(state_t), intent(in) :: now
+    !> 0 for rigs that the deck does not have
+    real(wp) :: reactions(most_supports)
+    integer :: i
+
+    reactions = 0
+    if (.not. allocated(model%rig%holds)) return
+    do i = 1, model%distribution%owned
+      associate (holds => model%rig%holds(i), bears => model%rig%bears(i), clamps => model%rig%clamps(i))
+        if (holds > 0) then
+          reactions(holds) = reactions(holds) + method%force(3, i)
+          if (has_interface_below(i)) reactions(holds) = reactions(holds) + method%stacks%forces(3, i + 1)
+        else
+          if (bears > 0) reactions(bears) = reactions(bears) + method%rigs%reaction(i)
+          if (clamps > 0) reactions(clamps) = reactions(clamps) &
+                                              + model%rig%springs(3, i)*now%motion%displacement(3, i) - model%rig%presses(i)
+        end if
+      end associate
+    end do
+    call model%communicator%sum(reactions)
+    do i = 1, size(method%circles%rig)
+      associate (rig => method%circles%rig(i))
+        reactions(rig) = reactions(rig) + method%circles%forces(i)
+      end associate
+    end do
+    reactions = reactions*model%mesh%multiplicity
+
+  contains
+
+    !> True if a point of this rank has a layer below it.
+    pure logical function has_interface_below(i)
+      !> The point
+      integer, intent(in) :: i
+
+      has_interface_below = .false.
+      if (i < size(model%map%above)) has_interface_below = model%map%above(i + 1) == i
+    end function has_interface_below
+  end function reactions_of
+end module rig_reactions
