@@ -185,9 +185,10 @@ contains
   end subroutine advance
 
   !> Inverse inertia and compliances for the length of the step.
-  subroutine prepare(self)
+  subroutine prepare(self, model)
     !> The method
     type(central_difference_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
 
     if (abs(self%prepared%now - self%steps%now) <= 0 .and. abs(self%prepared%last - self%steps%last) <= 0) return
     call self%inertia%invert(self%steps%now*self%steps%mean())
