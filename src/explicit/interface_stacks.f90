@@ -22,7 +22,7 @@ module interface_stacks
     real(wp), allocatable :: area(:)
     !> Stiffness of the undamaged interface against shear and opening, force per jump, (2, points)
     real(wp), allocatable :: stiffness(:, :)
-    !> Energy per area of the undamaged interface below which no damage begins or grows, (points)
+    !> Twice the energy of the undamaged interface at a node below which no damage begins or grows, (points)
     real(wp), allocatable :: least_onset(:)
     !> True where some interface of a stack is damaged, (stacks)
     logical, allocatable :: damaged(:)
@@ -118,7 +118,7 @@ contains
     do i = 1, model%distribution%owned
       if (model%zone(i) == 0) cycle
       law = cohesive%law_at(model, i)
-      self%least_onset(i) = min(law%toughness_opening, law%toughness_shear)/law%failure_ratio
+      self%least_onset(i) = 2*self%area(i)*min(law%toughness_opening, law%toughness_shear)/law%failure_ratio
     end do
   end subroutine find_onsets
 

@@ -92,21 +92,20 @@ contains
     n = work%n
     p = stacks%first(i)
     q = p + n
-    call to_layers(stacks%height(p:q), v(:, p:q), layer)
+    call to_layers(n, stacks%height(p:q), v(:, p:q), layer)
     do k = 0, n
       call accelerate(inertia%inverse(:, p + k), steps%mean(), force(:, p + k), layer(:, k + 1))
       if (lines%is_pinned(p + k)) call lines%prescribe(p + k, layer(:, k + 1))
     end do
-    free = u(1:3, p + 1:q) + steps%now*rates(n, stacks%height(p:q), layer)
+    call find_rates(n, stacks%height(p:q), layer, free)
+    free = u(1:3, p + 1:q) + steps%now*free
     if (stacks%damaged(i)) then
       call load_stack(stacks, work, model, cohesive, p, u, free)
       call solve_openings(work)
       call solve_shears(work)
       forces = work%forces
     else
-      do k = 1, 3
-        call solve_factored(n, stacks%factors(:, k, p + 1:q), free(k, :), forces(k, :))
-      end do
+      call solve_factored(n, stacks%factors(:, :, p + 1:q), free, forces)
     end if
     if (rigs%bears(p)) call rest_on_frame(stacks, i, rigs, inertia, steps, u(3, p), u(3, p + 1), free(3, :), layer, &
                                           forces(3, :))
@@ -114,8 +113,9 @@ contains
     if (rigs%bears(p)) layer(3, 1) = rigs%approach(p)/steps%now
     if (any([(lines%is_pinned(k), k=p, q)])) &
       call book_reactions(stacks, i, lines, inertia, steps, force(:, p:q), forces, v(:, p:q), layer)
+    call find_rates(n, stacks%height(p:q), layer, free)
     v(:, p) = layer(:, 1)
-    v(1:3, p + 1:q) = rates(n, stacks%height(p:q), layer)
+    v(1:3, p + 1:q) = free
     v(4:5, p + 1:q) = layer(4:5, 2:)
     if (stacks%damaged(i)) then
       call advance_points(stacks, i, model, steps, work%limit, forces, cohesive, u, v)
@@ -166,20 +166,24 @@ contains
   end subroutine rest_on_frame
 
   !> Velocities of the layers from the rates of the unknowns.
-  pure subroutine to_layers(height, v, layer)
-    !> Height of the interface above each layer, (layers)
-    real(wp), intent(in) :: height(:)
-    !> Rates of the unknowns, (5, layers)
-    real(wp), intent(in) :: v(:, :)
-    !> Velocities of the layers, (5, layers)
-    real(wp), intent(out) :: layer(:, :)
+  pure subroutine to_layers(n, height, v, layer)
+    !> Interfaces
+    integer, intent(in) :: n
+    !> Height of the interface above each layer, (n + 1)
+    real(wp), intent(in) :: height(n + 1)
+    !> Rates of the unknowns, (5, n + 1)
+    real(wp), intent(in) :: v(5, n + 1)
+    !> Velocities of the layers, (5, n + 1)
+    real(wp), intent(out) :: layer(5, n + 1)
     integer :: l
 
     layer(:, 1) = v(:, 1)
-    do l = 2, size(height)
-      layer(1:2, l) = v(1:2, l) + layer(1:2, l - 1) + height(l)*(layer(4:5, l - 1) - v(4:5, l))
+    do l = 2, n + 1
+      layer(1, l) = v(1, l) + layer(1, l - 1) + height(l)*(layer(4, l - 1) - v(4, l))
+      layer(2, l) = v(2, l) + layer(2, l - 1) + height(l)*(layer(5, l - 1) - v(5, l))
       layer(3, l) = v(3, l) + layer(3, l - 1)
-      layer(4:5, l) = v(4:5, l)
+      layer(4, l) = v(4, l)
+      layer(5, l) = v(5, l)
     end do
   end subroutine to_layers
 
@@ -202,7 +206,7 @@ contains
   end subroutine accelerate
 
   !> Rates of the jumps across the interfaces.
-  pure function rates(n, height, layer)
+  pure subroutine find_rates(n, height, layer, rates)
     !> Interfaces
     integer, intent(in) :: n
     !> Height of the interface above each layer, (n + 1)
@@ -210,14 +214,15 @@ contains
     !> Velocities of the layers, (5, n + 1)
     real(wp), intent(in) :: layer(5, n + 1)
     !> Rates of the jumps, (3, n)
-    real(wp) :: rates(3, n)
+    real(wp), intent(out) :: rates(3, n)
     integer :: j
 
     do j = 1, n
-      rates(1:2, j) = layer(1:2, j + 1) - layer(1:2, j) + height(j + 1)*(layer(4:5, j + 1) - layer(4:5, j))
+      rates(1, j) = layer(1, j + 1) - layer(1, j) + height(j + 1)*(layer(4, j + 1) - layer(4, j))
+      rates(2, j) = layer(2, j + 1) - layer(2, j) + height(j + 1)*(layer(5, j + 1) - layer(5, j))
       rates(3, j) = layer(3, j + 1) - layer(3, j)
     end do
-  end function rates
+  end subroutine find_rates
 
   !> Adds to the velocities of the layers what the tractions between them give in a time.
   pure subroutine push_layers(n, height, inverse, time, forces, layer)
@@ -233,11 +238,20 @@ contains
     real(wp), intent(in) :: forces(3, n)
     !> Velocities of the layers, (5, n + 1)
     real(wp), intent(inout) :: layer(5, n + 1)
+    real(wp) :: pull(5)
     integer :: l
 
-    do l = 1, n + 1
-      call accelerate(inverse(:, l), time, pull_on(n, height, forces, l), layer(:, l))
+    pull = 0
+    do l = 1, n
+      pull(1:3) = pull(1:3) + forces(:, l)
+      pull(4) = pull(4) + height(l + 1)*forces(1, l)
+      pull(5) = pull(5) + height(l + 1)*forces(2, l)
+      call accelerate(inverse(:, l), time, pull, layer(:, l))
+      pull(1:3) = -forces(:, l)
+      pull(4) = -height(l + 1)*forces(1, l)
+      pull(5) = -height(l + 1)*forces(2, l)
     end do
+    call accelerate(inverse(:, n + 1), time, pull, layer(:, n + 1))
   end subroutine push_layers
 
   !> Force of the tractions on a layer.
@@ -278,7 +292,7 @@ contains
     integer :: l, p
 
     associate (height => stacks%height(stacks%first(i):stacks%first(i) + stacks%layers(i) - 1))
-      call to_layers(height, before, layer)
+      call to_layers(size(forces, 2), height, before, layer)
       do l = 1, size(force, 2)
         p = stacks%first(i) + l - 1
         if (lines%is_pinned(p)) call lines%react(p, steps, inertia%mass(:, p), layer(:, l), after(:, l), &
@@ -336,22 +350,24 @@ contains
     type(cohesive_interfaces_t), intent(inout) :: cohesive
     !> Unknowns and their rates, (5, points)
     real(wp), intent(inout) :: u(:, :), v(:, :)
-    real(wp) :: change(3)
+    real(wp) :: change(3), k(3), jump(3)
     integer :: j, p
 
     do j = 1, size(forces, 2)
       p = stacks%first(i) + j
       change = steps%now*v(1:3, p)
-      u(1:3, p) = u(1:3, p) + change
+      jump = u(1:3, p) + change
+      k = stacks%stiffness([1, 1, 2], p)
       ! The work of a linear spring beyond what it stores, as in `advance_points`.
-      stacks%lost(2, p) = stacks%lost(2, p) + sum(stacks%stiffness([1, 1, 2], p)*change &
-                            *(change + stacks%change(:, p)))/2 + sum(forces(:, j)*steps%shift(stacks%change(:, p), change))
+      stacks%lost(2, p) = stacks%lost(2, p) + (k(1)*change(1)*(change(1) + stacks%change(1, p)) &
+                                               + k(2)*change(2)*(change(2) + stacks%change(2, p)) &
+                                               + k(3)*change(3)*(change(3) + stacks%change(3, p)))/2
+      if (abs(steps%now - steps%last) > 0) &
+        stacks%lost(2, p) = stacks%lost(2, p) + sum(forces(:, j)*steps%shift(stacks%change(:, p), change))
+      u(1:3, p) = jump
       stacks%forces(:, p) = forces(:, j)
       stacks%change(:, p) = change
-      associate (k => stacks%stiffness(:, p), jump => u(1:3, p))
-        if (k(1)*(jump(1)**2 + jump(2)**2) + k(2)*max(jump(3), 0.0_wp)**2 &
-            < 2*stacks%area(p)*stacks%least_onset(p)) cycle
-      end associate
+      if (k(1)*(jump(1)**2 + jump(2)**2) + k(3)*max(jump(3), 0.0_wp)**2 < stacks%least_onset(p)) cycle
       cohesive%points(p)%sliding%slip = u(1:2, p)
       call damage_point(stacks, model, p, u(1:3, p), 0.0_wp, cohesive)
       if (cohesive%points(p)%damage > 0) stacks%damaged(i) = .true.

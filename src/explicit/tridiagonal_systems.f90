@@ -31,25 +31,25 @@ contains
     end do
   end subroutine factorize
 
-  !> Solves with these factors.
+  !> Solves with these factors along x, y and z.
   pure subroutine solve_factored(n, factors, jumps, forces)
     !> Interfaces
     integer, intent(in) :: n
-    !> Factors, (2, n)
-    real(wp), intent(in) :: factors(2, n)
-    !> Jumps without tractions, (n)
-    real(wp), intent(in) :: jumps(n)
-    !> Forces on the jumps, (n)
-    real(wp), intent(out) :: forces(n)
+    !> Factors, (2, 3, n)
+    real(wp), intent(in) :: factors(2, 3, n)
+    !> Jumps without tractions, (3, n)
+    real(wp), intent(in) :: jumps(3, n)
+    !> Forces on the jumps, (3, n)
+    real(wp), intent(out) :: forces(3, n)
     integer :: j
 
-    forces(1) = jumps(1)
+    forces(:, 1) = jumps(:, 1)
     do j = 2, n
-      forces(j) = jumps(j) - factors(2, j - 1)*forces(j - 1)
+      forces(:, j) = jumps(:, j) - factors(2, :, j - 1)*forces(:, j - 1)
     end do
-    forces(n) = factors(1, n)*forces(n)
+    forces(:, n) = factors(1, :, n)*forces(:, n)
     do j = n - 1, 1, -1
-      forces(j) = factors(1, j)*forces(j) - factors(2, j)*forces(j + 1)
+      forces(:, j) = factors(1, :, j)*forces(:, j) - factors(2, :, j)*forces(:, j + 1)
     end do
   end subroutine solve_factored
 
