@@ -227,7 +227,7 @@ contains
 
     allocate (loads, loads_before, mold=old%motion%internal)
     call model%static_loads(new%motion%displacement, new%load_factor, loads)
-    call model%static_loads(old%motion%displacement, old%load_factor, loads_before)
+    call loads_carried(model, old, loads_before)
     change = new%motion%displacement - old%motion%displacement
     sums(1) = energy
     sums(2) = model%product(change, new%motion%internal + old%motion%internal)/2
@@ -238,9 +238,11 @@ contains
       sums(4) = (faces + new%interfaces%contact_work(model, new%motion%displacement, change))/2
       sums(5) = faces/2
     end if
-    ! Plies that failed left the state before out of equilibrium. What that sets free would go into motion.
+    ! Plies that failed, and a nose that presses elsewhere from now on, left the state before out of equilibrium. What
+    ! that sets free would go into motion.
+    call push_plate(model, old%force, loads_before)
     sums(5) = sums(5) + model%product(change, loads_before - old%motion%internal)/2
-    if (.not. model%scene%has_ply_damage) sums(5) = 0
+    if (.not. (model%scene%has_ply_damage .or. allocated(model%nose))) sums(5) = 0
     call model%communicator%sum(sums)
     sums = sums*model%mesh%multiplicity
     call new%count_step(old)
@@ -259,4 +261,21 @@ contains
     new%ledger%algorithmic = old%ledger%algorithmic - (sums(1) - old%ledger%strain - sums(2)) + sums(5) - fracture &
                              - heat - damage
   end subroutine finish
+
+  !> Loads, the impactor's force left out, that an accepted state carries. Before the first step these are the lines
+  !> that hold the plate: what is there from the start comes with that step.
+  subroutine loads_carried(model, state, loads)
+    type(model_t), intent(in) :: model
+    !> The state
+    type(state_t), intent(in) :: state
+    !> Forces on the unknowns, (5, points)
+    real(wp), intent(inout) :: loads(:, :)
+
+    if (state%step > 0) then
+      call model%static_loads(state%motion%displacement, state%load_factor, loads)
+    else
+      loads = 0
+      call model%add_holding_lines(state%motion%displacement, loads)
+    end if
+  end subroutine loads_carried
 end module static_steps

@@ -40,7 +40,8 @@ module step_columns
   !> The rest of the state and the length of the step.
   character(len=result_row_length), parameter, public :: step_rows(*) = [character(len=result_row_length) :: &
     'patch_deflection | real | length | Mean deflection of the patch, positive along the impact.', &
-    'work_external | real | energy | Work of the pressure so far.', &
+    'work_external | real | energy | Work so far of pressure and lines, and in a static analysis of what moves the &
+      &impactor.', &
     'step_length | real | time | Length of the step; 0 in a static analysis.', &
     'stress | real | pressure | Bending stress 6 M/h^2 of the undamaged laminate around the struck point, which the &
       &adaptive step follows.']

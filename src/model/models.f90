@@ -184,7 +184,7 @@ contains
     end do
   end subroutine line_forces
 
-  !> Adds the nodal forces of the lines that hold the plate before anything loads it.
+  !> Adds the nodal forces of the lines that hold the plate before anything loads or moves it.
   pure subroutine add_holding_lines(self, displacement, forces)
     class(model_t), intent(in) :: self
     !> Displacement, (5, points)
@@ -194,7 +194,7 @@ contains
     integer :: i
 
     do i = 1, size(self%lines)
-      if (self%lines(i)%load%prescribed) call self%lines(i)%add_forces(displacement, 0.0_wp, forces)
+      call self%lines(i)%add_holding_forces(displacement, forces)
     end do
   end subroutine add_holding_lines
 

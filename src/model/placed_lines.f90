@@ -45,6 +45,8 @@ module placed_lines
     procedure :: force_at
     !> Adds the nodal forces of the line.
     procedure :: add_forces
+    !> Adds them for a line that is held where it is without load.
+    procedure :: add_holding_forces
     !> Adds the change of the nodal forces with the load factor.
     procedure :: add_slopes
     !> Mean motion and force of the line, of this rank's nodes.
@@ -279,6 +281,22 @@ contains
       call spread(self, node, self%force_at(node, displacement, load_factor), forces)
     end do
   end subroutine add_forces
+
+  !> Adds the nodal forces of a line that is held where it is without load; none if it is not prescribed.
+  pure subroutine add_holding_forces(self, displacement, forces)
+    !> The line
+    class(placed_line_t), intent(in) :: self
+    !> Unknowns, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> Forces on the unknowns of the owned points, (5, points)
+    real(wp), intent(inout) :: forces(:, :)
+    integer :: node
+
+    if (.not. self%load%prescribed) return
+    do node = 1, size(self%weight)
+      call spread(self, node, -self%stiffness*self%motion_at(node, displacement), forces)
+    end do
+  end subroutine add_holding_forces
 
   !> Adds the change of the nodal forces with the load factor.
   pure subroutine add_slopes(self, forces)

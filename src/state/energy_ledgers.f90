@@ -22,7 +22,7 @@ module energy_ledgers
     real(wp) :: algorithmic = 0
     !> Strain and kinetic energy that the plate had and its layers, where they have appeared, have not
     real(wp) :: layers = 0
-    !> Work of the pressure
+    !> Work of pressure and lines, and of what moves the impactor of a static analysis
     real(wp) :: external_work = 0
     !> Energy at the start
     real(wp) :: initial = 0

@@ -80,6 +80,7 @@ contains
     type(model_t), intent(in) :: model
     !> The state
     type(state_t) :: self
+    real(wp) :: energy
     integer :: points
 
     points = size(model%distribution%points)
@@ -88,6 +89,9 @@ contains
               self%motion%inertia(5, points), self%motion%momentum(5, points), source=0.0_wp)
     self%plies = new_ply_failure(model)
     self%interfaces = new_interface_state(model)
+    ! Clamps that press are in equilibrium with the frame from the start.
+    energy = 0
+    call self%interfaces%rig%add_springs(model, self%motion%displacement, self%motion%internal, energy)
     if (allocated(model%nose)) self%patch = model%patch
     if (.not. model%scene%has_impactor .or. model%scene%has_static) return
     self%impactor = new_impactor(model%scene%impactor)
