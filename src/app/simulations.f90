@@ -163,7 +163,7 @@ contains
     call self%timers%stop('model')
     self%model%profile = profile
     if (allocated(error)) return
-    call self%stepper%start(self%model, deck%stepping, deck%linear_solver, error)
+    call self%stepper%start(self%model, deck%stepping, deck%linear_solver, append, error)
     if (allocated(error)) return
     self%record = new_run_record(self%model)
     call log_model(self%model, self%stepper, self%log)

@@ -14,7 +14,7 @@ module deck_cross_checks
                            key_travel, keys_of_motion
   use indentation_deck, only: indentation_group, key_k
   use kinds, only: wp
-  use line_deck, only: line_group
+  use line_deck, only: line_group, key_rise
   use line_loads, only: line_load_t, along_x, along_y
   use material_deck, only: material_group, require_densities
   use mesh_deck, only: mesh_group, key_patch
@@ -109,6 +109,7 @@ contains
     type(deck_t), intent(in) :: deck
     !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
+    integer :: line
 
     if (size(deck%supports) > 0) then
       call check_static_rigs(deck%settings, deck%supports, problems)
@@ -119,6 +120,9 @@ contains
     end if
     if (deck%has_time) call remark(deck%settings, problems, time_group, '', 'has no effect on a static analysis.')
     call remark_idle(deck%settings, problems, pressure_group, key_history, 'has no effect on a static analysis.')
+    do line = 1, size(deck%lines)
+      call remark_idle(deck%settings, problems, line_group, key_rise, 'has no effect on a static analysis.', line)
+    end do
     if (.not. problems%concern(static_group)) &
       call check_intervals(deck%settings, 1.0_wp/deck%stepping%static_steps, 1.0_wp, problems)
     if (any(deck%delaminations%law == law_front)) &

@@ -207,8 +207,8 @@ contains
     if (is_explicit(deck%stepping)) deck%mesh%mass = mass_lumped
     call fill_pressure(deck%settings, deck%stepping%time%end, deck%pressure)
     if (deck%has_thermal) call fill_thermal(deck%settings, deck%temperature_change)
-    call fill_lines(deck%settings, deck%lines)
     if (deck%has_time) deck%ramp_time = deck%stepping%time%end
+    call fill_lines(deck%settings, merge(deck%ramp_time, 0.0_wp, deck%has_time), deck%lines)
     if (deck%has_static) call fill_static(deck%settings, deck%stepping%static_steps, deck%stepping%dissipation)
   end subroutine fill_loads
 

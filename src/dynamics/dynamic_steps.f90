@@ -18,6 +18,7 @@ module dynamic_steps
   use softening_corrections, only: softening_memory_t
   use condensed_steps, only: condense
   use energy_balance, only: book_step
+  use line_motions, only: has_moved_lines, keep_lines, move_lines, line_displacement
   use motion_forces, only: weigh, weigh_start, weigh_rest
   implicit none
   private
@@ -119,6 +120,8 @@ contains
       call new%interfaces%faces%hold(model, new%motion%displacement)
       new%motion%displacement = old%motion%displacement + new%motion%displacement
       call new%interfaces%keep_touching(model, new%motion%displacement)
+      if (has_moved_lines(model)) &
+        call keep_lines(model, new%interfaces, new%time, line_displacement, new%motion%displacement)
     end if
     if (.not. self%coasts) call self%complete(old, new)
     new%plies%lagging = model%scene%has_crack_bands()
@@ -184,9 +187,12 @@ contains
       call model%push_patch(self%coupling%load(), residual)
       if (size(model%lines) > 0) then
         allocate (lines, lines_before, mold=residual)
-        call model%line_forces(new%motion%displacement, new%load_factor, lines)
-        call model%line_forces(old%motion%displacement, old%load_factor, lines_before)
+        call model%line_forces(new%motion%displacement, new%load_factor, lines, prescribed=.false.)
+        call model%line_forces(old%motion%displacement, old%load_factor, lines_before, prescribed=.false.)
         residual = residual + (1 - f)*lines + f*lines_before
+        ! What moves or holds a line acts with one force over the step.
+        call model%line_forces(new%motion%displacement, new%load_factor, lines, prescribed=.true.)
+        residual = residual + lines
       end if
       if (.not. allocated(model%pressure)) return
       amplitude = (1 - f)*model%scene%pressure%amplitude(new%time) + f*model%scene%pressure%amplitude(old%time)
@@ -369,6 +375,7 @@ contains
     real(wp), intent(in) :: energy
     !> State at the end
     type(state_t), intent(inout) :: new
+    real(wp) :: work
 
     call new%count_step(old)
     new%deflection = model%deflection(new%motion%displacement)
@@ -382,5 +389,9 @@ contains
     call model%profile%enter('energy ledger')
     call book_step(model, self%integrator, old, self%step, self%coupling%load(), energy, new)
     call model%profile%leave()
+    if (.not. has_moved_lines(model)) return
+    call move_lines(model, new%interfaces, new%time, new%motion, work)
+    new%ledger%kinetic = new%ledger%kinetic + work
+    new%ledger%external_work = new%ledger%external_work + work
   end subroutine finish
 end module dynamic_steps

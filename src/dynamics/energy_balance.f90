@@ -28,7 +28,7 @@ module energy_balance
     real(wp) :: cohesive = 0
     !> Work of the forces between faces
     real(wp) :: faces = 0
-    !> Change of displacement times mean force and change of force of the lines
+    !> Work of the lines, and change of displacement times change of force of those that press
     real(wp) :: lines = 0, lines_change = 0
   end type products_t
 
@@ -163,7 +163,8 @@ contains
                           faces=sums(10), lines=sums(11), lines_change=sums(12), cohesive=sums(13))
   end subroutine find_products
 
-  !> Change of displacement times mean force and times change of force of the lines, of this rank's points.
+  !> Work of the lines, and change of displacement times change of force of those that press, of this rank's points.
+  !> What moves or holds a line acts with one force over the step.
   pure function line_products(model, old, new) result(sums)
     type(model_t), intent(in) :: model
     !> State at the start
@@ -172,13 +173,15 @@ contains
     type(state_t), intent(in) :: new
     !> The products
     real(wp) :: sums(2)
-    real(wp), allocatable :: before(:, :), after(:, :), change(:, :)
+    real(wp), allocatable :: before(:, :), after(:, :), holding(:, :), change(:, :)
 
-    allocate (before, after, mold=old%motion%displacement)
-    call model%line_forces(old%motion%displacement, old%load_factor, before)
-    call model%line_forces(new%motion%displacement, new%load_factor, after)
+    allocate (before, after, holding, mold=old%motion%displacement)
+    call model%line_forces(old%motion%displacement, old%load_factor, before, prescribed=.false.)
+    call model%line_forces(new%motion%displacement, new%load_factor, after, prescribed=.false.)
+    call model%line_forces(new%motion%displacement, new%load_factor, holding, prescribed=.true.)
     change = new%motion%displacement - old%motion%displacement
-    sums = [model%product(change, before + after)/2, model%product(change, after - before)]
+    sums = [model%product(change, before + after)/2 + model%product(change, holding), &
+            model%product(change, after - before)]
   end function line_products
 
   !> Products of fields over this rank's points: v.Mv at the end; change of displacement times sum and change of

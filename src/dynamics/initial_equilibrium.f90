@@ -1,4 +1,5 @@
-!> The state that a plate takes by itself before anything loads it: in equilibrium under its residual stresses.
+!> The state that a plate takes before anything loads it in time: in equilibrium under its residual stresses, and with
+!> the lines that have moved it before a run in time begins.
 !>
 !> A plate that no support holds has rigid motions. Residual stresses balance among themselves and don't drive them, so
 !> a little mass in the operator is enough: it holds the rigid motions, and costs the softest mode of the plate a small
@@ -6,13 +7,14 @@
 module initial_equilibrium
   use errors, only: error_t, fail, exit_convergence
   use kinds, only: wp
+  use line_motions, only: has_moved_lines, keep_lines, line_displacement, move_lines
   use models, only: model_t
   use residual_norms, only: relative_residual
   use states, only: state_t
   use tangent_operators, only: tangent_operator_t
   implicit none
   private
-  public :: find_initial_equilibrium
+  public :: has_initial_motion, find_initial_equilibrium, find_acceleration
 
   !> Mass over that which would double the lowest frequency of a bending plate as long as this one.
   real(wp), parameter :: little = 1.0e-3_wp
@@ -22,7 +24,8 @@ module initial_equilibrium
 
 contains
 
-  !> Brings a plate at rest into equilibrium with its residual stresses. Collective.
+  !> Brings a plate at rest into equilibrium with its residual stresses, and then with lines that precede a run in
+  !> time, whose work that takes. Collective.
   subroutine find_initial_equilibrium(model, operator, state, error)
     type(model_t), intent(in) :: model
     !> The factored operator; not ready for steps afterwards
@@ -31,27 +34,74 @@ contains
     type(state_t), intent(inout) :: state
     !> Set if there is no equilibrium
     type(error_t), allocatable, intent(out) :: error
+    real(wp) :: energy
+
+    energy = 0
+    if (model%scene%has_thermal) then
+      call settle(model, operator, .false., state, error)
+      if (allocated(error)) return
+      energy = state%ledger%strain + state%ledger%ply_damage
+      state%ledger%initial = state%ledger%initial + energy
+    end if
+    if (model%scene%has_static .or. .not. lines_precede(model)) return
+    call settle(model, operator, .true., state, error)
+    if (allocated(error)) return
+    state%ledger%external_work = state%ledger%strain + state%ledger%ply_damage - energy
+  end subroutine find_initial_equilibrium
+
+  !> True: something moves the plate before a run in time begins.
+  pure logical function has_initial_motion(model)
+    type(model_t), intent(in) :: model
+
+    has_initial_motion = model%scene%has_thermal .or. lines_precede(model)
+  end function has_initial_motion
+
+  !> True: lines have moved the plate before a run in time begins.
+  pure logical function lines_precede(model)
+    type(model_t), intent(in) :: model
+    integer :: i
+
+    lines_precede = any([(model%lines(i)%load%precedes(), i=1, size(model%lines))])
+  end function lines_precede
+
+  !> Brings a plate at rest into equilibrium. Collective.
+  subroutine settle(model, operator, moved, state, error)
+    type(model_t), intent(in) :: model
+    !> The factored operator; not ready for steps afterwards
+    type(tangent_operator_t), intent(inout) :: operator
+    !> True: with lines where they are at time 0; false: with lines held where they are without load
+    logical, intent(in) :: moved
+    !> The state at rest; receives displacement, forces and energies
+    type(state_t), intent(inout) :: state
+    !> Set if there is no equilibrium
+    type(error_t), allocatable, intent(out) :: error
     type(state_t) :: before
-    real(wp), allocatable :: residual(:, :), correction(:, :), suppressing(:, :)
+    real(wp), allocatable :: residual(:, :), correction(:, :), suppressing(:, :), lines(:, :)
     real(wp) :: energy, damage, force_square, largest(2)
     integer :: iteration
 
-    allocate (residual, correction, mold=state%motion%displacement)
+    allocate (residual, correction, lines, mold=state%motion%displacement)
     correction = 0
     before = state
+    if (moved) call keep_lines(model, state%interfaces, 0.0_wp, line_displacement, state%motion%displacement)
     largest = 0
     force_square = square_of_forces(model)
     do iteration = 0, most_iterations
       call state%find_internal(model, before, energy)
       residual = -state%motion%internal
-      call model%add_holding_lines(state%motion%displacement, residual)
+      if (moved) then
+        call model%line_forces(state%motion%displacement, 0.0_wp, lines, prescribed=.true.)
+        residual = residual + lines
+      else
+        call model%add_holding_lines(state%motion%displacement, residual)
+      end if
       call state%interfaces%act(model, state%motion%displacement, residual)
       if (iteration == 0) suppressing = state%motion%internal
       if (relative_residual(model%communicator, operator%numbering, residual, suppressing, suppressing, force_square, &
                             operator%diagonal, state%motion%displacement, .true., tolerance, model%thickness, &
                             largest) <= tolerance) exit
       if (iteration == most_iterations) call fail(error, exit_convergence, &
-        'No equilibrium under the residual stresses of &thermal.')
+        'No equilibrium at the start, under the residual stresses of &thermal or &line of history = ''fixed''.')
       if (.not. allocated(error)) call operator%renew(model, state%plies%stiffness, state%interfaces, &
         state%motion%displacement, 1.0_wp, mass_factor(model), error)
       if (.not. allocated(error)) call operator%correct(model, residual, correction, error)
@@ -63,12 +113,45 @@ contains
     if (allocated(state%plies%bands)) call state%plies%bands%commit()
     call model%communicator%sum(energy)
     state%ledger%strain = energy*model%mesh%multiplicity
-    state%ledger%ply_damage = damage
-    state%ledger%initial = state%ledger%initial + state%ledger%strain + damage
+    state%ledger%ply_damage = state%ledger%ply_damage + damage
     state%deflection = model%deflection(state%motion%displacement)
     state%patch_mean = model%contact_deflection(state%motion%displacement)
     operator%ready = .false.
-  end subroutine find_initial_equilibrium
+  end subroutine settle
+
+  !> Acceleration of a plate in equilibrium under a pressure or forces that are there from the start, and the velocity
+  !> of lines that move at once. Collective.
+  subroutine find_acceleration(model, operator, mass_factor, state, error)
+    type(model_t), intent(in) :: model
+    !> The factored operator; not ready for steps afterwards
+    type(tangent_operator_t), intent(inout) :: operator
+    !> Factor of the mass in a step, where it stands beside the springs of lines that are held
+    real(wp), intent(in) :: mass_factor
+    !> The state at the start; receives acceleration and velocity
+    type(state_t), intent(inout) :: state
+    !> Set if the mass matrix is singular
+    type(error_t), allocatable, intent(out) :: error
+    real(wp), allocatable :: loads(:, :)
+    real(wp) :: work
+
+    allocate (loads, mold=state%motion%displacement)
+    ! Lines that are prescribed are in equilibrium with the plate already; their springs in the operator keep them.
+    call model%line_forces(state%motion%displacement, 0.0_wp, loads, prescribed=.false.)
+    if (allocated(model%pressure)) loads = loads + model%scene%pressure%amplitude(0.0_wp)*model%pressure
+    associate (motion => state%motion)
+      call operator%renew(model, state%plies%stiffness, state%interfaces, motion%displacement, 0.0_wp, mass_factor, &
+                          error)
+      if (allocated(error)) return
+      call operator%correct(model, loads, motion%acceleration, error)
+      motion%acceleration = mass_factor*motion%acceleration
+      call model%inertia(motion%acceleration, motion%inertia)
+      operator%ready = .false.
+      if (allocated(error) .or. .not. has_moved_lines(model)) return
+      call move_lines(model, state%interfaces, 0.0_wp, motion, work)
+    end associate
+    state%ledger%kinetic = work
+    state%ledger%external_work = state%ledger%external_work + work
+  end subroutine find_acceleration
 
   !> Square of the forces on this rank's elements that suppress the strains, were they not balanced by neighbours and
   !> supports: those left over at the free unknowns may be none.
@@ -77,6 +160,7 @@ contains
     integer :: b
 
     total = 0
+    if (.not. allocated(model%free)) return
     do b = 1, model%elements%batches
       total = total + sum(sum(model%elements%weight(:, :, b), 2)*sum(model%free(:, 1:3, b)**2, 2))
     end do

@@ -163,7 +163,7 @@ contains
     model%profile = profile
     if (allocated(error)) return
     stepping = stepper%stepping
-    call stepper%start(model, stepping, linear_solver, error)
+    call stepper%start(model, stepping, linear_solver, .true., error)
     if (allocated(error)) return
     call transfer%turn_to(mesh, model%mesh)
     call stepper%visit(transfer, model, error)

@@ -4,7 +4,7 @@ module time_stepping
   use errors, only: error_t, fail, exit_convergence
   use archives, only: archive_t
   use text, only: rounded_text
-  use initial_equilibrium, only: find_initial_equilibrium
+  use initial_equilibrium, only: find_initial_equilibrium, find_acceleration, has_initial_motion
   use step_errors, only: step_error_t
   use central_difference_energies, only: book_energies
   use central_differences, only: central_difference_t
@@ -88,7 +88,7 @@ module time_stepping
 contains
 
   !> Puts the plate at rest and the impactor at first touch.
-  subroutine start(self, model, stepping, linear_solver, error)
+  subroutine start(self, model, stepping, linear_solver, resumed, error)
     !> The time stepper
     class(time_stepper_t), intent(out) :: self
     type(model_t), intent(in) :: model
@@ -96,6 +96,8 @@ contains
     type(stepping_t), intent(in) :: stepping
     !> The linear solver
     type(linear_solver_parameters_t), intent(in) :: linear_solver
+    !> True: a state will be loaded, so that none has to be found
+    logical, intent(in) :: resumed
     !> Set if the solver cannot be set up
     type(error_t), allocatable, intent(out) :: error
 
@@ -104,7 +106,7 @@ contains
     if (is_explicit(stepping)) then
       allocate (self%explicit)
       self%unknowns = count(.not. model%held)
-      if (model%scene%has_thermal) call settle_stresses(self, model, linear_solver, error)
+      if (.not. resumed .and. has_initial_motion(model)) call settle_stresses(self, model, linear_solver, error)
       if (.not. allocated(error)) call self%explicit%start(model, stepping%central, self%now)
       return
     end if
@@ -113,14 +115,14 @@ contains
     if (self%stepping%dissipation > 0) allocate (self%now%path%change, source=self%now%motion%displacement)
     call self%operator%create(model, linear_solver%factorization, error)
     self%unknowns = self%operator%numbering%total
-    if (.not. allocated(error) .and. model%scene%has_thermal) &
-      call find_initial_equilibrium(model, self%operator, self%now, error)
+    if (.not. allocated(error)) call find_initial_equilibrium(model, self%operator, self%now, error)
     if (allocated(error) .or. model%scene%has_static) return
     self%integrator = plate_integrator(self%stepping%time)
     self%operator%condenses = allocated(self%now%interfaces%cohesive%cohesive)
     self%controller%wanted = self%stepping%time%step
     if (follows_error(stepping%adapt)) call self%step_error%start(model, stepping%time%step)
-    if (allocated(model%pressure) .or. size(model%lines) > 0) call start_acceleration(self, model, error)
+    if (allocated(model%pressure) .or. size(model%lines) > 0) &
+      call find_acceleration(model, self%operator, self%integrator%mass_factor(stepping%time%step), self%now, error)
   end subroutine start
 
   !> Brings a plate that central differences are to move into equilibrium with its residual stresses, so that nothing
@@ -138,32 +140,6 @@ contains
     if (.not. allocated(error)) call find_initial_equilibrium(model, self%operator, self%now, error)
     call self%operator%release()
   end subroutine settle_stresses
-
-  !> Acceleration of the plate under a pressure or lines that are there from the start.
-  subroutine start_acceleration(self, model, error)
-    !> The time stepper
-    class(time_stepper_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
-    !> Set if the mass matrix is singular
-    type(error_t), allocatable, intent(out) :: error
-    real(wp), allocatable :: loads(:, :), held(:, :)
-
-    allocate (loads, held, mold=self%now%motion%displacement)
-    call model%line_forces(self%now%motion%displacement, 0.0_wp, loads)
-    ! Those that hold the plate are already in equilibrium with its residual stresses.
-    held = 0
-    if (model%scene%has_thermal) call model%add_holding_lines(self%now%motion%displacement, held)
-    loads = loads - held
-    if (allocated(model%pressure)) loads = loads + model%scene%pressure%amplitude(0.0_wp)*model%pressure
-    associate (motion => self%now%motion)
-      call self%operator%renew(model, self%now%plies%stiffness, self%now%interfaces, motion%displacement, &
-                               0.0_wp, 1.0_wp, error)
-      if (allocated(error)) return
-      call self%operator%correct(model, loads, motion%acceleration, error)
-      call model%inertia(motion%acceleration, motion%inertia)
-    end associate
-    self%operator%ready = .false.
-  end subroutine start_acceleration
 
   !> Takes one step, at most to the next event; the step is tried again with half its length until
   !> equilibrium is reached or the smallest step of the deck has failed.

@@ -45,7 +45,7 @@ contains
       ledger%friction = sums(5)
       ledger%contact = sums(6)
       ledger%algorithmic = sums(7)
-      ledger%external_work = sums(8)
+      ledger%external_work = method%initial_work + sums(8)
       if (allocated(now%plies%bands)) then
         call now%plies%total_dissipation(model)
         ledger%ply_damage = sum(now%plies%dissipated)

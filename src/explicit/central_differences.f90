@@ -60,6 +60,8 @@ module central_differences
     real(wp) :: contact_stiffness = 0
     !> Strain energy of this rank's elements
     real(wp) :: strain = 0
+    !> Work of loads before the run began
+    real(wp) :: initial_work = 0
     !> Room for the motion of the layers, and for stacks
     real(wp), allocatable, private :: motion(:, :)
     type(stack_t), allocatable, private :: workspaces(:)
@@ -111,6 +113,7 @@ contains
     self%patch = create_struck_patch(model)
     allocate (self%force(5, points), self%motion(5, points), source=0.0_wp)
     self%impactor_velocity = now%impactor%velocity
+    self%initial_work = now%ledger%external_work
     call self%find_forces(model, now)
     call self%add_loads(model, now, [0.0_wp, 0.0_wp])
   end subroutine start
@@ -354,6 +357,7 @@ contains
     call archive%item('explicit/step_before', self%steps%last)
     call archive%item('explicit/impactor_velocity', self%impactor_velocity)
     call archive%item('explicit/contact_stiffness', self%contact_stiffness)
+    call archive%item('explicit/initial_work', self%initial_work)
     associate (owned => model%distribution%points(:model%distribution%owned), points => model%mesh%points())
       call archive%field('explicit/forces', owned, points, self%force)
       call self%rigs%visit(archive, owned, points)

@@ -12,7 +12,8 @@ module line_deck
   public :: fill_lines, check_lines
 
   !> Names that checks across groups use.
-  character(len=*), parameter, public :: line_group = 'line', key_at = 'at', key_layer = 'layer'
+  character(len=*), parameter, public :: line_group = 'line', key_at = 'at', key_layer = 'layer', &
+                                         key_rise = 'rise'
   !> The keys of a value, those of displacements first.
   character(len=*), parameter :: value_keys(4) = [character(len=12) :: 'force', 'displacement', 'moment', 'rotation']
   !> Row of the group.
@@ -37,14 +38,18 @@ module line_deck
     'line | rotation | real | 1 | radian | none | any | &
       &Rotation theta_x or theta_y of the line.', &
     'line | history | choice | 1 | - | ''ramp'' | ramp fixed | &
-      &In proportion to the load factor, in a run in time to the time over its end, or there from the start.']
+      &In proportion to the load factor, in a run in time to the time over its end, or there from the start.', &
+    'line | rise | real | 1 | time | 0 | >= 0 | &
+      &Time in which a line sets in smoothly: the velocity of a ramp rises, a fixed value is reached; 0: at once.']
 
 contains
 
   !> All lines, in the order of the deck.
-  subroutine fill_lines(settings, lines)
+  subroutine fill_lines(settings, end_time, lines)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
+    !> End of a run in time; 0: load steps
+    real(wp), intent(in) :: end_time
     !> Receives them
     type(line_load_t), allocatable, intent(out) :: lines(:)
     integer :: place, k
@@ -57,6 +62,7 @@ contains
         if (s%is_given(line_group, key_layer, place)) line%layer = s%integer_of(line_group, key_layer, place)
         line%component = code_of(s%text_of(line_group, 'component', place), 'u v w theta_x theta_y', [1, 2, 3, 4, 5])
         line%history = code_of(s%text_of(line_group, 'history', place), 'ramp fixed', [line_ramp, line_fixed])
+        if (end_time > 0) line%rise = s%real_of(line_group, key_rise, place)/end_time
         do k = 1, size(value_keys)
           if (.not. s%is_given(line_group, trim(value_keys(k)), place)) cycle
           line%value = s%real_of(line_group, trim(value_keys(k)), place)
@@ -89,6 +95,8 @@ contains
       else if (.not. lines(place)%prescribed .and. abs(lines(place)%value) <= 0) then
         call remark(settings, problems, line_group, '', 'a force or moment of 0 is no load.', place)
       end if
+      if (lines(place)%rise > 1) &
+        call tell(settings, problems, line_group, key_rise, 'the rise lasts longer than the run.', place)
     end do
   end subroutine check_lines
 end module line_deck

@@ -1,6 +1,7 @@
 !> Lines across the plate that hold it, move it or press on it, as the deck gives them: supports and loads of specimens.
 module line_loads
   use kinds, only: wp
+  use smooth_starts, only: smooth_ramp, smooth_step
   implicit none
   private
   public :: line_load_t
@@ -28,7 +29,13 @@ module line_loads
     real(wp) :: value = 0
     !> line_ramp or line_fixed
     integer :: history = line_ramp
+    !> Part of the run in which its motion or load sets in smoothly; 0: at once
+    real(wp) :: rise = 0
   contains
+    !> Value at a time, and its first and second derivative.
+    procedure :: course
+    !> True: it is there, and has moved the plate, before a run in time begins.
+    procedure :: precedes
     !> Value at a load factor.
     procedure :: at_factor
     !> Change of the value with the load factor.
@@ -44,9 +51,41 @@ contains
     !> Ramps over their full values
     real(wp), intent(in) :: load_factor
 
-    value = self%value
-    if (self%history == line_ramp) value = self%value*load_factor
+    if (self%rise > 0) then
+      value = self%value*merge(smooth_ramp(load_factor, self%rise, 0), smooth_step(load_factor/self%rise, 0), &
+                               self%history == line_ramp)
+    else
+      value = self%value*merge(load_factor, 1.0_wp, self%history == line_ramp)
+    end if
   end function at_factor
+
+  !> Value at a time, and its first and second derivative by it.
+  pure function course(self, time, end) result(values)
+    !> The line
+    class(line_load_t), intent(in) :: self
+    !> The time, and that at which the run ends
+    real(wp), intent(in) :: time, end
+    !> Value, velocity and acceleration
+    real(wp) :: values(3)
+    integer :: k
+
+    values = [self%at_factor(time/end), 0.0_wp, 0.0_wp]
+    if (self%rise > 0 .and. self%history == line_ramp) then
+      values(2:) = [(self%value*smooth_ramp(time/end, self%rise, k)/end**k, k=1, 2)]
+    else if (self%rise > 0) then
+      values(2:) = [(self%value*smooth_step(time/end/self%rise, k)/(self%rise*end)**k, k=1, 2)]
+    else if (self%history == line_ramp) then
+      values(2) = self%value/end
+    end if
+  end function course
+
+  !> True: it is there, and has moved the plate, before a run in time begins.
+  elemental logical function precedes(self)
+    !> The line
+    class(line_load_t), intent(in) :: self
+
+    precedes = self%prescribed .and. self%history == line_fixed .and. .not. self%rise > 0 .and. abs(self%value) > 0
+  end function precedes
 
   !> Change of the value with the load factor.
   elemental real(wp) function slope(self)

@@ -167,8 +167,8 @@ contains
     call self%halo%accumulate(force)
   end subroutine internal
 
-  !> Nodal forces of the lines at the owned points.
-  pure subroutine line_forces(self, displacement, load_factor, forces)
+  !> Nodal forces of the lines at the owned points, of all of them or of those that are prescribed or not.
+  pure subroutine line_forces(self, displacement, load_factor, forces, prescribed)
     class(model_t), intent(in) :: self
     !> Displacement, (5, points)
     real(wp), intent(in) :: displacement(:, :)
@@ -176,10 +176,15 @@ contains
     real(wp), intent(in) :: load_factor
     !> Forces on the unknowns, (5, points); ghosts zero
     real(wp), intent(out) :: forces(:, :)
+    !> Whether the lines are prescribed; left out: all of them
+    logical, intent(in), optional :: prescribed
     integer :: i
 
     forces = 0
     do i = 1, size(self%lines)
+      if (present(prescribed)) then
+        if (self%lines(i)%load%prescribed .neqv. prescribed) cycle
+      end if
       call self%lines(i)%add_forces(displacement, load_factor, forces)
     end do
   end subroutine line_forces

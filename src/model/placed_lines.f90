@@ -45,6 +45,8 @@ module placed_lines
     procedure :: force_at
     !> Adds the nodal forces of the line.
     procedure :: add_forces
+    !> Moves the nodes of the line in a field.
+    procedure :: move_to
     !> Adds them for a line that is held where it is without load.
     procedure :: add_holding_forces
     !> Adds the change of the nodal forces with the load factor.
@@ -281,6 +283,24 @@ contains
       call spread(self, node, self%force_at(node, displacement, load_factor), forces)
     end do
   end subroutine add_forces
+
+  !> Moves the nodes of the line in a field, by the unknowns of their own layers.
+  pure subroutine move_to(self, value, field)
+    !> The line
+    class(placed_line_t), intent(in) :: self
+    !> Its displacement, velocity or acceleration
+    real(wp), intent(in) :: value
+    !> The field, (5, points)
+    real(wp), intent(inout) :: field(:, :)
+    integer :: node
+
+    ! Upper layers come first, as lower ones move with them.
+    do node = 1, size(self%weight)
+      associate (own => field(self%load%component, self%point(self%first(node))))
+        own = own + (value - self%motion_at(node, field))
+      end associate
+    end do
+  end subroutine move_to
 
   !> Adds the nodal forces of a line that is held where it is without load; none if it is not prescribed.
   pure subroutine add_holding_forces(self, displacement, forces)

@@ -73,7 +73,7 @@ contains
       end do
     end if
     call add_held_lines(model, stiffness_factor, numbering, solver, diagonal)
-    call add_lines(model, numbering, stiffness_factor, solver, diagonal)
+    call add_lines(model, numbering, solver, diagonal)
     call model%halo%accumulate(diagonal)
   end subroutine assemble_elements
 
@@ -106,13 +106,12 @@ contains
     end do
   end subroutine add_held_lines
 
-  !> Adds the springs of lines whose displacement is prescribed.
-  subroutine add_lines(model, numbering, stiffness_factor, solver, diagonal)
+  !> Adds the springs of lines whose displacement is prescribed. They hold at the end of a step and not on its way, so
+  !> no factor of stiffness weighs them.
+  subroutine add_lines(model, numbering, solver, diagonal)
     type(model_t), intent(in) :: model
     !> Equations
     type(numbering_t), intent(in) :: numbering
-    !> Factor of stiffness
-    real(wp), intent(in) :: stiffness_factor
     !> Receives the matrices
     class(linear_solver_t), intent(inout) :: solver
     !> Receives their diagonal
@@ -127,7 +126,7 @@ contains
         do node = 1, size(line%weight)
           associate (first => line%first(node), last => line%first(node + 1) - 1)
             of_node = reshape(line%coefficient(:, first:last), [5*(last - first + 1)])
-            spring = stiffness_factor*line%share*line%stiffness*line%weight(node)
+            spring = line%share*line%stiffness*line%weight(node)
             call add_to(numbering, line%point(first:last), spring*reshape( &
                         [(of_node(column)*of_node, column=1, size(of_node))], [size(of_node), size(of_node)]), &
                         solver, diagonal)

@@ -1,0 +1,50 @@
+!> Courses that set in smoothly, so that a motion prescribed by them strikes nothing.
+module smooth_starts
+  use kinds, only: wp
+  implicit none
+  private
+  public :: smooth_ramp, smooth_step
+
+contains
+
+  !> Step from 0 to 1 whose velocity and acceleration are 0 at both ends, 10 s^3 - 15 s^4 + 6 s^5, or a derivative.
+  elemental real(wp) function smooth_step(s, order) result(value)
+    !> Part of the step that is over
+    real(wp), intent(in) :: s
+    !> Which derivative, 0 to 2
+    integer, intent(in) :: order
+
+    value = 0
+    if (s >= 1 .and. order == 0) value = 1
+    if (s <= 0 .or. s >= 1) return
+    select case (order)
+    case (0)
+      value = s**3*(10 - s*(15 - 6*s))
+    case (1)
+      value = 30*s**2*(1 - s)**2
+    case default
+      value = 60*s*(1 - s)*(1 - 2*s)
+    end select
+  end function smooth_step
+
+  !> Ramp from 0 to 1 whose velocity rises as 3 s^2 - 2 s^3 and then stays, or a derivative.
+  elemental real(wp) function smooth_ramp(part, rise, order) result(value)
+    !> Part of the run that is over, and part in which the velocity rises
+    real(wp), intent(in) :: part, rise
+    !> Which derivative, 0 to 2
+    integer, intent(in) :: order
+    real(wp) :: s, velocity
+
+    ! The rise covers half of what the full velocity would.
+    velocity = 1/(1 - rise/2)
+    s = min(max(part/rise, 0.0_wp), 1.0_wp)
+    select case (order)
+    case (0)
+      value = velocity*(rise*s**3*(1 - s/2) + max(part - rise, 0.0_wp))
+    case (1)
+      value = velocity*s**2*(3 - 2*s)
+    case default
+      value = velocity*6*s*(1 - s)/rise
+    end select
+  end function smooth_ramp
+end module smooth_starts

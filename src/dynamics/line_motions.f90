@@ -1,0 +1,84 @@
+!> Motion of the lines that the deck prescribes in a run in time.
+!>
+!> Their springs hold the displacement at the end of each step by one force over the step, whatever the integrator, as
+!> contact does. Newmark's formulas would make a velocity and an acceleration of the displacements that alternate about
+!> the right ones from step to step, for a spectral radius of 1 without end; the prescribed ones take their place.
+module line_motions
+  use interface_states, only: interface_state_t
+  use kinds, only: wp
+  use models, only: model_t
+  use motions, only: motion_t
+  implicit none
+  private
+  public :: keep_lines, has_moved_lines, move_lines
+
+  !> Derivatives of the displacement.
+  integer, parameter, public :: line_displacement = 1, line_velocity = 2, line_acceleration = 3
+
+contains
+
+  !> True: the deck prescribes lines.
+  pure logical function has_moved_lines(model)
+    type(model_t), intent(in) :: model
+    integer :: i
+
+    has_moved_lines = any([(model%lines(i)%load%prescribed, i=1, size(model%lines))])
+  end function has_moved_lines
+
+  !> Gives the lines their displacement, velocity or acceleration at a time. Jumps and unknowns that are held stay.
+  subroutine keep_lines(model, interfaces, time, derivative, field)
+    type(model_t), intent(in) :: model
+    !> Knows which jumps are held
+    type(interface_state_t), intent(in) :: interfaces
+    !> The time
+    real(wp), intent(in) :: time
+    !> Which of them
+    integer, intent(in) :: derivative
+    !> The field, (5, points), ghosts up to date
+    real(wp), contiguous, intent(inout) :: field(:, :)
+    real(wp), allocatable :: change(:, :)
+    real(wp) :: values(3)
+    integer :: i
+
+    allocate (change, source=field)
+    do i = 1, size(model%lines)
+      associate (line => model%lines(i))
+        if (.not. line%load%prescribed) cycle
+        values = line%load%course(time, model%scene%ramp_time)
+        call line%move_to(values(derivative), change)
+      end associate
+    end do
+    change = change - field
+    where (model%held(:, model%distribution%points)) change = 0
+    call interfaces%faces%hold(model, change)
+    call model%halo%update(change)
+    field = field + change
+  end subroutine keep_lines
+
+  !> Gives the lines their velocity and acceleration at a time, and tells the energy that this brings: the work of the
+  !> forces that move them.
+  subroutine move_lines(model, interfaces, time, motion, work)
+    type(model_t), intent(in) :: model
+    !> Knows which jumps are held
+    type(interface_state_t), intent(in) :: interfaces
+    !> The time
+    real(wp), intent(in) :: time
+    !> The motion at that time, with its momentum
+    type(motion_t), intent(inout) :: motion
+    !> Change of the kinetic energy of the whole plate
+    real(wp), intent(out) :: work
+    real(wp), allocatable :: change(:, :), momentum(:, :)
+
+    allocate (change, source=motion%velocity)
+    allocate (momentum, mold=motion%velocity)
+    call keep_lines(model, interfaces, time, line_velocity, motion%velocity)
+    change = motion%velocity - change
+    call model%inertia(change, momentum)
+    work = model%product(change, motion%momentum) + model%product(change, momentum)/2
+    call model%communicator%sum(work)
+    work = work*model%mesh%multiplicity
+    motion%momentum = motion%momentum + momentum
+    call keep_lines(model, interfaces, time, line_acceleration, motion%acceleration)
+    call model%inertia(motion%acceleration, motion%inertia)
+  end subroutine move_lines
+end module line_motions
