@@ -45,7 +45,7 @@ contains
 
     coarse = coarser_deck(deck)
     call create_model(coarse%scene_t, communicator, model, error)
-    if (.not. allocated(error)) call stepper%start(model, coarse%stepping, coarse%linear_solver, error)
+    if (.not. allocated(error)) call stepper%start(model, coarse%stepping, coarse%linear_solver, .false., error)
     if (allocated(error)) return
     companion%record = new_run_record(model)
     do while (stepper%now%time < coarse%stepping%time%end)

@@ -46,6 +46,6 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(linear_solver_parameters_t) :: linear_solver
 
-    call stepper%start(model, scene%stepping, linear_solver, error)
+    call stepper%start(model, scene%stepping, linear_solver, .false., error)
   end subroutine start_stepping
 end module stepped_scenes
