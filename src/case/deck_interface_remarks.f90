@@ -9,7 +9,7 @@ module deck_interface_remarks
   use delamination_deck, only: key_zone
   use interface_places, only: delamination_group, key_below_ply
   use kinds, only: wp
-  use material_parameters, only: material_t
+  use material_parameters, only: material_t, first_alike
   use short_numbers, only: short_text
   implicit none
   private
@@ -48,7 +48,8 @@ contains
     integer, intent(in) :: ply
 
     associate (laminate => deck%laminate)
-      within = laminate%material(ply) == laminate%material(ply + 1)
+      within = first_alike(deck%materials, laminate%material(ply)) == &
+               first_alike(deck%materials, laminate%material(ply + 1))
       if (within) within = is_parallel(laminate%angle(ply) - laminate%angle(ply + 1)) .and. &
                            .not. is_isotropic(deck%materials(laminate%material(ply))) .and. &
                            .not. all(is_parallel(laminate%angle - laminate%angle(ply)))

@@ -33,6 +33,7 @@ module deck_reader
   use delamination_parameters, only: law_cohesive, law_front
   use linear_solver_deck, only: check_petsc_options, fill_linear_solver
   use material_deck, only: fill_materials, normal_compliance
+  use material_parameters, only: first_alike
   use mesh_deck, only: fill_mesh, check_mesh
   use output_deck, only: fill_output
   use plate_deck, only: fill_plate, check_plate
@@ -162,10 +163,12 @@ contains
     type(deck_t), intent(in) :: deck
     !> Plies, ascending
     integer, allocatable :: between(:)
+    integer :: ply
 
     allocate (between(0))
     if (allocated(deck%laminate%angle) .and. allocated(deck%laminate%material)) &
-      between = interfaces_between(deck%laminate%angle, deck%laminate%material)
+      between = interfaces_between(deck%laminate%angle, [(first_alike(deck%materials, deck%laminate%material(ply)), &
+                                                          ply=1, size(deck%laminate%material))])
   end function changes_of_angle
 
   !> Strengths of the plies that their interfaces have too.

@@ -3,7 +3,7 @@ module material_parameters
   use kinds, only: wp
   implicit none
   private
-  public :: material_t
+  public :: material_t, first_alike
 
   !> An orthotropic ply, 1 along the fibres. A strength that the deck does not give is zero or less. It has many
   !> components because the deck gives that many constants.
@@ -31,4 +31,32 @@ module material_parameters
     !> Thermal expansion along and across the fibres
     real(wp) :: expansion(2) = 0
   end type material_t
+
+contains
+
+  !> First material whose constants are all those of a material: two names for one material make no two of it.
+  pure integer function first_alike(materials, index) result(first)
+    !> All materials
+    type(material_t), intent(in) :: materials(:)
+    !> The material
+    integer, intent(in) :: index
+
+    do first = 1, index
+      if (all(.not. abs(constants_of(materials(first)) - constants_of(materials(index))) > 0)) return
+    end do
+    first = index
+  end function first_alike
+
+  !> Everything about a material but its name.
+  pure function constants_of(material) result(constants)
+    !> The material
+    type(material_t), intent(in) :: material
+    !> In the order of the type
+    real(wp) :: constants(22)
+
+    associate (m => material)
+      constants = [m%density, m%e1, m%e2, m%g12, m%g13, m%g23, m%nu12, m%nu23, m%xt, m%xc, m%yt, m%yc, m%s12, m%sf, &
+                   m%sm23, m%shear_beta, m%toughness, m%expansion]
+    end associate
+  end function constants_of
 end module material_parameters

@@ -2,7 +2,7 @@
 module stacking
   use kinds, only: wp
   use laminate_parameters, only: laminate_t, shear_energy
-  use material_parameters, only: material_t
+  use material_parameters, only: material_t, first_alike
   use plies, only: ply_t, elasticity_t, elasticity_of, set_angle, in_plane_stiffness, shear_stiffness
   use transverse_shear, only: shear_stiffness_from_energy
   implicit none
@@ -19,7 +19,7 @@ module stacking
 
 contains
 
-  !> Plies of a laminate, from the struck face down.
+  !> Plies of a laminate, from the struck face down. Materials of equal constants count as one.
   pure function stacked_plies(laminate, materials) result(plies)
     !> Stacking sequence
     type(laminate_t), intent(in) :: laminate
@@ -33,7 +33,7 @@ contains
     allocate (plies(size(laminate%material)))
     z = -sum(laminate%thickness)/2
     do i = 1, size(plies)
-      plies(i)%material = laminate%material(i)
+      plies(i)%material = first_alike(materials, laminate%material(i))
       plies(i)%elasticity = elasticity_of(materials(plies(i)%material))
       plies(i)%density = materials(plies(i)%material)%density
       call set_angle(plies(i), laminate%angle(i))
