@@ -8,7 +8,7 @@ import numpy as np
 
 from implam_post.errors import DeckError, FileError
 from implam_post.indentation import IndentationLaw
-from implam_post.laminate import Material, Ply, Section, section_of
+from implam_post.laminate import Material, Ply, Section, natural_shear_correction, section_of
 from implam_post.namelist import Group, Value, read_namelist
 from implam_post.stacking import angles_of
 
@@ -105,7 +105,9 @@ class Deck:
 
     def section(self) -> Section:
         """Return stiffness and mass of the laminate."""
-        return section_of(self.plies(), self.choice("laminate", "shear_correction", ("5/6", "energy")))
+        plies = self.plies()
+        allowed = dict.fromkeys((natural_shear_correction(plies), "5/6", "energy"))
+        return section_of(plies, self.choice("laminate", "shear_correction", allowed))
 
     def impactor(self) -> Impactor:
         """Return the impactor."""

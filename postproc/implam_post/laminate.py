@@ -5,7 +5,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from implam_post.errors import DeckError
+# Ratio of shear moduli beyond which the solver takes the shear stiffness of equilibrium by itself
+# (src/laminate/shear_corrections.f90).
+_MOST_CONTRAST = 10
 
 
 @dataclass(frozen=True)
@@ -70,6 +72,17 @@ class Section:
         return bool(np.max(np.abs(couplings)) < 1e-9)
 
 
+def shear_contrast(plies: Sequence[Ply]) -> float:
+    """Return the largest over the smallest transverse shear modulus of the plies, along x or y."""
+    moduli = [np.diag(ply.material.transverse_shear_stiffness(ply.angle)) for ply in plies]
+    return float(np.max(np.max(moduli, axis=0) / np.min(moduli, axis=0)))
+
+
+def natural_shear_correction(plies: Sequence[Ply]) -> str:
+    """Return the shear correction that the solver takes if the deck gives none."""
+    return "energy" if shear_contrast(plies) > _MOST_CONTRAST else "5/6"
+
+
 def section_of(plies: Sequence[Ply], shear_correction: str = "5/6") -> Section:
     """Integrate the plies; `shear_correction` is '5/6' or 'energy'."""
     faces = _faces(plies)
@@ -84,34 +97,33 @@ def section_of(plies: Sequence[Ply], shear_correction: str = "5/6") -> Section:
         d += moments[2] * stiffness
         s += moments[0] * ply.material.transverse_shear_stiffness(ply.angle)
         mass += moments * ply.material.density
-    s = _energy_shear_stiffness(plies, d) if shear_correction == "energy" else 5.0 / 6.0 * s
+    s = _energy_shear_stiffness(plies, a, b, d) if shear_correction == "energy" else 5.0 / 6.0 * s
     return Section(a, b, d, s, mass, faces[-1] - faces[0])
 
 
-def _energy_shear_stiffness(plies: Sequence[Ply], d: np.ndarray) -> np.ndarray:
+def _energy_shear_stiffness(plies: Sequence[Ply], a: np.ndarray, b: np.ndarray, d: np.ndarray) -> np.ndarray:
     """Return the shear stiffness whose energy is that of the shear stresses in equilibrium with Mx,x and My,y.
 
-    A unit shear force bends by D**-1 a unit length, so that along each axis 1/S = integral(g**2/G dz) with
-    g = -integral((Q D**-1) z dz) from the struck face (Rolfes and Rohwer 1997, without coupling).
+    Unit shear forces Qx = Mx,x and Qy = My,y strain by e + z k a unit length, without membrane forces. The shear
+    stresses -integral(Q (e + z k) dz) from the struck face on have the energy Q S**-1 Q / 2 (Rolfes and Rohwer 1997).
     """
-    mirrored = [(ply.material, ply.angle % 180, ply.thickness) for ply in plies]
-    if any(ply.angle % 90 for ply in plies) or mirrored != mirrored[::-1]:
-        raise DeckError("the energy shear correction is worked out here for symmetric cross-ply laminates only.")
     points, weights = np.polynomial.legendre.leggauss(3)
+    growth = np.linalg.inv(np.block([[a, b], [b, d]]))[:, 3:5]
     faces = _faces(plies)
-    flexibility = np.linalg.inv(d)
-    stiffness = np.zeros((2, 2))
-    for axis in range(2):
-        energy, start = 0.0, 0.0
-        for ply, low, high in zip(plies, faces[:-1], faces[1:], strict=True):
-            q = ply.material.reduced_stiffness(ply.angle)[axis] @ flexibility[:, axis]
-            z = (low + high + (high - low) * points) / 2
-            flow = start - q * (z**2 - low**2) / 2
-            energy += ((high - low) / 2 * weights @ flow**2
-                       / ply.material.transverse_shear_stiffness(ply.angle)[axis, axis])
-            start -= q * (high**2 - low**2) / 2
-        stiffness[axis, axis] = 1 / energy
-    return stiffness
+    compliance, above = np.zeros((2, 2)), np.zeros((2, 2))
+
+    def flow(ply: Ply, low: float, high: float) -> np.ndarray:
+        strain = (high - low) * growth[:3] + (high**2 - low**2) / 2 * growth[3:]
+        stress = ply.material.reduced_stiffness(ply.angle) @ strain
+        return np.array([[stress[0, 0], stress[2, 1]], [stress[2, 0], stress[1, 1]]])
+
+    for ply, low, high in zip(plies, faces[:-1], faces[1:], strict=True):
+        flexibility = np.linalg.inv(ply.material.transverse_shear_stiffness(ply.angle))
+        for point, weight in zip(points, weights, strict=True):
+            here = above + flow(ply, low, (low + high + (high - low) * point) / 2)
+            compliance += (high - low) / 2 * weight * here.T @ flexibility @ here
+        above = above + flow(ply, low, high)
+    return np.linalg.inv(compliance)
 
 
 def _faces(plies: Sequence[Ply]) -> np.ndarray:

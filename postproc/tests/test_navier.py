@@ -4,7 +4,7 @@ import unittest
 
 import numpy as np
 
-from implam_post.laminate import Material, Ply, section_of
+from implam_post.laminate import Material, Ply, natural_shear_correction, section_of
 from implam_post.navier import Plate, frequencies, sinusoidal_deflection, uniform_deflection
 
 
@@ -47,6 +47,23 @@ class NavierTest(unittest.TestCase):
         m, n = np.array([1, 3, 21]), np.array([1, 5, 7])
         frequency, deflection = plate.modes(m, n)
         np.testing.assert_allclose(np.sum((deflection / frequency)**2, axis=1), plate.compliance(m, n), rtol=1e-11)
+
+    def test_energy_of_any_plies(self) -> None:
+        """Three unlike plies at odd angles: the figures of the solver's unit test, which a third program gave."""
+        pagano = Material(1.0, 25.0, 1.0, 0.5, 0.5, 0.2, 0.25)
+        plies = [Ply(pagano, 30, 0.1), Ply(pagano, -60, 0.25), Ply(Material(1.0, 10, 2, 0.7, 0.6, 0.3, 0.3), 10, 0.15)]
+        expected = [[0.128208435644, -0.029794813661], [-0.029794813661, 0.141398392483]]
+        np.testing.assert_allclose(section_of(plies, "energy").s, expected, rtol=1e-10)
+
+    def test_natural_shear_correction(self) -> None:
+        """Equilibrium where shear moduli differ more than tenfold in one direction of the plate, as in the solver."""
+        skin = Material(1.0, 70.0, 70.0, 5.0, 4.5, 4.5, 0.05)
+        for moduli, angle, expected in (((0.03, 0.03), 0, "energy"), ((1.0, 0.449), 0, "energy"),
+                                        ((0.449, 1.0), 90, "energy"), ((0.46, 0.46), 0, "5/6")):
+            core = Material(0.1, 0.1, 0.1, 0.03, *moduli, 0.3)
+            with self.subTest(moduli=moduli):
+                plies = [Ply(skin, 0, 1.0), Ply(core, angle, 20.0), Ply(skin, 0, 1.0)]
+                self.assertEqual(natural_shear_correction(plies), expected)
 
     def test_energy_shear_correction(self) -> None:
         """5/6 for one material; closer to three-dimensional elasticity for [0/90/0]."""

@@ -14,6 +14,7 @@ module deck_reader
   use deck_refinements, only: refine
   use deck_rules, only: settle
   use deck_scales, only: check_scales
+  use deck_shear_remarks, only: check_correction
   use deck_scanner, only: scan_t, scan_deck, most_bytes
   use deck_symmetries, only: note_symmetry
   use deck_table, only: load_deck_table
@@ -108,6 +109,7 @@ contains
     call set_first_zones(deck, problems)
     call check_extents(deck, problems)
     call check_interfaces(deck, problems)
+    call check_correction(deck, problems)
     if (deck%has_ply_damage) call check_crack_bands(deck, problems)
     call check_process_zones(deck, problems)
     call settle_flaws(deck, problems)

@@ -9,14 +9,18 @@ module laminate_deck
   use laminate_parameters, only: laminate_t, shear_five_sixths, shear_energy
   use material_deck, only: material_group
   use material_parameters, only: material_t
+  use plies, only: material_objection
+  use shear_corrections, only: natural_correction
+  use stacking, only: stacked_plies
   use stacking_sequences, only: read_sequence, most_plies
-  use text, only: line_t, append, joined, nearest_name, to_text
+  use text, only: line_t, append, joined, nearest_name, to_text, words_of
   implicit none
   private
   public :: fill_laminate
 
   !> Names that checks across groups use.
-  character(len=*), parameter, public :: laminate_group = 'laminate', key_thicknesses = 'thicknesses'
+  character(len=*), parameter, public :: laminate_group = 'laminate', key_thicknesses = 'thicknesses', &
+                                         key_correction = 'shear_correction'
   !> Names used here more than once.
   character(len=*), parameter :: key_angles = 'angles', key_stacking = 'stacking', key_ply_thickness = 'ply_thickness'
   !> Row of the group.
@@ -34,7 +38,7 @@ module laminate_deck
       &Plies as in [45/0/-45/90]2s, instead of angles and thicknesses.', &
     'laminate | ply_thickness | real | 1 | length | none | > 0 | &
       &Thickness of every ply of stacking.', &
-    'laminate | shear_correction | choice | 1 | - | ''5/6'' | 5/6 energy | &
+    'laminate | shear_correction | choice | 1 | - | = energy if shear moduli differ tenfold, else 5/6 | 5/6 energy | &
       &Reduction of the transverse shear stiffness: a factor, or equal shear energy.']
 
 contains
@@ -54,8 +58,6 @@ contains
     integer, allocatable :: indices(:)
     integer :: plies, i
 
-    laminate%shear_correction = code_of(settings%text_of(laminate_group, 'shear_correction'), '5/6 energy', &
-                                        [shear_five_sixths, shear_energy])
     call settle_stacking(settings, problems)
     angles = settings%reals_of(laminate_group, key_angles)
     thicknesses = settings%reals_of(laminate_group, key_thicknesses)
@@ -76,7 +78,43 @@ contains
     if (any(indices == 0)) return
     if (size(indices) == plies .or. size(indices) == 1) &
       laminate%material = [(indices(min(i, size(indices))), i=1, plies)]
+    call settle_correction(settings, materials, laminate)
   end subroutine fill_laminate
+
+  !> The reduction of the transverse shear stiffness: the deck's, or the one that suits the plies.
+  subroutine settle_correction(settings, materials, laminate)
+    !> Keys in effect; get the one that is chosen
+    type(settings_t), intent(inout) :: settings
+    !> The materials
+    type(material_t), intent(in) :: materials(:)
+    !> The plies; receives it
+    type(laminate_t), intent(inout) :: laminate
+    character(len=*), parameter :: corrections = '5/6 energy'
+    integer, parameter :: codes(2) = [shear_five_sixths, shear_energy]
+    type(line_t), allocatable :: words(:)
+
+    if (settings%is_given(laminate_group, key_correction)) then
+      laminate%shear_correction = code_of(settings%text_of(laminate_group, key_correction), corrections, codes)
+    else if (is_sound(laminate, materials)) then
+      laminate%shear_correction = natural_correction(stacked_plies(laminate, materials))
+      words = words_of(corrections, ' ')
+      call settings%derive(laminate_group, key_correction, &
+                           words(findloc(codes, laminate%shear_correction, 1))%text, .true.)
+    end if
+  end subroutine settle_correction
+
+  !> True if there are plies of admissible materials.
+  pure logical function is_sound(laminate, materials)
+    !> The plies
+    type(laminate_t), intent(in) :: laminate
+    !> Their materials
+    type(material_t), intent(in) :: materials(:)
+    integer :: i
+
+    is_sound = allocated(laminate%material) .and. allocated(laminate%thickness)
+    if (is_sound) is_sound = &
+      all([(material_objection(materials(laminate%material(i))) == '', i=1, size(laminate%material))])
+  end function is_sound
 
   !> Turns stacking and ply_thickness into angles and thicknesses, and tells what is missing or given twice.
   subroutine settle_stacking(settings, problems)

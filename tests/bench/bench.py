@@ -19,7 +19,7 @@ DECK = """&case        name='bench'  kinematics='{kinematics}' /
 &plate       length=0.2, 0.2  edges='simple'  symmetry='quarter' /
 &mesh        elements={elements}, {elements}  patch=5e-3 /
 &material    name='T300/934'  density=1580  E1=120e9  E2=7.9e9  G12=5.5e9  G13=5.5e9  G23=5.5e9  nu12=0.30 /
-&laminate    materials='T300/934'  angles=0,90,0,90,0,0,90,0,90,0  thicknesses=0.269e-3 /
+&laminate    materials='T300/934'  angles=0,90,0,90,0,0,90,0,90,0  thicknesses=0.269e-3  shear_correction='5/6' /
 &impactor    mass=8.537e-3  velocity=3  radius=6.35e-3  integrator='trapezoidal' /
 &indentation law='tan_sun'  k=8.112e8  q=2.5  alpha_cr=80.3e-6  beta=0.094 /
 &time        end={end}  step={step}  rho_inf=1 /
@@ -32,7 +32,7 @@ PANEL = """&case         name='panel'  kinematics='linear' /
 &mesh         elements=12, 12  patch=4e-3 /
 &material     name='T300/976'  density=1580  E1=139e9  E2=9.4e9  G12=4.5e9  G13=4.5e9  G23=2.98e9  nu12=0.309
               XT=1517e6  XC=1590e6  YT=46e6  YC=253e6  S12=105e6  Sf=500e6  Sm23=105e6 /
-&laminate     materials='T300/976'  angles=0, 90, 0, 90, 0, 90, 0  thicknesses=0.3e-3 /
+&laminate     materials='T300/976'  angles=0, 90, 0, 90, 0, 90, 0  thicknesses=0.3e-3  shear_correction='5/6' /
 &impactor     mass=0.2  velocity=0.2  radius=10e-3 /
 &indentation  law='hertz' /
 &time         end=400e-6  step=4e-6 /

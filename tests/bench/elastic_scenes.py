@@ -24,7 +24,7 @@ DECK = """&case name='{name}' kinematics='linear' {case} /
 {mesh}
 &material name='ply' density={density} E1={moduli[0]:.6g} E2={moduli[1]:.6g} G12={moduli[2]:.6g} G13={moduli[3]:.6g}
           G23={moduli[4]:.6g} nu12={moduli[5]} /
-&laminate materials='ply' angles={angles} thicknesses={ply:.6g} /
+&laminate materials='ply' angles={angles} thicknesses={ply:.6g} shear_correction='5/6' /
 &impactor mass={mass:.6g} velocity={velocity:.6g} radius={radius:.6g} {impactor} /
 &indentation {law} k={k:.6g} /
 {time}

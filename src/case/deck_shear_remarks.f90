@@ -1,0 +1,34 @@
+!> Remark on a transverse shear stiffness that the deck asks for though it does not suit the plies.
+module deck_shear_remarks
+  use deck_contents, only: deck_t
+  use deck_problems, only: problems_t
+  use deck_remarks, only: remark
+  use laminate_deck, only: laminate_group, key_correction
+  use laminate_parameters, only: shear_five_sixths
+  use plies, only: ply_t
+  use shear_corrections, only: natural_correction, shear_contrast, shear_excess
+  use short_numbers, only: short_text
+  use stacking, only: stacked_plies
+  implicit none
+  private
+  public :: check_correction
+
+contains
+
+  !> Warns of the factor 5/6 where it is far from equilibrium.
+  subroutine check_correction(deck, problems)
+    !> The deck, filled and checked
+    type(deck_t), intent(in) :: deck
+    !> The warning is added
+    type(problems_t), intent(inout) :: problems
+    type(ply_t), allocatable :: plies(:)
+
+    if (problems%errors() > 0 .or. deck%laminate%shear_correction /= shear_five_sixths) return
+    plies = stacked_plies(deck%laminate, deck%materials)
+    if (natural_correction(plies) == shear_five_sixths) return
+    call remark(deck%settings, problems, laminate_group, key_correction, 'the transverse shear stiffness is '// &
+                short_text(shear_excess(plies))//' times that of equilibrium through the thickness, as shear '// &
+                'moduli of the plies differ by a factor of '//short_text(shear_contrast(plies))// &
+                '; write ''energy'', or leave the key out.')
+  end subroutine check_correction
+end module deck_shear_remarks
