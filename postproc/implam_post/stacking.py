@@ -69,7 +69,7 @@ class _Reader:
     def _angle(self) -> list[float]:
         """Read an angle or a pair of opposite ones."""
         match = _ANGLE.match(self.text, self.at)
-        if match is None or float(match["angle"]) > 360:
+        if match is None or float(match["angle"]) > 360 or re.match(r"0\d", match["angle"]):
             raise self.error()
         self.at = match.end()
         angle = float(match["angle"])

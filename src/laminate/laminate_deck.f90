@@ -2,7 +2,7 @@
 module laminate_deck
   use deck_choices, only: code_of
   use deck_problems, only: problems_t
-  use deck_remarks, only: tell, are_clear
+  use deck_remarks, only: tell, remark, are_clear
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
   use kinds, only: wp
@@ -12,7 +12,7 @@ module laminate_deck
   use plies, only: material_objection
   use shear_corrections, only: natural_correction
   use stacking, only: stacked_plies
-  use stacking_sequences, only: read_sequence, most_plies
+  use stacking_sequences, only: read_sequence, most_plies, usual_degrees, count_hint
   use text, only: line_t, append, joined, nearest_name, to_text, words_of
   implicit none
   private
@@ -143,6 +143,9 @@ contains
         call tell(settings, problems, laminate_group, key_stacking, fault//'.')
         return
       end if
+      i = maxloc(abs(angles), 1)
+      if (abs(angles(i)) > usual_degrees) call remark(settings, problems, laminate_group, key_stacking, 'the angle '// &
+        to_text(angles(i))//' is beyond 180 degrees; '//count_hint//'.')
       call settings%derive_numbers(laminate_group, key_angles, angles)
       call settings%derive_numbers(laminate_group, key_thicknesses, &
                                    settings%reals_of(laminate_group, key_ply_thickness))

@@ -10,6 +10,10 @@ module stacking_sequences
   integer, parameter, public :: most_plies = 1000
   !> Largest size of an angle, degrees.
   real(wp), parameter :: most_degrees = 360
+  !> Largest size of an angle that is meant as such; beyond, a subscript may have been lost, as in 302 for 30_2.
+  real(wp), parameter, public :: usual_degrees = 180
+  !> How plies of one angle are counted.
+  character(len=*), parameter, public :: count_hint = 'a count of plies stands behind _, as in 0_2'
   character(len=*), parameter :: digits = '0123456789'
   !> The signs of a pair of plies as one character of UTF-8, and the minus of typesetters.
   character(len=*), parameter :: plus_minus = char(194)//char(177), typeset_minus = char(226)//char(136)//char(146)
@@ -180,8 +184,12 @@ contains
       end if
       return
     end if
+    if (scan(number(:1), '0') == 1 .and. scan(number(2:min(2, last)), digits) == 1) then
+      call object(reader, 'an angle has no leading zero; '//count_hint)
+      return
+    end if
     if (angle > most_degrees) then
-      call object(reader, 'the angle is larger than 360 degrees')
+      call object(reader, 'the angle is larger than 360 degrees; '//count_hint)
       return
     end if
     call step(reader, last)
