@@ -229,6 +229,6 @@ def read_deck(path: Path | str) -> Deck:
     """Read the deck from its file."""
     path = Path(path)
     try:
-        return Deck(path.read_text(encoding="utf-8"), path)
+        return Deck(path.read_text(encoding="utf-8-sig"), path)
     except (OSError, UnicodeDecodeError) as error:
         raise FileError(f"the deck {path} cannot be read ({error}).") from None

@@ -32,7 +32,7 @@ def write_text(path: Path, text: str) -> None:
 def read_text(path: Path, what: str) -> str:
     """Return the text of a file; `what` it is stands in the message if it can't be read."""
     try:
-        return path.read_text(encoding="utf-8")
+        return path.read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
         raise FileError(f"{what} {path} cannot be read ({error}).") from None
 

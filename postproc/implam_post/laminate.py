@@ -24,6 +24,7 @@ class Material:
     name: str = field(default="", compare=False)
     strengths: tuple[tuple[str, float], ...] = field(default=(), compare=False)
     isotropic: bool = field(default=False, compare=False)
+    expansion: tuple[float, float] = field(default=(0.0, 0.0), compare=False)
 
     def reduced_stiffness(self, angle: float) -> np.ndarray:
         """Return the plane-stress stiffness (xx, yy, xy) of a ply with its fibres at `angle` degrees from x."""

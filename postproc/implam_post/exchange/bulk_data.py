@@ -1,5 +1,6 @@
 """Nastran's bulk data card by card, each with its line; pyNastran reads the fields."""
 
+import codecs
 import contextlib
 import math
 import re
@@ -12,6 +13,13 @@ from implam_post.errors import DeckError, FileError, ImplamError
 
 # What pyNastran raises about fields that it can't read.
 _READING_ERRORS = (SyntaxError, RuntimeError, AssertionError, ValueError, TypeError, LookupError, AttributeError)
+
+
+# Cards that a deck is made from. A line that begins with blanks and one of these names is a card and no continuation.
+KNOWN = ("GRID", "GRDSET", "CORD2R", "CQUAD4", "CQUAD8", "PCOMP", "PCOMPG", "MAT1", "MAT8", "SPC1", "SPC", "SPCADD",
+         "TEMPD")
+# Columns of a small field.
+_FIELD = 8
 
 
 class BulkCard:
@@ -64,7 +72,10 @@ class BulkData:
         self.cards: list[BulkCard] = []
         self.first_line = 1
         self.support_set: int | None = None
+        self.temperature_set: int | None = None
+        self.mass_factor = 1.0
         self._split(text)
+        self._read_mass_factor()
 
     def named(self, *names: str) -> Iterator[BulkCard]:
         """Return the cards of these names in the order of the file."""
@@ -93,6 +104,22 @@ class BulkData:
         except _READING_ERRORS as error:
             raise card.unread(error) from None
 
+    def mass_cards(self) -> list[BulkCard]:
+        """Return the cards PARAM,WTMASS, which turn weights into masses."""
+        return [card for card in self.named("PARAM") if str(card.fields.field(1) or "").upper() == "WTMASS"]
+
+    def _read_mass_factor(self) -> None:
+        """Note the factor of all masses, from the bulk data or else the case control."""
+        factors = {}
+        for card in self.mass_cards():
+            factor = self.real(card, 2)
+            if factor is None or factor <= 0:
+                raise card.error("WTMASS needs a number greater than zero.")
+            factors.setdefault(factor, card)
+        if len(factors) > 1:
+            raise list(factors.values())[1].error("WTMASS is another one than before.")
+        self.mass_factor = next(iter(factors), self.mass_factor)
+
     def missing(self, sentence: str) -> DeckError:
         """Return an error about what isn't there."""
         return DeckError(f"{self.path.name}: {sentence}")
@@ -109,11 +136,12 @@ class BulkData:
         self.first_line = begin + 2
         for number, line in enumerate(lines[begin + 1:], begin + 2):
             line = line.split("$")[0].rstrip()
+            if not line.strip():
+                continue
+            line = self._name_first(line, number)
             name = re.split(r"[,*\s]", line.expandtabs()[:8 if "," not in line else None], maxsplit=1)[0].upper()
             if name == "ENDDATA":
                 break
-            if not line.strip():
-                continue
             if line[0] in "+*" or not name:
                 if not self.cards:
                     raise DeckError(f"{self.path.name}:{number}: a continuation without a card.")
@@ -121,28 +149,71 @@ class BulkData:
             else:
                 self.cards.append(BulkCard(name, number, line, self.path.name))
 
+    def _name_first(self, line: str, number: int) -> str:
+        """Return a line whose first field begins with its name, as Nastran reads a name anywhere in that field."""
+        if not line[0].isspace():
+            return line
+        word = re.split(r"[,*\s]", line.strip(), maxsplit=1)[0].upper()
+        if "," in line:
+            first = line.split(",")[0].strip()
+            return line.lstrip() if first else line
+        line = line.expandtabs()
+        indent = len(line) - len(line.lstrip())
+        if word in KNOWN and indent + len(word) > _FIELD:
+            raise DeckError(f"{self.path.name}:{number}: {word}: it begins in column {indent + 1}; the name of a card "
+                            f"stands in columns 1 to {_FIELD}.")
+        first = line[:_FIELD].strip()
+        return first.ljust(_FIELD) + line[_FIELD:] if first else line
+
     def _read_case_control(self, lines: Sequence[str]) -> None:
-        """Note which set of supports the case control takes; several subcases may not differ."""
-        chosen = {int(match[1]) for line in lines if (match := re.match(r"\s*SPC\s*=\s*(\d+)\s*(\$|$)", line, re.I))}
+        """Note which sets of supports and temperatures the case control takes; several subcases may not differ."""
+        chosen = _chosen(r"SPC", lines)
+        temperatures = _chosen(r"TEMP(?:ERATURE)?\s*(?:\(\s*(?:LOAD|BOTH)\s*\))?", lines)
+        if len(temperatures) > 1:
+            raise self.missing(f"the case control takes the temperatures {sorted(temperatures)}: leave one.")
+        self.temperature_set = next(iter(temperatures), None)
+        for line in lines:
+            if match := re.match(r"\s*PARAM\s*,\s*WTMASS\s*,\s*([^\s,$]+)", line, re.I):
+                self.mass_factor = self._plain_number(match[1])
         if len(chosen) > 1:
             raise self.missing(f"the case control takes the supports {sorted(chosen)}: choose one by --spc.")
         self.support_set = next(iter(chosen), None)
 
 
+    def _plain_number(self, text: str) -> float:
+        """Return a number of the case control, which is written as in bulk data."""
+        with contextlib.suppress(ValueError):
+            value = float(_with_exponent(text))
+            if math.isfinite(value) and value > 0:
+                return value
+        raise self.missing(f"PARAM,WTMASS,{text} in the case control needs a number greater than zero.")
+
+
 def read_bulk_data(path: Path) -> BulkData:
     """Read a file."""
     try:
-        text = path.read_text(encoding="latin-1")
+        text = path.read_bytes().removeprefix(codecs.BOM_UTF8).decode("latin-1")
     except OSError as error:
         raise FileError(f"{path} cannot be read ({error}).") from None
     return BulkData(path, text)
 
 
+def _chosen(command: str, lines: Iterable[str]) -> set[int]:
+    """Return the numbers of the sets that a command of the case control takes."""
+    pattern = re.compile(rf"\s*{command}\s*=\s*(\d+)\s*(\$|$)", re.I)
+    return {int(match[1]) for line in lines if (match := pattern.match(line))}
+
+
 def _is_infinite(text: str) -> bool:
     """Tell whether a field is no number by name, or one too large."""
     with contextlib.suppress(ValueError):
-        return not math.isfinite(float(re.sub(r"(?<=[\d.])[DE]?([-+]\d+)$", r"E\1", text.upper())))
+        return not math.isfinite(float(_with_exponent(text)))
     return False
+
+
+def _with_exponent(text: str) -> str:
+    """Return a number of bulk data with the letter of its exponent."""
+    return re.sub(r"(?<=[\d.])[DE]?([-+]\d+)$", r"E\1", text.upper())
 
 
 def ranges(lines: Iterable[int], everything: Sequence[int]) -> str:

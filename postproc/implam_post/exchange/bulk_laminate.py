@@ -10,24 +10,28 @@ from implam_post.laminate import Material, Ply
 
 _MAT8_STRENGTHS = {12: "XT", 13: "XC", 14: "YT", 15: "YC", 16: "S12"}
 _UNTAKEN = {
-    "MAT1": {6: "A", 7: "TREF", 8: "GE", 9: "ST", 10: "SC", 11: "SS", 12: "MCSID"},
-    "MAT8": {9: "A1", 10: "A2", 11: "TREF", 17: "GE", 18: "F12"},
-    "PCOMP": {3: "NSM", 4: "SB", 5: "FT", 6: "TREF", 7: "GE"},
-    "PCOMPG": {3: "NSM", 4: "SB", 5: "FT", 6: "TREF", 7: "GE"},
+    "MAT1": {8: "GE", 9: "ST", 10: "SC", 11: "SS", 12: "MCSID"},
+    "MAT8": {17: "GE", 18: "F12"},
+    "PCOMP": {3: "NSM", 4: "SB", 5: "FT", 7: "GE"},
+    "PCOMPG": {3: "NSM", 4: "SB", 5: "FT", 7: "GE"},
 }
 _NEAR = 0.01
 
 
-def read_laminate(bulk: BulkData, properties: Iterable[int], remarks: Remarks) -> list[Ply]:
-    """Return the plies of the property that all elements have; several may be there if they say the same."""
+def read_laminate(bulk: BulkData, properties: Iterable[int], remarks: Remarks, shear_23: float | None = None
+                  ) -> list[Ply]:
+    """Return the plies of the property that all elements have; several may be there if they say the same.
+
+    `shear_23` stands in for G2Z where that is blank.
+    """
     cards = _unique(bulk, "PCOMP", "PCOMPG")
     found: list[tuple[BulkCard, list[Ply]]] = []
     for number in sorted(set(properties)):
         if number not in cards:
             raise bulk.missing(f"the elements have property {number}, but there is no PCOMP or PCOMPG of that number.")
-        found.append((cards[number], _plies(bulk, cards[number], remarks)))
+        found.append((cards[number], _plies(bulk, cards[number], remarks, shear_23)))
     for card, plies in found[1:]:
-        if any(ply != other or ply.material.strengths != other.material.strengths
+        if any(ply != other or _rest(ply.material) != _rest(other.material)
                for ply, other in zip_longest(plies, found[0][1], fillvalue=None)):
             first = found[0][0]
             raise bulk.error(card, f"it isn't the lay-up of {first.name} {first.fields.field(1)} in line {first.line}: "
@@ -47,7 +51,7 @@ def _unique(bulk: BulkData, *names: str) -> dict[int, BulkCard]:
     return cards
 
 
-def _plies(bulk: BulkData, card: BulkCard, remarks: Remarks) -> list[Ply]:
+def _plies(bulk: BulkData, card: BulkCard, remarks: Remarks, shear_23: float | None) -> list[Ply]:
     """Return the plies of a property, both halves of a symmetric one."""
     from pyNastran.bdf.cards.properties.shell import PCOMP, PCOMPG
     laminate = bulk.read(card, PCOMP if card.name == "PCOMP" else PCOMPG)
@@ -55,7 +59,7 @@ def _plies(bulk: BulkData, card: BulkCard, remarks: Remarks) -> list[Ply]:
     if laminate.lam and not symmetric:
         raise bulk.error(card, f"LAM = {laminate.lam} isn't taken: a laminate's plies are written out, or half of them "
                                "with SYM on a PCOMP.")
-    materials = _materials(bulk, {*laminate.mids}, card, remarks)
+    materials = _materials(bulk, {*laminate.mids}, card, remarks, shear_23)
     plies = [Ply(materials[mid], float(angle), float(thickness))
              for mid, angle, thickness in zip(laminate.mids, laminate.thetas, laminate.thicknesses, strict=True)]
     if symmetric:
@@ -69,14 +73,15 @@ def _plies(bulk: BulkData, card: BulkCard, remarks: Remarks) -> list[Ply]:
     return plies
 
 
-def _materials(bulk: BulkData, numbers: Iterable[int], user: BulkCard, remarks: Remarks) -> dict[int, Material]:
+def _materials(bulk: BulkData, numbers: Iterable[int], user: BulkCard, remarks: Remarks, shear_23: float | None
+               ) -> dict[int, Material]:
     """Return the materials of these numbers."""
     cards = _unique(bulk, "MAT1", "MAT8", "MAT2", "MAT9")
     for number in numbers:
         if number not in cards or cards[number].name not in ("MAT1", "MAT8"):
             raise bulk.error(user, f"material {number} isn't there as a MAT1 or MAT8.")
-    return {number: (_isotropic if cards[number].name == "MAT1" else _orthotropic)(bulk, cards[number], remarks)
-            for number in numbers}
+    return {number: _isotropic(bulk, cards[number], remarks) if cards[number].name == "MAT1"
+            else _orthotropic(bulk, cards[number], remarks, shear_23) for number in numbers}
 
 
 def _isotropic(bulk: BulkData, card: BulkCard, remarks: Remarks) -> Material:
@@ -94,17 +99,22 @@ def _isotropic(bulk: BulkData, card: BulkCard, remarks: Remarks) -> Material:
     if g is not None and card.given(2) and card.given(4) and abs(g - shear) > 1e-6 * shear:
         remarks.add(card, f"G isn't taken: E and NU give {shear:.5g}")
     remarks.untaken(card, _UNTAKEN["MAT1"])
+    expansion = bulk.real(card, 6) or 0.0
     return Material(_density(bulk, card, found.rho, remarks), e, e, shear, shear, shear, nu, _name(card),
-                    isotropic=True)
+                    isotropic=True, expansion=(expansion, expansion))
 
 
-def _orthotropic(bulk: BulkData, card: BulkCard, remarks: Remarks) -> Material:
+def _orthotropic(bulk: BulkData, card: BulkCard, remarks: Remarks, shear_23: float | None) -> Material:
     """Return the material of a MAT8."""
     from pyNastran.bdf.cards.materials import MAT8
     found = bulk.read(card, MAT8)
     g13, g23 = (bulk.real(card, number) for number in (6, 7))
+    if not g23 and shear_23 is None:
+        raise bulk.error(card, "G2Z is needed, on the card or by --g2z; without it Nastran takes the ply as rigid in "
+                               "transverse shear.")
     if not g23:
-        raise bulk.error(card, "G2Z is needed; without it Nastran takes the ply as rigid in transverse shear.")
+        remarks.add(card, f"G2Z is blank: {shear_23:g} is taken for it, as --g2z says")
+        g23 = shear_23
     if not g13:
         remarks.add(card, "G1Z is blank: G12 is taken for it")
         g13 = found.g12
@@ -116,7 +126,12 @@ def _orthotropic(bulk: BulkData, card: BulkCard, remarks: Remarks) -> Material:
     strengths = () if card.given(19) else tuple(
         (key, abs(bulk.real(card, number))) for number, key in _MAT8_STRENGTHS.items() if card.given(number))
     return Material(_density(bulk, card, found.rho, remarks), found.e11, found.e22, found.g12, g13, g23, found.nu12,
-                    _name(card), strengths)
+                    _name(card), strengths, expansion=(bulk.real(card, 9) or 0.0, bulk.real(card, 10) or 0.0))
+
+
+def _rest(material: Material) -> tuple[object, ...]:
+    """Return what materials that count as equal may differ in."""
+    return material.strengths, material.expansion
 
 
 def _density(bulk: BulkData, card: BulkCard, density: Any, remarks: Remarks) -> float:
@@ -125,7 +140,7 @@ def _density(bulk: BulkData, card: BulkCard, density: Any, remarks: Remarks) -> 
         raise bulk.error(card, "RHO must not be below zero.")
     if density == 0:
         remarks.add(card, "no RHO: an impact needs the density")
-    return float(density)
+    return float(density) * bulk.mass_factor
 
 
 def _name(card: BulkCard) -> str:

@@ -84,15 +84,29 @@ def _refuse_cuts(bulk: BulkData, places: Mapping[int, np.ndarray], size: float) 
 def read_grids(bulk: BulkData) -> dict[int, tuple[BulkCard, Any]]:
     """Return the grids by number; equal ones may be there twice."""
     from pyNastran.bdf.cards.nodes import GRID
-    for card in bulk.named("GRDSET"):
-        raise bulk.error(card, "it isn't taken: write what it sets on the GRIDs.")
+    defaults = _grid_defaults(bulk)
     grids: dict[int, tuple[BulkCard, Any]] = {}
     for card in bulk.named("GRID"):
         grid = bulk.read(card, GRID)
+        for name, (field, value) in defaults.items():
+            if card.fields.field(field) is None:
+                setattr(grid, name, value)
         if grid.nid in grids and grids[grid.nid][0].fields.card != card.fields.card:
             raise bulk.error(card, f"grid {grid.nid} is another one in line {grids[grid.nid][0].line}.")
         grids[grid.nid] = card, grid
     return grids
+
+
+def _grid_defaults(bulk: BulkData) -> dict[str, tuple[int, Any]]:
+    """Return what GRDSET gives to grids whose fields are blank: their number in GRID and the value, by name."""
+    from pyNastran.bdf.cards.nodes import GRDSET
+    cards = list(bulk.named("GRDSET"))
+    if not cards:
+        return {}
+    if len(cards) > 1:
+        raise bulk.error(cards[1], f"there is another one in line {cards[0].line}; a file has one at most.")
+    found = bulk.read(cards[0], GRDSET)
+    return {"cp": (2, found.cp), "cd": (6, found.cd), "ps": (7, str(found.ps or ""))}
 
 
 def _systems(bulk: BulkData) -> dict[int, Any]:

@@ -7,7 +7,12 @@ from typing import NamedTuple
 from implam_post.deck import STRENGTHS
 from implam_post.exchange.bulk_shape import Shape
 from implam_post.exchange.bulk_supports import Supports
-from implam_post.laminate import Material, Ply
+from implam_post.exchange.bulk_thermal import Thermal
+from implam_post.laminate import Material, Ply, natural_shear_correction
+
+
+# Fewest elements each way of a patch and the plate around it (src/case/deck_extents.f90).
+_BESIDE_PATCH = 3
 
 
 class Impact(NamedTuple):
@@ -20,10 +25,11 @@ class Impact(NamedTuple):
     step: float | None = None
 
 
-def deck_text(name: str, source: str, shape: Shape, supports: Supports, plies: Sequence[Ply], impact: Impact) -> str:
+def deck_text(name: str, source: str, shape: Shape, supports: Supports, plies: Sequence[Ply], impact: Impact,
+              thermal: Thermal | None = None) -> str:
     """Return the deck; groups of the impact are comments unless `impact` gives what they need."""
     return "\n".join([*_header(source, shape), *_plate(name, shape, supports, impact), *_laminate(plies),
-                      *_impact(impact)]) + "\n"
+                      *_thermal(thermal), *_impact(impact)]) + "\n"
 
 
 def number(value: float) -> str:
@@ -51,7 +57,8 @@ def _plate(name: str, shape: Shape, supports: Supports, impact: Impact) -> Itera
     yield (f"&plate     length={', '.join(map(number, shape.lengths))}  edges={', '.join(map(repr, edges))}  "
            f"in_plane='{'fixed' if supports.in_plane_fixed else 'free'}' /")
     patch = f"  patch={number(impact.radius / 2)}" if impact.radius is not None else ""
-    yield f"&mesh      elements={shape.elements[0]}, {shape.elements[1]}{patch} /"
+    elements = shape.elements if not patch else [max(count, _BESIDE_PATCH) for count in shape.elements]
+    yield f"&mesh      elements={elements[0]}, {elements[1]}{patch} /"
 
 
 def _laminate(plies: Sequence[Ply]) -> Iterator[str]:
@@ -61,8 +68,11 @@ def _laminate(plies: Sequence[Ply]) -> Iterator[str]:
         yield from _wrapped("&material  ", " ".join(_constants(material)))
     lists = {"materials": [repr(ply.material.name) for ply in plies], "angles": [number(ply.angle) for ply in plies],
              "thicknesses": [number(ply.thickness) for ply in plies]}
-    texts = (f"{key}={', '.join(values[:1] if key != 'angles' and len(set(values)) == 1 else values)}"
-             for key, values in lists.items())
+    texts = [f"{key}={', '.join(values[:1] if key != 'angles' and len(set(values)) == 1 else values)}"
+             for key, values in lists.items()]
+    correction = natural_shear_correction(plies)
+    if correction != "5/6":
+        texts.append(f"shear_correction='{correction}'")
     yield from _wrapped("&laminate  ", "  ".join(texts))
 
 
@@ -77,6 +87,8 @@ def _constants(material: Material) -> Iterator[str]:
     strengths = dict(material.strengths)
     yield from (f"{key}={number(value)}" for key, value in constants.items())
     yield from (f"{key}={number(strengths[key])}" for key in STRENGTHS if key in strengths)
+    if any(material.expansion):
+        yield from (f"alpha{axis}={number(value)}" for axis, value in enumerate(material.expansion, 1))
 
 
 def _wrapped(head: str, text: str) -> list[str]:
@@ -85,6 +97,18 @@ def _wrapped(head: str, text: str) -> list[str]:
     lines = textwrap.wrap(f"{head}{text}\u00a0/", 110, subsequent_indent=len(head) * " ", break_long_words=False,
                           break_on_hyphens=False)
     return [line.replace("\u00a0", " ") for line in lines]
+
+
+def _thermal(thermal: Thermal | None) -> Iterator[str]:
+    """Return the group of the temperature, or how to fill it in."""
+    if thermal is None:
+        return
+    if thermal.change is not None:
+        yield f"&thermal   delta_T={number(thermal.change)} /"
+    elif thermal.reference is not None:
+        yield f"! Free of stress at TREF = {number(thermal.reference)}: &thermal  delta_T=  (temperature less TREF) /"
+    else:
+        yield "! alpha1 and alpha2 count with &thermal  delta_T= /"
 
 
 def _impact(impact: Impact) -> Iterator[str]:

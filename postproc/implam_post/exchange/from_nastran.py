@@ -8,28 +8,30 @@ from dataclasses import replace
 from pathlib import Path
 
 from implam_post.errors import EXIT_DONE, CommandParser, FileError, ImplamError, run
-from implam_post.exchange.bulk_data import BulkData, ranges, read_bulk_data
+from implam_post.exchange.bulk_data import KNOWN, BulkData, ranges, read_bulk_data
 from implam_post.exchange.bulk_laminate import read_laminate
 from implam_post.exchange.bulk_shape import Shape, read_grids, read_shape
 from implam_post.exchange.bulk_supports import read_supports
+from implam_post.exchange.bulk_thermal import read_thermal
 from implam_post.exchange.deck_text import Impact, deck_text
 from implam_post.exchange.remarks import Remarks
 from implam_post.laminate import Ply
 
-TAKEN = ("GRID", "CORD2R", "CQUAD4", "CQUAD8", "PCOMP", "PCOMPG", "MAT1", "MAT8", "SPC1", "SPC", "SPCADD")
+TAKEN = KNOWN
 
 
-def deck_of(bulk: BulkData, name: str, impact: Impact, struck_last: bool = False, supports: int | None = None
-            ) -> tuple[str, Remarks]:
+def deck_of(bulk: BulkData, name: str, impact: Impact, struck_last: bool = False, supports: int | None = None,
+            shear_23: float | None = None) -> tuple[str, Remarks]:
     """Return the deck of a panel and what is to be told about its cards."""
     for card in bulk.named("INCLUDE"):
         raise bulk.error(card, "it isn't followed: put all bulk data into one file.")
     remarks = Remarks()
     grids = read_grids(bulk)
     shape = read_shape(bulk, grids, struck_last, remarks)
-    plies = _turned(read_laminate(bulk, shape.properties, remarks), shape)
+    plies = _turned(read_laminate(bulk, shape.properties, remarks, shear_23), shape)
+    thermal = read_thermal(bulk, shape.properties, plies, remarks)
     held = read_supports(bulk, grids, shape, supports, remarks)
-    return deck_text(name, bulk.path.name, shape, held, plies, impact), remarks
+    return deck_text(name, bulk.path.name, shape, held, plies, impact, thermal), remarks
 
 
 def _turned(plies: list[Ply], shape: Shape) -> list[Ply]:
@@ -54,12 +56,18 @@ def report(bulk: BulkData, remarks: Remarks) -> Iterator[str]:
     for name in TAKEN:
         if there := [card.line for card in bulk.named(name)]:
             yield f"  {name:<8} {len(there)}, {ranges(there, lines)}"
+    mass_cards = bulk.mass_cards()
+    if mass_cards:
+        yield f"  WTMASS   {bulk.mass_factor:g}, {ranges((card.line for card in mass_cards), lines)}: times RHO"
+    elif bulk.mass_factor != 1:
+        yield f"  WTMASS   {bulk.mass_factor:g}, in the case control: times RHO"
     told = remarks.told(bulk)
     yield from ["taken in part or otherwise:", *(f"  {text}" for text in told)] if told else []
-    others = list(dict.fromkeys(card.name for card in bulk.cards if card.name not in TAKEN))
+    left = [card for card in bulk.cards if card.name not in TAKEN and card not in mass_cards]
+    others = list(dict.fromkeys(card.name for card in left))
     yield "not taken:" if others else "not taken: none"
     for name in others:
-        there = [card.line for card in bulk.named(name)]
+        there = [card.line for card in left if card.name == name]
         yield f"  {name:<8} {len(there)}, {ranges(there, lines)}"
 
 
@@ -75,7 +83,7 @@ def _command(options: argparse.Namespace) -> int:
         raise FileError(f"{output} is already there: name another deck by -o, or this one to replace it.")
     bulk = read_bulk_data(options.bulk)
     text, remarks = deck_of(bulk, re.sub(r"[^\w.-]", "_", output.stem, flags=re.ASCII), impact,
-                            options.struck == "last", options.spc)
+                            options.struck == "last", options.spc, options.g2z)
     try:
         output.write_text(text, encoding="utf-8")
     except OSError as error:
@@ -101,6 +109,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--struck", choices=("first", "last"), default="first",
                         help="ply of the face that is struck, as the property counts them (default: first)")
     parser.add_argument("--spc", type=int, metavar="SET", help="set of supports (default: that of the case control)")
+    parser.add_argument("--g2z", type=_positive, metavar="NUMBER",
+                        help="transverse shear modulus of the plies whose G2Z is blank")
     for key, words in (("mass", "mass of the impactor"), ("velocity", "its speed"), ("radius", "radius of its nose"),
                        ("end", "end of the run"), ("step", "time step")):
         parser.add_argument(f"--{key}", type=_positive, metavar="NUMBER", help=f"{words}, in the file's units")
