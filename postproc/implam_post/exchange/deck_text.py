@@ -10,7 +10,6 @@ from implam_post.exchange.bulk_supports import Supports
 from implam_post.exchange.bulk_thermal import Thermal
 from implam_post.laminate import Material, Ply, natural_shear_correction
 
-
 # Fewest elements each way of a patch and the plate around it (src/case/deck_extents.f90).
 _BESIDE_PATCH = 3
 
