@@ -9,6 +9,7 @@ module model_building
   use plate_options, only: kinematics_linear, mass_lumped
   use inertia_forces, only: add_lumped_mass
   use load_vectors, only: add_pressure, gauss_coordinates, add_patch_weights
+  use ply_shear, only: shear_shares_of
   use stacking, only: section_t, stacked_plies, section_of
   use mesh_parameters, only: edge_free, symmetry_quarter
   use cell_grids, only: cell_edges
@@ -57,6 +58,7 @@ contains
         self%plies(ply)%free_strain = scene%temperature_change*scene%materials(self%plies(ply)%material)%expansion
       end do
     end if
+    self%shear_shares = shear_shares_of(self%plies)
     self%thickness = sum(scene%laminate%thickness)
     self%section = section_of(self%plies, scene%laminate%shear_correction)
     zones = zones_of(scene)

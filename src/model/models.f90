@@ -45,6 +45,8 @@ module models
     type(element_batches_t) :: elements
     !> Plies of the laminate, struck face first
     type(ply_t), allocatable :: plies(:)
+    !> Transverse shear stresses of its plies under unit shear forces, (2, 2, plies)
+    real(wp), allocatable :: shear_shares(:, :, :)
     !> Section of the whole laminate
     type(section_t) :: section
     !> Thickness of the laminate

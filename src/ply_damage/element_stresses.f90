@@ -4,7 +4,8 @@ module element_stresses
   use plies, only: elasticity_t
   use ply_stresses, only: middle_stress, face_stresses
   use criterion_strains, only: mean_strains_of_elements
-  use ply_criteria, only: strains_of_plies
+  use ply_criteria, only: shear_force
+  use ply_shear, only: shear_of_plies
   use ply_failures, only: ply_failure_t
   use models, only: model_t
   implicit none
@@ -20,14 +21,13 @@ contains
     type(ply_failure_t), intent(in) :: failures
     !> Displacement, ghosts up to date, (5, points)
     real(wp), intent(in) :: displacement(:, :)
-    !> Membrane exx, eyy, gxy; curvature kxx, kyy, kxy; shear gxz, gyz of the plies, (8, elements)
+    !> Membrane exx, eyy, gxy; curvature kxx, kyy, kxy; shear forces Qx, Qy, (8, elements)
     real(wp), allocatable :: strains(:, :)
     integer :: element
 
     strains = mean_strains_of_elements(model, displacement)
     do element = 1, size(strains, 2)
-      strains(:, element) = strains_of_plies(model, failures%stiffness, element, &
-                                             failures%elasticities(model, element), strains(:, element))
+      strains(7:8, element) = shear_force(failures%stiffness, element, strains(7:8, element))
     end do
   end function element_strains
 
@@ -44,16 +44,21 @@ contains
     !> this ply, (5, 3, elements)
     real(wp), allocatable :: stresses(:, :, :)
     type(elasticity_t) :: elasticity
+    real(wp), allocatable :: shear(:, :)
     integer :: element
 
     allocate (stresses(5, 3, size(strains, 2)), source=0.0_wp)
     do element = 1, size(strains, 2)
       associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
         if (ply < range(1) .or. ply > range(2)) cycle
+        shear = shear_of_plies(model%plies(range(1):range(2)), model%shear_shares(:, :, range(1):range(2)), &
+                               strains(7:8, element))
+        elasticity = failures%elasticity(model, ply, element)
+        stresses(:, 1, element) = middle_stress(model%plies(ply), elasticity, strains(:6, element), &
+                                                shear(:, ply - range(1) + 1))
+        stresses(:, 2:3, element) = face_stresses(model%plies(ply), elasticity, strains(:6, element), &
+                                                  shear(:, ply - range(1) + 1))
       end associate
-      elasticity = failures%elasticity(model, ply, element)
-      stresses(:, 1, element) = middle_stress(model%plies(ply), elasticity, strains(:, element))
-      stresses(:, 2:3, element) = face_stresses(model%plies(ply), elasticity, strains(:, element))
     end do
   end function stresses_of_ply
 end module element_stresses

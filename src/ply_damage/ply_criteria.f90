@@ -4,12 +4,13 @@ module ply_criteria
   use element_batches, only: batch_of, lane_of
   use plies, only: elasticity_t
   use ply_damage_parameters, only: failure_modes, stress_at_faces
-  use ply_stresses, only: middle_stress, face_stresses, mean_shear_strain
+  use ply_stresses, only: middle_stress, face_stresses
+  use ply_shear, only: shear_of_plies
   use failure_criteria, only: chosen_indices
   use models, only: model_t
   implicit none
   private
-  public :: failure_measures, strains_of_plies
+  public :: failure_measures, shear_force
 
 contains
 
@@ -28,19 +29,20 @@ contains
     !> The measures
     real(wp) :: measures(failure_modes, size(elasticity))
     real(wp), allocatable :: stresses(:, :)
-    real(wp) :: local(8)
+    real(wp) :: shear(2, size(elasticity))
     integer :: i
 
-    local = strains_of_plies(model, stiffness, element, elasticity, strains)
     measures = 0
     associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
+      shear = shear_of_plies(model%plies(range(1):range(2)), model%shear_shares(:, :, range(1):range(2)), &
+                             shear_force(stiffness, element, strains(7:8)))
       do i = 1, size(elasticity)
         associate (ply => model%plies(range(1) + i - 1))
           associate (strength => model%scene%materials(ply%material))
             if (model%scene%ply_damage%stress == stress_at_faces) then
-              stresses = face_stresses(ply, elasticity(i), local)
+              stresses = face_stresses(ply, elasticity(i), strains(:6), shear(:, i))
             else
-              stresses = spread(middle_stress(ply, elasticity(i), local), 2, 1)
+              stresses = spread(middle_stress(ply, elasticity(i), strains(:6), shear(:, i)), 2, 1)
             end if
             measures(:, i) = chosen_indices(model%scene%ply_damage%criteria, strength, stresses)
           end associate
@@ -50,25 +52,19 @@ contains
     measures = sqrt(max(measures, 0.0_wp))
   end function failure_measures
 
-  !> Strains of an element that the stresses of its plies follow from: its own, but for one transverse shear strain
-  !> whose stresses add up to the shear force.
-  pure function strains_of_plies(model, stiffness, element, elasticity, strains) result(local)
-    type(model_t), intent(in) :: model
+  !> Shear forces of an element, Q = S gamma.
+  pure function shear_force(stiffness, element, strain) result(force)
     !> Section stiffness left in the elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     !> Element of this rank
     integer, intent(in) :: element
-    !> Present elastic constants of its plies
-    type(elasticity_t), intent(in) :: elasticity(:)
-    !> Mean strains of the element
-    real(wp), intent(in) :: strains(8)
-    !> Strains for ply_stress
-    real(wp) :: local(8)
+    !> Mean shear strains gxz, gyz of the element
+    real(wp), intent(in) :: strain(2)
+    !> Qx and Qy per length
+    real(wp) :: force(2)
 
-    local = strains
-    associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
-      local(7:8) = mean_shear_strain(model%plies(range(1):range(2)), elasticity, &
-                                     stiffness(lane_of(element), :, batch_of(element)), strains(7:8))
+    associate (s => stiffness(lane_of(element), 19:21, batch_of(element)))
+      force = [dot_product(s(1:2), strain), dot_product(s(2:3), strain)]
     end associate
-  end function strains_of_plies
+  end function shear_force
 end module ply_criteria
