@@ -204,12 +204,13 @@ contains
     real(wp), intent(inout) :: value(:, :)
     real(wp), allocatable :: list(:), whole(:, :)
     integer, allocatable :: origins(:)
-    integer :: i
+    integer :: i, item
 
     if (self%loading) then
       origins = self%element_origin
       if (global_columns == size(self%point_origin)) origins = self%point_origin
-      associate (values => self%kept(self%find(name))%values)
+      item = self%find(name)
+      associate (values => self%kept(item)%values)
         do i = 1, size(columns)
           if (origins(columns(i)) > 0) value(:, i) = values(:, origins(columns(i)))
         end do
