@@ -255,7 +255,7 @@ contains
         cycle
       end if
       ! What it has seen of points on one side of a kink leads astray beyond it.
-      if (operator%condenses .and. norm > astray*before) call operator%anderson%forget()
+      if (operator%condenses .and. norm/astray > before) call operator%anderson%forget()
       before = norm
       converged = norm <= equilibrium%tolerance
       if (converged) converged = problem%may_stop(model, new, pressures_new)

@@ -183,7 +183,11 @@ contains
                                                     self%pressure(points))])
     call model%communicator%maximum(complementarity)
     call model%communicator%maximum(peak)
-    complementarity = merge(complementarity/max(peak, tiny(peak)), 0.0_wp, peak > 0)
+    if (peak > 0) then
+      complementarity = complementarity/peak
+    else
+      complementarity = 0
+    end if
   end function complementarity
 
   !> Work of contact and penalty ties in a step, of this rank's points.

@@ -123,7 +123,11 @@ contains
     do i = 1, model%distribution%owned
       if (.not. self%share(i) > 0) cycle
       associate (duration => self%duration(model%zone(i)))
-        self%share(i) = merge(self%share(i) - step/max(duration, tiny(step)), 0.0_wp, step < self%share(i)*duration)
+        if (step < self%share(i)*duration) then
+          self%share(i) = self%share(i) - step/duration
+        else
+          self%share(i) = 0
+        end if
       end associate
     end do
     self%left = max(0.0_wp, self%left - step)

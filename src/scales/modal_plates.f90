@@ -160,6 +160,6 @@ contains
     fewer%frequency = pack(plate%frequency, kept)
     fewer%weight = pack(plate%weight, kept)
     fewer%wave_number = plate%wave_number(:, pack([(i, i=1, size(kept))], kept))
-    fewer%rest = plate%rest + sum(plate%weight/max(plate%frequency, tiny(1.0_wp))**2, mask=.not. kept)
+    fewer%rest = plate%rest + sum(pack(plate%weight, .not. kept)/pack(plate%frequency, .not. kept)**2)
   end function reduced
 end module modal_plates

@@ -78,15 +78,14 @@ contains
     !> Steps, a power of two
     integer, intent(in) :: steps
     logical :: swings(size(self%plate%frequency))
+    real(wp), allocatable :: omega(:)
     integer :: i
 
-    associate (omega => self%plate%frequency, weight => self%plate%weight)
-      swings = omega > 0
-      self%later = sums_of_sines( &
-        2*atan(pack(omega, swings)*self%step/2), &
-        pack(weight*self%step/max(omega, tiny(1.0_wp))/(1 + (omega*self%step/2)**2), swings), steps)
-      self%later = self%later + self%step**2*sum(weight, mask=.not. swings)*[(real(i, wp), i=1, steps)]
-    end associate
+    swings = self%plate%frequency > 0
+    omega = pack(self%plate%frequency, swings)
+    self%later = sums_of_sines(2*atan(omega*self%step/2), &
+                               pack(self%plate%weight, swings)*self%step/omega/(1 + (omega*self%step/2)**2), steps)
+    self%later = self%later + self%step**2*sum(self%plate%weight, mask=.not. swings)*[(real(i, wp), i=1, steps)]
     self%turns = unit_turns(steps)
   end subroutine find_answer
 
