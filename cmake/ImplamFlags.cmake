@@ -1,6 +1,6 @@
 # Compiler flags, one line of reason each. Presets choose the build type.
 if(NOT CMAKE_BUILD_TYPE)
-  set(CMAKE_BUILD_TYPE Release CACHE STRING "Release, Debug or Coverage" FORCE)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Release, Debug, Sanitize or Coverage" FORCE)
 endif()
 option(IMPLAM_NATIVE "Tune for the processor that builds (switch off for a binary that travels)" ON)
 
@@ -27,11 +27,17 @@ if(CMAKE_Fortran_COMPILER_ID STREQUAL "GNU")
     -ffpe-trap=invalid,zero,overflow       # stop where the first NaN is born
     -finit-real=snan -finit-integer=-99999 # a variable read before it is set is caught
     -finit-derived)
+  # Not all of "undefined": absent optional arguments and empty arrays are null pointers, which gfortran means.
+  set(IMPLAM_SANITIZERS address,alignment,bool,float-cast-overflow,integer-divide-by-zero,shift,signed-integer-overflow)
+  set(IMPLAM_SANITIZE -O1 -g -fbacktrace -fno-omit-frame-pointer -ffp-contract=off
+    -fsanitize=${IMPLAM_SANITIZERS} -fno-sanitize-recover=all)
   set(IMPLAM_COVERAGE -O0 -g --coverage)
 else()
   set(IMPLAM_FLAGS)
   set(IMPLAM_RELEASE -O3)
   set(IMPLAM_DEBUG -g)
+  set(IMPLAM_SANITIZERS address)
+  set(IMPLAM_SANITIZE -g)
   set(IMPLAM_COVERAGE -g)
 endif()
 
@@ -42,7 +48,9 @@ target_compile_options(implam_flags INTERFACE
   $<$<AND:$<COMPILE_LANGUAGE:Fortran>,$<CONFIG:Release>>:${IMPLAM_RELEASE}>
   $<$<AND:$<COMPILE_LANGUAGE:C>,$<CONFIG:Release>>:${IMPLAM_RELEASE_C}>
   $<$<AND:$<COMPILE_LANGUAGE:Fortran>,$<CONFIG:Debug>>:${IMPLAM_DEBUG}>
+  "$<$<CONFIG:Sanitize>:${IMPLAM_SANITIZE}>"
   $<$<AND:$<COMPILE_LANGUAGE:Fortran>,$<CONFIG:Coverage>>:${IMPLAM_COVERAGE}>)
-target_link_options(implam_flags INTERFACE $<$<CONFIG:Coverage>:--coverage>)
+target_link_options(implam_flags INTERFACE $<$<CONFIG:Coverage>:--coverage>
+  "$<$<CONFIG:Sanitize>:-fsanitize=${IMPLAM_SANITIZERS}>")
 set(CMAKE_Fortran_FLAGS_RELEASE "")
 set(CMAKE_Fortran_FLAGS_DEBUG "")

@@ -30,7 +30,7 @@ def find_program(words: str | None) -> list[str]:
 def environment() -> dict[str, str]:
     """Return the environment for several runs side by side: one thread each, no core for oneself."""
     return {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "OMPI_MCA_hwloc_base_binding_policy": "none",
-            **os.environ}
+            "PRTE_MCA_hwloc_default_binding_policy": "none", **os.environ}
 
 
 def processors() -> int:

@@ -102,7 +102,8 @@ class PicturesTest(unittest.TestCase):
         for angle in (0, 30, 90, -45):
             line = along_fibres(square, angle)[0]
             run = line[1] - line[0]
-            self.assertAlmostEqual(abs(np.cross(run, [np.cos(np.radians(angle)), np.sin(np.radians(angle))])), 0)
+            along = np.cos(np.radians(angle)), np.sin(np.radians(angle))
+            self.assertAlmostEqual(run[0] * along[1] - run[1] * along[0], 0)
             self.assertTrue(np.all(line >= -1e-12) and np.all(line <= [2 + 1e-12, 1 + 1e-12]), line)
             self.assertGreater(np.hypot(*run), 0.99)
         figure = failures_figure(read_fields(self.path), ("matrix cracking",), Look("SI"))

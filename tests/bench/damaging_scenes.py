@@ -32,7 +32,9 @@ SAME_AREA = 1e-6  # of the area; it has the points that are parting, too
 MINUTE = 60  # seconds of the processor
 MOST_ANSWERS = 1 / 3  # of the time
 os.environ |= {"OMP_NUM_THREADS": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1",
-               "OMPI_MCA_hwloc_base_binding_policy": "none"}
+               "OMPI_MCA_hwloc_base_binding_policy": "none",
+               "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe",
+               "PRTE_MCA_hwloc_default_binding_policy": "none"}
 
 
 def scene(seed):

@@ -78,7 +78,7 @@ def check_pages(implam, folder):
 def check_zsh(implam, folder):
     """In a zsh as it is started by hand, with the file where zsh looks for completions, the first key completes."""
     if not shutil.which("zsh"):
-        print("zsh: not installed, left out")
+        print("skipped: zsh isn't installed, its completions are not tried")
         return
     (folder / "_implam").write_text(answer(implam, "completion", "zsh"), encoding="utf-8")
     for typed, expected in (("implam expl", "implam explain "), ("implam explain plate.len", "plate.length "),

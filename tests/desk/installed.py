@@ -35,8 +35,8 @@ def main():
     subprocess.run([implam, deck, "--output", work], check=True, cwd=work, stdout=subprocess.DEVNULL, timeout=120)
     require((work / "delamination_history.csv").is_file(), "The installed program writes no history.")
     (work / "CMakeLists.txt").write_text(PROJECT, encoding="utf-8")
-    subprocess.run([cmake, "-S", work, "-B", work / "build", f"-DCMAKE_PREFIX_PATH={prefix}"], check=True,
-                   stdout=subprocess.DEVNULL)
+    subprocess.run([cmake, "-G", "Ninja", "-S", work, "-B", work / "build", f"-DCMAKE_PREFIX_PATH={prefix}"],
+                   check=True, stdout=subprocess.DEVNULL)
     program, decks = (work / "build/found").read_text(encoding="utf-8").splitlines()
     require(os.path.samefile(program, implam), f"find_package finds {program}.")
     require(os.path.samefile(decks, prefix / "share/implam/input"), f"find_package finds decks in {decks}.")

@@ -166,7 +166,7 @@ TRIALS = {"calculix": ("ccx", check), "mystran": ("mystran", check), "manual": (
 if __name__ == "__main__":
     needed, trial = TRIALS[sys.argv[1]]
     if not (shutil.which(needed) or importlib.util.find_spec(needed)):
-        print(f"{needed} isn't installed: nothing compared.")
+        print(f"skipped: {needed} isn't installed")
         raise SystemExit(SKIPPED)
     program = [sys.argv[1]] if trial is check else []
     raise SystemExit(exit_code_of(trial, *program, Path(sys.argv[2]).resolve(), Path(sys.argv[3])))

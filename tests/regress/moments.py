@@ -23,7 +23,9 @@ from solver_runs import EXIT_DONE, EXIT_STOPPED, exit_code_of, history_of, requi
 
 HERE = Path(__file__).resolve().parent
 os.environ |= {"OMPI_MCA_mpi_yield_when_idle": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1",
-               "OMPI_MCA_hwloc_base_binding_policy": "none"}
+               "OMPI_MCA_hwloc_base_binding_policy": "none",
+               "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe",
+               "PRTE_MCA_hwloc_default_binding_policy": "none"}
 # Fronts that grow while plies fail, a cohesive interface, and plies that soften; in each step a checkpoint.
 SCENES = {"fronts": ("../small/damage.nml", [*GROWING, "time%end=400e-6", "output%checkpoint_every=10e-6",
                                              "output%fields_every=50e-6"]),

@@ -67,7 +67,7 @@ class BulkData:
             import pyNastran.bdf.bdf_interface.bdf_card  # noqa: F401
         except ImportError:
             raise ImplamError("Nastran's files are read by pyNastran, which isn't installed: "
-                              "pip install 'implam-post[nastran]'.") from None
+                              "pip install 'implam-post[nastran]' and pip install --no-deps pyNastran.") from None
         self.path = path
         self.cards: list[BulkCard] = []
         self.first_line = 1

@@ -1,0 +1,31 @@
+"""Prints the tests that were skipped, whole ones and parts, with the reasons that they gave.
+Usage: skipped.py FILE     (what ctest --output-junit has written)"""
+
+import re
+import sys
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+
+# How tests say it: scripts at the beginning of a line, unittest and the framework behind the test's name.
+SAID = re.compile(r"^(?:.*\.\.\. |\S+: )?skipped:? (.+)$", re.MULTILINE)
+
+
+def reasons(output):
+    """Return the reasons in what a test has printed, each once."""
+    return list(dict.fromkeys(reason.strip("'\"") for reason in SAID.findall(output)))
+
+
+def main():
+    """Print a line a reason."""
+    lines = []
+    for case in ElementTree.parse(Path(sys.argv[1])).getroot().iter("testcase"):
+        whole = case.get("status") == "notrun"
+        told = reasons(case.findtext("system-out") or "")
+        if whole and not told:
+            told = ["without a reason"]
+        lines += [f"  {case.get('name')}{'' if whole else ', a part of it'}: {reason}" for reason in told]
+    print("\n".join(["Skipped:", *lines]) if lines else "No test was skipped.")
+
+
+if __name__ == "__main__":
+    main()
