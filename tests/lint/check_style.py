@@ -143,6 +143,7 @@ class Checker:
         self.lines = path.read_text(encoding="utf-8").splitlines()
         self.breaches = []
         self.scopes = []
+        self.bound = set()
 
     def report(self, line, sentence):
         """Note a breach."""
@@ -153,6 +154,7 @@ class Checker:
         self.check_layout(MAX_FILE if whole else MAX_FILE_OF_TESTS)
         for statement in statements(self.lines) if whole else ():
             self.check_indent(statement)
+            self.check_selectors(statement)
             self.check_words(statement)
             self.walk(statement)
         return [text for _, text in sorted(self.breaches)]
@@ -178,6 +180,19 @@ class Checker:
         wanted = INDENT * (len(self.scopes) - bool(closes and self.scopes))
         if statement.indent != wanted:
             self.report(statement.line, f"indented by {statement.indent}, not {wanted} blanks")
+
+    def check_selectors(self, statement):
+        """Check that the subscripts of selectors call none of the file's own type-bound functions: GNU 14 stops there."""
+        bound = re.match(r"procedure\b[^:]*::\s*(.*)$", statement.text)
+        if bound:
+            self.bound |= {re.match(r"\w+", name).group() for name in split_top(bound.group(1))}
+        if not re.match(r"associate\s*\(", statement.text):
+            return
+        depth = 0
+        for part in re.finditer(r"[()]|%(\w+)(?=\()", statement.text):
+            depth += (part.group() == "(") - (part.group() == ")")
+            if depth > 1 and part.group(1) in self.bound:
+                self.report(statement.line, f"{part.group(1)} is called within the selector of an associate")
 
     def check_words(self, statement):
         """Check for statements that have no place in the project."""

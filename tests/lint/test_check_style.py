@@ -108,6 +108,7 @@ BREACHES = {
     "long file": ("!> A thing.\n", "! Why\n" * 400 + "!> A thing.\n", "more than 400 lines"),
     "many components": ("    real(wp) :: size = 0\n", f"    real(wp) :: {MANY}\n", "more than 15 components"),
     "spelling": ("!> A thing.\n", "!> A Factorised thing.\n", "another name or spelling of factorization"),
+    "selector": ("v => value", "v => self%list(self%area(i))%size", "area is called within the selector"),
     "march": ("    !> Size\n", "    !> The march\n", "another name or spelling of time stepping"),
 }
 
