@@ -26,8 +26,24 @@ is_missing() {
   [[ $(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null) != installed ]]
 }
 
+# is_offered PACKAGE: not every release of Debian has every one.
+is_offered() {
+  [[ $(LC_ALL=C apt-cache policy "$1") == *"Candidate: "[!\(]* ]]
+}
+
+# run_apt WORD...: apt and dpkg tell every package three times; what they say is shown if they fail.
+run_apt() {
+  local log
+  log=$(mktemp)
+  if ! DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=300 -qq "$@" >"$log" 2>&1; then
+    cat "$log" >&2
+    exit 1
+  fi
+  rm "$log"
+}
+
 install_packages() {
-  local missing=() wanted=() package log
+  local missing=() wanted=() package
   if ! command -v apt-get >/dev/null; then
     echo "No apt here: assuming that a Fortran compiler, CMake, Ninja, MPI, PETSc, CHOLMOD, METIS and parallel HDF5 are there."
     return
@@ -35,31 +51,22 @@ install_packages() {
   for package in "${packages[@]}"; do
     ! is_missing "$package" || missing+=("$package")
   done
-  if ((${#missing[@]} && EUID != 0)); then
-    echo "Packages are missing; as root run: apt-get install --no-install-recommends ${missing[*]}" >&2
-    exit 1
+  [[ $task == run ]] || for package in "${test_packages[@]}"; do
+    ! is_missing "$package" || wanted+=("$package")
+  done
+  ((${#missing[@]} + ${#wanted[@]})) || return 0
+  if ((EUID != 0)); then
+    echo "Packages are missing; as root run: apt-get install --no-install-recommends ${missing[*]} ${wanted[*]}" >&2
+    ((${#missing[@]} == 0)) || exit 1
+    return 0
   fi
-  if [[ $task == test ]]; then
-    for package in "${test_packages[@]}"; do
-      ! is_missing "$package" || wanted+=("$package")
-    done
-    if ((${#wanted[@]} && EUID != 0)); then
-      echo "Tests will be skipped; as root run: apt-get install --no-install-recommends ${wanted[*]}"
-      wanted=()
-    fi
-  fi
-  missing+=("${wanted[@]}")
+  run_apt update
+  for package in "${wanted[@]}"; do
+    if is_offered "$package"; then missing+=("$package"); else echo "This release has no package $package."; fi
+  done
   ((${#missing[@]})) || return 0
   stage "Installing ${#missing[@]} packages: ${missing[*]}"
-  export DEBIAN_FRONTEND=noninteractive
-  log=$(mktemp)
-  # apt and dpkg tell every package three times; what they say is shown if they fail.
-  if ! { apt-get -o DPkg::Lock::Timeout=300 -qq update &&
-    apt-get -o DPkg::Lock::Timeout=300 -qq install --no-install-recommends "${missing[@]}"; } >"$log" 2>&1; then
-    cat "$log" >&2
-    exit 1
-  fi
-  rm "$log"
+  run_apt install --no-install-recommends "${missing[@]}"
 }
 
 # The commands that check and plot results go into .venv, and with them, for the tests, a checker of style and readers
