@@ -182,7 +182,7 @@ class Checker:
             self.report(statement.line, f"indented by {statement.indent}, not {wanted} blanks")
 
     def check_selectors(self, statement):
-        """Check that the subscripts of selectors call none of the file's own type-bound functions: GNU 14 stops there."""
+        """Check that no selector calls one of the file's own type-bound functions in a subscript: GNU 14 refuses it."""
         bound = re.match(r"procedure\b[^:]*::\s*(.*)$", statement.text)
         if bound:
             self.bound |= {re.match(r"\w+", name).group() for name in split_top(bound.group(1))}
