@@ -3,12 +3,13 @@ module command_lines
   use errors, only: error_t, fail, exit_usage
   use folder_listings, only: file_by_age
   use kinds, only: wp
-  use text, only: line_t, words_of
+  use text, only: line_t, append, nearest_name, words_of
+  use usage_texts, only: option_rows
   implicit none
   private
   public :: command_t, read_command_line
 
-  !> What the program is asked to do.
+  !> What the program is asked to do, numbered as in verb_words.
   integer, parameter, public :: verb_run = 1, verb_check = 2, verb_explain = 3, verb_restart = 4, &
                                 verb_version = 5, verb_help = 6, verb_new = 7, verb_completion = 8, &
                                 verb_man = 9, verb_queue = 10
@@ -39,6 +40,13 @@ module command_lines
     logical :: markdown = .false.
   end type command_t
 
+  !> The words of the verbs, in the order of their numbers.
+  character(len=*), parameter :: verb_words(*) = [character(len=10) :: 'run', 'check', 'explain', 'restart', &
+                                                  'version', 'help', 'new', 'completion', 'man', 'queue']
+
+  !> Options that take a value.
+  character(len=*), parameter :: valued(*) = [character(len=12) :: '--ranks', '--time', '--output', '--wall-limit']
+
 contains
 
   !> Takes the arguments of the program apart.
@@ -57,7 +65,7 @@ contains
     i = 1
     do while (i <= command_argument_count())
       word = argument(i)
-      if (index(word, '--') == 1 .or. word == '-h') then
+      if (index(word, '--') == 1 .or. any(word == ['-h', '-v', '-V'])) then
         call read_option(command, word, i, error)
       else if (index(word, '-') == 1) then
         command%petsc_options = command%petsc_options//' '//word
@@ -74,13 +82,17 @@ contains
         command%target = word
       else if (any(command%verb == [verb_explain, verb_help]) .and. scan(command%target, '%. ') == 0) then
         command%target = command%target//'%'//word
+      else if (.not. verb_given .and. meant_verb(command%target) /= '') then
+        call fail(error, exit_usage, 'Unknown command "'//command%target//'"; did you mean '// &
+                  meant_verb(command%target)//'?')
       else
         call fail(error, exit_usage, 'Unexpected argument "'//word//'": one deck, checkpoint or topic at a time.')
       end if
       if (allocated(error)) return
       i = i + 1
     end do
-    call require_target(command, error)
+    if (.not. verb_given) call refuse_misspelt_verb(command%target, error)
+    if (.not. allocated(error)) call require_target(command, error)
     if (command%verify .and. command%verb /= verb_run .and. .not. allocated(error)) &
       call fail(error, exit_usage, '--verify takes a deck to run.')
     if (command%profile .and. all(command%verb /= [verb_run, verb_restart]) .and. .not. allocated(error)) &
@@ -97,9 +109,33 @@ contains
     integer, intent(inout) :: i
     !> Set (usage) if the option is unknown or lacks its value
     type(error_t), allocatable, intent(inout) :: error
+    character(len=:), allocatable :: value
+    integer :: equals
+
+    equals = index(word, '=')
+    value = word(merge(equals, len(word), equals > 0) + 1:)
+    if (equals > 0) then
+      call read_value(command, word(:equals - 1), value, error)
+    else if (any(word == valued)) then
+      i = i + 1
+      if (i <= command_argument_count()) value = argument(i)
+      call read_value(command, word, value, error)
+    else
+      call read_switch(command, word, error)
+    end if
+  end subroutine read_option
+
+  !> Reads an option that stands alone.
+  subroutine read_switch(command, word, error)
+    !> Receives the option
+    type(command_t), intent(inout) :: command
+    !> The option
+    character(len=*), intent(in) :: word
+    !> Set (usage) if the option is unknown
+    type(error_t), allocatable, intent(inout) :: error
 
     select case (word)
-    case ('--version')
+    case ('--version', '-v', '-V')
       command%verb = verb_version
     case ('--help', '-h')
       command%verb = verb_help
@@ -111,27 +147,98 @@ contains
       command%profile = .true.
     case ('--chain')
       command%chain = .true.
+    case default
+      call refuse_option(word, error)
+    end select
+  end subroutine read_switch
+
+  !> Reads an option with its value, which follows as the next word or behind an equals sign.
+  subroutine read_value(command, word, value, error)
+    !> Receives the option
+    type(command_t), intent(inout) :: command
+    !> The option
+    character(len=*), intent(in) :: word
+    !> Its value; empty: there is none
+    character(len=*), intent(in) :: value
+    !> Set (usage) if the option is unknown or lacks its value
+    type(error_t), allocatable, intent(inout) :: error
+
+    select case (word)
     case ('--ranks')
-      i = i + 1
-      if (i <= command_argument_count()) command%ranks = whole_number(argument(i))
+      command%ranks = whole_number(value)
       if (command%ranks < 1) call fail(error, exit_usage, '--ranks needs a whole number above 0.')
     case ('--time')
-      i = i + 1
-      if (i <= command_argument_count()) command%seconds = clock_seconds(argument(i))
+      command%seconds = clock_seconds(value)
       if (command%seconds < 60) call fail(error, exit_usage, '--time needs hours:minutes:seconds, a minute at least.')
     case ('--output')
-      i = i + 1
-      command%output = ''
-      if (i <= command_argument_count()) command%output = argument(i)
+      command%output = value
       if (command%output == '') call fail(error, exit_usage, '--output needs a folder.')
     case ('--wall-limit')
-      i = i + 1
-      if (i <= command_argument_count()) command%wall_limit = seconds_of(argument(i))
+      command%wall_limit = seconds_of(value)
       if (.not. command%wall_limit > 0) call fail(error, exit_usage, '--wall-limit needs a number of seconds above 0.')
     case default
-      call fail(error, exit_usage, 'Unknown option "'//word//'"; see implam help.')
+      call refuse_option(word, error)
     end select
-  end subroutine read_option
+  end subroutine read_value
+
+  !> An option that there is not, or that takes no value; with the one that may be meant.
+  subroutine refuse_option(word, error)
+    !> The option
+    character(len=*), intent(in) :: word
+    !> Set (usage)
+    type(error_t), allocatable, intent(inout) :: error
+    type(line_t), allocatable :: known(:), terms(:)
+    character(len=:), allocatable :: nearest
+    integer :: i, j
+
+    allocate (known(0))
+    do i = 1, size(option_rows, 2)
+      terms = words_of(trim(option_rows(1, i)), ' ')
+      do j = 1, size(terms)
+        if (index(terms(j)%text, '--') == 1) call append(known, terms(j)%text)
+      end do
+    end do
+    nearest = nearest_name(word, known)
+    if (nearest == word) then
+      call fail(error, exit_usage, word//' takes no value.')
+    else if (nearest /= '') then
+      call fail(error, exit_usage, 'Unknown option "'//word//'"; did you mean '//nearest//'?')
+    else
+      call fail(error, exit_usage, 'Unknown option "'//word//'"; see implam help.')
+    end if
+  end subroutine refuse_option
+
+  !> Verb that a word may be a slip of; empty: the word looks like a file, or like no verb.
+  pure function meant_verb(word) result(verb)
+    !> The word
+    character(len=*), intent(in) :: word
+    !> The verb
+    character(len=:), allocatable :: verb
+    type(line_t), allocatable :: known(:)
+    integer :: i
+
+    verb = ''
+    if (scan(word, './') > 0) return
+    allocate (known(0))
+    do i = 1, size(verb_words)
+      call append(known, trim(verb_words(i)))
+    end do
+    verb = nearest_name(word, known)
+  end function meant_verb
+
+  !> Refuses a word that is no file but nearly a verb, before it is taken for a deck.
+  subroutine refuse_misspelt_verb(word, error)
+    !> The word; empty: there is none
+    character(len=*), intent(in) :: word
+    !> Set (usage) if it is one
+    type(error_t), allocatable, intent(inout) :: error
+    logical :: is_there
+
+    if (word == '') return
+    inquire (file=word, exist=is_there)
+    if (.not. is_there .and. meant_verb(word) /= '') &
+      call fail(error, exit_usage, 'Unknown command "'//word//'"; did you mean '//meant_verb(word)//'?')
+  end subroutine refuse_misspelt_verb
 
   !> Number that a word says; 0 if it is no whole number.
   pure integer function whole_number(word) result(number)
@@ -181,6 +288,10 @@ contains
     !> Set (usage) if nothing is named
     type(error_t), allocatable, intent(inout) :: error
 
+    if (command%verb == verb_restart .and. index(command%target, '.nml', back=.true.) > 0 .and. &
+        index(command%target, '.nml', back=.true.) == len(command%target) - 3) &
+      call fail(error, exit_usage, 'restart takes a checkpoint or its folder and not the deck '//command%target// &
+                ', as the checkpoint holds the deck: implam restart FOLDER/NAME_restart.h5, or implam restart FOLDER.')
     if (command%target /= '') return
     select case (command%verb)
     case (verb_run, verb_check)
@@ -201,28 +312,7 @@ contains
     !> The word
     character(len=*), intent(in) :: word
 
-    select case (word)
-    case ('run')
-      verb = verb_run
-    case ('check')
-      verb = verb_check
-    case ('explain')
-      verb = verb_explain
-    case ('restart')
-      verb = verb_restart
-    case ('new')
-      verb = verb_new
-    case ('completion')
-      verb = verb_completion
-    case ('man')
-      verb = verb_man
-    case ('queue')
-      verb = verb_queue
-    case ('help')
-      verb = verb_help
-    case default
-      verb = 0
-    end select
+    verb = findloc(verb_words == word, .true., dim=1)
   end function verb_of
 
   !> True if an argument is the value of a PETSc option before it: a number or a plain word that is not a file.

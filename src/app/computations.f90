@@ -14,6 +14,7 @@ module computations
   use layer_following, only: visit_zones
   use linear_solver_parameters, only: factorization_automatic, factorization_mumps
   use petsc_library, only: start_petsc, finish_petsc
+  use queue_signals, only: announce_stop_signals
   use root_output, only: print_lines
   use simulations, only: simulation_t
   use text, only: line_t
@@ -48,6 +49,8 @@ contains
       if (allocated(error)) return
       call read_checkpoint_deck(checkpoint, communicator, deck, problems, error)
       if (allocated(error)) return
+      call print_lines(communicator, [line_t('The deck is the one stored in '//checkpoint// &
+                                             '; a deck file changed since then is not read.')])
     else
       call read_deck_everywhere(command%target, communicator, deck, problems)
     end if
@@ -62,6 +65,7 @@ contains
     call start_solver(communicator, command%petsc_options, deck, error)
     call profile%leave()
     if (allocated(error)) return
+    if (communicator%is_root()) call announce_stop_signals()
     if (command%verify) then
       call verify(command, communicator, deck, profile, code, error)
     else

@@ -1,6 +1,9 @@
 /* Signals that ask the program to stop. main holds them back (held_signals.c), so that they stay pending. */
+#include <pthread.h>
 #include <signal.h>
 #include <stddef.h>
+#include <time.h>
+#include <unistd.h>
 
 static const int stops[] = {SIGTERM, SIGINT, SIGUSR1, SIGUSR2, SIGXCPU};
 enum { number = sizeof stops / sizeof stops[0] };
@@ -20,4 +23,22 @@ void implam_release_stop_signals(void)
   sigemptyset(&set);
   for (unsigned i = 0; i < number; ++i) sigaddset(&set, stops[i]);
   sigprocmask(SIG_UNBLOCK, &set, NULL);
+}
+
+/* Looks ten times a second, which a reader takes for at once: a signal that is held back stays pending and wakes no
+ * thread, and one that were waited for would be gone when the run asks for it. */
+static void *watch(void *unused)
+{
+  static const char words[] = "\nimplam: signal received. The step in progress is being finished; then a checkpoint is "
+                              "written and the run ends.\n";
+  const struct timespec pause = {0, 100000000};
+  while (implam_stop_signal() == 0) nanosleep(&pause, NULL);
+  if (write(STDERR_FILENO, words, sizeof words - 1) < 0) return unused;
+  return NULL;
+}
+
+void implam_announce_stop_signals(void)
+{
+  pthread_t watcher;
+  if (pthread_create(&watcher, NULL, watch, NULL) == 0) pthread_detach(watcher);
 }

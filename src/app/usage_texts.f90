@@ -19,7 +19,7 @@ module usage_texts
       &do too', &
     'explain history|fields', 'what results hold: names, units, meaning', &
     'restart [FILE]', 'go on from a checkpoint (NAME_restart.h5), or from the newest of a folder: the one named, &
-      &that of --output, or this one', &
+      &that of --output, or this one; the deck is that of the checkpoint, and its file is not read again', &
     'queue slurm|pbs [DECK.nml]', 'write a job script with ranks and memory from the deck; with --chain jobs '// &
     'follow each other until the run has ended; array.txt of a sweep instead of a deck makes a job array', &
     'completion bash|zsh', 'print what lets a shell complete commands, groups and keys', &
@@ -36,7 +36,7 @@ module usage_texts
     '--time H:MM:SS', 'its limit on the wall; a day without', &
     '--chain', 'it comes again, from its checkpoint, until the run has ended', &
     '--markdown', 'explain as a table for the manual', &
-    '--version', 'version, commit, compiler and PETSc', &
+    '-v, --version', 'version, commit, compiler and PETSc', &
     '-h, --help', 'this page', &
     '-mat_..., -ksp_..., -log_view', 'these and other words with one dash go to PETSc'], [2, 11])
   !> Exit codes.
@@ -47,7 +47,8 @@ module usage_texts
   !> Paragraphs on ranks and signals.
   character(len=text_length), parameter, public :: notes(2) = [character(len=text_length) :: &
     'Under mpirun the same holds but for signals.', &
-    'TERM, INT, USR1, USR2 and XCPU end the run after the step at hand, with a checkpoint. Under mpirun send USR1 '// &
+    'TERM, INT, USR1, USR2 and XCPU end the run after the step at hand, with a checkpoint; a line says at once '// &
+    'that one has come. Under mpirun send USR1 '// &
     'to mpirun, or any of them to every rank: mpirun itself takes TERM and INT, kills the ranks a second later and '// &
     'ends with code 1.']
 

@@ -119,11 +119,21 @@ contains
     !> The error
     type(error_t), allocatable, intent(inout) :: error
     character(len=:), allocatable :: nearest
+    type(line_t), allocatable :: keys(:)
+    integer :: i
 
     if (vocabulary%group_index(name) > 0) return
     nearest = nearest_name(name, vocabulary%group_names())
+    if (nearest /= '') nearest = '&'//nearest
+    if (nearest == '') then
+      allocate (keys(0))
+      do i = 1, size(vocabulary%keys)
+        call append(keys, vocabulary%keys(i)%name)
+      end do
+      nearest = nearest_name(name, keys)
+    end if
     if (nearest /= '') then
-      call fail(error, exit_usage, 'There is no group or key '//name//'; did you mean &'//nearest//'?')
+      call fail(error, exit_usage, 'There is no group or key '//name//'; did you mean '//nearest//'?')
     else
       call fail(error, exit_usage, 'There is no group or key '//name//'; the groups are '// &
                 joined(vocabulary%group_names(), ', ')//'.')

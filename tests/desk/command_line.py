@@ -15,7 +15,7 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "regress"))
 from solver_runs import read_history, require
 
-EXIT_USAGE, EXIT_FILES = 1, 4
+EXIT_USAGE, EXIT_DECK, EXIT_FILES, EXIT_STOPPED = 1, 2, 4, 75
 
 
 def answer(implam, *words, cwd=None, code=0):
@@ -50,6 +50,55 @@ def check_explain(implam):
     require("did you mean length" in slip, "No help with a slip.")
     require("one deck" in answer(implam, "explain", "plate", "length", "edges", code=EXIT_USAGE), "Three topics pass.")
     print("explain: done")
+
+
+def check_slips(implam, folder):
+    """A misspelt command, option or topic is told with the right one; options take values behind an equals sign too."""
+    deck = folder / "small.nml"
+    shutil.copy(HERE.parents[1] / "input" / "small" / "cohesive.nml", deck)
+    version = answer(implam, "--version")
+    for word in ("version", "-v"):
+        require(answer(implam, word) == version, f"{word} doesn't tell the version.")
+    for words, meant in ((["chek", deck], "did you mean check?"), (["exlpain"], "did you mean explain?"),
+                         (["--ouput", "x", deck], "did you mean --output?"), (["explain", "lnegth"], "mean length?"),
+                         (["--verify=1", deck], "takes no value"), (["--wall-limit=", deck], "number of seconds"),
+                         (["--no-such=5", deck], "see implam help"), (["restart", deck], "not the deck"),
+                         (["nothing", "else"], "one deck")):
+        require(meant in answer(implam, *map(str, words), cwd=folder, code=EXIT_USAGE), f"{words} isn't {meant}")
+    text = deck.read_text(encoding="utf-8")
+    for right, slip, meant in (("&plate", "&palte", "&plate"), ("velocity=", "veloctiy=", "velocity"),
+                               ("law=", "lwa=", "law")):
+        deck.write_text(text.replace(right, slip), encoding="utf-8")
+        told = answer(implam, "check", str(deck), code=EXIT_DECK)
+        require(f"did you mean {meant}?" in told, told)
+    deck.write_text(text, encoding="utf-8")
+    require("no such file" in answer(implam, "no_deck", cwd=folder, code=EXIT_DECK), "A file that isn't there.")
+    answer(implam, str(deck), f"--output={folder / 'equals'}")
+    require((folder / "equals" / "cohesive_summary.json").exists(), "--output=DIR has no effect.")
+    print("slips: done")
+
+
+def check_interrupt(implam, folder):
+    """A signal is told at once and not after the step, of 3 s here; a restart says whose deck it is."""
+    deck = folder / "long.nml"
+    text = (HERE.parents[1] / "input" / "peanut.nml").read_text(encoding="utf-8")
+    deck.write_text(text.replace("&case ", "&case refine=2 "), encoding="utf-8")
+    with subprocess.Popen([implam, deck, "--output", folder / "long"], stdin=subprocess.DEVNULL,
+                          stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as process:
+        time.sleep(0.5)
+        process.send_signal(signal.SIGINT)
+        begun, told = time.monotonic(), ""
+        while "signal received" not in told and time.monotonic() < begun + 60 and process.poll() is None:
+            told += process.stderr.readline()
+        answered = time.monotonic() - begun
+        told += process.communicate(timeout=400)[1]
+        ended = time.monotonic() - begun
+    require(process.returncode == EXIT_STOPPED, f"{process.returncode}: {told}")
+    require("signal received" in told and answered < ended / 2, f"Told after {answered:.1f} of {ended:.1f} s: {told}")
+    answer(implam, str(folder / "small.nml"), "--output", str(folder / "short"), "--wall-limit=1e-3", code=EXIT_STOPPED)
+    told = answer(implam, "restart", str(folder / "short"))
+    require("a deck file changed since then is not read" in told, told)
+    print(f"interrupt: told after {answered:.2f} s, ended after {ended:.1f} s")
 
 
 def check_pages(implam, folder):
@@ -133,6 +182,8 @@ def main():
     folder.mkdir(parents=True)
     check_help(implam)
     check_explain(implam)
+    check_slips(implam, folder)
+    check_interrupt(implam, folder)
     check_pages(implam, folder)
     check_zsh(implam, folder)
     check_new(implam, folder)
