@@ -3,7 +3,7 @@ module field_results
   use deck_contents, only: deck_t
   use errors, only: error_t
   use fields_file, only: fields_file_t
-  use interface_fields, only: interface_field_rows, write_interface_fields
+  use interface_fields, only: interface_field_rows, starters_above, write_interface_fields
   use kinds, only: wp
   use models, only: model_t
   use motion_fields, only: motion_field_rows, write_motion_fields
@@ -21,7 +21,8 @@ module field_results
   !> Fields that stay with the mesh.
   character(len=*), parameter :: mesh_field_rows(*) = [character(len=result_row_length) :: &
     'first_ply | cells | - | - | - | First ply of the element''s layer, from the struck face.', &
-    'last_ply | cells | - | - | - | Last ply of the element''s layer.']
+    'last_ply | cells | - | - | - | Last ply of the element''s layer.', &
+    'starter_above | cells | - | - | - | 1 in elements whose interface on top was delaminated before the run, else 0.']
 
   !> The table of fields.
   character(len=*), parameter, public :: field_rows(*) = [character(len=result_row_length) :: &
@@ -48,15 +49,16 @@ contains
     !> Set if the file cannot be written
     type(error_t), allocatable, intent(out) :: error
     real(wp) :: coordinates(3, model%distribution%owned)
-    integer :: plies(2, model%elements%elements)
+    integer :: values(3, model%elements%elements)
 
     associate (mesh => model%mesh, share => model%distribution)
       coordinates(1:2, :) = mesh%node_coordinates(:, mesh%point_node(share%points(:share%owned)))
       coordinates(3, :) = heights(model)
-      plies = mesh%element_plies(:, share%elements)
+      values(:2, :) = mesh%element_plies(:, share%elements)
+      values(3, :) = starters_above(model)
       call fields%write_mesh(share%points(:share%owned), mesh%points(), coordinates, share%elements, mesh%elements(), &
                              mesh%connectivity(:, share%elements), &
-                             [character(len=10) :: 'first_ply', 'last_ply'], plies, error)
+                             [character(len=13) :: 'first_ply', 'last_ply', 'starter_above'], values, error)
     end associate
   end subroutine write_mesh
 

@@ -311,6 +311,8 @@ contains
       closest = self%stepper%smallest_step(self%model)
       if (self%history_clock%strikes_at(self%stepper%now%time, closest)) row_due = .true.
       fields_due = self%fields_clock%strikes_at(self%stepper%now%time, closest)
+      ! The last fields are those of the state that the summary is about.
+      if (self%fields_clock%interval > 0 .and. self%stepper%now%time >= end_of(self)) fields_due = .true.
       checkpoint_due = self%checkpoint_clock%strikes_at(self%stepper%now%time, closest)
     end if
     if (allocated(error)) then

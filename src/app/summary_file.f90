@@ -2,7 +2,6 @@
 module summary_file
   use deck_contents, only: deck_t
   use delamination_parameters, only: law_cohesive
-  use energy_ledgers, only: ledger_t
   use errors, only: error_t, exit_files, fail
   use files, only: rename_file
   use json_text, only: json_t
@@ -62,7 +61,7 @@ contains
     call json%put('largest_deflection', record%deflection)
     call json%put('largest_deflection_at', record%deflection_time)
     call put_errors(json, errors)
-    call put_energies(json, stepper%now%ledger, deck%has_impactor .and. .not. deck%has_static)
+    call put_energies(json, stepper%now, deck%has_impactor .and. .not. deck%has_static)
     if (size(figures%interfaces) > 0) call put_interfaces(json, deck, stepper%now, record, figures)
     if (deck%has_ply_damage) call put_failures(json, figures)
     call put_plies(json, deck, figures)
@@ -132,31 +131,45 @@ contains
   end subroutine put_errors
 
   !> The ledger at the end.
-  subroutine put_energies(json, ledger, impact)
+  subroutine put_energies(json, now, impact)
     !> The summary
     type(json_t), intent(inout) :: json
-    !> The ledger
-    type(ledger_t), intent(in) :: ledger
+    !> The state reached
+    type(state_t), intent(in) :: now
     !> True: an impactor brought it
     logical, intent(in) :: impact
 
-    if (impact) then
-      call json%put('energy_impact', ledger%initial)
-      call json%put('energy_absorbed', ledger%initial - ledger%impactor)
-      call json%put('energy_impactor', ledger%impactor)
-    end if
-    call json%put('work_external', ledger%external_work)
-    call json%put('energy_kinetic', ledger%kinetic)
-    call json%put('energy_strain', ledger%strain)
-    call json%put('energy_indentation', ledger%indentation)
-    call json%put('energy_delamination', ledger%delamination)
-    call json%put('energy_ply_damage', ledger%ply_damage)
-    call json%put('energy_contact', ledger%contact)
-    call json%put('energy_friction', ledger%friction)
-    call json%put('energy_layers', ledger%layers)
-    call json%put('energy_algorithmic', ledger%algorithmic)
-    call json%put('energy_error', ledger%error())
+    if (impact) call put_impact_energies(json, now)
+    associate (ledger => now%ledger)
+      call json%put('work_external', ledger%external_work)
+      call json%put('energy_kinetic', ledger%kinetic)
+      call json%put('energy_strain', ledger%strain)
+      call json%put('energy_indentation', ledger%indentation)
+      call json%put('energy_delamination', ledger%delamination)
+      call json%put('energy_ply_damage', ledger%ply_damage)
+      call json%put('energy_contact', ledger%contact)
+      call json%put('energy_friction', ledger%friction)
+      call json%put('energy_layers', ledger%layers)
+      call json%put('energy_algorithmic', ledger%algorithmic)
+      call json%put('energy_error', ledger%error())
+    end associate
   end subroutine put_energies
+
+  !> What the impactor brought, has and has lost; that is known once it has left the plate.
+  subroutine put_impact_energies(json, now)
+    !> The summary
+    type(json_t), intent(inout) :: json
+    !> The state reached
+    type(state_t), intent(in) :: now
+
+    call json%put('energy_impact', now%ledger%initial)
+    if (now%force > 0) then
+      call json%put_null('energy_absorbed')
+    else
+      call json%put('energy_absorbed', now%ledger%initial - now%ledger%impactor)
+    end if
+    call json%put('energy_impactor', now%ledger%impactor)
+  end subroutine put_impact_energies
 
   !> What has delaminated.
   subroutine put_interfaces(json, deck, now, record, figures)

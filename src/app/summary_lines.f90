@@ -42,7 +42,8 @@ contains
     if (deck%has_impactor .and. .not. deck%has_static) call tell_impact(lines, now, record, errors)
     call tell(lines, 'largest deflection', rounded_text(record%deflection)//at// &
               rounded_text(record%deflection_time)//within(errors%deflection, record%deflection))
-    call tell_energies(lines, now%ledger, deck%has_impactor .and. .not. deck%has_static)
+    if (deck%has_impactor .and. .not. deck%has_static) call tell_impact_energy(lines, now)
+    call tell_energies(lines, now%ledger)
     if (size(figures%interfaces) > 0) call tell_interfaces(lines, deck, record, figures, errors, at)
     if (deck%has_ply_damage) call tell(lines, 'failed plies', 'fibres '//to_text(figures%failures(1))// &
       ', matrix cracked '//to_text(figures%failures(2))//', crushed '//to_text(figures%failures(3))// &
@@ -118,25 +119,36 @@ contains
     if (contacts > 1) clause = ' in '//to_text(contacts)//' contacts'
   end function repeated
 
-  !> What was absorbed, and where the energy is.
-  subroutine tell_energies(lines, ledger, impact)
+  !> What the impactor brought, and has lost: absorbed is what it has not got back once contact has ended.
+  subroutine tell_impact_energy(lines, now)
+    !> The lines
+    type(line_t), allocatable, intent(inout) :: lines(:)
+    !> The state reached
+    type(state_t), intent(in) :: now
+    character(len=:), allocatable :: clause
+    real(wp) :: lost
+
+    lost = now%ledger%initial - now%ledger%impactor
+    clause = ', absorbed '
+    if (now%force > 0) clause = ', contact lasts, transferred so far '
+    clause = rounded_text(now%ledger%initial)//clause//rounded_text(lost)
+    if (now%ledger%initial > 0) clause = clause//' ('//rounded_text(100*lost/now%ledger%initial, 3)//' %)'
+    call tell(lines, 'impact energy', clause)
+  end subroutine tell_impact_energy
+
+  !> Where the energy is, under the names of the columns.
+  subroutine tell_energies(lines, ledger)
     !> The lines
     type(line_t), allocatable, intent(inout) :: lines(:)
     !> The ledger
     type(ledger_t), intent(in) :: ledger
-    !> True: an impactor brought it
-    logical, intent(in) :: impact
-    real(wp) :: absorbed
 
-    absorbed = ledger%initial - ledger%impactor
-    if (impact) call tell(lines, 'impact energy', rounded_text(ledger%initial)//', absorbed '// &
-                          rounded_text(absorbed)//' ('//rounded_text(100*absorbed/ledger%initial, 3)//' %)')
     if (ledger%external_work /= 0) call tell(lines, 'work of the load', rounded_text(ledger%external_work))
-    call tell(lines, 'of it', 'motion '//rounded_text(ledger%kinetic)//', strain '//rounded_text(ledger%strain)// &
+    call tell(lines, 'of it', 'kinetic '//rounded_text(ledger%kinetic)//', strain '//rounded_text(ledger%strain)// &
               ', indentation '//rounded_text(ledger%indentation)//', delamination '// &
               rounded_text(ledger%delamination)//', ply damage '//rounded_text(ledger%ply_damage))
-    call tell(lines, '', 'contact of faces '//rounded_text(ledger%contact)//', friction '// &
-              rounded_text(ledger%friction)//', integrators '// &
+    call tell(lines, '', 'contact '//rounded_text(ledger%contact)//', friction '//rounded_text(ledger%friction)// &
+              ', layers '//rounded_text(ledger%layers)//', algorithmic dissipation '// &
               rounded_text(ledger%algorithmic)//', not accounted for '//rounded_text(ledger%error(), 2))
   end subroutine tell_energies
 

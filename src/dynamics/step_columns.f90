@@ -32,8 +32,8 @@ module step_columns
       &rate times area.', &
     'energy_ply_damage | real | energy | Strain energy lost as failures of plies took stiffness away.', &
     'energy_contact | real | energy | Work done against contact of separated faces and against penalty ties.', &
-    'energy_algorithmic | real | energy | Energy that integrators and fading ties took out of the motion, less &
-      &energy_delamination.', &
+    'energy_algorithmic | real | energy | Algorithmic dissipation: energy that time integrators and fading ties &
+      &took out of the motion, less energy_delamination.', &
     'energy_error | real | energy | What the ledger fails to account for: the sum of the eight energies before, &
       &energy_friction and energy_layers, less work_external and the energy at the start.']
 

@@ -1,10 +1,12 @@
 !> What the field file holds of the interfaces. What belongs to an interface stands in the layer below it.
 module interface_fields
   use contact_and_ties, only: contact_and_ties_t
+  use delaminated_regions, only: create_region, delaminated_region_t
   use delamination_parameters, only: law_cohesive
   use errors, only: error_t
   use fields_file, only: fields_file_t
   use front_energy_release, only: front_energy_release_t, release_along_front
+  use interface_figures, only: figures_of, interface_figures_t
   use interface_states, only: interface_state_t
   use kinds, only: wp
   use models, only: model_t
@@ -16,7 +18,7 @@ module interface_fields
   use result_tables, only: result_row_length
   implicit none
   private
-  public :: delaminated_above, write_interface_fields
+  public :: delaminated_above, starters_above, write_interface_fields
 
   !> The fields. A new one comes with its writing below, and touches no other folder but the choices of &output.
   character(len=result_row_length), parameter, public :: interface_field_rows(*) = &
@@ -29,6 +31,8 @@ module interface_fields
       &has delaminated, else 0; with a cohesive law the part of its toughness that is gone.', &
     'damage_above | points | - | '//field_delamination//' | &delamination | Damage of the cohesive interface on top of &
       &a layer: part of its stiffness that is lost, 0 to 1; 0 where fronts release ties.', &
+    'dissipated_above | points | - | '//field_delamination//' | &delamination | Share of the toughness that the &
+      &cohesive interface on top of a layer has dissipated, 0 to 1: its integral is the delaminated area.', &
     'shear_share_above | points | - | '//field_delamination//' | &delamination | Share of shear in the energy of the &
       &jumps of the cohesive interface on top of a layer.', &
     'energy_release_above | cells | - | '//field_energy_release//' | &delamination | G/G_c of the interface on top in &
@@ -66,13 +70,42 @@ contains
         call fields%write_cell_field('delaminated_above', delaminated_above(model, interfaces), error)
         call fields%write_point_field('damage_above', reshape(interfaces%cohesive%damage(model), &
                                                               [1, size(model%zone)]), error)
+        call fields%write_point_field('dissipated_above', reshape(interfaces%cohesive%shares(model), &
+                                                                  [1, size(model%zone)]), error)
         call fields%write_point_field('shear_share_above', reshape(interfaces%cohesive%shear_share( &
           model, motion%displacement), [1, size(model%zone)]), error)
+        call write_figures(model, interfaces, fields, error)
       end if
       if (output%wants(field_energy_release)) &
         call fields%write_cell_field('energy_release_above', release_ahead(model, stiffness, faces, motion), error)
     end associate
   end subroutine write_interface_fields
+
+  !> Writes the figures of the interfaces that history and summary have, so that pictures of a time need no others.
+  subroutine write_figures(model, interfaces, fields, error)
+    type(model_t), intent(in) :: model
+    !> The interfaces
+    type(interface_state_t), intent(in) :: interfaces
+    !> The file
+    type(fields_file_t), intent(inout) :: fields
+    !> Set if the file cannot be written
+    type(error_t), allocatable, intent(inout) :: error
+    type(interface_figures_t) :: figures(size(model%mesh%zones))
+    real(wp) :: bounds(4, size(figures))
+    integer :: zone
+
+    figures = figures_of(model, interfaces)
+    do zone = 1, size(figures)
+      bounds(:, zone) = reshape(figures(zone)%bounds, [4])
+    end do
+    call fields%write_figures('ply_above', real(reshape(model%mesh%zones%below_ply, [1, size(figures)]), wp), error)
+    call fields%write_figures('is_cohesive', reshape(merge(1.0_wp, 0.0_wp, model%scene%delaminations%law == &
+                                                           law_cohesive), [1, size(figures)]), error)
+    call fields%write_figures('stage', real(reshape(figures%stage, [1, size(figures)]), wp), error)
+    call fields%write_figures('area', reshape(figures%area, [1, size(figures)]), error)
+    call fields%write_figures('bounds', bounds, error)
+    call fields%write_figures('projected_area', reshape([interfaces%projected_area(model)], [1, 1]), error)
+  end subroutine write_figures
 
   !> Writes where delaminations would begin.
   subroutine write_onset(model, stiffness, interfaces, motion, fields, error)
@@ -137,6 +170,32 @@ contains
       end associate
     end do
   end function delaminated_above
+
+  !> 1 in elements whose interface on top was delaminated before the run, else 0.
+  function starters_above(model) result(starters)
+    type(model_t), intent(in) :: model
+    !> (elements)
+    integer, allocatable :: starters(:)
+    type(delaminated_region_t) :: region
+    integer :: zone, i, place(2)
+
+    allocate (starters(model%elements%elements), source=0)
+    associate (mesh => model%mesh)
+      do zone = 1, size(mesh%zones)
+        associate (starter => model%scene%delaminations(zone))
+          region = create_region(mesh, zone, starter%starter, starter%starter_strip, starter%starter_round, &
+                                 starter%starter_at)
+        end associate
+        do i = 1, size(starters)
+          associate (element => model%distribution%elements(i))
+            if (mesh%zones(zone)%below_ply /= mesh%element_plies(1, element) - 1) cycle
+            place = mesh%place_of(mesh%element_cell(element))
+            if (region%is_delaminated(place(1), place(2))) starters(i) = 1
+          end associate
+        end do
+      end do
+    end associate
+  end function starters_above
 
   !> Pressure on the faces above each point's layer.
   pure function pressures(model, interfaces, displacement)

@@ -3,7 +3,8 @@
 module interface_states
   use kinds, only: wp
   use archives, only: archive_t
-  use delamination_parameters, only: growth_equilibrium
+  use delamination_parameters, only: growth_equilibrium, law_cohesive
+  use load_vectors, only: add_patch_weights
   use models, only: model_t
   use contact_and_ties, only: contact_and_ties_t, new_contact_and_ties
   use cohesive_interfaces, only: cohesive_interfaces_t, new_cohesive_interfaces
@@ -149,19 +150,17 @@ contains
     class(interface_state_t), intent(in) :: self
     type(model_t), intent(in) :: model
     real(wp) :: area
-    real(wp), allocatable :: shares(:)
+    real(wp), allocatable :: areas(:)
     real(wp) :: largest
     integer :: i
 
     area = 0
     if (.not. model%map%layered) return
-    shares = self%cohesive%shares(model)
-    ! Starters of cohesive interfaces are free too, and dissipated as a whole.
-    where (self%faces%free) shares = 1
+    areas = delaminated_areas(self, model)
     largest = 0
     do i = 1, model%distribution%owned
       if (model%zone(i) == 0) cycle
-      largest = max(largest, shares(i)*model%contact_area(i))
+      largest = max(largest, areas(i))
       if (i < model%distribution%owned) then
         if (node_of(i + 1) == node_of(i)) cycle
       end if
@@ -181,6 +180,44 @@ contains
       node_of = model%mesh%point_node(model%distribution%points(i))
     end function node_of
   end function projected_area
+
+  !> Delaminated part of the area of each point: what a cohesive law has dissipated, or the point's parts of delaminated
+  !> cells where fronts release ties. Their sums are the areas of the interfaces. Collective.
+  function delaminated_areas(self, model) result(areas)
+    !> The state
+    class(interface_state_t), intent(in) :: self
+    type(model_t), intent(in) :: model
+    !> (local points)
+    real(wp), allocatable :: areas(:)
+    real(wp) :: of_cells(1, size(model%zone))
+    integer, allocatable :: cells(:)
+    integer :: i
+
+    of_cells = 0
+    cells = pack([(i, i=1, model%elements%elements)], [(in_delaminated_cell(i), i=1, model%elements%elements)])
+    call add_patch_weights(model%elements, cells, of_cells(1, :))
+    call model%halo%accumulate(of_cells)
+    areas = of_cells(1, :) + self%cohesive%shares(model)*model%contact_area
+
+  contains
+
+    !> True: an element lies below a cell whose ties a front has released.
+    logical function in_delaminated_cell(i)
+      !> Number of the element on this rank
+      integer, intent(in) :: i
+      integer :: zone, place(2)
+
+      in_delaminated_cell = .false.
+      associate (mesh => model%mesh, element => model%distribution%elements(i))
+        place = mesh%place_of(mesh%element_cell(element))
+        do zone = 1, size(mesh%zones)
+          if (mesh%zones(zone)%below_ply /= mesh%element_plies(1, element) - 1) cycle
+          if (model%scene%delaminations(zone)%law == law_cohesive) cycle
+          in_delaminated_cell = self%faces%regions(zone)%is_delaminated(place(1), place(2))
+        end do
+      end associate
+    end function in_delaminated_cell
+  end function delaminated_areas
 
   !> Energy booked as fracture that fronts in equilibrium have not set free: no integrator made it.
   pure real(wp) function unreleased(self, model)

@@ -3,8 +3,8 @@
 !> still closes what is open.
 !>
 !> In NAME.h5: `provenance`, `part`, `restarts/N` (provenance of the runs that went on), `meshes/N` (coordinates,
-!> connectivity, cells/...), `times/N` (time, step, mesh, points/..., cells/...). Fields bear the attributes `unit` and
-!> `meaning` if there is a table of them.
+!> connectivity, cells/...), `times/N` (time, step, mesh, points/..., cells/..., interfaces/...). Fields bear the
+!> attributes `unit` and `meaning` if there is a table of them.
 module fields_file
   use communicators, only: communicator_t
   use errors, only: error_t, exit_files, fail
@@ -33,6 +33,8 @@ module fields_file
     type(communicator_t) :: communicator
     !> Folder and name, without suffix
     character(len=:), allocatable :: base
+    !> Name of the HDF5 file, without its folder
+    character(len=:), allocatable :: name
     !> Which part of the plate is modelled: whole, quarter, half_x, half_y or point
     character(len=:), allocatable :: part
     !> The HDF5 file
@@ -63,6 +65,7 @@ module fields_file
     procedure :: begin
     procedure :: write_point_field
     procedure :: write_cell_field
+    procedure :: write_figures
     procedure :: finish
     procedure, private :: name_files
     procedure, private :: open_file
@@ -281,6 +284,22 @@ contains
     call report(self, error)
   end subroutine write_cell_field
 
+  !> Writes figures that every rank holds, in columns, such as one an interface.
+  subroutine write_figures(self, name, values, error)
+    !> The fields
+    class(fields_file_t), intent(inout) :: self
+    !> What they are
+    character(len=*), intent(in) :: name
+    !> The figures (rows by columns)
+    real(wp), intent(in) :: values(:, :)
+    !> Raised if they can't be written
+    type(error_t), allocatable, intent(inout) :: error
+
+    if (allocated(error)) return
+    call write_reals(self%file, self%time_group//'/interfaces/'//name, reshape(values, [size(values)]), shape(values))
+    call report(self, error)
+  end subroutine write_figures
+
   !> Ends the time: from now on the files show it.
   subroutine finish(self, error)
     !> The fields
@@ -290,7 +309,7 @@ contains
     character(len=:), allocatable :: grid
 
     if (.not. self%file%is_open) return
-    call grid_of_time(self%file, file_name(self), self%time_group, grid)
+    call grid_of_time(self%file, self%name, self%time_group, grid)
     call self%close_file(error, self%time_group)
     if (allocated(error)) return
     call append(self%grids, grid)
@@ -311,6 +330,7 @@ contains
 
     self%communicator = communicator
     self%base = base
+    self%name = base(index(base, '/', back=.true.) + 1:)//'.h5'
     self%part = part
     self%mesh = 0
     if (allocated(self%grids)) deallocate (self%grids)
@@ -371,19 +391,9 @@ contains
       if (time(1) > last_time) then
         call self%file%remove('times/'//names(i)%text)
       else
-        call grid_of_time(self%file, file_name(self), 'times/'//names(i)%text, grid)
+        call grid_of_time(self%file, self%name, 'times/'//names(i)%text, grid)
         call append(self%grids, grid)
       end if
     end do
   end subroutine drop_times_after
-
-  !> Name of the HDF5 file without its folder.
-  pure function file_name(self) result(name)
-    !> The fields
-    class(fields_file_t), intent(in) :: self
-    !> The name
-    character(len=:), allocatable :: name
-
-    name = self%base(index(self%base, '/', back=.true.) + 1:)//'.h5'
-  end function file_name
 end module fields_file

@@ -101,7 +101,10 @@ def check_against_history(folder):
                  "impactor_velocity", "projected_area", "delaminated_area"):
         close(summary[name], history[name][-1], 1e-13, name)
     kept = summary["energy_impact"] - summary["energy_impactor"]
-    close(summary["energy_absorbed"], kept, 1e-12, "The absorbed energy")
+    if summary["in_contact"]:
+        require(summary["energy_absorbed"] is None, "Energy is absorbed before contact has ended.")
+    else:
+        close(summary["energy_absorbed"], kept, 1e-12, "The absorbed energy")
     for entry in summary["interfaces"]:
         check_interface(entry, history, True)
     close(sum(entry["area"] for entry in summary["interfaces"]), summary["delaminated_area"], 1e-13, "The area")
@@ -166,6 +169,9 @@ def check_figures(implam, folder, _):
     ratio = two["interfaces"][0]["threshold_force"] / two["interfaces"][1]["threshold_force"]
     close(ratio, math.sqrt(900 / 400), 1e-12, "The ratio of the threshold forces")
     require(0 < two["projected_area"] <= two["delaminated_area"], "The projected area is out of range.")
+    for single in (summary, one):
+        require(single["in_contact"] and single["delaminated_area"] > 0, "The deck is another one.")
+        close(single["projected_area"], single["delaminated_area"], 1e-12, "The area projected of one interface")
 
 
 def check_contact(implam, folder, _):
