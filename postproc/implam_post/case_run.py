@@ -5,6 +5,7 @@ killed sweep or job loses nothing. It imports little, as it starts once a case.
 """
 
 import argparse
+import itertools
 import json
 import os
 import select
@@ -26,6 +27,7 @@ from implam_post.program import (
     checkpoint_in,
     environment,
     find_program,
+    history_in,
     last_words,
     shell_code,
 )
@@ -54,14 +56,24 @@ class Record:
 
 
 def read_record(folder: Path) -> Record | None:
-    """Return the record of a case; None if no part of its run has been seen to end."""
+    """Return the record of a case; None if no part of its run has been seen to end, or if what it left is gone."""
     path = folder / _RECORD
     if not path.exists():
         return None
     try:
-        return Record(**json.loads(read_text(path, "the record")))
+        record = Record(**json.loads(read_text(path, "the record")))
+        return None if record.exit_code == EXIT_DONE and _is_lost(folder) else record
     except (ValueError, TypeError) as error:
         raise FileError(f"the record {path} cannot be read ({error}).") from None
+
+
+def _is_lost(folder: Path) -> bool:
+    """Tell whether the history of a run that has ended is missing, empty, or has no row."""
+    path = history_in(folder)
+    if path is None:
+        return True
+    lines = (line for line in read_text(path, "the history").splitlines() if line.strip() and line[0] != "#")
+    return sum(1 for _ in itertools.islice(lines, 2)) < 2
 
 
 def forget(folder: Path) -> None:
@@ -71,10 +83,16 @@ def forget(folder: Path) -> None:
         return
     lock = try_lock(folder / _LOCK)
     if lock is not None:
-        for path in (folder / _RECORD, checkpoint_in(folder)):
-            if path is not None:
-                path.unlink(missing_ok=True)
+        (folder / _RECORD).unlink(missing_ok=True)
+        drop_checkpoint(folder)
         os.close(lock)
+
+
+def drop_checkpoint(folder: Path) -> None:
+    """Take the checkpoint of a case away, if there is one."""
+    path = checkpoint_in(folder)
+    if path is not None:
+        path.unlink(missing_ok=True)
 
 
 def case_command(folder: Path, program: Sequence[str]) -> list[str]:
@@ -108,7 +126,10 @@ def run_case(folder: Path, deck: Path, program: Sequence[str], stop: _Stop) -> i
             return EXIT_STOPPED
         time.sleep(_PAUSE)
     try:
-        record = read_record(folder) or Record(EXIT_STOPPED)
+        record = read_record(folder)
+        if record is None and (folder / _RECORD).exists():
+            drop_checkpoint(folder)  # of a run whose history is gone: it has to begin at the start
+        record = record or Record(EXIT_STOPPED)
         while not record.final and not stop:
             checkpoint = checkpoint_in(folder)
             record = _run_part(folder, deck if checkpoint is None else checkpoint, program, stop, lock, record)

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from implam_post.errors import DeckError, FileError
+from implam_post.errors import DeckError
+from implam_post.files import read_text
 from implam_post.indentation import IndentationLaw
 from implam_post.laminate import Material, Ply, Section, natural_shear_correction, section_of
 from implam_post.namelist import Group, Value, read_namelist
@@ -228,7 +229,4 @@ def as_number(value: Value, where: str) -> float:
 def read_deck(path: Path | str) -> Deck:
     """Read the deck from its file."""
     path = Path(path)
-    try:
-        return Deck(path.read_text(encoding="utf-8-sig"), path)
-    except (OSError, UnicodeDecodeError) as error:
-        raise FileError(f"the deck {path} cannot be read ({error}).") from None
+    return Deck(read_text(path, "the deck"), path)

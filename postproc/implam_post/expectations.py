@@ -3,7 +3,7 @@
 import math
 import re
 import tomllib
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 
 from implam_post.deck_text import KeyPath, key_path
@@ -152,7 +152,11 @@ def parse_expectations(path: Path, content: dict) -> Expectations:
 
 def _variant(table: dict, common: list[Expectation]) -> Variant:
     """Return one variant."""
+    if not isinstance(table, dict):
+        raise FileError("variant is a list of tables: [[variant]].")
     name, settings = table.get("name", ""), table.get("set", [])
+    if not isinstance(name, str) or not isinstance(settings, list) or not all(isinstance(one, str) for one in settings):
+        raise FileError("a variant has a name and a list of texts as set.")
     if not set(table) <= {"name", "set", "expect"} or not re.fullmatch(r"[\w.+-]+", name) or name.startswith("."):
         raise FileError(f"a variant has a name of letters, digits and _.+-, set and expect, not {', '.join(table)}.")
     keys = {}
@@ -180,6 +184,15 @@ def _entries(tables: object) -> list[Expectation]:
     """Return a list of entries."""
     if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
         raise FileError("expect is a list of tables: [[expect]].")
+    kinds = {entry.name: entry for entry in fields(Expectation)}
+    for table in tables:
+        unknown, missing = [*table.keys() - kinds.keys()], [*{"quantity", "value"} - table.keys()]
+        if unknown:
+            raise FileError(f"an [[expect]] entry has no {', '.join(sorted(unknown))}; it has {', '.join(kinds)}.")
+        if missing:
+            raise FileError(f"an [[expect]] entry lacks {' and '.join(sorted(missing))}.")
+        if not all(isinstance(table.get(name, ""), str) for name in ("quantity", "column", "against")):
+            raise FileError("quantity, column and against of an [[expect]] entry are texts.")
     return [Expectation(**table) for table in tables]
 
 

@@ -33,8 +33,10 @@ def read_text(path: Path, what: str) -> str:
     """Return the text of a file; `what` it is stands in the message if it can't be read."""
     try:
         return path.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
+    except OSError as error:
         raise FileError(f"{what} {path} cannot be read ({error}).") from None
+    except UnicodeDecodeError:
+        raise FileError(f"{what} {path} cannot be read: it is no text.") from None
 
 
 def try_lock(path: Path) -> int | None:

@@ -10,9 +10,10 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.ticker import MultipleLocator
 
-from implam_post.fields import IMAGES, Fields, Snapshot, outline
+from implam_post.contours import outline
+from implam_post.fields import IMAGES, Fields, Snapshot
 from implam_post.look import Look
-from implam_post.plan import frame, reach_of, struck_point
+from implam_post.plan_frame import frame, reach_of, struck_point
 
 _MOST_TIMES = 8
 _PLAIN = Look()
@@ -43,7 +44,7 @@ def draw_front(axes: Axes, fields: Fields, below_ply: int, snapshot: Snapshot, l
     shown = PolyCollection(cells, array=ratio, cmap="plasma_r", norm=Normalize(0, max(1.0, np.max(ratio, initial=0))),
                            linewidths=0)
     axes.add_collection(shown)
-    apart = fields.whole(snapshot.delaminated_cells(below_ply))
+    apart = fields.delaminated(fields.place(snapshot.time), below_ply)
     axes.add_collection(LineCollection(outline(apart), colors="black", linewidths=0.8))
     axes.set_title(f"time {look.said('time', snapshot.time)}", fontsize="medium")
     frame(axes, fields, reach_of(np.concatenate([cells, apart]), fields), look)

@@ -7,11 +7,18 @@ from pathlib import Path
 import numpy as np
 
 from implam_post.errors import FileError
+from implam_post.files import read_text
 
 KEPT_ENERGIES = ("energy_impactor", "energy_kinetic", "energy_strain", "energy_indentation")
-# Those of every history, and one that histories of before it lack.
+# Those of every history.
 ENERGIES = (*KEPT_ENERGIES, "energy_delamination", "energy_ply_damage", "energy_contact", "energy_algorithmic")
-ALL_ENERGIES = (*ENERGIES, "energy_friction")
+# What each is called in legends and pages, as in the summary; histories of earlier versions lack the last two.
+ENERGY_NAMES = {"energy_impactor": "impactor", "energy_kinetic": "kinetic", "energy_strain": "strain",
+                "energy_indentation": "indentation", "energy_delamination": "delamination",
+                "energy_ply_damage": "ply damage", "energy_contact": "contact",
+                "energy_algorithmic": "algorithmic dissipation", "energy_friction": "friction",
+                "energy_layers": "layers"}
+UNACCOUNTED = "not accounted for"
 
 
 @dataclass(frozen=True)
@@ -55,10 +62,7 @@ def read_history(path: Path | str) -> History:
 def read_columns(path: Path | str) -> History:
     """Read columns of numbers under their names, in any order of the rows and with or without a time."""
     path = Path(path)
-    try:
-        lines = [line for line in path.read_text(encoding="utf-8").splitlines() if line.strip() and line[0] != "#"]
-    except (OSError, UnicodeDecodeError) as error:
-        raise FileError(f"the history {path} cannot be read ({error}).") from None
+    lines = [line for line in read_text(path, "the history").splitlines() if line.strip() and line[0] != "#"]
     rows = list(csv.reader(lines, skipinitialspace=True))
     if len(rows) < 2:
         raise FileError(f"the history {path} has no rows.")

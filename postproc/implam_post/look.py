@@ -5,11 +5,11 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-import h5py
 import numpy as np
 
 from implam_post.deck import Deck
 from implam_post.errors import ImplamError
+from implam_post.fields import opened
 from implam_post.units import SYSTEMS, Axis, axis_of, system_of
 
 FORMATS = ("png", "pdf", "svg")
@@ -32,10 +32,11 @@ class Look:
         """Return factor and label of an axis, in units that suit its values."""
         return axis_of(label, dimension, np.ravel(np.asarray(values, dtype=float)), self.system)
 
-    def said(self, dimension: str, value: float) -> str:
-        """Return a value with its unit, to three digits; without one in an unknown system."""
+    def said(self, dimension: str, value: float, digits: int = 3) -> str:
+        """Return a value with its unit, to some digits; without one in an unknown system."""
         axis = self.axis("", dimension, [value])
-        return f"{axis.factor * value:.3g} {axis.label.strip(' []')}" if self.system in SYSTEMS else f"{value:.3g}"
+        unit = axis.label.strip(" []") if self.system in SYSTEMS else ""
+        return f"{axis.factor * value:.{digits}g} {unit}".strip()
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -51,7 +52,7 @@ def look_of(options: argparse.Namespace, results: Iterable[Path]) -> Look:
     dots = options.dpi or (80 if getattr(options, "save", None) else 150)
     if not (10 <= dots <= 2400 and 3 <= options.font_size <= 60):
         raise ImplamError("--dpi takes 10 to 2400, --font-size 3 to 60.")
-    system = options.units or next((name for path in results if (name := _system_in(path))), "")
+    system = options.units or next((name for path in results if (name := system_of_deck(deck_in(path)))), "")
     return Look(system, dots, options.font_size, getattr(options, "format", "png"),
                 getattr(options, "projected", "depth"))
 
@@ -60,15 +61,14 @@ def deck_in(path: Path) -> Deck | None:
     """Return the deck of the run whose NAME.h5 or history this is; None if it can't be told."""
     fields = path if path.suffix == ".h5" else path.with_name(path.name.removesuffix("_history.csv") + ".h5")
     try:
-        with h5py.File(fields, "r") as file:
+        with opened(fields) as file:
             return Deck(file["provenance/deck"][()].decode("utf-8"), fields)
-    except (OSError, KeyError, AttributeError, UnicodeDecodeError, ImplamError):
+    except ImplamError:
         return None
 
 
-def _system_in(path: Path) -> str:
+def system_of_deck(deck: Deck | None) -> str:
     """Return the system of units of a run: as its deck says, else told by the density of its first material."""
-    deck = deck_in(path)
     if deck is None:
         return ""
     try:

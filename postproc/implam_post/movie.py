@@ -7,7 +7,6 @@ from pathlib import Path
 import matplotlib
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from PIL import Image
@@ -16,29 +15,29 @@ from implam_post.errors import EXIT_DONE, CommandParser, FileError, run
 from implam_post.fields import Fields, read_fields
 from implam_post.history import History, read_history
 from implam_post.look import Look, add_options, look_of
-from implam_post.plan import frame, reach_of
+from implam_post.plan_frame import fill, frame, reach_of
 
 
 def frames(fields: Fields, history: History | None, look: Look) -> list[Image.Image]:
     """Return a picture for each time written, all of one scale."""
-    return [_picture(fields, history, look, snapshot.time) for snapshot in fields.snapshots]
+    return [_picture(fields, history, look, place) for place in range(len(fields.snapshots))]
 
 
-def _picture(fields: Fields, history: History | None, look: Look, time: float) -> Image.Image:
-    """Draw what is apart at a time, an interface a colour, the nearest to the struck face on top."""
+def _picture(fields: Fields, history: History | None, look: Look, moment: int) -> Image.Image:
+    """Draw what has delaminated at a time, an interface a colour, the nearest to the struck face on top."""
+    time = fields.snapshots[moment].time
     figure = Figure(figsize=(6, 6 if history is None else 8), layout="constrained", dpi=look.dots_per_inch)
     canvas = FigureCanvasAgg(figure)
     plan, *below = np.ravel(figure.subplots(1 if history is None else 2, squeeze=False,
                                             height_ratios=[1] if history is None else [3, 1]))
     interfaces = fields.snapshots[-1].mesh.interfaces
-    found = [fields.times_apart(below_ply) for below_ply in interfaces]
     for place in reversed(range(len(interfaces))):
-        cells, times = found[place]
-        plan.add_collection(PolyCollection(cells[times <= time], facecolors=f"C{place % 10}", linewidths=0))
+        fill(plan, fields.delaminated(moment, interfaces[place]), facecolor=f"C{place % 10}", linewidth=0)
     plan.legend(handles=[Patch(color=f"C{place % 10}", label=f"below ply {below_ply}")
                          for place, below_ply in enumerate(interfaces)], loc="upper right", fontsize="small")
     plan.set_title(f"time {look.said('time', time)}")
-    frame(plan, fields, reach_of(np.concatenate([cells for cells, _ in found]), fields), look)
+    last = len(fields.snapshots) - 1
+    frame(plan, fields, reach_of(np.concatenate([fields.delaminated(last, ply) for ply in interfaces]), fields), look)
     if history is not None:
         clock = look.axis("time", "time", history.time)
         force = look.axis("contact force", "force", history["force"])

@@ -3,7 +3,9 @@
 from collections.abc import Sequence
 
 import numpy as np
+from matplotlib import colormaps
 from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import BoundaryNorm, Normalize
 from matplotlib.figure import Figure
@@ -11,90 +13,118 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from implam_post.errors import ImplamError
-from implam_post.fields import MODES, Fields, area, extents, outline
+from implam_post.fields import MODES, Fields, outline
 from implam_post.look import Look, deck_in
+from implam_post.plan_frame import caption, clock_of, fill, frame, height_of, locate, reach_of
 
 _COLOURS = {"fibre failure": "C3", "matrix cracking": "C0", "matrix crushing": "C1"}
 _COLUMNS = 5
 _PLAIN = Look()
+# Inches beside a map, above and below it (title, axis, bar), of the words below all, and of a legend.
+_BESIDE, _WORDS, _CAPTION, _BAR = 0.9, 2.0, 0.6, 0.6
+# Digits of areas, as many as the summary prints.
+_DIGITS = 4
 
 
 def delamination_figure(fields: Fields, look: Look = _PLAIN) -> Figure:
-    """Draw each interface of the whole plate on one scale of lengths, cells coloured by the time they came apart."""
+    """Draw each interface of the whole plate on one scale of lengths, coloured by the time it delaminated."""
     interfaces = fields.snapshots[-1].mesh.interfaces
     columns = 1 if len(interfaces) < 4 else 3
     rows = -(-len(interfaces) // columns)
-    figure = Figure(figsize=(7 if columns == 1 else 4 * columns, 4 * rows), layout="constrained")
+    reach = np.max([reach_of(_last(fields, below_ply), fields) for below_ply in interfaces], axis=0)
+    width = 7.0 if columns == 1 else 4.2
+    height = height_of(width - _BESIDE, reach) + _WORDS
+    figure = Figure(figsize=(width * columns, height * rows + _CAPTION), layout="constrained")
     grid = figure.subplots(rows, columns, squeeze=False).ravel()
-    reach = np.max([reach_of(fields.times_apart(below_ply)[0], fields) for below_ply in interfaces], axis=0)
     for axes, below_ply in zip(grid, interfaces, strict=False):
         draw_delamination(axes, fields, below_ply, look, reach)
+    locate(grid[0], fields)
     for axes in grid[len(interfaces):]:
         axes.set_visible(False)
+    figure.supxlabel(caption(fields, look), fontsize="small")
     return figure
 
 
 def draw_delamination(axes: Axes, fields: Fields, below_ply: int, look: Look = _PLAIN,
                       reach: Sequence[float] | None = None) -> None:
-    """Draw the delamination below a ply: when each cell came apart, and the outline at every time written.
+    """Draw the delamination below a ply: when it came to which place, and its outline at every time written.
 
-    Cells that are apart at the first time are the starter, in grey. `reach` is what the picture has to hold.
+    What had delaminated before the run is the starter, in grey. `reach` is what the picture has to hold.
     """
-    cells, times = fields.times_apart(below_ply)
-    _draw_times(axes, cells, times, fields, look)
-    for time in np.unique(times):
-        axes.add_collection(LineCollection(outline(cells[times <= time]), colors="black", linewidths=0.6))
-    along, across = extents(cells)
-    axes.set_title(f"below ply {below_ply}: area {look.said('area', area(cells))}, {look.said('length', along)} by "
-                   f"{look.said('length', across)}", fontsize="medium")
-    frame(axes, fields, reach_of(cells, fields) if reach is None else reach, look)
+    regions = [fields.delaminated(place, below_ply) for place in range(len(fields.snapshots))]
+    draw_times(axes, fields, regions, fields.starter(below_ply), look)
+    axes.set_title(title_of(fields, below_ply, look), fontsize="medium")
+    frame(axes, fields, reach_of(regions[-1], fields) if reach is None else reach, look)
+
+
+def title_of(fields: Fields, below_ply: int, look: Look = _PLAIN) -> str:
+    """Return what an interface has come to at the last time, with the figures of the summary."""
+    figures = fields.interface(len(fields.snapshots) - 1, below_ply)
+    kind = "dissipated area" if figures.is_cohesive else "delaminated area"
+    along, across = (look.said("length", length) for length in figures.extents)
+    grown = f"{'failed' if figures.is_cohesive else 'delaminated'} over {along} by {across}" if any(
+        figures.extents) else "no point has failed"
+    return f"below ply {below_ply}: {kind} {look.said('area', figures.area, _DIGITS)}\n{grown}"
 
 
 def projected_figure(fields: Fields, look: Look = _PLAIN) -> Figure:
-    """Draw all interfaces seen from the struck face as a C-scan does, coloured as `look.projected` says.
+    """Draw all interfaces seen through the plate as a C-scan does, coloured as `look.projected` says.
 
-    By depth a cell has the colour of the first interface apart there, by time of when the first one came apart.
+    By depth a place has the colour of the delaminated interface nearest to the struck face, by time of when the first
+    one delaminated.
     """
-    interfaces = fields.snapshots[-1].mesh.interfaces
-    figure = Figure(figsize=(7, 6), layout="constrained")
+    interfaces, last = fields.snapshots[-1].mesh.interfaces, len(fields.snapshots) - 1
+    seen = fields.projected(last)
+    figure = Figure(figsize=(7, height_of(7 - 2 * _BESIDE, reach_of(seen, fields)) + _WORDS + _CAPTION),
+                    layout="constrained")
     axes = figure.subplots()
-    found = [fields.times_apart(below_ply) for below_ply in interfaces]
-    everywhere, times = (np.concatenate(parts) for parts in zip(*found, strict=True))
-    places = np.concatenate([np.full(len(cells), place) for place, (cells, _) in enumerate(found)])
-    # What is on top comes last: the nearest interface, or the earliest time.
-    order = np.argsort(-(times if look.projected == "time" else places), kind="stable")
-    middles = np.round(everywhere.mean(axis=1) / (np.abs(everywhere).max(initial=0) or 1) * 1e6)
-    _, last = np.unique(middles[order][::-1], axis=0, return_index=True)
-    seen = order[::-1][last]
     if look.projected == "time":
-        _draw_times(axes, everywhere[seen], times[seen], fields, look)
+        draw_times(axes, fields, [fields.projected(place) for place in range(last)] + [seen], np.empty((0, 4, 2)), look)
     else:
-        shown = PolyCollection(everywhere[seen], array=places[seen], cmap="turbo", linewidths=0,
-                               norm=BoundaryNorm(np.arange(len(interfaces) + 1) - 0.5, 256))
-        axes.add_collection(shown)
-        bar = figure.colorbar(shown, ax=axes, ticks=range(len(interfaces)), label="first interface apart, below ply")
+        # Between points the largest share of all is not the larger of two linear ones: grey is left of it.
+        fill(axes, seen, facecolor="lightgrey", linewidth=0)
+        draw_depths(axes, fields.projected_depths(last))
+    if look.projected == "depth" and len(interfaces) > 1:
+        scale = ScalarMappable(BoundaryNorm(np.arange(len(interfaces) + 1) - 0.5, 256), "turbo")
+        bar = figure.colorbar(scale, ax=axes, ticks=range(len(interfaces)), location="bottom",
+                              label="delaminated interface nearest to the struck face, below ply")
         bar.set_ticklabels([str(below_ply) for below_ply in interfaces])
-    axes.add_collection(LineCollection(outline(everywhere[seen]), colors="black", linewidths=0.8))
-    axes.set_title(f"all interfaces: projected area {look.said('area', area(everywhere[seen]))}", fontsize="medium")
-    frame(axes, fields, reach_of(everywhere, fields), look)
+    fill(axes, seen, facecolor="none", edgecolor="black", linewidth=0.8)
+    axes.set_title(f"all interfaces: projected area {look.said('area', fields.projected_area(last), _DIGITS)}",
+                   fontsize="medium")
+    frame(axes, fields, reach_of(seen, fields), look)
+    locate(axes, fields)
+    figure.supxlabel(caption(fields, look), fontsize="small")
     return figure
 
 
-def _draw_times(axes: Axes, cells: np.ndarray, times: np.ndarray, fields: Fields, look: Look) -> None:
-    """Draw the cells, those of the starter in grey, the others by the time they came apart, with a bar."""
-    first, last = fields.snapshots[0].time, fields.snapshots[-1].time
-    starter = PolyCollection(cells[times <= first], facecolors="lightgrey", linewidths=0, label="starter")
-    axes.add_collection(starter)
-    shown = PolyCollection(cells[times > first], array=times[times > first], cmap="viridis_r", linewidths=0,
-                           norm=Normalize(first, max(last, np.nextafter(first, np.inf))))
-    axes.add_collection(shown)
-    if np.any(times <= first):
-        axes.legend(handles=[starter], loc="upper right", fontsize="small")
-    if np.any(times > first):
-        clock = look.axis("time at which cells came apart", "time", [last])
-        bar = axes.figure.colorbar(shown, ax=axes, location="bottom", ticks=MaxNLocator(5), shrink=0.8,
-                                   label=clock.label)
+def draw_depths(axes: Axes, regions: Sequence[np.ndarray], cmap: str = "turbo") -> None:
+    """Draw interfaces over each other, the nearest to the struck face on top."""
+    norm = BoundaryNorm(np.arange(len(regions) + 1) - 0.5, 256)
+    for place in reversed(range(len(regions))):
+        fill(axes, regions[place], facecolor=colormaps[cmap](norm(place)), linewidth=0)
+
+
+def draw_times(axes: Axes, fields: Fields, regions: Sequence[np.ndarray], starter: np.ndarray, look: Look) -> None:
+    """Draw regions that grow, by the time at which each is reached, the starter in grey, with a bar."""
+    times = [snapshot.time for snapshot in fields.snapshots]
+    scale = ScalarMappable(Normalize(0, times[-1] if times[-1] > 0 else 1), "viridis_r")
+    several = len(times) > 1
+    for time, cells in reversed(list(zip(times, regions, strict=True))):
+        fill(axes, cells, facecolor=scale.to_rgba(time) if several else "C0", edgecolor="black", linewidth=0.5)
+    patch = fill(axes, starter, facecolor="lightgrey", edgecolor="black", linewidth=0.5, label="starter")
+    if patch is not None:
+        axes.legend(handles=[patch], loc="upper right", fontsize="small")
+    if several and any(map(len, regions)):
+        clock = clock_of(fields, look)
+        bar = axes.figure.colorbar(scale, ax=axes, location="bottom", ticks=MaxNLocator(5), shrink=0.8,
+                                   label=f"{clock.label}, first written with delamination there")
         bar.formatter = FuncFormatter(lambda value, _: f"{clock.factor * value:.3g}")
+
+
+def _last(fields: Fields, below_ply: int) -> np.ndarray:
+    """Return what has delaminated below a ply at the last time."""
+    return fields.delaminated(len(fields.snapshots) - 1, below_ply)
 
 
 def draw_cracks(axes: Axes, fields: Fields, below_ply: int) -> None:
@@ -104,7 +134,7 @@ def draw_cracks(axes: Axes, fields: Fields, below_ply: int) -> None:
         edges = outline(fields.whole(last.failed_cells(ply, MODES["matrix cracking"])))
         if len(edges):
             axes.add_collection(LineCollection(edges, colors="C3", linestyles=style, label=f"cracks of ply {ply}"))
-            axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.12), fontsize="small", ncols=2)
+            axes.legend(loc="upper right", fontsize="small")
 
 
 def failures_figure(fields: Fields, modes: Sequence[str] = tuple(MODES), look: Look = _PLAIN) -> Figure:
@@ -115,7 +145,7 @@ def failures_figure(fields: Fields, modes: Sequence[str] = tuple(MODES), look: L
     rows = -(-len(plies) // columns)
     along, across = _reach(fields)
     height = 2.6 * min(max(across / along, 1 / 3), 3) if along > 0 else 2.6
-    figure = Figure(figsize=(2.6 * columns, (height + 0.3) * rows + 0.6), layout="constrained")
+    figure = Figure(figsize=(2.6 * columns, (height + 0.3) * rows + _BAR + _CAPTION), layout="constrained")
     grid = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=True).ravel()
     angles = _angles(fields)
     for axes, ply in zip(grid, plies, strict=False):
@@ -125,6 +155,9 @@ def failures_figure(fields: Fields, modes: Sequence[str] = tuple(MODES), look: L
         axes.set_visible(False)
     figure.legend(handles=[Patch(color=_COLOURS[name], label=name) for name in modes], loc="outside lower center",
                   ncols=len(modes))
+    if plies:
+        locate(grid[0], fields)
+    figure.suptitle(caption(fields, look, outlined=False), fontsize="small")
     return figure
 
 
@@ -168,32 +201,3 @@ def _reach(fields: Fields) -> tuple[float, float]:
     reached = [reach_of(fields.whole(last.failed_cells(ply, mode)), fields)
                for ply in last.failures for mode in MODES.values()]
     return max(along for along, _ in reached), max(across for _, across in reached)
-
-
-def struck_point(fields: Fields) -> np.ndarray:
-    """Return where the plate was struck, from its middle; the middle, if the deck of the run can't be told."""
-    deck = deck_in(fields.path)
-    at = [] if deck is None else deck.numbers("impactor", "at")
-    return np.array(at if len(at) == 2 else [0.0, 0.0])
-
-
-def reach_of(cells: np.ndarray, fields: Fields) -> tuple[float, float]:
-    """Return the sides of the smallest rectangle around the struck point that holds cells; 0 if there are none."""
-    if not len(cells):
-        return 0.0, 0.0
-    along, across = 2 * np.max(np.abs(cells - struck_point(fields)), axis=(0, 1))
-    return float(along), float(across)
-
-
-def frame(axes: Axes, fields: Fields, reach: Sequence[float], look: Look = _PLAIN) -> None:
-    """Show a rectangle around the struck point with room around what is there, equal scales both ways, with units."""
-    largest, middle = max(reach), struck_point(fields)
-    half = 0.65 * np.maximum(reach, largest / 3) if largest > 0 else np.ones(2)
-    low, high = middle - half, middle + half
-    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
-    for name, side in (("x", axes.xaxis), ("y", axes.yaxis)):
-        length = look.axis(name, "length", [largest])
-        side.set_label_text(length.label)
-        side.set_major_formatter(FuncFormatter(lambda value, _, factor=length.factor: f"{factor * value:.4g}"))
-        side.set_major_locator(MaxNLocator(5))
-    axes.plot(*middle, "+", color="red", markersize=6)

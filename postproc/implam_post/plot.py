@@ -9,10 +9,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from implam_post.curves import AXES, in_contact
 from implam_post.errors import EXIT_DONE, CommandParser, FileError, ImplamError, run
 from implam_post.fields import Fields, read_fields
 from implam_post.front import front_figure
-from implam_post.history import ALL_ENERGIES, History, read_history
+from implam_post.history import ENERGY_NAMES, UNACCOUNTED, History, read_history
 from implam_post.look import FORMATS, STYLES, Look, add_options, look_of
 from implam_post.plan import (
     delamination_figure,
@@ -21,6 +22,7 @@ from implam_post.plan import (
     failures_figure,
     projected_figure,
 )
+from implam_post.plan_frame import caption, reach_of
 from implam_post.quantities import growth_rows
 
 _RESPONSES = {"force": ("contact force", "force"), "indentation": ("indentation", "length"),
@@ -37,10 +39,13 @@ def plot_forces(histories: Sequence[History], path: Path) -> Path:
 
 def plot_response(histories: Sequence[History], path: Path, look: Look = _PLAIN,
                   measured: History | None = None) -> Path:
-    """Draw force, indentation and deflection, each with all histories, and what was measured, over each other."""
-    figure = Figure(figsize=(8, 10), layout="constrained")
-    for axes, column in zip(figure.subplots(len(_RESPONSES), sharex=True), _RESPONSES, strict=True):
+    """Draw force, indentation, deflection, all with what was measured, and force against displacement."""
+    figure = Figure(figsize=(8, 13), layout="constrained")
+    *panels, last = figure.subplots(len(_RESPONSES) + 1)
+    for axes, column in zip(panels, _RESPONSES, strict=True):
+        axes.sharex(panels[0])
         _draw(axes, histories, column, look, measured)
+    _draw_loop(last, histories, look)
     return _save(figure, path, look)
 
 
@@ -58,13 +63,16 @@ def plot_overview(fields: Fields, history: History, path: Path, look: Look = _PL
         raise FileError(f"{fields.name} has no interface that may come apart.")
     figure = Figure(figsize=(11, 2.9 * max(len(interfaces), 2)), layout="constrained")
     left, right = figure.subfigures(1, 2)
+    last = len(fields.snapshots) - 1
+    reach = np.max([reach_of(fields.delaminated(last, ply), fields) for ply in interfaces], axis=0)
     for axes, below_ply in zip(left.subplots(len(interfaces), squeeze=False)[:, 0], interfaces, strict=True):
-        draw_delamination(axes, fields, below_ply, look)
+        draw_delamination(axes, fields, below_ply, look, reach)
         if fields.snapshots[-1].failures:
             draw_cracks(axes, fields, below_ply)
     force, ledger = right.subplots(2)
     _draw(force, [history], "force", look)
     _stack(ledger, history, look)
+    figure.supxlabel(caption(fields, look), fontsize="small")
     return _save(figure, path, look)
 
 
@@ -84,20 +92,20 @@ def plot_fields(fields: Fields, base: Path, times: Sequence[float] | None = None
 
 def _stack(axes: Axes, history: History, look: Look) -> None:
     """Draw the ledger."""
-    ledger = {column: history[column] for column in ALL_ENERGIES if column in history.columns}
+    ledger = {column: history[column] for column in ENERGY_NAMES if column in history.columns}
     shown = {column: values for column, values in ledger.items() if np.any(values)}
-    colours = [f"C{ALL_ENERGIES.index(column)}" for column in shown]
+    colours = [f"C{list(ENERGY_NAMES).index(column)}" for column in shown]
     start = sum(values[0] for values in ledger.values())
     time = look.axis("time", "time", history.time)
     energy = look.axis("energy", "energy", [start, *(np.max(np.abs(values)) for values in shown.values())])
     if shown:
-        labels = [column.removeprefix("energy_").replace("_", " ") for column in shown]
+        labels = [ENERGY_NAMES[column] for column in shown]
         for parts, names in ((np.maximum, labels), (np.minimum, ())):
             axes.stackplot(time.factor * history.time, [energy.factor * parts(values, 0) for values in shown.values()],
                            labels=names, colors=colours, alpha=0.8)
     axes.axhline(energy.factor * start, color="black", linestyle="--", linewidth=1, label="total at the start")
     axes.plot(time.factor * history.time, energy.factor * history["energy_error"], color="black", linewidth=1,
-              label="not accounted for")
+              label=UNACCOUNTED)
     axes.set(xlabel=time.label, ylabel=energy.label, title=Path(history.name).stem.removesuffix("_history"))
     axes.locator_params(axis="x", nbins=6)
     axes.legend(loc="center left", bbox_to_anchor=(1, 0.5))
@@ -135,6 +143,21 @@ def _draw(axes: Axes, histories: Sequence[History], column: str, look: Look = _P
     axes.legend()
 
 
+def _draw_loop(axes: Axes, histories: Sequence[History], look: Look) -> None:
+    """Draw the force against the displacement of the impactor, or of the struck point where no history has that."""
+    along = "impactor_displacement" if all(
+        np.any(history.columns.get("impactor_displacement", 0)) for history in histories) else "deflection"
+    shown = [in_contact(history) for history in histories]
+    across, force = (look.axis(*AXES[column], np.concatenate([history[column] for history in shown]))
+                     for column in (along, "force"))
+    for position, (history, name) in enumerate(zip(shown, _names([one.name for one in histories]), strict=True)):
+        axes.plot(across.factor * history[along], force.factor * history["force"], label=name,
+                  **STYLES[position % len(STYLES)])
+    axes.set(xlabel=across.label, ylabel=force.label)
+    axes.grid(alpha=0.3)
+    axes.legend()
+
+
 def _names(paths: Sequence[str]) -> list[str]:
     """Return short names of runs: that of the case, with its folder where two have the same."""
     stems = [Path(path).stem.removesuffix("_history") for path in paths]
@@ -163,6 +186,9 @@ def _draw_all(options: argparse.Namespace, look: Look) -> int:
     """Draw what the command line asks for."""
     results = [path for path in options.results if path.suffix == ".h5"]
     histories = [path for path in options.results if path.suffix != ".h5"]
+    for path in options.results:
+        if path.suffix not in (".h5", ".csv") or path.name.endswith("_restart.h5"):
+            raise FileError(f"{path} is neither the fields NAME.h5 nor the history NAME_history.csv of a run.")
     if options.save and (len(results), len(histories)) != (1, 0):
         raise ImplamError("--save goes with one NAME.h5.")
     for path in results:

@@ -9,10 +9,12 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from implam_post.errors import EXIT_DONE, CommandParser, FileError, run
+from implam_post.deck import Deck
+from implam_post.errors import EXIT_DONE, CommandParser, FileError, ImplamError, run
 from implam_post.fields import read_fields
 from implam_post.files import read_text, write_text
-from implam_post.history import read_history
+from implam_post.history import ENERGY_NAMES, UNACCOUNTED, read_history
+from implam_post.look import Look, system_of_deck
 from implam_post.report_pictures import as_image, history_pictures, layup_figure, map_pictures, plan_figure
 
 _ENDING = "_summary.json"
@@ -24,36 +26,27 @@ td.number, th.number { text-align: right; font-variant-numeric: tabular-nums; }
 img { max-width: 100%; } pre { background: #f4f4f4; padding: .8em; overflow-x: auto; }
 .done { color: #176117; } .stopped, .failed, .warning { color: #a01010; }
 """
-# Rows of the table at the top: label, member, member with its time.
+# Rows of the table at the top: label, member, its dimension, member with its time.
 _FIGURES = (
-    ("peak force", "peak_force", "peak_force_at"),
-    ("contacts", "contacts", None),
-    ("time in contact", "contact_duration", "contact_until"),
-    ("rebound velocity", "rebound_velocity", None),
-    ("velocity of the impactor at the end", "impactor_velocity", None),
-    ("largest deflection", "largest_deflection", "largest_deflection_at"),
-    ("impact energy", "energy_impact", None),
-    ("absorbed energy", "energy_absorbed", None),
-    ("work of the load", "work_external", None),
-    ("delaminated area, all interfaces", "delaminated_area", None),
-    ("delaminated area, projected", "projected_area", None),
-    ("closed form of the force at the starter", "threshold_force_at_starter", None),
-    ("fibre failures, plies of elements", "fibre_failures", None),
-    ("matrix cracks, plies of elements", "matrix_cracks", None),
-    ("matrix crushings, plies of elements", "matrix_crushings", None),
+    ("peak force", "peak_force", "force", "peak_force_at"),
+    ("contacts", "contacts", "", None),
+    ("time in contact", "contact_duration", "time", "contact_until"),
+    ("rebound velocity", "rebound_velocity", "velocity", None),
+    ("velocity of the impactor at the end", "impactor_velocity", "velocity", None),
+    ("largest deflection", "largest_deflection", "length", "largest_deflection_at"),
+    ("impact energy", "energy_impact", "energy", None),
+    ("absorbed energy", "energy_absorbed", "energy", None),
+    ("work of the load", "work_external", "energy", None),
+    ("delaminated area, all interfaces", "delaminated_area", "area", None),
+    ("delaminated area, projected", "projected_area", "area", None),
+    ("closed form of the force at the starter", "threshold_force_at_starter", "force", None),
+    ("fibre failures, plies of elements", "fibre_failures", "", None),
+    ("matrix cracks, plies of elements", "matrix_cracks", "", None),
+    ("matrix crushings, plies of elements", "matrix_crushings", "", None),
 )
-_LEDGER = (
-    ("kinetic energy of the impactor", "energy_impactor"),
-    ("kinetic energy of the plate", "energy_kinetic"),
-    ("strain energy", "energy_strain"),
-    ("indentation", "energy_indentation"),
-    ("delamination", "energy_delamination"),
-    ("ply damage", "energy_ply_damage"),
-    ("contact of faces", "energy_contact"),
-    ("friction", "energy_friction"),
-    ("integrators", "energy_algorithmic"),
-    ("not accounted for", "energy_error"),
-)
+# Words before a time, and what a missing figure means.
+_WHEN = {"contact_duration": "until"}
+_UNKNOWN = {"energy_absorbed": "contact has not ended"}
 _PROVENANCE = ("version", "commit", "compiler", "petsc_version", "ranks", "started")
 
 
@@ -64,6 +57,21 @@ def number(value: object) -> str:
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         return str(value)
     return str(value) if isinstance(value, int) else f"{value:.4g}"
+
+
+def said(look: Look, dimension: str, value: object) -> str:
+    """Return a figure to four digits, as the summary in the log has them, with its unit where that is known."""
+    if value is None or not dimension:
+        return number(value)
+    return look.said(dimension, value, 4)
+
+
+def look_of_summary(summary: Mapping[str, Any]) -> Look:
+    """Return the units of a run, those that its deck tells."""
+    try:
+        return Look(system_of_deck(Deck(summary["provenance"]["deck"], Path(f"{summary['case']}.nml"))))
+    except ImplamError:
+        return Look()
 
 
 def table(head: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
@@ -97,14 +105,13 @@ def read_summary(path: Path) -> dict[str, Any]:
 
 def report(summary: Mapping[str, Any], base: Path) -> str:
     """Return the page of a run whose history and fields have a path that begins with `base`."""
-    title = summary["title"] or summary["case"]
-    parts = [f"<h1>{escape(title)}</h1>", _ending(summary), "<h2>Summary</h2>", _figures(summary)]
+    title, look = summary["title"] or summary["case"], look_of_summary(summary)
+    parts = [f"<h1>{escape(title)}</h1>", _ending(summary, look), "<h2>Summary</h2>", _figures(summary, look)]
     if summary.get("interfaces"):
-        parts += ["<h2>Interfaces</h2>", _interfaces(summary)]
-    parts += ["<h2>Plate and lay-up</h2>", _plate(summary)]
-    parts += ["<h2>Curves</h2>", _curves(base), "<h2>Maps</h2>", _maps(base)]
-    parts += ["<h2>Energy ledger at the end</h2>", table((), [(name, summary[key]) for name, key in _LEDGER
-                                                           if key in summary])]
+        parts += ["<h2>Interfaces</h2>", _interfaces(summary, look)]
+    parts += ["<h2>Plate and lay-up</h2>", _plate(summary, look)]
+    parts += ["<h2>Curves</h2>", _curves(base, look), "<h2>Maps</h2>", _maps(base, look)]
+    parts += ["<h2>Energy ledger at the end</h2>", _ledger(summary, look)]
     parts += ["<h2>Warnings</h2>", _warnings(summary), "<h2>Provenance</h2>", _provenance(summary)]
     parts += ["<h2>Deck</h2>", f"<pre>{escape(summary['provenance']['deck'])}</pre>"]
     body = "\n".join(parts)
@@ -112,74 +119,100 @@ def report(summary: Mapping[str, Any], base: Path) -> str:
             f"<style>{_STYLE}</style>\n</head>\n<body>\n{body}\n</body>\n</html>\n")
 
 
-def _ending(summary: Mapping[str, Any]) -> str:
+def _ledger(summary: Mapping[str, Any], look: Look) -> str:
+    """Return the energies at the end in one unit, under the names that summary and legends have."""
+    energies = {name: summary[key] for key, name in (ENERGY_NAMES | {"energy_error": UNACCOUNTED}).items()
+                if key in summary}
+    axis = look.axis("energy", "energy", [*energies.values()])
+    return table(("", axis.label), [(name, axis.factor * value) for name, value in energies.items()])
+
+
+def _time(summary: Mapping[str, Any]) -> str:
+    """Return the dimension of the times of a run, none if they are load factors."""
+    return "time" if "time_reached" in summary else ""
+
+
+def _ending(summary: Mapping[str, Any], look: Look) -> str:
     """Return how the run ended."""
     ending = summary["exit"]
-    reached = f"time {number(summary['time_reached'])}" if "time_reached" in summary else (
+    reached = f"time {said(look, 'time', summary['time_reached'])}" if "time_reached" in summary else (
         f"load factor {number(summary['load_factor_reached'])}")
-    units = f"Units: {summary['units']}." if summary.get("units") else "Units are those of the deck."
+    units = "" if look.system else "Units are those of the deck."
     return (f'<p>Case {escape(summary["case"])}: <strong class="{escape(ending["kind"])}">{escape(ending["kind"])}'
-            f"</strong> at {reached} after {summary['accepted_steps']} steps. {escape(ending['message'])} "
-            f"{escape(units)}</p>")
+            f"</strong> at {escape(reached)} after {summary['accepted_steps']} steps. {escape(ending['message'])} "
+            f"{units}</p>")
 
 
-def _figures(summary: Mapping[str, Any]) -> str:
+def _figures(summary: Mapping[str, Any], look: Look) -> str:
     """Return the table at the top."""
     rows = []
-    for name, key, at in _FIGURES:
+    for name, key, dimension, at in _FIGURES:
         if key in summary and not (key == "work_external" and not summary[key]):
-            rows.append((name, summary[key], f"at {number(summary[at])}" if at else ""))
+            value = _UNKNOWN.get(key, "-") if summary[key] is None else said(look, dimension, summary[key])
+            when = f"{_WHEN.get(key, 'at')} {said(look, _time(summary), summary[at])}" if at else ""
+            rows.append((name, value, when))
     if summary.get("in_contact"):
         rows.append(("contact at the end", "yes", ""))
     return table((), rows)
 
 
-def _event(event: Mapping[str, float] | None) -> str:
+def _range(look: Look, ends: Sequence[float]) -> str:
+    """Return least and greatest coordinate in one unit."""
+    if not any(ends):
+        return "none"
+    axis = look.axis("", "length", ends)
+    unit = said(look, "length", max(ends, key=abs)).partition(" ")[2]
+    return " to ".join(number(axis.factor * end) for end in ends) + f" {unit}".rstrip()
+
+
+def _event(event: Mapping[str, float] | None, look: Look, time: str) -> str:
     """Return when something was first seen, and under what force."""
     if event is None:
         return "none"
-    force = f"{number(event['force'])} " if "force" in event else ""
-    return f"{force}at {number(event['at'])}"
+    force = f"{said(look, 'force', event['force'])} " if "force" in event else ""
+    return f"{force}at {said(look, time, event['at'])}"
 
 
-def _interfaces(summary: Mapping[str, Any]) -> str:
+def _interfaces(summary: Mapping[str, Any], look: Look) -> str:
     """Return the table of interfaces."""
     head = ("below ply", "law", "area", "x", "y", "energy", "onset", "first growth", "closed form", "border reached")
+    time = _time(summary)
     return table(head, [
-        (entry["ply_above"], "cohesive" if entry["is_cohesive"] else "front", entry["area"],
-         " to ".join(map(number, entry["x"])), " to ".join(map(number, entry["y"])), entry["energy"],
-         _event(entry["onset"]), _event(entry["first_growth"]), entry["threshold_force"],
+        (entry["ply_above"], "cohesive" if entry["is_cohesive"] else "front", said(look, "area", entry["area"]),
+         _range(look, entry["x"]), _range(look, entry["y"]), said(look, "energy", entry["energy"]),
+         _event(entry["onset"], look, time), _event(entry["first_growth"], look, time),
+         said(look, "force", entry["threshold_force"]),
          "yes" if entry["border_reached"] else "no") for entry in summary["interfaces"]])
 
 
-def _plate(summary: Mapping[str, Any]) -> str:
+def _plate(summary: Mapping[str, Any], look: Look) -> str:
     """Return size, lay-up and failures of the plies."""
-    along, across = summary["plate_size"]
-    thickness = sum(ply["thickness"] for ply in summary["plies"])
+    along, across = (said(look, "length", length) for length in summary["plate_size"])
+    thickness = said(look, "length", sum(ply["thickness"] for ply in summary["plies"]))
     areas = [key for key in ("fibre_failure_area", "matrix_crack_area", "matrix_crushing_area")
              if key in summary["plies"][0]]
-    head = ("ply", "material", "angle", "thickness", *(key.replace("_", " ") for key in areas))
-    rows = [(ply["ply"], ply["made_of"], ply["angle"], ply["thickness"], *(ply[key] for key in areas))
-            for ply in summary["plies"]]
-    return "\n".join([f"<p>{number(along)} by {number(across)}, {number(thickness)} thick, {len(rows)} plies.</p>",
-                      picture(plan_figure(summary), "plate in plan"),
+    head = ("ply", "material", "angle, degrees", "thickness", *(key.replace("_", " ") for key in areas))
+    rows = [(ply["ply"], ply["made_of"], ply["angle"], said(look, "length", ply["thickness"]),
+             *(said(look, "area", ply[key]) for key in areas)) for ply in summary["plies"]]
+    return "\n".join([f"<p>{along} by {across}, {thickness} thick, {len(rows)} plies.</p>",
+                      picture(plan_figure(summary, look), "plate in plan"),
                       picture(layup_figure(summary), "lay-up from the struck face"), table(head, rows)])
 
 
-def _curves(base: Path) -> str:
+def _curves(base: Path, look: Look) -> str:
     """Return the curves of the history, or why there are none."""
     path = base.with_name(f"{base.name}_history.csv")
     if not path.exists():
         return f"<p>There is no {escape(path.name)}.</p>"
-    return "\n".join(picture(figure, text) for text, figure in history_pictures(read_history(path)))
+    return "\n".join(picture(figure, text) for text, figure in history_pictures(read_history(path), look))
 
 
-def _maps(base: Path) -> str:
+def _maps(base: Path, look: Look) -> str:
     """Return what the fields show in plan, or why there is nothing."""
     path = base.with_name(f"{base.name}.h5")
     if not path.exists():
         return f"<p>There is no {escape(path.name)}.</p>"
-    pictures = [picture(figure, text) for text, figure in map_pictures(read_fields(path))]
+    pictures = [picture(figure, text) for text, figure in map_pictures(read_fields(path), look)]
     return "\n".join(pictures) or "<p>The fields hold neither interfaces nor failures of plies.</p>"
 
 
@@ -209,6 +242,8 @@ def summaries_at(path: Path) -> list[Path]:
 
 def write_report(path: Path, output: Path | None) -> Path:
     """Write the page of a summary and return its path."""
+    if not path.name.endswith(_ENDING):
+        raise FileError(f"{path} isn't NAME{_ENDING}; a report is made of that file, or of the folder that holds it.")
     base = path.with_name(path.name.removesuffix(_ENDING))
     page = (output or path.parent) / f"{base.name}_report.html"
     summary = read_summary(path)
@@ -216,6 +251,8 @@ def write_report(path: Path, output: Path | None) -> Path:
         text = report(summary, base)
     except KeyError as error:
         raise FileError(f"the summary {path} lacks {error}: another version of implam wrote it.") from None
+    except (TypeError, ValueError, IndexError, AttributeError) as error:
+        raise FileError(f"{path} isn't a summary written by implam, or it is damaged ({error}).") from None
     write_text(page, text)
     return page
 

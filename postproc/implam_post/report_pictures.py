@@ -3,15 +3,22 @@
 import base64
 import io
 from collections.abc import Iterator, Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
+from matplotlib.ticker import FuncFormatter
 
+from implam_post.curves import AXES, in_contact
+from implam_post.deck import Deck
+from implam_post.errors import ImplamError
 from implam_post.fields import Fields
-from implam_post.history import ALL_ENERGIES, History
-from implam_post.plan import delamination_figure, failures_figure
+from implam_post.history import ENERGY_NAMES, UNACCOUNTED, History
+from implam_post.look import Look
+from implam_post.plan import delamination_figure, failures_figure, projected_figure
+from implam_post.plan_frame import draw_plate
 from implam_post.quantities import growth_rows
 
 _SPACE = 0.12  # free part of the picture beside the plies
@@ -58,70 +65,88 @@ def _fibre(axes: Any, angle: float, height: float, depth: float) -> None:
               height + np.array([-1, 1]) * length * np.sin(turned), color="black", linewidth=1)
 
 
-def plan_figure(summary: Mapping[str, Any]) -> Figure:
-    """Draw the plate in plan with the rectangle around the delamination of each interface, all to scale."""
+def plan_figure(summary: Mapping[str, Any], look: Look) -> Figure:
+    """Draw the plate in plan with the rectangle around what has failed of each interface, all to scale."""
     along, across = summary["plate_size"]
-    figure = Figure(figsize=(5, min(max(5 * across / along, 1.5), 8)), layout="constrained")
+    figure = Figure(figsize=(7, min(max(4.4 * across / along, 1.5), 8) + 0.8), layout="constrained")
     axes = figure.subplots()
-    axes.add_patch(Rectangle((-along / 2, -across / 2), along, across, facecolor="whitesmoke", edgecolor="black"))
-    for position, entry in enumerate(summary.get("interfaces", [])):
+    try:
+        deck = Deck(summary["provenance"]["deck"], Path(f"{summary['case']}.nml"))
+        at = deck.numbers("impactor", "at") if deck.has("impactor") else []
+    except ImplamError:
+        deck, at = None, []
+    draw_plate(axes, deck, along, across)
+    interfaces = [entry for entry in summary.get("interfaces", []) if entry["x"][1] > entry["x"][0]]
+    for position, entry in enumerate(interfaces):
         (left, right), (front, back) = entry["x"], entry["y"]
         axes.add_patch(Rectangle((left, front), right - left, back - front, facecolor="none",
                                  edgecolor=f"C{position % 10}", label=f"below ply {entry['ply_above']}"))
-    axes.plot(0, 0, "+", color="red")
-    axes.set(xlim=(-0.53 * along, 0.53 * along), ylim=(-0.53 * across, 0.53 * across), aspect="equal", xlabel="x",
-             ylabel="y")
-    if summary.get("interfaces"):
-        axes.legend(fontsize="small", title="extents of what came apart")
+    axes.plot(*(at if len(at) == 2 else (0, 0)), "+", color="red", label="struck point", linestyle="none")
+    axes.set(xlim=(-0.53 * along, 0.53 * along), ylim=(-0.53 * across, 0.53 * across), aspect="equal")
+    for name, side in (("x, along 0°", axes.xaxis), ("y", axes.yaxis)):
+        length = look.axis(name, "length", [along / 2])
+        side.set_label_text(length.label)
+        side.set_major_formatter(FuncFormatter(lambda value, _, factor=length.factor: f"{factor * value:.4g}"))
+    axes.legend(fontsize="small", title="extents of what failed" if interfaces else None, loc="center left",
+                bbox_to_anchor=(1, 0.5))
     return figure
 
 
-def history_pictures(history: History) -> Iterator[tuple[str, Figure]]:
-    """Give the curves of a history: force, deflection, areas and energies."""
+def history_pictures(history: History, look: Look) -> Iterator[tuple[str, Figure]]:
+    """Give the curves of a history: force, force against displacements, deflection, areas and energies."""
     if np.any(history["force"]):
-        yield "contact force against time", _curve(history, "time", "force", "contact force")
-        yield "contact force against deflection", _curve(history, "deflection", "force", "contact force")
-    yield "deflection against time", _curve(history, "time", "deflection", "deflection of the struck point")
-    areas = [name for name in history.columns if name.startswith("area_below_")]
+        shown = in_contact(history)
+        yield "contact force against time", _curve(history, "time", "force", look)
+        if np.any(history.columns.get("impactor_displacement", 0)):
+            yield "contact force against displacement of the impactor", _curve(shown, "impactor_displacement", "force",
+                                                                               look)
+        yield "contact force against deflection", _curve(shown, "deflection", "force", look)
+    yield "deflection against time", _curve(history, "time", "deflection", look)
+    areas = {name: name.replace("area_below_", "below ply ") for name in history.columns
+             if name.startswith("area_below_")}
     if areas:
-        yield "delaminated area against time", _curves(
-            history, {name.replace("area_below_", "below ply "): name for name in areas}, "delaminated area")
-    energies = [name for name in ALL_ENERGIES if name in history.columns and np.any(history[name])]
-    yield "energies against time", _curves(
-        history, {name.removeprefix("energy_").replace("_", " "): name for name in energies}, "energy")
+        yield "delaminated area against time", _curves(history, areas, "delaminated area", "area", look)
+    energies = {column: name for column, name in (ENERGY_NAMES | {"energy_error": UNACCOUNTED}).items()
+                if column in history.columns and np.any(history[column])}
+    yield "energies against time", _curves(history, energies, "energy", "energy", look)
 
 
-def _curve(history: History, against: str, column: str, label: str) -> Figure:
+def _curve(history: History, against: str, column: str, look: Look) -> Figure:
     """Draw one column; steps in which delaminations grew are marked on the force."""
     figure = Figure(figsize=(7, 3.4), layout="constrained")
     axes = figure.subplots()
-    axes.plot(history[against], history[column])
+    along, up = (look.axis(*AXES[name], history[name]) for name in (against, column))
+    axes.plot(along.factor * history[against], up.factor * history[column])
     grown = growth_rows(history)
     if column == "force" and len(grown):
-        axes.plot(history[against][grown], history[column][grown], "o", markersize=3, label="delamination grows")
+        axes.plot(along.factor * history[against][grown], up.factor * history[column][grown], "o", markersize=3,
+                  label="delamination grows")
         axes.legend()
-    axes.set(xlabel=against, ylabel=label)
+    axes.set(xlabel=along.label, ylabel=up.label)
     axes.grid(alpha=0.3)
     return figure
 
 
-def _curves(history: History, columns: Mapping[str, str], label: str) -> Figure:
-    """Draw several columns against time."""
+def _curves(history: History, columns: Mapping[str, str], label: str, dimension: str, look: Look) -> Figure:
+    """Draw several columns, each with its name, against time."""
     figure = Figure(figsize=(7, 3.4), layout="constrained")
     axes = figure.subplots()
-    for name, column in columns.items():
-        axes.plot(history.time, history[column], label=name)
-    axes.set(xlabel="time", ylabel=label)
+    along = look.axis("time", "time", history.time)
+    up = look.axis(label, dimension, np.concatenate([[0.0], *(history[column] for column in columns)]))
+    for column, name in columns.items():
+        axes.plot(along.factor * history.time, up.factor * history[column], label=name)
+    axes.set(xlabel=along.label, ylabel=up.label)
     axes.grid(alpha=0.3)
     if columns:
         axes.legend(loc="center left", bbox_to_anchor=(1, 0.5), fontsize="small")
     return figure
 
 
-def map_pictures(fields: Fields) -> Iterator[tuple[str, Figure]]:
+def map_pictures(fields: Fields, look: Look) -> Iterator[tuple[str, Figure]]:
     """Give what the fields hold of interfaces and plies, in plan."""
     last = fields.snapshots[-1]
     if last.mesh.interfaces:
-        yield "delamination of each interface", delamination_figure(fields)
+        yield "delamination of each interface", delamination_figure(fields, look)
+        yield "all interfaces seen through the plate", projected_figure(fields, look)
     if last.failures and any(np.any(failed) for failed in last.failures.values()):
-        yield "failures of each ply", failures_figure(fields)
+        yield "failures of each ply", failures_figure(fields, look=look)

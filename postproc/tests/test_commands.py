@@ -8,7 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-from implam_post import check_impact, compare, plot
+from implam_post import check_impact, compare, plot, report
+from implam_post.errors import FileError
+from implam_post.expectations import read_expectations
 from implam_post.history import ENERGIES, read_history
 from implam_post.semi_analytic import semi_analytic
 from tests.decks import SUN_CHEN, deck
@@ -55,6 +57,32 @@ class CommandTest(unittest.TestCase):
         self.assertEqual(code, 0, text)
         self.assertIn("second peak force", text)
         self.assertGreater((self.folder / "sun_chen_check.png").stat().st_size, 10000)
+
+    def test_other_kinds_of_files(self) -> None:
+        """What is neither fields nor a history is told by what would be, whatever its bytes are."""
+        picture = self.folder / "case.png"
+        picture.write_bytes(b"\x89PNG\r\n\x1a\n\xff\xfe")
+        for command, path, sentence in ((plot.main, picture, "neither the fields NAME.h5 nor the history"),
+                                        (plot.main, self.deck, "neither the fields NAME.h5 nor the history"),
+                                        (plot.main, self.folder / "case_restart.h5", "neither the fields"),
+                                        (report.main, picture, "isn't NAME_summary.json"),
+                                        (report.main, self.folder / "case.h5", "isn't NAME_summary.json"),
+                                        (check_impact.main, picture, "it is no text")):
+            code, text = self.run_quietly(command, path)
+            self.assertEqual((code, len(text.splitlines())), (4, 1), text)
+            self.assertIn(sentence, text)
+
+    def test_faulty_expectations(self) -> None:
+        """An entry without or with other keys is told by their names, not by those of the program's insides."""
+        path = self.folder / "case.toml"
+        for content, sentence in (('[[expect]]\nvalue = 1.0\nabsolute = 0.1\n', "lacks quantity"),
+                                  ('[[expect]]\nquantity = "peak_force"\nvlaue = 1.0\n', "has no vlaue"),
+                                  ('[[expect]]\nquantity = 1\nvalue = 1.0\nabsolute = 0.1\n', "are texts"),
+                                  ('variant = [1]\n', "list of tables"), ('[[variant]]\nname = 1\n', "has a name")):
+            path.write_text(content)
+            with self.subTest(content), self.assertRaisesRegex(FileError, sentence) as caught:
+                read_expectations(path)
+            self.assertNotIn("__init__", str(caught.exception))
 
     def test_check_fails_beyond_the_tolerance_only(self) -> None:
         """Two percent too much force is told, and fails if a tolerance is given."""

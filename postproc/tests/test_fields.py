@@ -93,26 +93,26 @@ class FieldsTest(unittest.TestCase):
         return code, text.getvalue()
 
     def test_delamination_of_the_whole_plate(self) -> None:
-        """A quarter counts four times, mirrored; cells have the first time at which they are apart."""
+        """A quarter counts four times, mirrored, at each time with what has delaminated by then."""
         fields = read_fields(self.path)
         self.assertEqual(fields.snapshots[0].mesh.interfaces, [2])
-        cells, times = fields.times_apart(2)
-        self.assertAlmostEqual(area(cells), 4 * (1 + 2 + 3))
-        self.assertEqual(extents(cells), (12, 2))
-        self.assertEqual(sorted(times), sorted(4 * TIMES))
-        for time, expected in zip(TIMES, (4, 12, 24), strict=True):
-            self.assertAlmostEqual(area(cells[times <= time]), expected)
-        self.assertAlmostEqual(float(np.mean(cells)), 0)
+        for place, expected in enumerate((4, 12, 24)):
+            self.assertAlmostEqual(area(fields.delaminated(place, 2)), expected)
+            self.assertAlmostEqual(fields.interface(place, 2).area, expected)
+            self.assertAlmostEqual(fields.projected_area(place), expected)
+        self.assertEqual(extents(fields.delaminated(2, 2)), (12, 2))
+        self.assertEqual(fields.interface(2, 2).extents, (12, 2))
+        self.assertAlmostEqual(float(np.mean(fields.delaminated(2, 2))), 0)
 
     def test_whole_plate_is_not_mirrored(self) -> None:
         """A run of the whole plate is shown as it is."""
         write_fields(self.path, part="whole")
-        self.assertAlmostEqual(area(read_fields(self.path).times_apart(2)[0]), 6)
+        self.assertAlmostEqual(area(read_fields(self.path).delaminated(2, 2)), 6)
 
     def test_outline_has_no_inner_edges(self) -> None:
         """Edges on the symmetry lines and between cells of different sizes are inside."""
         fields = read_fields(self.path)
-        edges = outline(fields.whole(fields.snapshots[-1].delaminated_cells(2)))
+        edges = outline(fields.delaminated(2, 2))
         self.assertAlmostEqual(float(np.sum(np.abs(edges[:, 1] - edges[:, 0]))), 2 * (12 + 2))
         self.assertEqual(len(outline(np.empty((0, 4, 2)))), 0)
 

@@ -90,6 +90,27 @@ class SweepTest(unittest.TestCase):
         self.assertEqual(len(told), 1, text)
         self.assertTrue(told[0].startswith("warning, 2 of 2 decks: "), text)
 
+    def test_lost_histories(self) -> None:
+        """A case whose history is emptied, lacks its rows or is gone runs again, from the start; others do not."""
+        arguments = self.arguments("""
+            deck = "delamination.nml"
+            [grid]
+            "impactor.velocity" = [0.5, 0.6, 0.7, 0.8]
+            "output.checkpoint_every" = [100e-6]
+            """)
+        self.assertEqual(run_quietly(sweep.main, *arguments)[0], 0)
+        before = self.table()
+        histories = [self.output / row["folder"] / "delamination_history.csv" for row in before]
+        first, whole = histories[0].read_text().splitlines()[0], histories[0].read_text()
+        histories[0].write_text("")
+        histories[1].write_text(first + "\n")
+        histories[2].unlink()
+        code, text = run_quietly(sweep.main, *arguments)
+        self.assertEqual(code, 0, text)
+        self.assertEqual((self.called("run"), self.called("restart")), (7, 0), text)
+        self.assertEqual(self.table(), before)
+        self.assertEqual(histories[0].read_text(), whole)
+
     def test_table_and_plots(self) -> None:
         """Figures are those of the histories, in CSV and HDF5; the energy is the one swept; nothing is run twice."""
         arguments = self.arguments("""

@@ -35,6 +35,8 @@ def _from_results(path: Path, time: float | None) -> Panel:
             raise FileError(f"{path} doesn't hold the state of &{group}: run again with '{group}' among the fields of "
                             f"&output.")
     plies = deck.plies()
+    if snapshot.mesh.last_ply.max() != len(plies):
+        raise FileError(f"{path} has {snapshot.mesh.last_ply.max()} plies and its deck {len(plies)}: it is damaged.")
     x, y = (_lines(snapshot.mesh.corners[..., axis]) for axis in (0, 1))
     stacks = _stacks(snapshot, x, y)
     x, y, stacks = _completed(x, y, stacks, fields.part)

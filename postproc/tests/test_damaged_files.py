@@ -1,0 +1,92 @@
+"""Every command that reads NAME.h5 on files with spoilt bytes: it draws, or ends with a sentence and no traceback.
+
+IMPLAM_SPOILT in the environment is the number of files (default 40); 400 take five minutes."""
+
+import os
+import random
+import tempfile
+import unittest
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+from implam_post import movie, paraview, plot
+from implam_post.errors import FileError, ImplamError
+from implam_post.exchange import results
+from implam_post.fields import read_fields
+from tests.program import run_quietly
+from tests.test_fields import write_fields
+from tests.test_pictures import DECK
+
+FILES = int(os.environ.get("IMPLAM_SPOILT", "40"))
+
+
+def spoil(data: bytes, stream: random.Random) -> bytes:
+    """Return a file cut off, or with some bytes, or a piece of it, replaced."""
+    kind = stream.randrange(4)
+    if kind == 0:
+        return data[:stream.randrange(len(data))]
+    spoilt = bytearray(data)
+    if kind == 1:
+        first = stream.randrange(len(data))
+        spoilt[first:first + 512] = bytes(min(512, len(data) - first))
+    for _ in range(stream.choice((1, 8, 64)) if kind > 1 else 0):
+        spoilt[stream.randrange(len(data))] = stream.randrange(256)
+    return bytes(spoilt)
+
+
+class DamagedFilesTest(unittest.TestCase):
+    """Files spoilt at random, the same ones each time."""
+
+    def test_spoilt_bytes(self) -> None:
+        """Each command, or a sentence."""
+        stream = random.Random(1)
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "case.h5"
+            write_fields(path, "whole")
+            with h5py.File(path, "a") as file:
+                file["provenance/deck"] = np.bytes_(DECK)
+            data = path.read_bytes()
+            for number in range(FILES):
+                path.write_bytes(spoil(data, stream))
+                with self.subTest(number):
+                    try:
+                        read_fields(path)
+                        commands = (plot.main, movie.main, paraview.main)
+                    except FileError as error:
+                        self.assertEqual(len(str(error).splitlines()), 1, error)
+                        commands = (plot.main,)
+                    for command in commands if number % 8 == 0 else ():
+                        code, told = run_quietly(command, path)
+                        self.assertIn(code, (0, 1, 2, 4), told)
+                        self.assertNotIn("Traceback", told)
+                    try:
+                        results.read_panel(path)
+                    except ImplamError as error:
+                        self.assertEqual(len(str(error).splitlines()), 1, error)
+
+    def test_arrays_of_other_sizes_and_kinds(self) -> None:
+        """What is no number, has another length, points outside, or is no plate is told, whatever it is."""
+        faults = {"meshes/00000001/connectivity": -1, "meshes/00000001/cells/first_ply": 0,
+                  "meshes/00000001/coordinates": np.nan, "times/00000002/cells/delaminated_above": np.inf,
+                  "times/00000002/time": np.nan, "times/00000001/mesh": 7}
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "case.h5"
+            for name, value in faults.items():
+                write_fields(path)
+                with self.subTest(name), h5py.File(path, "a") as file:
+                    file[name][...] = value
+                with self.assertRaisesRegex(FileError, "damaged"):
+                    read_fields(path)
+            for name in ("times/00000003/cells/ply_3_failure", "meshes/00000001/cells/last_ply"):
+                write_fields(path)
+                with h5py.File(path, "a") as file:
+                    del file[name]
+                    file[name] = np.zeros(3)
+                with self.subTest(name), self.assertRaisesRegex(FileError, "damaged"):
+                    read_fields(path)
+
+
+if __name__ == "__main__":
+    unittest.main()
