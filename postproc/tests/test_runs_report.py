@@ -14,7 +14,6 @@ import numpy as np
 from matplotlib.image import imread
 
 from implam_post import report
-from implam_post.report import number
 from tests.program import SMALL, implam, run_quietly
 from tests.program import run as run_module
 
@@ -90,17 +89,24 @@ class ReportTest(unittest.TestCase):
         """A front and failing plies, with fields: every figure, curve and map."""
         path = self.solve("damage", "&output fields_every=40e-6 /\n! <b> & \"quotes\"\n")
         summary, page = json.loads(path.read_text(encoding="utf-8")), self.page(path)
-        for key in ("peak_force", "largest_deflection", "energy_absorbed", "delaminated_area", "projected_area",
-                    "matrix_cracks", "energy_strain", "energy_error"):
-            self.assertIn(number(summary[key]), page.cells, key)
+        for key, shown in (("peak_force", "{:.4g} kN"), ("largest_deflection", "{:.4g} mm"),
+                           ("delaminated_area", "{:.4g} mm²"), ("projected_area", "{:.4g} mm²"),
+                           ("energy_strain", "{:.4g}"), ("energy_error", "{:.4g}")):
+            factor = {"kN": 1e-3, "mm": 1e3, "mm²": 1e6}.get(shown[7:], 1)
+            self.assertIn(shown.format(factor * summary[key]), page.cells, key)
+        self.assertIn(str(summary["matrix_cracks"]), page.cells)
+        self.assertIsNone(summary["energy_absorbed"])
+        self.assertIn("contact has not ended", page.cells)
+        self.assertIn("algorithmic dissipation", page.cells)
         growth = summary["interfaces"][0]["first_growth"]
-        self.assertIn(f"{number(growth['force'])} at {number(growth['at'])}", page.cells)
+        self.assertIn(f"{growth['force'] / 1e3:.4g} kN at {1e3 * growth['at']:.4g} ms", page.cells)
         self.assertIn(summary["provenance"]["commit"], page.cells)
         self.assertIn(summary["provenance"]["deck"], page.text)
         self.assertEqual(set(page.pictures), {
             "plate in plan", "lay-up from the struck face", "contact force against time",
-            "contact force against deflection", "deflection against time", "delaminated area against time",
-            "energies against time", "delamination of each interface", "failures of each ply"})
+            "contact force against displacement of the impactor", "contact force against deflection",
+            "deflection against time", "delaminated area against time", "energies against time",
+            "delamination of each interface", "all interfaces seen through the plate", "failures of each ply"})
         self.assertEqual([cell for cell in page.cells if cell in ("90.0", "90")], ["90"])
 
     def test_warnings_and_static_runs(self) -> None:
@@ -135,6 +141,7 @@ class ReportTest(unittest.TestCase):
         (self.folder / "older_summary.json").write_text(json.dumps(older), encoding="utf-8")
         for path, sentence in ((self.folder / "older_summary.json", "lacks 'plate_size'"),
                                (self.folder / "no_summary.json", "isn't a summary"),
+                               (self.folder / "damage.h5", "isn't NAME_summary.json"),
                                (self.folder / "missing_summary.json", "cannot be read"), (output, "holds no summary")):
             code, text = run_quietly(report.main, path)
             self.assertEqual((code, len(text.splitlines())), (4, 1), text)

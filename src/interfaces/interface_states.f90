@@ -150,7 +150,7 @@ contains
     class(interface_state_t), intent(in) :: self
     type(model_t), intent(in) :: model
     real(wp) :: area
-    real(wp), allocatable :: areas(:)
+    real(wp), allocatable :: areas(:, :)
     real(wp) :: largest
     integer :: i
 
@@ -159,8 +159,7 @@ contains
     areas = delaminated_areas(self, model)
     largest = 0
     do i = 1, model%distribution%owned
-      if (model%zone(i) == 0) cycle
-      largest = max(largest, areas(i))
+      largest = max(largest, maxval(areas(:, i)))
       if (i < model%distribution%owned) then
         if (node_of(i + 1) == node_of(i)) cycle
       end if
@@ -181,40 +180,44 @@ contains
     end function node_of
   end function projected_area
 
-  !> Delaminated part of the area of each point: what a cohesive law has dissipated, or the point's parts of delaminated
-  !> cells where fronts release ties. Their sums are the areas of the interfaces. Collective.
+  !> Delaminated part of each zone's area at each point: what a cohesive law has dissipated, or the point's parts of
+  !> delaminated cells where fronts release ties. Their sums are the areas of the interfaces. Collective.
   function delaminated_areas(self, model) result(areas)
     !> The state
     class(interface_state_t), intent(in) :: self
     type(model_t), intent(in) :: model
-    !> (local points)
-    real(wp), allocatable :: areas(:)
-    real(wp) :: of_cells(1, size(model%zone))
-    integer, allocatable :: cells(:)
-    integer :: i
+    !> (zones, local points); at the border of a zone a point of the joined layers has its part
+    real(wp), allocatable :: areas(:, :)
+    real(wp) :: shares(size(model%zone))
+    integer :: zone, i
 
-    of_cells = 0
-    cells = pack([(i, i=1, model%elements%elements)], [(in_delaminated_cell(i), i=1, model%elements%elements)])
-    call add_patch_weights(model%elements, cells, of_cells(1, :))
-    call model%halo%accumulate(of_cells)
-    areas = of_cells(1, :) + self%cohesive%shares(model)*model%contact_area
+    allocate (areas(size(model%mesh%zones), size(model%zone)), source=0.0_wp)
+    do zone = 1, size(areas, 1)
+      if (model%scene%delaminations(zone)%law == law_cohesive) cycle
+      call add_patch_weights(model%elements, pack([(i, i=1, model%elements%elements)], &
+                                                  [(in_delaminated_cell(i), i=1, model%elements%elements)]), &
+                             areas(zone, :))
+    end do
+    call model%halo%accumulate(areas)
+    shares = self%cohesive%shares(model)
+    do i = 1, model%distribution%owned
+      zone = model%zone(i)
+      if (zone > 0) areas(zone, i) = areas(zone, i) + shares(i)*model%contact_area(i)
+    end do
 
   contains
 
-    !> True: an element lies below a cell whose ties a front has released.
+    !> True: an element lies below a cell of the zone whose ties a front has released.
     logical function in_delaminated_cell(i)
       !> Number of the element on this rank
       integer, intent(in) :: i
-      integer :: zone, place(2)
+      integer :: place(2)
 
-      in_delaminated_cell = .false.
       associate (mesh => model%mesh, element => model%distribution%elements(i))
+        in_delaminated_cell = mesh%zones(zone)%below_ply == mesh%element_plies(1, element) - 1
+        if (.not. in_delaminated_cell) return
         place = mesh%place_of(mesh%element_cell(element))
-        do zone = 1, size(mesh%zones)
-          if (mesh%zones(zone)%below_ply /= mesh%element_plies(1, element) - 1) cycle
-          if (model%scene%delaminations(zone)%law == law_cohesive) cycle
-          in_delaminated_cell = self%faces%regions(zone)%is_delaminated(place(1), place(2))
-        end do
+        in_delaminated_cell = self%faces%regions(zone)%is_delaminated(place(1), place(2))
       end associate
     end function in_delaminated_cell
   end function delaminated_areas

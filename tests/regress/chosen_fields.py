@@ -159,7 +159,7 @@ def check_energy_release(implam, folder):
     history_path = run_deck(implam, write_deck(folder / "release", "../small/delamination.nml",
                                                ["output%fields='delamination,energy_release'"]))
     results = Results(history_path)
-    require(set(results.points) == {"damage_above", "shear_share_above"}
+    require(set(results.points) == {"damage_above", "dissipated_above", "shear_share_above"}
             and set(results.cells) == {"delaminated_above", "energy_release_above"},
             f"There are {sorted(results.points)} and {sorted(results.cells)}.")
     ratio, apart = results.cells["energy_release_above"], results.cells["delaminated_above"] > 0
