@@ -51,11 +51,13 @@ def level_of(corners: np.ndarray, shares: np.ndarray) -> float:
     content = float(np.sum(areas(corners) * (shares @ WEIGHTS)))
     triangles = areas(nine_points(corners)[:, _TRIANGLES]).ravel()
     values = np.sort(shares[:, _TRIANGLES].reshape(-1, 3), axis=1)
-    low, high = 0.0, float(values.max())
+    low, high = np.nextafter(0, 1), float(np.nextafter(values.max(), 2))
     for _ in range(_HALVINGS):
         level = (low + high) / 2
         low, high = (level, high) if np.sum(triangles * _part_above(values, level)) >= content else (low, level)
-    return max(low, np.nextafter(0, 1))
+    # Where shares are even over elements the area has steps: the nearer one is taken.
+    beyond = [abs(np.sum(triangles * _part_above(values, level)) - content) for level in (low, high)]
+    return low if beyond[0] <= beyond[1] else high
 
 
 def above(corners: np.ndarray, shares: np.ndarray, level: float) -> np.ndarray:

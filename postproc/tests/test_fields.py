@@ -14,6 +14,7 @@ from implam_post.errors import FileError
 from implam_post.fields import area, extents, outline, read_fields
 from implam_post.front import front_figure
 from implam_post.history import ENERGIES, History
+from implam_post.plan import title_of
 from implam_post.quantities import growth_rows
 
 EDGES = np.array([0.0, 1.0, 3.0, 6.0])
@@ -103,6 +104,31 @@ class FieldsTest(unittest.TestCase):
         self.assertEqual(extents(fields.delaminated(2, 2)), (12, 2))
         self.assertEqual(fields.interface(2, 2).extents, (12, 2))
         self.assertAlmostEqual(float(np.mean(fields.delaminated(2, 2))), 0)
+
+    def test_damage_is_no_delamination(self) -> None:
+        """Shares count as such: a thousandth is none of a cell, for pictures and panels; figures are the file's.
+
+        Cells (0, 0) to (2, 0) have shares of 1, .999 and .001, and areas of 1, 2 and 3; the first time is no starter.
+        """
+        write_fields(self.path, "whole")
+        with h5py.File(self.path, "a") as file:
+            shares = file["times/00000003/cells/delaminated_above"]
+            shares[2 * CELLS.index((1, 0)) + 1], shares[2 * CELLS.index((2, 0)) + 1] = 0.999, 0.001
+            figures = file.create_group("times/00000003/interfaces")
+            for name, value in (("ply_above", 2), ("is_cohesive", 1), ("stage", 2), ("area", 2.5)):
+                figures[name] = np.array([[float(value)]])
+            figures["bounds"], figures["projected_area"] = np.array([[0, 3, 0, 1.0]]), np.array([[2.25]])
+        fields = read_fields(self.path)
+        self.assertEqual(np.count_nonzero(fields.snapshots[2].delaminated), 2)
+        self.assertAlmostEqual(area(fields.delaminated(2, 2)), 3)
+        self.assertEqual(len(fields.starter(2)), 0)
+        self.assertEqual((fields.interface(2, 2).area, fields.projected_area(2)), (2.5, 2.25))
+        self.assertEqual(title_of(fields, 2), "below ply 2: dissipated area 2.5\nfailed over 3 by 1")
+        with h5py.File(self.path, "a") as file:
+            starter = np.zeros(2 * len(CELLS), dtype=int)
+            starter[2 * CELLS.index((0, 0)) + 1] = 1
+            file["meshes/00000001/cells/starter_above"] = starter
+        self.assertAlmostEqual(area(read_fields(self.path).starter(2)), 1)
 
     def test_whole_plate_is_not_mirrored(self) -> None:
         """A run of the whole plate is shown as it is."""

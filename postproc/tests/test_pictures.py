@@ -93,7 +93,7 @@ class PicturesTest(unittest.TestCase):
         axes = projected_figure(fields, Look("SI")).axes[0]
         cells = fields.delaminated(2, 2)
         regions = [part.get_path() for part in axes.patches if isinstance(part, PathPatch)]
-        self.assertEqual([np.count_nonzero(path.codes == path.MOVETO) for path in regions], [1, 1])
+        self.assertEqual([np.count_nonzero(path.codes == path.MOVETO) for path in regions], [1, 1, 1])
         self.assertIn(f"{1e6 * area(cells):.4g} mm²", axes.get_title())
         self.assertEqual(axes.get_xlabel(), "x [mm]")
 
