@@ -11,7 +11,7 @@ module deck_cross_checks
   use delamination_parameters, only: growth_one_per_step, interface_objection, law_cohesive, law_front
   use failure_criteria, only: needed_strengths
   use impactor_deck, only: impactor_group, key_velocity, key_radius, key_gravity, key_integrator, key_mass, &
-                           key_travel, keys_of_motion
+                           key_travel, impactor_key_rise => key_rise, keys_of_motion
   use indentation_deck, only: indentation_group, key_k
   use kinds, only: wp
   use line_deck, only: line_group, key_rise
@@ -23,6 +23,7 @@ module deck_cross_checks
   use plies, only: ply_t, material_objection
   use plate_deck, only: plate_group, check_edges
   use pressure_deck, only: pressure_group, key_history
+  use stepping_parameters, only: is_explicit
   use support_deck, only: check_static_rigs
   use short_numbers, only: short_text
   use static_deck, only: static_group, key_dissipation
@@ -64,8 +65,7 @@ contains
     if (deck%has_static .and. deck%has_impactor) then
       call check_travel(deck, problems)
     else if (deck%has_impactor .and. deck%settings%is_given(impactor_group, key_travel)) then
-      call tell(deck%settings, problems, impactor_group, key_travel, 'only load steps take it; give &static, '// &
-                'or the velocity instead.')
+      call check_travel_in_time(deck, problems)
     else if (deck%has_static .and. .not. (deck%has_pressure .or. deck%has_thermal .or. loads(deck%lines) .or. &
              problems%concern(pressure_group) .or. problems%concern(line_group))) then
       call tell(deck%settings, problems, static_group, '', 'there is no load; give &pressure, or a &line with one.')
@@ -95,6 +95,23 @@ contains
     call remark_idle(deck%settings, problems, impactor_group, key_mass//' '//key_gravity//' '//key_integrator//' '// &
                      keys_of_motion(deck%settings), 'has no effect on a static analysis.')
   end subroutine check_travel
+
+  !> An impactor whose travel is prescribed in time.
+  subroutine check_travel_in_time(deck, problems)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Faults and remarks are added
+    type(problems_t), intent(inout) :: problems
+
+    if (.not. is_explicit(deck%stepping)) then
+      call tell(deck%settings, problems, impactor_group, key_travel, 'in time it goes with &time integrator = '// &
+                '''central_difference''; give that, &static for load steps, or the velocity instead.')
+    else if (deck%impactor%rise > deck%stepping%time%end .and. .not. problems%concern(time_group)) then
+      call tell(deck%settings, problems, impactor_group, impactor_key_rise, 'the rise lasts longer than the run.')
+    end if
+    call remark_idle(deck%settings, problems, impactor_group, key_mass//' '//key_gravity//' '//key_integrator//' '// &
+                     keys_of_motion(deck%settings), 'has no effect where the travel is given.')
+  end subroutine check_travel_in_time
 
   !> True if a line moves the plate or presses on it.
   pure logical function loads(lines)

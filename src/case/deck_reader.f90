@@ -26,7 +26,7 @@ module deck_reader
   use equilibrium_deck, only: fill_equilibrium
   use errors, only: error_t
   use files, only: read_whole_file
-  use impactor_deck, only: fill_impactor, impactor_group
+  use impactor_deck, only: fill_impactor, impactor_group, impactor_key_rise => key_rise
   use indentation_deck, only: fill_indentation, check_indentation, indentation_group
   use kinds, only: wp
   use laminate_deck, only: fill_laminate
@@ -50,6 +50,9 @@ module deck_reader
   implicit none
   private
   public :: deck_t, problems_t, read_deck, read_deck_text
+
+  !> Part of a run in time over which a travel sets in: at its end the velocity is 8/7 of the mean.
+  real(wp), parameter :: usual_rise = 0.25_wp
 
 contains
 
@@ -210,6 +213,8 @@ contains
     if (deck%has_time) call fill_time(deck%settings, natural_rho_infinity(deck), follows_error(deck%stepping%adapt), &
                                       deck%stepping%time, deck%stepping%central)
     if (is_explicit(deck%stepping)) deck%mesh%mass = mass_lumped
+    if (deck%impactor%travel > 0 .and. deck%has_time .and. .not. deck%settings%is_given(impactor_group, impactor_key_rise)) &
+      deck%impactor%rise = usual_rise*deck%stepping%time%end
     call fill_pressure(deck%settings, deck%stepping%time%end, deck%pressure)
     if (deck%has_thermal) call fill_thermal(deck%settings, deck%temperature_change)
     if (deck%has_time) deck%ramp_time = deck%stepping%time%end

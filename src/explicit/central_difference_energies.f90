@@ -45,13 +45,14 @@ contains
       ledger%friction = sums(5)
       ledger%contact = sums(6)
       ledger%algorithmic = sums(7)
-      ledger%external_work = method%initial_work + sums(8)
+      ledger%external_work = method%initial_work + method%travel_work + sums(8)
       if (allocated(now%plies%bands)) then
         call now%plies%total_dissipation(model)
         ledger%ply_damage = sum(now%plies%dissipated)
       end if
       if (.not. model%scene%has_impactor) return
       ledger%indentation = now%indentation%work
+      if (model%scene%impactor%travel > 0) return
       associate (parameters => model%scene%impactor, v => method%impactor_velocity)
         ledger%impactor = parameters%mass*(v*(v + method%steps%now*(parameters%gravity - now%force/parameters%mass))/2 &
                                            - parameters%gravity*now%impactor%displacement)

@@ -15,6 +15,7 @@ module central_differences
   use models, only: model_t
   use nodal_inertia, only: nodal_inertia_t, create_nodal_inertia
   use rig_steps, only: rig_steps_t, create_rig_steps
+  use smooth_starts, only: smooth_ramp
   use stable_steps, only: highest_element_frequency, highest_frequency
   use stack_motions, only: accelerate, move_stacks, new_workspaces
   use stack_solutions, only: stack_t
@@ -62,6 +63,8 @@ module central_differences
     real(wp) :: strain = 0
     !> Work of loads before the run began
     real(wp) :: initial_work = 0
+    !> Work of an impactor whose travel is prescribed
+    real(wp) :: travel_work = 0
     !> Room for the motion of the layers, and for stacks
     real(wp), allocatable, private :: motion(:, :)
     type(stack_t), allocatable, private :: workspaces(:)
@@ -139,7 +142,8 @@ contains
       end do
       call model%communicator%sum(inverse)
       compliance = sum(self%patch%weights**2*inverse)/model%mesh%multiplicity
-      square = square + self%contact_stiffness*(compliance + 1/model%scene%impactor%mass)
+      if (.not. model%scene%impactor%travel > 0) compliance = compliance + 1/model%scene%impactor%mass
+      square = square + self%contact_stiffness*compliance
     end if
     step = self%parameters%step_factor*2/sqrt(square)
     if (self%parameters%longest > 0) step = min(step, self%parameters%longest)
@@ -234,22 +238,35 @@ contains
     type(model_t), intent(in) :: model
     !> The state
     type(state_t), intent(inout) :: now
-    real(wp) :: acceleration, alpha, w(size(self%patch%local))
+    real(wp) :: acceleration, alpha, before, change, w(size(self%patch%local))
 
     now%deflection = model%deflection(now%motion%displacement)
     w = self%patch%deflections(model, now%motion%displacement)
     now%patch_mean = self%patch%mean(w)
     if (.not. model%scene%has_impactor) return
     associate (impactor => now%impactor, parameters => model%scene%impactor)
-      acceleration = parameters%gravity - now%force/parameters%mass
-      self%impactor_velocity = self%impactor_velocity + self%steps%mean()*acceleration
-      impactor%displacement = impactor%displacement + self%steps%now*self%impactor_velocity
+      before = now%force
+      if (parameters%travel > 0) then
+        change = parameters%travel*smooth_ramp(now%time/model%scene%ramp_time, parameters%rise/model%scene%ramp_time, 0) &
+                 - impactor%displacement
+        self%impactor_velocity = change/self%steps%now
+      else
+        acceleration = parameters%gravity - now%force/parameters%mass
+        self%impactor_velocity = self%impactor_velocity + self%steps%mean()*acceleration
+        change = self%steps%now*self%impactor_velocity
+      end if
+      impactor%displacement = impactor%displacement + change
       alpha = impactor%displacement - now%patch_mean
       now%force = indentation_force(model%scene%indentation, now%indentation, alpha)
       call commit_indentation(model%scene%indentation, now%indentation, alpha)
       impactor%force = now%force
       call self%patch%spread(w, alpha)
-      impactor%velocity = self%impactor_velocity + self%steps%now/2*(parameters%gravity - now%force/parameters%mass)
+      impactor%velocity = self%impactor_velocity
+      if (parameters%travel > 0) then
+        self%travel_work = self%travel_work + (before + now%force)/2*change
+      else
+        impactor%velocity = impactor%velocity + self%steps%now/2*(parameters%gravity - now%force/parameters%mass)
+      end if
     end associate
   end subroutine move_impactor
 
@@ -358,6 +375,7 @@ contains
     call archive%item('explicit/impactor_velocity', self%impactor_velocity)
     call archive%item('explicit/contact_stiffness', self%contact_stiffness)
     call archive%item('explicit/initial_work', self%initial_work)
+    call archive%item('explicit/travel_work', self%travel_work)
     associate (owned => model%distribution%points(:model%distribution%owned), points => model%mesh%points())
       call archive%field('explicit/forces', owned, points, self%force)
       call self%rigs%visit(archive, owned, points)

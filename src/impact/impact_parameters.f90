@@ -19,8 +19,10 @@ module impact_parameters
     real(wp) :: mass = 0
     !> Velocity at first touch, positive towards the plate
     real(wp) :: velocity = 0
-    !> Travel from first touch in a static analysis
+    !> Travel from first touch, in load steps or, prescribed in time, by central differences; 0: it moves freely
     real(wp) :: travel = 0
+    !> Time in which the velocity of a travel in time rises
+    real(wp) :: rise = 0
     !> Radius of the nose, for Sun's formula for k and the area of contact
     real(wp) :: radius = 0
     !> Acceleration of gravity along the impact direction; 0: none

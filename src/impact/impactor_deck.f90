@@ -16,7 +16,7 @@ module impactor_deck
   character(len=*), parameter, public :: impactor_group = 'impactor', key_velocity = 'velocity', &
                                          key_radius = 'radius', key_gravity = 'gravity', key_at = 'at', &
                                          key_mass = 'mass', key_integrator = 'integrator', &
-                                         key_travel = 'travel', key_contact_area = 'contact_area'
+                                         key_travel = 'travel', key_rise = 'rise', key_contact_area = 'contact_area'
   !> Name used here more than once.
   character(len=*), parameter :: key_energy = 'energy'
   !> Row of the group.
@@ -33,7 +33,9 @@ module impactor_deck
     'impactor | energy | real | 1 | energy | none | >= 0 | &
       &Kinetic energy of the whole impactor at first touch, instead of velocity.', &
     'impactor | travel | real | 1 | length | none | > 0 | &
-      &Travel from first touch on at the end of a static analysis, which moves the impactor slowly.', &
+      &Travel from first touch at the end of load steps, or prescribed in time with central differences.', &
+    'impactor | rise | real | 1 | time | = end/4 | >= 0 | &
+      &Time in which the velocity of a travel in time rises smoothly to its constant value.', &
     'impactor | radius | real | 1 | length | none | > 0 | &
       &Radius of the nose; needed if the contact stiffness k isn''t given.', &
     'impactor | contact_area | choice | 1 | - | ''patch'' | patch sphere | &
@@ -57,6 +59,7 @@ contains
     call require_mass(settings, problems)
     call settle_energy(settings, problems)
     impactor%travel = settings%real_of(impactor_group, key_travel)
+    impactor%rise = settings%real_of(impactor_group, key_rise)
     impactor%mass = settings%real_of(impactor_group, key_mass)
     impactor%velocity = settings%real_of(impactor_group, key_velocity)
     impactor%radius = settings%real_of(impactor_group, key_radius)
