@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from implam_post.deck import Deck
 from implam_post.errors import ImplamError
@@ -55,6 +56,14 @@ def look_of(options: argparse.Namespace, results: Iterable[Path]) -> Look:
     system = options.units or next((name for path in results if (name := system_of_deck(deck_in(path)))), "")
     return Look(system, dots, options.font_size, getattr(options, "format", "png"),
                 getattr(options, "projected", "depth"))
+
+
+def settle(figure: Figure) -> None:
+    """Lay a figure out before it is drawn: ticks follow from the sizes of axes, and these from the widths of ticks.
+
+    Drawn at once, titles and labels are cut off where axes keep equal scales.
+    """
+    figure.draw_without_rendering()
 
 
 def deck_in(path: Path) -> Deck | None:

@@ -14,7 +14,7 @@ from implam_post.errors import EXIT_DONE, CommandParser, FileError, ImplamError,
 from implam_post.fields import Fields, read_fields
 from implam_post.front import front_figure
 from implam_post.history import ENERGY_NAMES, UNACCOUNTED, History, read_history
-from implam_post.look import FORMATS, STYLES, Look, add_options, look_of
+from implam_post.look import FORMATS, STYLES, Look, add_options, look_of, settle
 from implam_post.plan import (
     delamination_figure,
     draw_cracks,
@@ -169,6 +169,7 @@ def _save(figure: Figure, path: Path, look: Look = _PLAIN) -> Path:
     """Write the figure, making the folder if it isn't there, and return the path."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
+        settle(figure)
         figure.savefig(path, dpi=look.dots_per_inch)
     except (OSError, ValueError) as error:
         raise FileError(f"{path} cannot be written ({error}).") from None

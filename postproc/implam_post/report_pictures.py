@@ -16,7 +16,7 @@ from implam_post.deck import Deck
 from implam_post.errors import ImplamError
 from implam_post.fields import Fields
 from implam_post.history import ENERGY_NAMES, UNACCOUNTED, History
-from implam_post.look import Look
+from implam_post.look import Look, settle
 from implam_post.plan import delamination_figure, failures_figure, projected_figure
 from implam_post.plan_frame import draw_plate
 from implam_post.quantities import growth_rows
@@ -27,6 +27,7 @@ _SPACE = 0.12  # free part of the picture beside the plies
 def as_image(figure: Figure) -> str:
     """Return a figure as a PNG in base64."""
     stream = io.BytesIO()
+    settle(figure)
     figure.savefig(stream, format="png", dpi=100)
     return base64.b64encode(stream.getvalue()).decode("ascii")
 
@@ -87,8 +88,7 @@ def plan_figure(summary: Mapping[str, Any], look: Look) -> Figure:
         length = look.axis(name, "length", [along / 2])
         side.set_label_text(length.label)
         side.set_major_formatter(FuncFormatter(lambda value, _, factor=length.factor: f"{factor * value:.4g}"))
-    axes.legend(fontsize="small", title="extents of what failed" if interfaces else None, loc="center left",
-                bbox_to_anchor=(1, 0.5))
+    figure.legend(fontsize="small", title="extents of what failed" if interfaces else None, loc="outside right center")
     return figure
 
 
@@ -134,7 +134,8 @@ def _curves(history: History, columns: Mapping[str, str], label: str, dimension:
     along = look.axis("time", "time", history.time)
     up = look.axis(label, dimension, np.concatenate([[0.0], *(history[column] for column in columns)]))
     for column, name in columns.items():
-        axes.plot(along.factor * history.time, up.factor * history[column], label=name)
+        axes.plot(along.factor * history.time, up.factor * history[column], label=name,
+                  color="black" if name == UNACCOUNTED else None)
     axes.set(xlabel=along.label, ylabel=up.label)
     axes.grid(alpha=0.3)
     if columns:
