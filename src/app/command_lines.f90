@@ -1,6 +1,6 @@
 !> The command line of the program.
 module command_lines
-  use errors, only: error_t, fail, exit_usage
+  use errors, only: error_t, fail, exit_files, exit_usage
   use folder_listings, only: file_by_age
   use kinds, only: wp
   use text, only: line_t, append, nearest_name, words_of
@@ -285,12 +285,12 @@ contains
   subroutine require_target(command, error)
     !> What is asked
     type(command_t), intent(inout) :: command
-    !> Set (usage) if nothing is named
+    !> Set (usage) if nothing is named, (files) if a deck is to be restarted
     type(error_t), allocatable, intent(inout) :: error
 
     if (command%verb == verb_restart .and. index(command%target, '.nml', back=.true.) > 0 .and. &
         index(command%target, '.nml', back=.true.) == len(command%target) - 3) &
-      call fail(error, exit_usage, 'restart takes a checkpoint or its folder and not the deck '//command%target// &
+      call fail(error, exit_files, 'restart takes a checkpoint or its folder and not the deck '//command%target// &
                 ', as the checkpoint holds the deck: implam restart FOLDER/NAME_restart.h5, or implam restart FOLDER.')
     if (command%target /= '') return
     select case (command%verb)

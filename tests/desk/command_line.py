@@ -62,9 +62,10 @@ def check_slips(implam, folder):
     for words, meant in ((["chek", deck], "did you mean check?"), (["exlpain"], "did you mean explain?"),
                          (["--ouput", "x", deck], "did you mean --output?"), (["explain", "lnegth"], "mean length?"),
                          (["--verify=1", deck], "takes no value"), (["--wall-limit=", deck], "number of seconds"),
-                         (["--no-such=5", deck], "see implam help"), (["restart", deck], "not the deck"),
+                         (["--no-such=5", deck], "see implam help"),
                          (["nothing", "else"], "one deck")):
         require(meant in answer(implam, *map(str, words), cwd=folder, code=EXIT_USAGE), f"{words} isn't {meant}")
+    require("not the deck" in answer(implam, "restart", str(deck), code=EXIT_FILES), "A deck is restarted.")
     text = deck.read_text(encoding="utf-8")
     for right, slip, meant in (("&plate", "&palte", "&plate"), ("velocity=", "veloctiy=", "velocity"),
                                ("law=", "lwa=", "law")):
