@@ -1,4 +1,5 @@
-!> Watches over a run whether its time integrators create energy.
+!> Watches over a run whether its ledger accounts for the energy, by one rule for all of it: what integrators or load
+!> steps create or take, and what no entry accounts for, is to stay below 1 % of the energy.
 module energy_watches
   use kinds, only: wp
   use archives, only: archive_t
@@ -7,30 +8,30 @@ module energy_watches
   private
   public :: energy_watch_t
 
-  !> Part of the energy that must not have been created.
-  real(wp), parameter :: much = 0.01_wp
+  !> Part of the energy that must not have been created, taken or lost sight of.
+  real(wp), parameter, public :: much = 0.01_wp
+  !> What may be wrong: energy created, energy taken, energy that no entry accounts for.
+  integer, parameter, public :: energy_created = 1, energy_taken = 2, energy_unaccounted = 3
 
   !> What was seen so far.
   type :: energy_watch_t
     private
-    !> Largest energy of the plate and at the start, so far
+    !> Largest energy of the plate, at the start and put in, so far
     real(wp) :: largest = 0
-    !> Too much had been created after the step before
-    logical :: doubtful = .false.
-    !> The user has been told
-    logical :: told = .false.
+    !> What was too much after the step before
+    logical :: doubtful(3) = .false.
   contains
-    procedure :: alarms
+    procedure :: look
     !> Saves or loads what was seen.
     procedure :: visit
   end type energy_watch_t
 
 contains
 
-  !> True, once, if more than 1 % of the energy has been created, by the integrators or by the indentation, whose work
-  !> can't be negative. What an integrator creates in the first step of a load that is there at once it takes out in the
-  !> next: two steps in a row must say so.
-  logical function alarms(self, ledger, deficit, amplitude)
+  !> What is more than 1 % of the energy: created by the integrators or by the indentation, whose work can't be
+  !> negative; taken; not accounted for. What an integrator creates in the first step of a load that is there at once it
+  !> takes out in the next: of steps in time two in a row must say so.
+  function look(self, ledger, deficit, amplitude, static) result(alarms)
     !> The watch
     class(energy_watch_t), intent(inout) :: self
     !> The ledger after an accepted step
@@ -39,15 +40,21 @@ contains
     real(wp), intent(in) :: deficit
     !> Load over its full value: the energies to come are larger by its square, which small ones are judged by
     real(wp), intent(in) :: amplitude
-    logical :: before
+    !> True: load steps
+    logical, intent(in) :: static
+    !> Which of them are
+    logical :: alarms(3)
+    logical :: before(3)
+    real(wp) :: most
 
-    before = self%doubtful
-    self%largest = max(self%largest, ledger%initial, ledger%kinetic + ledger%strain)
-    self%doubtful = (-ledger%algorithmic - deficit)*amplitude**2 > much*self%largest .or. &
-                    -ledger%indentation > much*self%largest
-    alarms = self%doubtful .and. before .and. .not. self%told
-    self%told = self%told .or. alarms
-  end function alarms
+    before = self%doubtful .or. static
+    self%largest = max(self%largest, ledger%initial, ledger%kinetic + ledger%strain, ledger%external_work)
+    most = much*self%largest
+    self%doubtful(energy_created) = (-ledger%algorithmic - deficit)*amplitude**2 > most .or. -ledger%indentation > most
+    self%doubtful(energy_taken) = ledger%algorithmic*amplitude**2 > most
+    self%doubtful(energy_unaccounted) = abs(ledger%error())*amplitude**2 > most
+    alarms = self%doubtful .and. before
+  end function look
 
   !> Saves or loads what was seen.
   subroutine visit(self, archive)
@@ -57,7 +64,8 @@ contains
     class(archive_t), intent(inout) :: archive
 
     call archive%item('energy_watch/largest', self%largest)
-    call archive%item('energy_watch/doubtful', self%doubtful)
-    call archive%item('energy_watch/told', self%told)
+    call archive%item('energy_watch/created', self%doubtful(energy_created))
+    call archive%item('energy_watch/taken', self%doubtful(energy_taken))
+    call archive%item('energy_watch/unaccounted', self%doubtful(energy_unaccounted))
   end subroutine visit
 end module energy_watches

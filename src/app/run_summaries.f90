@@ -19,10 +19,11 @@ module run_summaries
   private
   public :: summarise
 
-  !> Why errors are not known.
-  character(len=*), parameter :: unasked = 'a coarser run, about an eighth of the work, tells them with &case '// &
-                                           'error_estimate=.true.', &
-                                 cut = 'the coarser run that tells them has not come to its end'
+  !> Why errors are not known, or not as was asked.
+  character(len=*), parameter :: &
+    unasked = 'not known; a coarser run, about an eighth of the work, tells them with &case error_estimate=.true.', &
+    cut = 'not known; the coarser run that tells them has not come to its end', &
+    pilots = 'those of the pilot; the coarser run that tells better ones has not come to its end'
 
 contains
 
@@ -63,9 +64,11 @@ contains
     if (companion%done) errors = errors_by_companion(deck, record, stepper%now%impactor%velocity, &
                                                      sum(figures%interfaces%area), companion)
     untold = ''
-    if (ended .and. errors%source == 'none') then
+    if (wanted .and. .not. companion%done) then
+      untold = cut
+      if (errors%source == 'pilot') untold = pilots
+    else if (ended .and. errors%source == 'none') then
       untold = unasked
-      if (wanted) untold = cut
     end if
     lines = lines_of_summary(deck, stepper%now, record, figures, errors, untold)
     do i = 1, size(lines)

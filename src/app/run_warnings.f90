@@ -3,14 +3,15 @@
 module run_warnings
   use deck_contents, only: deck_t
   use delamination_parameters, only: delamination_t
-  use energy_watches, only: energy_watch_t
+  use energy_watches, only: energy_watch_t, energy_created, energy_taken, energy_unaccounted, much
   use kinds, only: wp
   use layer_extents, only: cells_ahead, cells_at_once, thicknesses_ahead
   use mesh_parameters, only: edge_clamped
   use models, only: model_t
   use ply_damage_parameters, only: failure_modes, fibre_failure
   use run_records, only: run_record_t, warning_border, warning_core, warning_energy, warning_hole, &
-                         warning_indentation, warning_loss, warning_slopes, warning_steps, warning_torn
+                         warning_indentation, warning_ledger, warning_loss, warning_slopes, warning_steps, &
+                         warning_torn
   use short_numbers, only: short_text
   use states, only: state_t
   use text, only: line_t, append, rounded_text, to_text
@@ -18,8 +19,6 @@ module run_warnings
   private
   public :: find_warnings, warnings_given
 
-  !> Share of the impact's energy that integrators may take out.
-  real(wp), parameter :: most_taken = 0.1_wp
   !> Rotation up to which its cosine counts as 1, as von Karman's strains take it: 2 % are lost there.
   real(wp), parameter :: steepest = 0.2_wp
   !> Deflection over thickness beyond which membrane forces carry a clamped plate.
@@ -46,6 +45,7 @@ contains
     type(line_t), allocatable, intent(out) :: told(:)
     real(wp) :: amplitude, thickness
     integer :: zone
+    logical :: alarms(3)
 
     allocate (told(0))
     thickness = deck%outlook%scales%thickness
@@ -65,11 +65,16 @@ contains
     if (.not. record%has_warned(warning_hole, 0) .and. deck%has_ply_damage .and. now%force > 0) then
       if (has_hole(model, now)) call tell(warning_hole, 0)
     end if
-    if (deck%has_static) return
     amplitude = 1
-    if (.not. deck%has_impactor) amplitude = deck%pressure%amplitude(now%time)
-    if (watch%alarms(now%ledger, now%interfaces%unreleased(model), amplitude)) call tell(warning_energy, 0)
-    if (now%ledger%algorithmic > most_taken*now%ledger%initial .and. now%ledger%initial > 0) call tell(warning_loss, 0)
+    if (deck%has_static) then
+      amplitude = now%time
+    else if (deck%has_pressure .and. .not. deck%has_impactor) then
+      amplitude = deck%pressure%amplitude(now%time)
+    end if
+    alarms = watch%look(now%ledger, now%interfaces%unreleased(model), amplitude, deck%has_static)
+    if (alarms(energy_created)) call tell(warning_energy, 0)
+    if (alarms(energy_taken)) call tell(warning_loss, 0)
+    if (alarms(energy_unaccounted)) call tell(warning_ledger, 0)
 
   contains
 
@@ -80,7 +85,7 @@ contains
 
       if (record%has_warned(kind, zone)) return
       call record%note_warning(kind, zone, now%time)
-      call append(told, warning_text(kind, zone, now%time, deck%delaminations))
+      call append(told, warning_text(kind, zone, now%time, deck%delaminations, deck%has_static))
     end subroutine tell
   end subroutine find_warnings
 
@@ -137,7 +142,7 @@ contains
   end function is_torn
 
   !> What a warning says.
-  pure function warning_text(kind, zone, time, delaminations) result(text)
+  pure function warning_text(kind, zone, time, delaminations, static) result(text)
     !> One of the kinds of warnings
     integer, intent(in) :: kind
     !> Zone that it concerns; 0: none
@@ -146,6 +151,8 @@ contains
     real(wp), intent(in) :: time
     !> The interfaces
     type(delamination_t), intent(in) :: delaminations(:)
+    !> True: of load steps
+    logical, intent(in) :: static
     !> One sentence
     character(len=:), allocatable :: text
 
@@ -160,12 +167,13 @@ contains
              ' follow their damage beyond the core of the mesh since time '//rounded_text(time)// &
              ', where its cells grow: make the core larger.'
     case (warning_energy)
-      text = 'The time integrators have created more than 1 % of the energy by time '//rounded_text(time)// &
-             ': take smaller steps, &impactor integrator=''conserving'', or more damping (rho_inf) with delamination.'
+      text = energy_text('created', 'take smaller steps, &impactor integrator=''conserving'', or more damping '// &
+                         '(rho_inf) with delamination.')
     case (warning_loss)
-      text = 'The time integrators have taken more than '//short_text(100*most_taken)// &
-             ' % of the impact''s energy by time '//rounded_text(time)// &
-             ': take smaller steps, or less damping (rho_inf).'
+      text = energy_text('taken', 'take smaller steps, or less damping (rho_inf).')
+    case (warning_ledger)
+      text = 'More than '//short_text(100*much)//' % of the energy is not accounted for since '//at()// &
+             ' (energy_error): take a smaller tolerance of &solver.'
     case (warning_indentation)
       text = 'The indentation is deeper than the laminate is thick since time '//rounded_text(time)// &
              ': no contact law holds there; give a lighter blow or a blunter nose.'
@@ -184,14 +192,42 @@ contains
       text = 'The fibres of every ply are broken over an area as large as the contact since time '// &
              rounded_text(time)//': the impactor goes through, and the model has no hole; distrust what follows.'
     end select
+
+  contains
+
+    !> What was done to more than the energy allowed, and what helps.
+    pure function energy_text(what, cure) result(words)
+      !> created or taken
+      character(len=*), intent(in) :: what
+      !> What helps in a run in time
+      character(len=*), intent(in) :: cure
+      !> The sentence
+      character(len=:), allocatable :: words
+
+      if (static) then
+        words = 'Load steps have '//what//' more than '//short_text(100*much)//' % of the energy by '//at()// &
+                ' (energy_algorithmic): take more steps, unless failures or snaps set it free, as motion takes that.'
+      else
+        words = 'The time integrators have '//what//' more than '//short_text(100*much)//' % of the energy by '//at() &
+                //': '//cure
+      end if
+    end function energy_text
+
+    !> When.
+    pure function at() result(words)
+      !> Such as time 0.001
+      character(len=:), allocatable :: words
+
+      words = 'time '//rounded_text(time)
+    end function at
   end function warning_text
 
   !> All warnings given in a run, those of its part before a restart too.
-  function warnings_given(record, delaminations) result(lines)
+  function warnings_given(record, deck) result(lines)
     !> What was given
     type(run_record_t), intent(in) :: record
-    !> The interfaces
-    type(delamination_t), intent(in) :: delaminations(:)
+    !> The deck
+    type(deck_t), intent(in) :: deck
     !> One sentence each, in the order of time
     type(line_t), allocatable :: lines(:)
     integer :: i
@@ -199,7 +235,7 @@ contains
     allocate (lines(0))
     do i = 1, size(record%warning_kinds)
       call append(lines, warning_text(record%warning_kinds(i), record%warning_zones(i), record%warning_times(i), &
-                                      delaminations))
+                                      deck%delaminations, deck%has_static))
     end do
   end function warnings_given
 end module run_warnings

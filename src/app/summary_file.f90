@@ -5,6 +5,7 @@ module summary_file
   use errors, only: error_t, exit_files, fail
   use files, only: rename_file
   use json_text, only: json_t
+  use impactors, only: impactor_energy, new_impactor
   use kinds, only: wp
   use output_streams, only: output_stream_t
   use profiles, only: profile_row_t
@@ -61,7 +62,7 @@ contains
     call json%put('largest_deflection', record%deflection)
     call json%put('largest_deflection_at', record%deflection_time)
     call put_errors(json, errors)
-    call put_energies(json, stepper%now, deck%has_impactor .and. .not. deck%has_static)
+    call put_energies(json, deck, stepper%now)
     if (size(figures%interfaces) > 0) call put_interfaces(json, deck, stepper%now, record, figures)
     if (deck%has_ply_damage) call put_failures(json, figures)
     call put_plies(json, deck, figures)
@@ -131,15 +132,15 @@ contains
   end subroutine put_errors
 
   !> The ledger at the end.
-  subroutine put_energies(json, now, impact)
+  subroutine put_energies(json, deck, now)
     !> The summary
     type(json_t), intent(inout) :: json
+    !> The deck
+    type(deck_t), intent(in) :: deck
     !> The state reached
     type(state_t), intent(in) :: now
-    !> True: an impactor brought it
-    logical, intent(in) :: impact
 
-    if (impact) call put_impact_energies(json, now)
+    if (deck%has_impactor .and. .not. deck%has_static) call put_impact_energies(json, deck, now)
     associate (ledger => now%ledger)
       call json%put('work_external', ledger%external_work)
       call json%put('energy_kinetic', ledger%kinetic)
@@ -156,17 +157,21 @@ contains
   end subroutine put_energies
 
   !> What the impactor brought, has and has lost; that is known once it has left the plate.
-  subroutine put_impact_energies(json, now)
+  subroutine put_impact_energies(json, deck, now)
     !> The summary
     type(json_t), intent(inout) :: json
+    !> The deck
+    type(deck_t), intent(in) :: deck
     !> The state reached
     type(state_t), intent(in) :: now
+    real(wp) :: brought
 
-    call json%put('energy_impact', now%ledger%initial)
+    brought = impactor_energy(deck%impactor, new_impactor(deck%impactor))
+    call json%put('energy_impact', brought)
     if (now%force > 0) then
       call json%put_null('energy_absorbed')
     else
-      call json%put('energy_absorbed', now%ledger%initial - now%ledger%impactor)
+      call json%put('energy_absorbed', brought - now%ledger%impactor)
     end if
     call json%put('energy_impactor', now%ledger%impactor)
   end subroutine put_impact_energies
@@ -281,7 +286,7 @@ contains
     type(line_t), allocatable :: given(:)
     integer :: i
 
-    given = warnings_given(record, deck%delaminations)
+    given = warnings_given(record, deck)
     call json%open_list('warnings')
     do i = 1, size(deck%remarks)
       call json%open_object('')

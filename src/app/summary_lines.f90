@@ -2,6 +2,7 @@
 module summary_lines
   use deck_contents, only: deck_t
   use energy_ledgers, only: ledger_t
+  use impactors, only: impactor_energy, new_impactor
   use kinds, only: wp
   use run_errors, only: run_errors_t
   use run_figures, only: run_figures_t
@@ -42,13 +43,13 @@ contains
     if (deck%has_impactor .and. .not. deck%has_static) call tell_impact(lines, now, record, errors)
     call tell(lines, 'largest deflection', rounded_text(record%deflection)//at// &
               rounded_text(record%deflection_time)//within(errors%deflection, record%deflection))
-    if (deck%has_impactor .and. .not. deck%has_static) call tell_impact_energy(lines, now)
+    if (deck%has_impactor .and. .not. deck%has_static) call tell_impact_energy(lines, deck, now)
     call tell_energies(lines, now%ledger)
     if (size(figures%interfaces) > 0) call tell_interfaces(lines, deck, record, figures, errors, at)
     if (deck%has_ply_damage) call tell(lines, 'failed plies', 'fibres '//to_text(figures%failures(1))// &
       ', matrix cracked '//to_text(figures%failures(2))//', crushed '//to_text(figures%failures(3))// &
       ' (counted in each element)')
-    if (len(untold) > 0) call tell(lines, 'errors', 'not known; '//untold)
+    if (len(untold) > 0) call tell(lines, 'errors', untold)
     call tell_warnings(lines, deck, record)
   end function lines_of_summary
 
@@ -120,19 +121,22 @@ contains
   end function repeated
 
   !> What the impactor brought, and has lost: absorbed is what it has not got back once contact has ended.
-  subroutine tell_impact_energy(lines, now)
+  subroutine tell_impact_energy(lines, deck, now)
     !> The lines
     type(line_t), allocatable, intent(inout) :: lines(:)
+    !> The deck
+    type(deck_t), intent(in) :: deck
     !> The state reached
     type(state_t), intent(in) :: now
     character(len=:), allocatable :: clause
-    real(wp) :: lost
+    real(wp) :: brought, lost
 
-    lost = now%ledger%initial - now%ledger%impactor
+    brought = impactor_energy(deck%impactor, new_impactor(deck%impactor))
+    lost = brought - now%ledger%impactor
     clause = ', absorbed '
     if (now%force > 0) clause = ', contact lasts, transferred so far '
-    clause = rounded_text(now%ledger%initial)//clause//rounded_text(lost)
-    if (now%ledger%initial > 0) clause = clause//' ('//rounded_text(100*lost/now%ledger%initial, 3)//' %)'
+    clause = rounded_text(brought)//clause//rounded_text(lost)
+    if (brought > 0) clause = clause//' ('//rounded_text(100*lost/brought, 3)//' %)'
     call tell(lines, 'impact energy', clause)
   end subroutine tell_impact_energy
 
@@ -233,7 +237,7 @@ contains
     type(line_t), allocatable :: given(:)
     integer :: i
 
-    given = warnings_given(record, deck%delaminations)
+    given = warnings_given(record, deck)
     if (size(deck%remarks) + size(given) == 0) call tell(lines, 'warnings', 'none')
     do i = 1, size(deck%remarks)
       call tell(lines, 'warning', deck%remarks(i)%text)
