@@ -18,8 +18,8 @@ module energy_watches
     private
     !> Largest energy of the plate, at the start and put in, so far
     real(wp) :: largest = 0
-    !> What was too much after the step before
-    logical :: doubtful(3) = .false.
+    !> Too much had been created after the step before
+    logical :: doubtful = .false.
   contains
     procedure :: look
     !> Saves or loads what was seen.
@@ -30,7 +30,7 @@ contains
 
   !> What is more than 1 % of the energy: created by the integrators or by the indentation, whose work can't be
   !> negative; taken; not accounted for. What an integrator creates in the first step of a load that is there at once it
-  !> takes out in the next: of steps in time two in a row must say so.
+  !> takes out in the next: of steps in time two in a row must say that energy was created.
   function look(self, ledger, deficit, amplitude, static) result(alarms)
     !> The watch
     class(energy_watch_t), intent(inout) :: self
@@ -44,16 +44,16 @@ contains
     logical, intent(in) :: static
     !> Which of them are
     logical :: alarms(3)
-    logical :: before(3)
+    logical :: before
     real(wp) :: most
 
     before = self%doubtful .or. static
     self%largest = max(self%largest, ledger%initial, ledger%kinetic + ledger%strain, ledger%external_work)
     most = much*self%largest
-    self%doubtful(energy_created) = (-ledger%algorithmic - deficit)*amplitude**2 > most .or. -ledger%indentation > most
-    self%doubtful(energy_taken) = ledger%algorithmic*amplitude**2 > most
-    self%doubtful(energy_unaccounted) = abs(ledger%error())*amplitude**2 > most
-    alarms = self%doubtful .and. before
+    self%doubtful = (-ledger%algorithmic - deficit)*amplitude**2 > most .or. -ledger%indentation > most
+    alarms(energy_created) = self%doubtful .and. before
+    alarms(energy_taken) = ledger%algorithmic*amplitude**2 > most
+    alarms(energy_unaccounted) = abs(ledger%error())*amplitude**2 > most
   end function look
 
   !> Saves or loads what was seen.
@@ -64,8 +64,6 @@ contains
     class(archive_t), intent(inout) :: archive
 
     call archive%item('energy_watch/largest', self%largest)
-    call archive%item('energy_watch/created', self%doubtful(energy_created))
-    call archive%item('energy_watch/taken', self%doubtful(energy_taken))
-    call archive%item('energy_watch/unaccounted', self%doubtful(energy_unaccounted))
+    call archive%item('energy_watch/doubtful', self%doubtful)
   end subroutine visit
 end module energy_watches
