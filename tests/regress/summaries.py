@@ -185,6 +185,14 @@ def check_contact(implam, folder, _):
     close(summary["rebound_velocity"], 1, 1e-6, "The rebound")
     close(summary["peak_force"], 1728.713, 2e-5, "The peak force")
     print(summary["contact_duration"])
+    # A ball that is let go at the plate brings no energy; residual stress is none of its own.
+    deck = write_deck(folder / "let_go", "sun_chen_elastic.nml", [
+        "impactor%velocity=0", "impactor%gravity=9.81", "time%end=50e-6", "material%alpha1=0", "material%alpha2=28e-6",
+        "thermal%delta_T=-50"])
+    run_deck(implam, deck)
+    require(summary_of(deck.parent)["energy_impact"] == 0, "It brings energy.")
+    log, = deck.parent.glob("*.log")
+    require("nfinity" not in log.read_text(encoding="utf-8"), "A share of no energy is told.")
 
 
 def check_restart(implam, folder, _):
