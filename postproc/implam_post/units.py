@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 # Length, mass and time of the deck's units in SI.
-SYSTEMS = {"SI": (1.0, 1.0, 1.0), "mm-t-s": (1e-3, 1e3, 1.0), "mm-kg-ms": (1e-3, 1.0, 1e-3)}
+SYSTEMS = {"SI": (1.0, 1.0, 1.0), "mm-t-s": (1e-3, 1e3, 1.0), "mm-kg-ms": (1e-3, 1.0, 1e-3),
+           "mm-mN-kg-s": (1e-3, 1.0, 1.0)}
 # Powers of length, mass and time in each dimension.
 _POWERS = {"length": (1, 0, 0), "area": (2, 0, 0), "mass": (0, 1, 0), "time": (0, 0, 1), "velocity": (1, 0, -1),
            "force": (1, 1, -2), "energy": (2, 1, -2), "stress": (-1, 1, -2), "toughness": (0, 1, -2)}

@@ -12,7 +12,7 @@ import numpy as np
 from implam_post.sweep_plan import COLUMNS
 from implam_post.sweep_plots import plot_table, series
 from implam_post.sweep_table import FIGURES, Table, write_csv, write_hdf5
-from implam_post.units import axis_of, system_of
+from implam_post.units import Axis, axis_of, system_of
 
 
 def table(swept: dict[str, list], energies: list[float], derived: tuple[str, ...] = ()) -> Table:
@@ -80,5 +80,7 @@ class TableTest(unittest.TestCase):
                 self.assertAlmostEqual(axis.factor * value / shown, 1, delta=1e-12)
                 self.assertEqual(axis.label, f"x [{unit}]")
         self.assertEqual(axis_of("x", "energy", np.array([0.05]), "SI").label, "x [mJ]")
+        self.assertEqual(axis_of("x", "force", np.array([2.5e6]), "mm-mN-kg-s"), Axis(1e-6, "x [kN]"))
+        self.assertEqual(axis_of("x", "stress", np.array([5e4]), "mm-mN-kg-s").label, "x [MPa]")
         self.assertEqual(axis_of("x", "force", np.array([1.0]), "").label, "x (the deck's units)")
         self.assertEqual(axis_of("angle", "", np.array([1.0]), "SI").label, "angle")

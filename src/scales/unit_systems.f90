@@ -10,8 +10,9 @@ module unit_systems
                                 of_mass = 6, of_velocity = 7, of_toughness = 8, of_time = 9, of_strength = 10
   !> Number of kinds of quantities.
   integer, parameter, public :: quantities = 10
-  !> The systems: metre, kilogram, second; millimetre, tonne, second; millimetre, kilogram, millisecond.
-  character(len=*), parameter, public :: systems(3) = [character(len=8) :: 'SI', 'mm-t-s', 'mm-kg-ms']
+  !> The systems: metre, kilogram, second; millimetre, tonne, second; millimetre, kilogram, millisecond; millimetre,
+  !> millinewton, kilogram, second.
+  character(len=*), parameter, public :: systems(4) = [character(len=10) :: 'SI', 'mm-t-s', 'mm-kg-ms', 'mm-mN-kg-s']
 
   !> A unit that people write.
   type :: unit_t
@@ -25,20 +26,22 @@ module unit_systems
 
   !> The units, in order of their kinds. A thickness, a radius and a strength have those of lengths and pressures.
   type(unit_t), parameter :: units(*) = [ &
-    unit_t('Pa', of_pressure, 1.0_wp), unit_t('MPa', of_pressure, 1.0e6_wp), unit_t('GPa', of_pressure, 1.0e9_wp), &
+    unit_t('Pa', of_pressure, 1.0_wp), unit_t('kPa', of_pressure, 1.0e3_wp), unit_t('MPa', of_pressure, 1.0e6_wp), &
+    unit_t('GPa', of_pressure, 1.0e9_wp), &
     unit_t('kg/m^3', of_density, 1.0_wp), unit_t('g/cm^3', of_density, 1.0e3_wp), &
     unit_t('kg/mm^3', of_density, 1.0e9_wp), unit_t('t/mm^3', of_density, 1.0e12_wp), &
     unit_t('m', of_length, 1.0_wp), unit_t('mm', of_length, 1.0e-3_wp), &
     unit_t('kg', of_mass, 1.0_wp), unit_t('g', of_mass, 1.0e-3_wp), unit_t('t', of_mass, 1.0e3_wp), &
     unit_t('m/s', of_velocity, 1.0_wp), unit_t('mm/s', of_velocity, 1.0e-3_wp), &
-    unit_t('J/m^2', of_toughness, 1.0_wp), unit_t('N/mm', of_toughness, 1.0e3_wp), &
-    unit_t('kN/mm', of_toughness, 1.0e6_wp), &
+    unit_t('J/m^2', of_toughness, 1.0_wp), unit_t('mN/mm', of_toughness, 1.0_wp), &
+    unit_t('N/mm', of_toughness, 1.0e3_wp), unit_t('kN/mm', of_toughness, 1.0e6_wp), &
     unit_t('s', of_time, 1.0_wp), unit_t('ms', of_time, 1.0e-3_wp), unit_t('us', of_time, 1.0e-6_wp)]
   !> Which of them each system has for pressure, density, length, mass, velocity, toughness and time.
-  character(len=*), parameter :: unit_of(9, 3) = reshape([character(len=8) :: &
+  character(len=*), parameter :: unit_of(9, 4) = reshape([character(len=8) :: &
     'Pa', 'kg/m^3', 'm', 'm', 'm', 'kg', 'm/s', 'J/m^2', 's', &
     'MPa', 't/mm^3', 'mm', 'mm', 'mm', 't', 'mm/s', 'N/mm', 's', &
-    'GPa', 'kg/mm^3', 'mm', 'mm', 'mm', 'kg', 'm/s', 'kN/mm', 'ms'], [9, 3])
+    'GPa', 'kg/mm^3', 'mm', 'mm', 'mm', 'kg', 'm/s', 'kN/mm', 'ms', &
+    'kPa', 'kg/mm^3', 'mm', 'mm', 'mm', 'kg', 'mm/s', 'mN/mm', 's'], [9, 4])
   !> Least and largest that plates, impactors and their materials have, SI. Moduli reach from foam to diamond, densities
   !> from foam to platinum, velocities from a tool that slips to a fragment, strengths from glue to fibres.
   real(wp), parameter :: least(quantities) = &

@@ -37,7 +37,7 @@ DIMENSIONS = {"length": (0, 1, 0), "time": (0, 0, 1), "mass": (1, 0, 0), "mass/v
               "force/length^1.5": (1, -0.5, -2)}
 COLUMNS = {"force": (1, 1, -2), "deflection": (0, 1, 0), "delaminated_area": (0, 2, 0), "energy_strain": (1, 2, -2)}
 # Units of mass, length and time in a kilogram, a metre and a second.
-SYSTEMS = {"mm-t-s": (1e-3, 1e3, 1.0), "mm-kg-ms": (1.0, 1e3, 1e3)}
+SYSTEMS = {"mm-t-s": (1e-3, 1e3, 1.0), "mm-kg-ms": (1.0, 1e3, 1e3), "mm-mN-kg-s": (1.0, 1e3, 1.0)}
 
 
 def factor(dimension, system):
