@@ -139,6 +139,35 @@ class TemperatureTest(ImportTest):
         self.assertIn("single grids or elements have other temperatures", self.told)
 
 
+class InPlaneTest(ImportTest):
+    """Edges that are held one way in the plane, or otherwise than others."""
+
+    def lines(self, *edges: str, **more: object) -> list[tuple[object, ...]]:
+        """Return place, direction and component of the lines of a deck."""
+        deck = self.deck(Bulk(edges=edges, **more))
+        self.assertEqual(deck.value("plate", "in_plane"), "free")
+        return [tuple(group[key][0] for key in ("at", "direction", "component"))
+                for group in deck.groups.get("line", [])]
+
+    def test_simple_supports_held_along_themselves(self) -> None:
+        """SS1: v on edges x = constant, u on edges y = constant."""
+        self.assertEqual(self.lines("234", "234", "135", "135"),
+                         [(-0.1, "y", "v"), (0.1, "y", "v"), (-0.075, "x", "u"), (0.075, "x", "u")])
+        self.assertEqual(self.lines("3", "3", "13", ""), [(-0.075, "x", "u")])
+
+    def test_edges_that_differ(self) -> None:
+        """One edge held both ways, and one across; in a turned panel components turn with it."""
+        self.assertEqual(self.lines("1234", "34", "35", "35"), [(-0.1, "y", "u"), (-0.1, "y", "v")])
+        self.assertEqual(self.lines("134", "1234", "35", "35"), [(-0.1, "y", "u"), (0.1, "y", "u"), (0.1, "y", "v")])
+        turned = {"place": lambda x, y: (y, 0.2 - x, 0.0), "write": large}
+        self.assertEqual(self.lines("1345", "35", "34", "34", **turned), [(0.1, "x", "u")])
+
+    def test_edges_alike_need_no_lines(self) -> None:
+        """Both ways all round is in_plane='fixed', none is 'free'."""
+        self.assertNotIn("line", self.deck(Bulk()).groups)
+        self.assertNotIn("line", self.deck(Bulk(edges=("34", "34", "35", "35"))).groups)
+
+
 class DefaultsTest(ImportTest):
     """What other cards or options say instead of a blank field."""
 

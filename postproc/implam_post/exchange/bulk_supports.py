@@ -17,10 +17,14 @@ Held = dict[int, dict[int, BulkCard]]
 
 @dataclass(frozen=True)
 class Supports:
-    """Kinds of the four edges, and whether the supported ones hold the panel in its plane."""
+    """Kinds of the four edges, and whether the supported ones hold the panel in its plane.
+
+    Where some hold it otherwise than others, or one way only, `in_plane_lines` has edge and component of each hold.
+    """
 
     edges: tuple[str, ...]
     in_plane_fixed: bool
+    in_plane_lines: tuple[tuple[int, int], ...] = ()
 
 
 def read_supports(bulk: BulkData, grids: Mapping[int, tuple[BulkCard, Any]], shape: Shape, chosen: int | None,
@@ -32,14 +36,16 @@ def read_supports(bulk: BulkData, grids: Mapping[int, tuple[BulkCard, Any]], sha
               for number in range(4)]
     in_plane = [{1, 2} & components for components in common]
     kinds = tuple(_kind(bulk, components, number, remarks) for number, components in enumerate(common))
-    fixed = _in_plane(bulk, kinds, in_plane)
+    fixed, lines = _in_plane(kinds, in_plane)
     pins = _pins(bulk, held, on_edges, common, remarks)
     if pins and (fixed or len(pins) > _RIGID_MOTIONS):
         card, grid = pins[0]
         raise bulk.error(card, f"it holds grid {grid} in the panel's plane, which isn't the support of a whole edge.")
     for card, _ in pins:
         remarks.add(card, "some of it holds rigid motion in the plane; Implam does so by itself")
-    return Supports(kinds, fixed or all(kind == "free" for kind in kinds))
+    for number in sorted({edge for edge, _ in lines}):
+        remarks.edge(EDGES[number], "held in the plane by &line, as the edges aren't held alike or both ways")
+    return Supports(kinds, fixed or all(kind == "free" for kind in kinds), lines)
 
 
 def _held(bulk: BulkData, grids: Mapping[int, tuple[BulkCard, Any]], shape: Shape, chosen: int | None,
@@ -144,16 +150,12 @@ def _kind(bulk: BulkData, components: set[int], number: int, remarks: Remarks) -
     return kind
 
 
-def _in_plane(bulk: BulkData, kinds: tuple[str, ...], in_plane: list[set[int]]) -> bool:
-    """Return whether the supported edges hold the panel in its plane, which they have to do alike and both ways."""
+def _in_plane(kinds: tuple[str, ...], in_plane: list[set[int]]) -> tuple[bool, tuple[tuple[int, int], ...]]:
+    """Return whether the supported edges all hold the panel both ways in its plane, and else edge and component."""
     supported = [number for number, kind in enumerate(kinds) if kind != "free"]
-    for number in supported:
-        if len(in_plane[number]) == 1:
-            raise bulk.missing(f"the edge {EDGES[number]} is held one way in the plane of the panel, not both.")
-        if in_plane[number] != in_plane[supported[0]]:
-            raise bulk.missing(f"the edges {EDGES[supported[0]]} and {EDGES[number]} aren't held alike in the plane of "
-                               "the panel.")
-    return bool(supported) and bool(in_plane[supported[0]])
+    if supported and all(in_plane[number] == {1, 2} for number in supported):
+        return True, ()
+    return False, tuple((number, component) for number in supported for component in sorted(in_plane[number]))
 
 
 def _pins(bulk: BulkData, held: Held, on_edges: Mapping[int, list[int]], common: list[set[int]], remarks: Remarks

@@ -56,8 +56,18 @@ def _plate(name: str, shape: Shape, supports: Supports, impact: Impact) -> Itera
     yield (f"&plate     length={', '.join(map(number, shape.lengths))}  edges={', '.join(map(repr, edges))}  "
            f"in_plane='{'fixed' if supports.in_plane_fixed else 'free'}' /")
     patch = f"  patch={number(impact.radius / 2)}" if impact.radius is not None else ""
+    yield from _lines(shape, supports)
     elements = shape.elements if not patch else [max(count, _BESIDE_PATCH) for count in shape.elements]
     yield f"&mesh      elements={elements[0]}, {elements[1]}{patch} /"
+
+
+def _lines(shape: Shape, supports: Supports) -> Iterator[str]:
+    """Return the lines that hold edges in the plane, one way each."""
+    for edge, component in supports.in_plane_lines:
+        axis, far = divmod(edge, 2)
+        at = number((1 if far else -1) * shape.lengths[axis] / 2)
+        yield (f"&line      at={at}  direction='{'yx'[axis]}'  component='{' uv'[component]}'  displacement=0  "
+               "history='fixed' /")
 
 
 def _laminate(plies: Sequence[Ply]) -> Iterator[str]:
