@@ -21,7 +21,7 @@ The file of a sweep:
 
     deck = "peanut.nml"                       # the deck all cases start from, beside this file
     output = "results"                        # folder of the cases and the table; default: the name of this file
-    units = "SI"                              # of the plots: SI, mm-t-s, mm-kg-ms, mm-mN-kg-s; default: told by the deck
+    units = "SI"                              # of the plots: SI, mm-t-s, mm-kg-ms, mm-mN-kg-s; default: the deck's
 
     [grid]                                    # every combination, the last key changes fastest
     "laminate.angles" = [[0, 90, 0], "3*0"]   # a list in the list, or text as it stands in a deck

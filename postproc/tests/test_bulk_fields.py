@@ -82,6 +82,15 @@ class MassTest(ImportTest):
                                1580 * 2.59e-3, delta=1e-9)
         self.assertEqual(self.density(Bulk().text()), 1580)
 
+    def test_nonstructural_mass(self) -> None:
+        """NSM times WTMASS is mass per area; densities times thicknesses add up to it."""
+        laminate = [(*LAMINATE[0][:3], 0.5, *LAMINATE[0][4:])]
+        own = 4 * 0.125e-3 * 1580 + 2 * 0.25e-3 * 2700
+        for factor, more in ((1.0, []), (2.59e-3, [("PARAM", "WTMASS", 2.59e-3)])):
+            plies = self.deck(Bulk(laminate=laminate, more=more)).plies()
+            self.assertAlmostEqual(sum(ply.material.density * ply.thickness for ply in plies) / factor, own + 0.5, 9)
+        self.refused(Bulk(laminate=[(*LAMINATE[0][:3], -0.5, *LAMINATE[0][4:])]), "NSM must not be below zero")
+
     def test_factors_that_are_none(self) -> None:
         """Not a number, not above zero, or two of them."""
         for more in ([("PARAM", "WTMASS", 0.0)], [("PARAM", "WTMASS", "YES")], [("PARAM", "WTMASS")],

@@ -1,6 +1,7 @@
 """Materials and lay-up out of bulk data: MAT1, MAT8, PCOMP and PCOMPG."""
 
 from collections.abc import Iterable
+from dataclasses import replace
 from itertools import zip_longest
 from typing import Any
 
@@ -12,8 +13,8 @@ _MAT8_STRENGTHS = {12: "XT", 13: "XC", 14: "YT", 15: "YC", 16: "S12"}
 _UNTAKEN = {
     "MAT1": {8: "GE", 9: "ST", 10: "SC", 11: "SS", 12: "MCSID"},
     "MAT8": {17: "GE", 18: "F12"},
-    "PCOMP": {3: "NSM", 4: "SB", 5: "FT", 7: "GE"},
-    "PCOMPG": {3: "NSM", 4: "SB", 5: "FT", 7: "GE"},
+    "PCOMP": {4: "SB", 5: "FT", 7: "GE"},
+    "PCOMPG": {4: "SB", 5: "FT", 7: "GE"},
 }
 _NEAR = 0.01
 
@@ -68,9 +69,22 @@ def _plies(bulk: BulkData, card: BulkCard, remarks: Remarks, shear_23: float | N
         raise bulk.error(card, "every ply needs a thickness greater than zero.")
     remarks.untaken(card, _UNTAKEN[card.name])
     thickness = sum(ply.thickness for ply in plies)
+    plies = _with_nonstructural_mass(bulk, card, plies, thickness, remarks)
     if card.fields.field(2) and abs(laminate.z0 + thickness / 2) > 1e-6 * thickness:
         remarks.add(card, "Z0 isn't taken: the panel lies about its grids with its middle, where it is supported")
     return plies
+
+
+def _with_nonstructural_mass(bulk: BulkData, card: BulkCard, plies: list[Ply], thickness: float, remarks: Remarks
+                             ) -> list[Ply]:
+    """Return plies whose densities have NSM, the mass per area of what doesn't bear, spread over the thickness."""
+    extra = (bulk.real(card, 3) or 0.0) * bulk.mass_factor / thickness
+    if extra == 0:
+        return plies
+    if extra < 0:
+        raise bulk.error(card, "NSM must not be below zero.")
+    remarks.add(card, f"NSM is spread over the plies: {extra:.5g} is added to their densities")
+    return [replace(ply, material=replace(ply.material, density=ply.material.density + extra)) for ply in plies]
 
 
 def _materials(bulk: BulkData, numbers: Iterable[int], user: BulkCard, remarks: Remarks, shear_23: float | None
