@@ -23,7 +23,7 @@ module rank_groups
     !> Whether this is rank 0, which writes.
     procedure :: is_root
     !> Replaces a value by its sum over the ranks, the same on every rank.
-    generic :: sum => sum_real, sum_reals, sum_table, sum_integer, sum_long
+    generic :: sum => sum_real, sum_reals, sum_table, sum_integer, sum_long, sum_longs
     !> Replaces a list by its sum over the ranks, on one of them.
     procedure :: sum_at
     !> Replaces a value by its greatest over the ranks.
@@ -38,7 +38,7 @@ module rank_groups
     procedure :: preceding
     !> Waits for all ranks.
     procedure :: barrier
-    procedure, private :: sum_real, sum_reals, sum_table, sum_integer, sum_long
+    procedure, private :: sum_real, sum_reals, sum_table, sum_integer, sum_long, sum_longs
     procedure, private :: maximum_real, maximum_reals, maximum_integer, minimum_real, minimum_integer
   end type rank_group_t
 
@@ -124,6 +124,16 @@ contains
     if (self%size == 1) return
     call MPI_Allreduce(MPI_IN_PLACE, value, 1, MPI_INTEGER8, MPI_SUM, self%group)
   end subroutine sum_long
+
+  !> Sum of a list of long integers over the ranks, item by item.
+  subroutine sum_longs(self, values)
+    class(rank_group_t), intent(in) :: self
+    !> This rank's shares; the sums on return
+    integer(long), contiguous, intent(inout) :: values(:)
+
+    if (self%size == 1) return
+    call MPI_Allreduce(MPI_IN_PLACE, values, size(values), MPI_INTEGER8, MPI_SUM, self%group)
+  end subroutine sum_longs
 
   !> Greatest real of the ranks.
   subroutine maximum_real(self, value)
