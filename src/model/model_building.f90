@@ -3,12 +3,9 @@ module model_building
   use kinds, only: wp
   use errors, only: error_t
   use communicators, only: communicator_t
-  use contact_areas, only: new_contact_area
   use element_batches, only: lanes, lane_of, batch_of
   use free_strains, only: free_resultants
   use plate_options, only: kinematics_linear, mass_lumped
-  use inertia_forces, only: add_lumped_mass
-  use load_vectors, only: add_pressure, gauss_coordinates, add_patch_weights
   use ply_shear, only: shear_shares_of
   use stacking, only: section_t, stacked_plies, section_of
   use mesh_parameters, only: edge_free, symmetry_quarter
@@ -23,8 +20,8 @@ module model_building
   use supports, only: held_unknowns
   use rig_models, only: new_rig_model, hold_by_rigs
   use line_loads, only: along_y
-  use pressure_loads, only: distribution_sine
   use placed_lines, only: place_line
+  use model_loads, only: build_borders, build_loads, nodal_areas
   use models, only: model_t
   use scenes, only: scene_t
   use symmetry_images, only: find_images
@@ -76,6 +73,7 @@ contains
     call self%halo%define(communicator, self%distribution%owned, 1 + self%distribution%number( &
                           self%distribution%points(self%distribution%owned + 1:)), error)
     if (allocated(error)) return
+    call build_borders(self)
     call build_loads(self)
     call build_interfaces(self)
     call build_lines(self)
@@ -159,89 +157,6 @@ contains
     if (self%scene%mesh%mass == mass_lumped) allocate (self%lumped(3, size(self%distribution%points)), source=0.0_wp)
   end subroutine build_elements
 
-  !> Nodal loads of pressure and patch, and the lumped mass.
-  subroutine build_loads(self)
-    !> The model, with its elements and halo
-    type(model_t), intent(inout) :: self
-    real(wp), allocatable :: weights(:, :)
-    real(wp) :: area
-
-    allocate (weights(1, size(self%distribution%points)), source=0.0_wp)
-    call add_patch_weights(self%elements, patch_elements(self, .true.), weights(1, :))
-    call self%halo%accumulate(weights)
-    area = sum(weights)
-    call self%communicator%sum(area)
-    if (area > 0) weights = weights/area
-    call self%spread_force(weights(1, :), 0.0_wp)
-    if (self%scene%impactor%spreads) call build_nose(self, area)
-    if (self%scene%has_pressure) then
-      call build_pressure(self)
-    else if (self%scene%has_static) then
-      allocate (self%pressure(5, size(self%distribution%points)), source=0.0_wp)
-    end if
-    if (allocated(self%lumped)) then
-      call add_lumped_mass(self%elements, self%lumped)
-      call self%halo%accumulate(self%lumped)
-    end if
-  end subroutine build_loads
-
-  !> This rank's elements under the patch, or beside it, of the struck layer only.
-  pure function patch_elements(self, under) result(elements)
-    type(model_t), intent(in) :: self
-    !> True for those under it
-    logical, intent(in) :: under
-    !> Positions among this rank's elements
-    integer, allocatable :: elements(:)
-    integer :: i
-
-    associate (mesh => self%mesh, mine => self%distribution%elements)
-      elements = pack([(i, i=1, size(mine))], &
-                      [((mesh%in_patch(mesh%element_cell(mine(i)), self%scene%mesh%patch) .eqv. under) &
-                        .and. mesh%element_plies(1, mine(i)) == 1, i=1, size(mine))])
-    end associate
-  end function patch_elements
-
-  !> The nose whose contact the patch follows.
-  subroutine build_nose(self, area)
-    !> The model, with its patch
-    type(model_t), intent(inout) :: self
-    !> Area of the patch's modelled part
-    real(wp), intent(in) :: area
-    real(wp), allocatable :: beside(:, :)
-    integer :: i
-
-    allocate (beside(1, size(self%distribution%points)), source=0.0_wp)
-    call add_patch_weights(self%elements, patch_elements(self, .false.), beside(1, :))
-    call self%halo%accumulate(beside)
-    associate (mesh => self%mesh, points => self%distribution%points, struck => self%scene%mesh%struck)
-      self%nose = new_contact_area(self%patch, area, beside(1, :), &
-                                   [(norm2(mesh%node_coordinates(:, mesh%point_node(points(i))) - struck), &
-                                     i=1, size(points))], self%scene%impactor%radius)
-    end associate
-  end subroutine build_nose
-
-  !> Nodal forces of the pressure on the struck face.
-  subroutine build_pressure(self)
-    type(model_t), intent(inout) :: self
-    real(wp), allocatable :: x(:, :, :), pressure(:, :)
-    real(wp), parameter :: pi = acos(-1.0_wp)
-    integer :: element
-
-    allocate (self%pressure(5, size(self%distribution%points)), source=0.0_wp)
-    allocate (x(2, 9, self%elements%elements), pressure(9, self%elements%elements))
-    associate (mesh => self%mesh, share => self%distribution, value => self%scene%pressure%value)
-      call gauss_coordinates(self%elements, mesh%node_coordinates(:, mesh%point_node(share%points)), x)
-      pressure = value
-      if (self%scene%pressure%distribution == distribution_sine) &
-        pressure = value*cos(pi*x(1, :, :)/self%scene%plate%length(1))*cos(pi*x(2, :, :)/self%scene%plate%length(2))
-      do element = 1, size(share%elements)
-        if (mesh%element_plies(1, share%elements(element)) /= 1) pressure(:, element) = 0
-      end do
-    end associate
-    call add_pressure(self%elements, pressure, self%pressure)
-    call self%halo%accumulate(self%pressure)
-  end subroutine build_pressure
-
   !> Lines on this rank's points.
   subroutine build_lines(self)
     !> The model, with its map of layers
@@ -299,20 +214,17 @@ contains
   subroutine build_rigs(self)
     !> The model, with its elements and halo
     type(model_t), intent(inout) :: self
-    real(wp), allocatable :: areas(:, :)
     integer :: i
 
     ! A rigid frame is as hard as the laminate's own thickness over the area of a cell, and far harder: contact's.
     self%rig = new_rig_model(self%mesh, self%scene%plate, self%scene%supports, self%distribution, &
                              rigid*self%plies(1)%elasticity%e2/self%thickness &
                              *product(self%scene%plate%length/self%scene%mesh%elements)/self%mesh%multiplicity)
+    if (allocated(self%rig%line_rig)) call self%rig%join_ranks(self%communicator, self%halo)
     if (.not. self%rig%unilateral) return
     associate (share => self%distribution, last => self%plies(size(self%plies)))
-      allocate (areas(1, size(share%points)), source=0.0_wp)
-      call add_patch_weights(self%elements, pack([(i, i=1, self%elements%elements)], &
-                                                 self%mesh%element_plies(1, share%elements) == 1), areas(1, :))
-      call self%halo%accumulate(areas)
-      self%rig_area = areas(1, :)
+      self%rig_area = nodal_areas(self, pack([(i, i=1, self%elements%elements)], &
+                                             self%mesh%element_plies(1, share%elements) == 1))
       self%rig_law = create_contact_law(contact_augmented_lagrangian, 1.0_wp, last%elasticity%e2/self%thickness, &
                                         self%thickness, moving=.not. self%scene%has_static)
     end associate
@@ -331,9 +243,8 @@ contains
       self%zone = mesh%point_zone(share%points)
       allocate (areas(1, size(share%points)), source=0.0_wp)
       if (self%map%layered) then
-        call add_patch_weights(self%elements, pack([(i, i=1, self%elements%elements)], &
-                                                   mesh%element_plies(1, share%elements) > 1), areas(1, :))
-        call self%halo%accumulate(areas)
+        areas(1, :) = nodal_areas(self, pack([(i, i=1, self%elements%elements)], &
+                                             mesh%element_plies(1, share%elements) > 1))
         call self%halo%update(areas)
         where (self%zone == 0) areas(1, :) = 0
       end if

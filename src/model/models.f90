@@ -4,6 +4,7 @@ module models
   use kinds, only: wp
   use communicators, only: communicator_t
   use contact_areas, only: contact_area_t
+  use border_sums, only: border_sum_t
   use halos, only: halo_t
   use element_batches, only: element_batches_t
   use bending_forces, only: add_bending_force, add_bending_inertia
@@ -13,6 +14,7 @@ module models
   use stacking, only: section_t
   use plies, only: ply_t
   use profiles, only: profile_t
+  use rank_totals, only: total_of
   use layered_meshes, only: layered_mesh_t
   use layer_maps, only: layer_map_t
   use face_contact, only: contact_law_t
@@ -41,6 +43,9 @@ module models
     type(distribution_t) :: distribution
     !> Exchange of ghost points
     type(halo_t) :: halo
+    !> Sums of elements' contributions to points on the borders between ranks: what adds to points by `elements` takes
+    !> a field with `borders%columns` columns and then calls `borders%add`, before forces are turned to unknowns
+    type(border_sum_t) :: borders
     !> This rank's elements
     type(element_batches_t) :: elements
     !> Plies of the laminate, struck face first
@@ -105,6 +110,8 @@ module models
     procedure :: motion_of
     !> Internal forces and strain energy of a displacement field.
     procedure :: internal
+    procedure, private :: add_elements
+    procedure, private :: add_inertia
     !> Forces of the lines, loads of a static analysis, and their change with the load factor.
     procedure :: line_forces
     procedure :: add_holding_lines
@@ -155,19 +162,47 @@ contains
     !> Resultants of strains that go without stress, and their energy per area, (lanes, 7, batches); absent: none
     real(wp), contiguous, intent(in), optional :: free(:, :, :)
 
-    force = 0
-    if (self%map%layered) then
-      call add_internal_force(self%elements, stiffness, self%scene%kinematics, self%motion_of(displacement), force, &
-                              energy, law, free)
-      call self%map%to_unknowns(force)
-    else if (self%membrane_idle) then
-      call add_bending_force(self%elements, stiffness, displacement, force, energy)
+    real(wp), allocatable :: field(:, :)
+
+    if (self%borders%columns > size(force, 2)) then
+      allocate (field(5, self%borders%columns), source=0.0_wp)
+      call self%add_elements(stiffness, displacement, field, energy, law, free)
+      call self%borders%add(field)
+      force = field(:, :size(force, 2))
     else
-      call add_internal_force(self%elements, stiffness, self%scene%kinematics, displacement, force, energy, law, free)
+      force = 0
+      call self%add_elements(stiffness, displacement, force, energy, law, free)
+      call self%borders%add(force)
     end if
+    if (self%map%layered) call self%map%to_unknowns(force)
     call self%rig%add_line_forces(displacement, force, energy)
-    call self%halo%accumulate(force)
   end subroutine internal
+
+  !> Adds the internal forces of this rank's elements on the motion of their layers.
+  subroutine add_elements(self, stiffness, displacement, field, energy, law, free)
+    class(model_t), intent(in) :: self
+    !> Section stiffness left in the elements, (lanes, 21, batches)
+    real(wp), contiguous, intent(in) :: stiffness(:, :, :)
+    !> Displacement, ghosts up to date, (5, points)
+    real(wp), contiguous, intent(in) :: displacement(:, :)
+    !> Forces, (5, columns)
+    real(wp), contiguous, intent(inout) :: field(:, :)
+    !> Strain energy of this rank's elements
+    real(wp), intent(out) :: energy
+    !> Makes the stiffness follow the strains; absent: it is what it is
+    class(section_law_t), intent(inout), optional :: law
+    !> Resultants of strains that go without stress, and their energy per area, (lanes, 7, batches); absent: none
+    real(wp), contiguous, intent(in), optional :: free(:, :, :)
+
+    if (self%map%layered) then
+      call add_internal_force(self%elements, stiffness, self%scene%kinematics, self%motion_of(displacement), field, &
+                              energy, law, free)
+    else if (self%membrane_idle) then
+      call add_bending_force(self%elements, stiffness, displacement, field, energy)
+    else
+      call add_internal_force(self%elements, stiffness, self%scene%kinematics, displacement, field, energy, law, free)
+    end if
+  end subroutine add_elements
 
   !> Nodal forces of the lines at the owned points, of all of them or of those that are prescribed or not.
   pure subroutine line_forces(self, displacement, load_factor, forces, prescribed)
@@ -240,6 +275,7 @@ contains
     real(wp), contiguous, intent(in) :: field(:, :)
     !> Product, (5, points); ghosts zero
     real(wp), contiguous, intent(inout) :: force(:, :)
+    real(wp), allocatable :: forces(:, :)
     integer :: point
 
     call self%profile%enter('inertia forces')
@@ -252,33 +288,43 @@ contains
           value = [mass(1)*value(1:2) + mass(2)*value(4:5), mass(1)*value(3), mass(2)*value(1:2) + mass(3)*value(4:5)]
         end associate
       end do
-      if (self%map%layered) call self%map%to_unknowns(force)
+    else if (self%borders%columns > size(force, 2)) then
+      allocate (forces(5, self%borders%columns), source=0.0_wp)
+      call self%add_inertia(field, forces)
+      call self%borders%add(forces)
+      force = forces(:, :size(force, 2))
     else
-      if (self%map%layered) then
-        call add_inertia_force(self%elements, self%motion_of(field), force)
-        call self%map%to_unknowns(force)
-      else if (self%membrane_idle) then
-        call add_bending_inertia(self%elements, field, force)
-      else
-        call add_inertia_force(self%elements, field, force)
-      end if
-      call self%halo%accumulate(force)
+      call self%add_inertia(field, force)
+      call self%borders%add(force)
     end if
+    if (self%map%layered) call self%map%to_unknowns(force)
     call self%profile%leave()
   end subroutine inertia
+
+  !> Adds the consistent mass of this rank's elements times a field, on the motion of their layers.
+  subroutine add_inertia(self, field, force)
+    class(model_t), intent(in) :: self
+    !> Acceleration or velocity, ghosts up to date, (5, points)
+    real(wp), contiguous, intent(in) :: field(:, :)
+    !> Product, (5, columns)
+    real(wp), contiguous, intent(inout) :: force(:, :)
+
+    if (self%map%layered) then
+      call add_inertia_force(self%elements, self%motion_of(field), force)
+    else if (self%membrane_idle) then
+      call add_bending_inertia(self%elements, field, force)
+    else
+      call add_inertia_force(self%elements, field, force)
+    end if
+  end subroutine add_inertia
 
   !> Mean deflection of the patch, the same on every rank.
   real(wp) function patch_mean(self, displacement) result(mean)
     class(model_t), intent(in) :: self
     !> Displacement, (5, points)
     real(wp), intent(in) :: displacement(:, :)
-    integer :: i
 
-    mean = 0
-    do i = 1, size(self%patch_points)
-      mean = mean + self%patch(self%patch_points(i))*displacement(3, self%patch_points(i))
-    end do
-    call self%communicator%sum(mean)
+    mean = total_of(self%communicator, self%patch(self%patch_points)*displacement(3, self%patch_points))
   end function patch_mean
 
   !> Deflection of the plate under the impactor, the same on every rank.

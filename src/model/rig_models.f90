@@ -1,6 +1,9 @@
 !> How rigs hold this rank's points: which w a frame or a rigid clamp holds, where the plate rests on a frame that it
 !> may lift off, the springs of clamps, and those of the plate's elastic edges.
 module rig_models
+  use border_sums, only: border_sum_t
+  use communicators, only: communicator_t
+  use halos, only: halo_t
   use kinds, only: wp
   use distributions, only: distribution_t
   use elastic_edges, only: edge_spring_t, edge_springs
@@ -28,11 +31,17 @@ module rig_models
     integer, allocatable :: clamps(:)
     !> Points of three nodes each, (3, lines), whose weighted unknown a stiffness holds, and the rig; 0: an elastic edge
     integer, allocatable :: line_points(:, :), line_rig(:)
+    !> Element of the mesh on whose side a line lies, (lines), and columns that its forces are added to, (3, lines)
+    integer, allocatable :: line_element(:), line_targets(:, :)
+    !> Sums of the forces of lines at points on the borders between ranks
+    type(border_sum_t) :: line_borders
     !> Which unknown, (lines)
     integer, allocatable :: line_component(:)
     !> Weights, (3, lines), and stiffness, (lines)
     real(wp), allocatable :: line_weights(:, :), line_stiffness(:)
   contains
+    !> Finds how the forces of lines are summed between ranks.
+    procedure :: join_ranks
     !> Adds the forces that hold lines.
     procedure :: add_line_forces
   end type rig_model_t
@@ -115,7 +124,7 @@ contains
     integer :: i, k, element, cell
 
     allocate (self%line_points(3, 0), self%line_rig(0), self%line_component(0), self%line_weights(3, 0), &
-              self%line_stiffness(0))
+              self%line_stiffness(0), self%line_element(0))
     do element = 1, size(distribution%elements)
       if (mesh%element_plies(1, distribution%elements(element)) /= 1) cycle
       cell = mesh%element_cell(distribution%elements(element))
@@ -124,14 +133,17 @@ contains
         crossings = circle_crossings(mesh, supports(i), cell)
         do k = 1, size(crossings)
           call add_line(self, i, distribution%connectivity(crossings(k)%nodes, element), 3, crossings(k)%weights, rigid)
+          self%line_element = [self%line_element, distribution%elements(element)]
         end do
       end do
       springs = edge_springs(mesh, plate, cell)
       do k = 1, size(springs)
         call add_line(self, 0, distribution%connectivity(springs(k)%nodes, element), springs(k)%component, &
                       springs(k)%weights, springs(k)%stiffness)
+        self%line_element = [self%line_element, distribution%elements(element)]
       end do
     end do
+    self%line_targets = self%line_points
   end subroutine find_lines
 
   !> Adds a point on a line.
@@ -152,28 +164,69 @@ contains
     self%line_stiffness = [self%line_stiffness, stiffness]
   end subroutine add_line
 
-  !> Adds the forces that hold lines to internal forces, ghosts included, and what they store to an energy.
-  pure subroutine add_line_forces(self, displacement, force, energy)
+  !> Finds how the forces of lines are summed at points on the borders between ranks: in the order of the mesh.
+  !> Collective.
+  subroutine join_ranks(self, communicator, halo)
+    !> The rigs
+    class(rig_model_t), intent(inout) :: self
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> Their points
+    type(halo_t), intent(in) :: halo
+    integer :: targets(size(self%line_points))
+
+    call self%line_borders%define(communicator, halo, reshape(self%line_points, shape(targets)), &
+                                  reshape(spread(self%line_element, 1, 3), shape(targets)), targets)
+    self%line_targets = reshape(targets, shape(self%line_points))
+  end subroutine join_ranks
+
+  !> Adds the forces that hold lines to internal forces, and what they store to an energy. Collective.
+  subroutine add_line_forces(self, displacement, force, energy)
+    !> The rigs
+    class(rig_model_t), intent(in) :: self
+    !> Unknowns, ghosts up to date, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> Internal forces, ghosts zero, (5, points)
+    real(wp), contiguous, intent(inout) :: force(:, :)
+    !> Energy of this rank
+    real(wp), intent(inout) :: energy
+    real(wp), allocatable :: field(:, :)
+
+    if (.not. allocated(self%line_rig)) return
+    if (self%line_borders%columns > size(force, 2)) then
+      allocate (field(5, self%line_borders%columns), source=0.0_wp)
+      field(:, :size(force, 2)) = force
+      call add_to_columns(self, displacement, field, energy)
+      call self%line_borders%add(field)
+      force = field(:, :size(force, 2))
+    else
+      call add_to_columns(self, displacement, force, energy)
+      call self%line_borders%add(force)
+    end if
+  end subroutine add_line_forces
+
+  !> Adds the forces that hold lines to the columns that they belong to.
+  pure subroutine add_to_columns(self, displacement, field, energy)
     !> The rigs
     class(rig_model_t), intent(in) :: self
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
-    !> Internal forces, (5, points)
-    real(wp), intent(inout) :: force(:, :)
+    !> Forces, (5, columns)
+    real(wp), intent(inout) :: field(:, :)
     !> Energy of this rank
     real(wp), intent(inout) :: energy
     real(wp) :: motion
     integer :: k
 
-    if (.not. allocated(self%line_rig)) return
     do k = 1, size(self%line_rig)
-      associate (points => self%line_points(:, k), weights => self%line_weights(:, k), i => self%line_component(k))
+      associate (points => self%line_points(:, k), targets => self%line_targets(:, k), &
+                 weights => self%line_weights(:, k), i => self%line_component(k))
         motion = dot_product(weights, displacement(i, points))
-        force(i, points) = force(i, points) + self%line_stiffness(k)*motion*weights
+        field(i, targets) = field(i, targets) + self%line_stiffness(k)*motion*weights
         energy = energy + self%line_stiffness(k)*motion**2/2
       end associate
     end do
-  end subroutine add_line_forces
+  end subroutine add_to_columns
 
   !> Stiffness that one clamp of the deck adds to the model.
   pure function springs_of(mesh, plate, support) result(springs)

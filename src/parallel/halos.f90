@@ -1,23 +1,13 @@
 !> Points on the border between ranks: each point is owned by one rank and seen as a ghost by others.
 module halos
-  use mpi_f08, only: MPI_Comm, MPI_Request, MPI_DOUBLE_PRECISION, MPI_INTEGER, MPI_STATUSES_IGNORE, MPI_Irecv, &
-                     MPI_Isend, MPI_Waitall, MPI_Alltoall, MPI_Alltoallv
+  use mpi_f08, only: MPI_Comm, MPI_INTEGER, MPI_Alltoall, MPI_Alltoallv
+  use border_traffic, only: traffic_t, new_traffic, exchange, offsets
   use communicators, only: communicator_t
   use errors, only: error_t, fail, exit_internal
   use kinds, only: wp
   implicit none
   private
   public :: halo_t
-
-  !> Points exchanged with other ranks in one direction, grouped by rank.
-  type :: traffic_t
-    !> The other ranks, ascending
-    integer, allocatable :: ranks(:)
-    !> Where the points of each of these ranks begin, shape (ranks + 1)
-    integer, allocatable :: start(:)
-    !> Local points, grouped by rank
-    integer, allocatable :: points(:)
-  end type traffic_t
 
   !> The points of this rank, owned ones first and ghosts after them. Global numbers of points run
   !> from 1, contiguous by owning rank.
@@ -102,33 +92,6 @@ contains
     self%shared = new_traffic(asked, numbers - self%first + 1)
   end subroutine exchange_lists
 
-  !> Sums of the items before each.
-  pure function offsets(counts)
-    !> Number of items of each rank
-    integer, intent(in) :: counts(:)
-    !> Number of items of the ranks before each
-    integer :: offsets(size(counts))
-    integer :: r
-
-    offsets = [(sum(counts(:r - 1)), r=1, size(counts))]
-  end function offsets
-
-  !> Points to exchange, from the number of them for each rank.
-  pure function new_traffic(counts, points) result(traffic)
-    !> Number of points exchanged with each rank
-    integer, intent(in) :: counts(0:)
-    !> Local points, grouped by rank
-    integer, intent(in) :: points(:)
-    !> The same without the ranks that exchange nothing
-    type(traffic_t) :: traffic
-    integer :: r
-
-    allocate (traffic%ranks(count(counts > 0)), source=pack([(r, r=0, size(counts) - 1)], counts > 0))
-    allocate (traffic%start(size(traffic%ranks) + 1))
-    traffic%start = [1, (1 + sum(counts(:traffic%ranks(r))), r=1, size(traffic%ranks))]
-    allocate (traffic%points(size(points)), source=points)
-  end function new_traffic
-
   !> Copies values of owned points to their ghosts.
   subroutine update(self, field)
     class(halo_t), intent(in) :: self
@@ -138,7 +101,7 @@ contains
 
     if (self%size == 1) return
     call exchange(self%group, self%shared, self%seen, field, values)
-    field(:, self%seen%points) = values
+    field(:, self%seen%columns) = values
   end subroutine update
 
   !> Adds values of ghosts to their owned points, in the order of ranks, and zeroes the ghosts.
@@ -151,36 +114,9 @@ contains
 
     if (self%size == 1) return
     call exchange(self%group, self%seen, self%shared, field, values)
-    do i = 1, size(self%shared%points)
-      field(:, self%shared%points(i)) = field(:, self%shared%points(i)) + values(:, i)
+    do i = 1, size(self%shared%columns)
+      field(:, self%shared%columns(i)) = field(:, self%shared%columns(i)) + values(:, i)
     end do
     field(:, self%owned + 1:) = 0
   end subroutine accumulate
-
-  !> Sends the values of some points while receiving those of others.
-  subroutine exchange(group, sent, received, field, values)
-    !> All ranks
-    type(MPI_Comm), intent(in) :: group
-    !> Points whose values are sent, and points whose values are received
-    type(traffic_t), intent(in) :: sent, received
-    !> Values, shape (components, points)
-    real(wp), intent(in) :: field(:, :)
-    !> Values received, shape (components, points received)
-    real(wp), allocatable, asynchronous, intent(out) :: values(:, :)
-    real(wp), allocatable, asynchronous :: own(:, :)
-    type(MPI_Request) :: requests(size(sent%ranks) + size(received%ranks))
-    integer :: i
-
-    allocate (values(size(field, 1), size(received%points)))
-    do i = 1, size(received%ranks)
-      call MPI_Irecv(values(1, received%start(i)), size(field, 1)*(received%start(i + 1) - received%start(i)), &
-                     MPI_DOUBLE_PRECISION, received%ranks(i), 0, group, requests(i))
-    end do
-    own = field(:, sent%points)
-    do i = 1, size(sent%ranks)
-      call MPI_Isend(own(1, sent%start(i)), size(field, 1)*(sent%start(i + 1) - sent%start(i)), &
-                     MPI_DOUBLE_PRECISION, sent%ranks(i), 0, group, requests(size(received%ranks) + i))
-    end do
-    call MPI_Waitall(size(requests), requests, MPI_STATUSES_IGNORE)
-  end subroutine exchange
 end module halos

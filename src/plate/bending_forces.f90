@@ -14,37 +14,43 @@ module bending_forces
 contains
 
   !> Adds the internal force of all elements to the forces on the points, components 3 to 5.
-  subroutine add_bending_force(batches, stiffness, u, f, energy)
+  subroutine add_bending_force(batches, stiffness, u, f, energy, energies)
     !> The elements
     type(element_batches_t), intent(in) :: batches
     !> Section stiffness left, as in the batches (lanes, 21, batches)
     real(wp), contiguous, intent(in) :: stiffness(:, :, :)
     !> Unknowns (5, points)
     real(wp), contiguous, intent(in) :: u(:, :)
-    !> Forces (5, points)
+    !> Forces (5, columns that the batches add to)
     real(wp), contiguous, intent(inout) :: f(:, :)
     !> Strain energy of these elements
     real(wp), intent(out) :: energy
-    real(wp) :: r(lanes, 9, 5), curvatures(lanes, 9, 3), shear(lanes, batches%shear_points, 2), energies(lanes)
+    !> Strain energy of each element, whose exact sum does not depend on ranks, (lanes, batches); 0 in lanes left over
+    real(wp), contiguous, intent(out), optional :: energies(:, :)
+    real(wp) :: r(lanes, 9, 5), curvatures(lanes, 9, 3), shear(lanes, batches%shear_points, 2), stored(lanes)
     integer :: b
 
-    energies = 0.0_wp
+    stored = 0.0_wp
     do b = 1, batches%batches
       call gather_bending(batches%points(:, :, b), u, r)
       call plane_strains(batches%inverse_jacobian(:, :, :, b), r(:, :, 4), r(:, :, 5), curvatures)
       call shear_strains(batches, b, r, shear)
-      call moments(stiffness(:, :, b), batches%weight(:, :, b), curvatures, energies)
+      call moments(stiffness(:, :, b), batches%weight(:, :, b), curvatures, stored)
       if (batches%shear == shear_assumed) then
-        call shear_resultants(9, stiffness(:, :, b), batches%weight(:, :, b), shear, energies)
+        call shear_resultants(9, stiffness(:, :, b), batches%weight(:, :, b), shear, stored)
       else
-        call shear_resultants(batches%shear_points, stiffness(:, :, b), batches%shear_weight(:, :, b), shear, energies)
+        call shear_resultants(batches%shear_points, stiffness(:, :, b), batches%shear_weight(:, :, b), shear, stored)
       end if
       r(:, :, 3:5) = 0.0_wp
       call add_plane_forces(batches%inverse_jacobian(:, :, :, b), curvatures, r(:, :, 4), r(:, :, 5))
       call add_shear_forces(batches, b, shear, r)
-      call scatter_bending(batches%points(:, :, b), r, f)
+      call scatter_bending(batches%targets(:, :, b), r, f)
+      if (.not. present(energies)) cycle
+      energies(:, b) = stored
+      stored = 0.0_wp
     end do
-    energy = sum(energies)
+    energy = sum(stored)
+    if (present(energies)) energy = sum(energies)
   end subroutine add_bending_force
 
   !> Adds the consistent mass times the accelerations of all elements, components 3 to 5.
@@ -53,7 +59,7 @@ contains
     type(element_batches_t), intent(in) :: batches
     !> Accelerations of the unknowns (5, points)
     real(wp), contiguous, intent(in) :: a(:, :)
-    !> Forces (5, points)
+    !> Forces (5, columns that the batches add to)
     real(wp), contiguous, intent(inout) :: f(:, :)
     real(wp) :: r(lanes, 9, 5), values(lanes, 9)
     integer :: b, component, g
@@ -70,7 +76,7 @@ contains
         r(:, :, component) = 0.0_wp
         call add_value_forces(values, r(:, :, component))
       end do
-      call scatter_bending(batches%points(:, :, b), r, f)
+      call scatter_bending(batches%targets(:, :, b), r, f)
     end do
   end subroutine add_bending_inertia
 
@@ -119,21 +125,21 @@ contains
     end do
   end subroutine gather_bending
 
-  !> Adds nodal forces of a batch to those of the points, components 3 to 5.
-  pure subroutine scatter_bending(points, r, f)
-    !> Point of each node
-    integer, intent(in) :: points(lanes, 9)
+  !> Adds nodal forces of a batch to those of the points, components 3 to 5, element by element.
+  pure subroutine scatter_bending(targets, r, f)
+    !> Column of each node
+    integer, intent(in) :: targets(lanes, 9)
     !> Forces on the nodes (lane, node, component)
     real(wp), intent(in) :: r(lanes, 9, 5)
     !> Forces on all points
     real(wp), contiguous, intent(inout) :: f(:, :)
     integer :: lane, a
 
-    do a = 1, 9
-      do lane = 1, lanes
-        f(3, points(lane, a)) = f(3, points(lane, a)) + r(lane, a, 3)
-        f(4, points(lane, a)) = f(4, points(lane, a)) + r(lane, a, 4)
-        f(5, points(lane, a)) = f(5, points(lane, a)) + r(lane, a, 5)
+    do lane = 1, lanes
+      do a = 1, 9
+        f(3, targets(lane, a)) = f(3, targets(lane, a)) + r(lane, a, 3)
+        f(4, targets(lane, a)) = f(4, targets(lane, a)) + r(lane, a, 4)
+        f(5, targets(lane, a)) = f(5, targets(lane, a)) + r(lane, a, 5)
       end do
     end do
   end subroutine scatter_bending

@@ -29,6 +29,9 @@ module element_batches
     integer :: shear_points = 9
     !> Point of each node (lanes, 9, batches)
     integer, allocatable :: points(:, :, :)
+    !> Column of a field to which the contribution of each node is added, (lanes, 9, batches): its point, or where other
+    !> ranks contribute too a column of its own, from which contributions are added in the order of the mesh
+    integer, allocatable :: targets(:, :, :)
     !> Derivatives xi,x eta,x xi,y eta,y at the Gauss points (lanes, 9, 4, batches)
     real(wp), allocatable :: inverse_jacobian(:, :, :, :)
     !> Area that belongs to each Gauss point (lanes, 9, batches); zero in lanes left over
@@ -47,6 +50,8 @@ module element_batches
     procedure :: create
     !> Gives one element its section.
     procedure :: set_section
+    !> Sets the columns that contributions are added to.
+    procedure :: set_targets
     !> Lanes of a batch that hold elements.
     procedure :: lanes_used
   end type element_batches_t
@@ -82,6 +87,7 @@ contains
       self%weight(self%lanes_used(b) + 1:, :, b) = 0.0_wp
       if (shear /= shear_assumed) self%shear_weight(self%lanes_used(b) + 1:, :, b) = 0.0_wp
     end do
+    self%targets = self%points
   end subroutine create
 
   !> Gives one element its section.
@@ -96,6 +102,21 @@ contains
     self%stiffness(lane_of(element), :, batch_of(element)) = stiffness
     self%mass(lane_of(element), :, batch_of(element)) = mass
   end subroutine set_section
+
+  !> Sets the columns that contributions are added to; without it these are the points.
+  pure subroutine set_targets(self, targets)
+    !> The batches
+    class(element_batches_t), intent(inout) :: self
+    !> Column of each node, (9, elements)
+    integer, intent(in) :: targets(:, :)
+    integer :: b, lane
+
+    do b = 1, self%batches
+      do lane = 1, lanes
+        self%targets(lane, :, b) = targets(:, min(first_element(b) + lane - 1, self%elements))
+      end do
+    end do
+  end subroutine set_targets
 
   !> Lanes of a batch that hold elements: all but in the last batch.
   pure integer function lanes_used(self, b)

@@ -16,7 +16,7 @@ contains
     type(element_batches_t), intent(in) :: batches
     !> Accelerations of the unknowns (5, points)
     real(wp), contiguous, intent(in) :: a(:, :)
-    !> Forces (5, points)
+    !> Forces (5, columns that the batches add to)
     real(wp), contiguous, intent(inout) :: f(:, :)
     real(wp) :: r(lanes, 9, 5), values(lanes, 9, 5)
     integer :: b, component
@@ -31,7 +31,7 @@ contains
       do component = 1, 5
         call add_value_forces(values(:, :, component), r(:, :, component))
       end do
-      call scatter(batches%points(:, :, b), r, f)
+      call scatter(batches%targets(:, :, b), r, f)
     end do
   end subroutine add_inertia_force
 
@@ -70,17 +70,17 @@ contains
   subroutine add_lumped_mass(batches, mass)
     !> The elements
     type(element_batches_t), intent(in) :: batches
-    !> Integrals of I0, I1, I2 that belong to each point (3, points)
+    !> Integrals of I0, I1, I2 that belong to each point (3, columns)
     real(wp), intent(inout) :: mass(:, :)
     real(wp) :: share
-    integer :: b, lane, a, point
+    integer :: b, lane, a, target
 
     do b = 1, batches%batches
-      do a = 1, 9
-        do lane = 1, batches%lanes_used(b)
-          point = batches%points(lane, a, b)
+      do lane = 1, batches%lanes_used(b)
+        do a = 1, 9
+          target = batches%targets(lane, a, b)
           share = dot_product(gauss_shapes(a, :), batches%weight(lane, :, b))
-          mass(:, point) = mass(:, point) + share*batches%mass(lane, :, b)
+          mass(:, target) = mass(:, target) + share*batches%mass(lane, :, b)
         end do
       end do
     end do

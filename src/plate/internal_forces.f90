@@ -14,7 +14,7 @@ module internal_forces
 contains
 
   !> Adds the internal force of all elements to the forces on the points.
-  subroutine add_internal_force(batches, stiffness, kinematics, u, f, energy, law, free)
+  subroutine add_internal_force(batches, stiffness, kinematics, u, f, energy, law, free, energies)
     !> The elements
     type(element_batches_t), intent(in) :: batches
     !> Section stiffness left, as in the batches (lanes, 21, batches)
@@ -23,7 +23,7 @@ contains
     integer, intent(in) :: kinematics
     !> Unknowns (5, points)
     real(wp), contiguous, intent(in) :: u(:, :)
-    !> Forces (5, points)
+    !> Forces (5, columns that the batches add to)
     real(wp), contiguous, intent(inout) :: f(:, :)
     !> Strain energy of these elements
     real(wp), intent(out) :: energy
@@ -31,12 +31,14 @@ contains
     class(section_law_t), intent(inout), optional :: law
     !> Resultants Nxx to Mxy of strains that go without stress, and their energy per area, (lanes, 7, batches)
     real(wp), contiguous, intent(in), optional :: free(:, :, :)
-    real(wp) :: r(lanes, 9, 5), strains(lanes, 9, 6), slopes(lanes, 9, 2), c(lanes, 21), energies(lanes)
+    !> Strain energy of each element, whose exact sum does not depend on ranks, (lanes, batches); 0 in lanes left over
+    real(wp), contiguous, intent(out), optional :: energies(:, :)
+    real(wp) :: r(lanes, 9, 5), strains(lanes, 9, 6), slopes(lanes, 9, 2), c(lanes, 21), stored(lanes)
     real(wp) :: resultants(lanes, 7)
     integer :: b
 
     if (present(law)) call tell_strains(batches, kinematics, u, law)
-    energies = 0.0_wp
+    stored = 0.0_wp
     do b = 1, batches%batches
       call gather(batches%points(:, :, b), u, r)
       call in_plane_strains(batches%inverse_jacobian(:, :, :, b), kinematics, r, strains, slopes)
@@ -45,19 +47,23 @@ contains
         if (present(free)) then
           resultants = free(:, :, b)
           call law%soften(b, batches%weight(:, :, b), strains, c, resultants)
-          call turn_into_forces(batches, b, c, kinematics, slopes, strains, r, energies, resultants)
+          call turn_into_forces(batches, b, c, kinematics, slopes, strains, r, stored, resultants)
         else
           call law%soften(b, batches%weight(:, :, b), strains, c)
-          call turn_into_forces(batches, b, c, kinematics, slopes, strains, r, energies)
+          call turn_into_forces(batches, b, c, kinematics, slopes, strains, r, stored)
         end if
       else if (present(free)) then
-        call turn_into_forces(batches, b, stiffness(:, :, b), kinematics, slopes, strains, r, energies, free(:, :, b))
+        call turn_into_forces(batches, b, stiffness(:, :, b), kinematics, slopes, strains, r, stored, free(:, :, b))
       else
-        call turn_into_forces(batches, b, stiffness(:, :, b), kinematics, slopes, strains, r, energies)
+        call turn_into_forces(batches, b, stiffness(:, :, b), kinematics, slopes, strains, r, stored)
       end if
-      call scatter(batches%points(:, :, b), r, f)
+      call scatter(batches%targets(:, :, b), r, f)
+      if (.not. present(energies)) cycle
+      energies(:, b) = stored
+      stored = 0.0_wp
     end do
-    energy = sum(energies)
+    energy = sum(stored)
+    if (present(energies)) energy = sum(energies)
   end subroutine add_internal_force
 
   !> Tells a law the strains that sections share. Collective.

@@ -15,7 +15,7 @@ contains
     type(element_batches_t), intent(in) :: batches
     !> Pressure at the Gauss points (9, elements), positive downward
     real(wp), intent(in) :: pressure(:, :)
-    !> Forces (5, points)
+    !> Forces (5, columns that the batches add to)
     real(wp), intent(inout) :: f(:, :)
     integer :: element
 
@@ -31,7 +31,7 @@ contains
     type(element_batches_t), intent(in) :: batches
     !> Numbers of the elements of the patch
     integer, intent(in) :: elements(:)
-    !> Weight of each point
+    !> Weight of each point, (columns that the batches add to)
     real(wp), intent(inout) :: weights(:)
     integer :: i
 
@@ -48,17 +48,17 @@ contains
     integer, intent(in) :: element
     !> Function at the Gauss points
     real(wp), intent(in) :: values(9)
-    !> Integral of each point
+    !> Integral of each point, (columns)
     real(wp), intent(inout) :: shares(:)
     real(wp) :: loads(9)
-    integer :: b, lane, a, point
+    integer :: b, lane, a, target
 
     b = batch_of(element)
     lane = lane_of(element)
     loads = values*batches%weight(lane, :, b)
     do a = 1, 9
-      point = batches%points(lane, a, b)
-      shares(point) = shares(point) + dot_product(gauss_shapes(a, :), loads)
+      target = batches%targets(lane, a, b)
+      shares(target) = shares(target) + dot_product(gauss_shapes(a, :), loads)
     end do
   end subroutine add_nodal_shares
 

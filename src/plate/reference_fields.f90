@@ -28,19 +28,20 @@ contains
     end do
   end subroutine gather
 
-  !> Adds nodal forces of a batch to those of the points.
-  pure subroutine scatter(points, r, f)
-    !> Point of each node
-    integer, intent(in) :: points(lanes, 9)
+  !> Adds nodal forces of a batch to those of the points, element by element: how elements share batches then has no
+  !> influence on the order of a sum.
+  pure subroutine scatter(targets, r, f)
+    !> Column of each node
+    integer, intent(in) :: targets(lanes, 9)
     !> Forces on the nodes (lane, node, component)
     real(wp), intent(in) :: r(lanes, 9, 5)
     !> Forces on all points
     real(wp), contiguous, intent(inout) :: f(:, :)
     integer :: lane, a
 
-    do a = 1, 9
-      do lane = 1, lanes
-        f(:, points(lane, a)) = f(:, points(lane, a)) + r(lane, a, :)
+    do lane = 1, lanes
+      do a = 1, 9
+        f(:, targets(lane, a)) = f(:, targets(lane, a)) + r(lane, a, :)
       end do
     end do
   end subroutine scatter

@@ -1,0 +1,123 @@
+!> Nodal sums that a model keeps: what belongs to its points of areas, pressure, patch and lumped mass.
+module model_loads
+  use contact_areas, only: new_contact_area
+  use inertia_forces, only: add_lumped_mass
+  use kinds, only: wp
+  use load_vectors, only: add_pressure, gauss_coordinates, add_patch_weights
+  use models, only: model_t
+  use pressure_loads, only: distribution_sine
+  use rank_totals, only: total_of
+  implicit none
+  private
+  public :: build_borders, build_loads, nodal_areas
+
+contains
+
+  !> How the elements' contributions are summed at points on the borders between ranks.
+  subroutine build_borders(self)
+    !> The model, with its elements and halo
+    type(model_t), intent(inout) :: self
+    integer :: targets(size(self%distribution%connectivity))
+
+    associate (share => self%distribution)
+      call self%borders%define(self%communicator, self%halo, reshape(share%connectivity, shape(targets)), &
+                               reshape(spread(share%elements, 1, 9), shape(targets)), targets)
+      call self%elements%set_targets(reshape(targets, shape(share%connectivity)))
+    end associate
+  end subroutine build_borders
+
+  !> Areas that belong to the points of some of this rank's elements. Collective.
+  function nodal_areas(self, elements) result(areas)
+    !> The model, with its elements and borders
+    type(model_t), intent(in) :: self
+    !> Positions among this rank's elements
+    integer, intent(in) :: elements(:)
+    !> (local points); ghosts zero
+    real(wp), allocatable :: areas(:)
+    real(wp) :: field(1, self%borders%columns)
+
+    field = 0
+    call add_patch_weights(self%elements, elements, field(1, :))
+    call self%borders%add(field)
+    areas = field(1, :self%halo%points)
+  end function nodal_areas
+
+  !> Nodal loads of pressure and patch, and the lumped mass.
+  subroutine build_loads(self)
+    !> The model, with its elements and halo
+    type(model_t), intent(inout) :: self
+    real(wp), allocatable :: weights(:), mass(:, :)
+    real(wp) :: area
+
+    weights = nodal_areas(self, patch_elements(self, .true.))
+    area = total_of(self%communicator, weights)
+    if (area > 0) weights = weights/area
+    call self%spread_force(weights, 0.0_wp)
+    if (self%scene%impactor%spreads) call build_nose(self, area)
+    if (self%scene%has_pressure) then
+      call build_pressure(self)
+    else if (self%scene%has_static) then
+      allocate (self%pressure(5, size(self%distribution%points)), source=0.0_wp)
+    end if
+    if (allocated(self%lumped)) then
+      allocate (mass(3, self%borders%columns), source=0.0_wp)
+      call add_lumped_mass(self%elements, mass)
+      call self%borders%add(mass)
+      self%lumped = mass(:, :self%halo%points)
+    end if
+  end subroutine build_loads
+
+  !> This rank's elements under the patch, or beside it, of the struck layer only.
+  pure function patch_elements(self, under) result(elements)
+    type(model_t), intent(in) :: self
+    !> True for those under it
+    logical, intent(in) :: under
+    !> Positions among this rank's elements
+    integer, allocatable :: elements(:)
+    integer :: i
+
+    associate (mesh => self%mesh, mine => self%distribution%elements)
+      elements = pack([(i, i=1, size(mine))], &
+                      [((mesh%in_patch(mesh%element_cell(mine(i)), self%scene%mesh%patch) .eqv. under) &
+                        .and. mesh%element_plies(1, mine(i)) == 1, i=1, size(mine))])
+    end associate
+  end function patch_elements
+
+  !> The nose whose contact the patch follows.
+  subroutine build_nose(self, area)
+    !> The model, with its patch
+    type(model_t), intent(inout) :: self
+    !> Area of the patch's modelled part
+    real(wp), intent(in) :: area
+    integer :: i
+
+    associate (mesh => self%mesh, points => self%distribution%points, struck => self%scene%mesh%struck)
+      self%nose = new_contact_area(self%patch, area, nodal_areas(self, patch_elements(self, .false.)), &
+                                   [(norm2(mesh%node_coordinates(:, mesh%point_node(points(i))) - struck), &
+                                     i=1, size(points))], self%scene%impactor%radius)
+    end associate
+  end subroutine build_nose
+
+  !> Nodal forces of the pressure on the struck face.
+  subroutine build_pressure(self)
+    type(model_t), intent(inout) :: self
+    real(wp), allocatable :: x(:, :, :), pressure(:, :), forces(:, :)
+    real(wp), parameter :: pi = acos(-1.0_wp)
+    integer :: element
+
+    allocate (forces(5, self%borders%columns), source=0.0_wp)
+    allocate (x(2, 9, self%elements%elements), pressure(9, self%elements%elements))
+    associate (mesh => self%mesh, share => self%distribution, value => self%scene%pressure%value)
+      call gauss_coordinates(self%elements, mesh%node_coordinates(:, mesh%point_node(share%points)), x)
+      pressure = value
+      if (self%scene%pressure%distribution == distribution_sine) &
+        pressure = value*cos(pi*x(1, :, :)/self%scene%plate%length(1))*cos(pi*x(2, :, :)/self%scene%plate%length(2))
+      do element = 1, size(share%elements)
+        if (mesh%element_plies(1, share%elements(element)) /= 1) pressure(:, element) = 0
+      end do
+    end associate
+    call add_pressure(self%elements, pressure, forces)
+    call self%borders%add(forces)
+    self%pressure = forces(:, :self%halo%points)
+  end subroutine build_pressure
+end module model_loads
