@@ -7,6 +7,7 @@ module contact_following
   use errors, only: error_t
   use kinds, only: wp
   use models, only: model_t
+  use rank_totals, only: total_of
   use states, only: state_t
   use tangent_operators, only: tangent_operator_t
   implicit none
@@ -32,17 +33,14 @@ contains
     !> Set if a solve fails
     type(error_t), allocatable, intent(inout) :: error
     real(wp), allocatable :: change(:)
-    real(wp) :: sums(2)
 
     if (.not. allocated(model%nose)) return
     associate (w => now%motion%displacement(3, :))
       change = relaxation*(model%nose%weights(model%communicator, w, now%indentation%alpha) - model%patch)
-      sums = [sum(abs(change)), dot_product(change, w)]
+      if (.not. total_of(model%communicator, abs(change)) > negligible) return
+      now%patch = model%patch + change
+      now%patch_offset = now%patch_offset - total_of(model%communicator, change*w)
     end associate
-    call model%communicator%sum(sums)
-    if (.not. sums(1) > negligible) return
-    now%patch = model%patch + change
-    now%patch_offset = now%patch_offset - sums(2)
     call take_contact(model, now, operator, error)
   end subroutine follow_contact
 

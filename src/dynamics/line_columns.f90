@@ -2,6 +2,7 @@
 module line_columns
   use kinds, only: wp
   use models, only: model_t
+  use rank_totals, only: totals_of
   use result_tables, only: result_row_length
   use states, only: state_t
   implicit none
@@ -29,8 +30,8 @@ contains
 
     allocate (values(0))
     if (size(model%lines) == 0) return
-    values = [(model%lines(i)%totals(now%motion%displacement, now%load_factor), i=1, size(model%lines))]
-    call model%communicator%sum(values)
+    values = totals_of(model%communicator, [(model%lines(i)%totals(now%motion%displacement, now%load_factor), &
+                                             i=1, size(model%lines))])
     if (allocated(now%line_reactions)) then
       do i = 1, size(model%lines)
         if (model%lines(i)%load%prescribed) values(2*i - 1) = now%line_reactions(i)

@@ -11,7 +11,9 @@ module cohesive_interfaces
   use cohesive_faces, only: cohesive_faces_t
   use cohesive_points, only: cohesive_point_t, dissipated_share, mode_mixity
   use cohesive_tangents, only: dissipation_slopes
+  use exact_sums, only: exact_sum_t
   use models, only: model_t
+  use rank_totals, only: total_of, totals_of
   implicit none
   private
   public :: cohesive_interfaces_t, new_cohesive_interfaces
@@ -161,10 +163,9 @@ contains
     energy = 0
     if (.not. allocated(self%cohesive)) return
     associate (owned => model%distribution%owned)
-      energy = sum(model%contact_area(:owned)*(self%points(:owned)%dissipated - old%points(:owned)%dissipated))
+      energy = model%mesh%multiplicity*total_of(model%communicator, model%contact_area(:owned) &
+        *(self%points(:owned)%dissipated - old%points(:owned)%dissipated))
     end associate
-    call model%communicator%sum(energy)
-    energy = energy*model%mesh%multiplicity
   end function dissipation
 
   !> Area dissipated in each zone of the whole plate: the sum of the points' areas times the part of their toughness
@@ -175,17 +176,8 @@ contains
     type(model_t), intent(in) :: model
     !> The area, (zones); zero for zones without a cohesive law
     real(wp) :: area(size(model%mesh%zones))
-    real(wp) :: shares(size(model%zone))
-    integer :: i
 
-    area = 0
-    if (.not. allocated(self%cohesive)) return
-    shares = self%shares(model)
-    do i = 1, model%distribution%owned
-      if (self%cohesive(i)) area(model%zone(i)) = area(model%zone(i)) + model%contact_area(i)*shares(i)
-    end do
-    call model%communicator%sum(area)
-    area = area*model%mesh%multiplicity
+    area = total_in_zones(self, model, self%shares(model))
   end function area
 
   !> Energy dissipated in each zone of the whole plate, the same on every rank.
@@ -195,17 +187,30 @@ contains
     type(model_t), intent(in) :: model
     !> The energy, (zones); zero for zones without a cohesive law
     real(wp) :: energy(size(model%mesh%zones))
-    integer :: i
 
     energy = 0
+    if (allocated(self%cohesive)) energy = total_in_zones(self, model, self%points%dissipated)
+  end function dissipated_energy
+
+  !> Sum of the areas of the cohesive points times a value, in each zone of the whole plate. Collective.
+  function total_in_zones(self, model, values) result(totals)
+    !> The interfaces
+    type(cohesive_interfaces_t), intent(in) :: self
+    type(model_t), intent(in) :: model
+    !> Values, (local points)
+    real(wp), intent(in) :: values(:)
+    !> (zones); zero for zones without a cohesive law
+    real(wp) :: totals(size(model%mesh%zones))
+    type(exact_sum_t) :: sums(size(totals))
+    integer :: i
+
+    totals = 0
     if (.not. allocated(self%cohesive)) return
     do i = 1, model%distribution%owned
-      if (self%cohesive(i)) energy(model%zone(i)) = energy(model%zone(i)) &
-                                                    + model%contact_area(i)*self%points(i)%dissipated
+      if (self%cohesive(i)) call sums(model%zone(i))%add(model%contact_area(i)*values(i))
     end do
-    call model%communicator%sum(energy)
-    energy = energy*model%mesh%multiplicity
-  end function dissipated_energy
+    totals = totals_of(model%communicator, sums)*model%mesh%multiplicity
+  end function total_in_zones
 
   !> Damage of this rank's points.
   pure function damage(self, model)

@@ -5,6 +5,7 @@ module cohesive_sliding
   use cohesive_faces, only: cohesive_faces_t
   use cohesive_interfaces, only: cohesive_interfaces_t
   use models, only: model_t
+  use rank_totals, only: total_of
   implicit none
   private
   public :: heat_since, settle_friction, visit_friction
@@ -66,10 +67,9 @@ contains
     heat = 0
     if (.not. present_in(new, model)) return
     associate (owned => model%distribution%owned)
-      heat = sum(model%contact_area(:owned)*(new%points(:owned)%sliding%heat - old%points(:owned)%sliding%heat))
+      heat = model%mesh%multiplicity*total_of(model%communicator, model%contact_area(:owned) &
+        *(new%points(:owned)%sliding%heat - old%points(:owned)%sliding%heat))
     end associate
-    call model%communicator%sum(heat)
-    heat = heat*model%mesh%multiplicity
   end function heat_since
 
   !> Saves or loads.

@@ -8,7 +8,9 @@ module interface_states
   use models, only: model_t
   use contact_and_ties, only: contact_and_ties_t, new_contact_and_ties
   use cohesive_interfaces, only: cohesive_interfaces_t, new_cohesive_interfaces
+  use exact_sums, only: exact_sum_t
   use interface_flaws, only: visit_flaws
+  use rank_totals, only: total_of
   use cohesive_sliding, only: heat_since, settle_friction, visit_friction
   use tie_release, only: tie_release_t, new_tie_release
   use rig_contact, only: rig_contact_t, new_rig_contact
@@ -151,6 +153,7 @@ contains
     type(model_t), intent(in) :: model
     real(wp) :: area
     real(wp), allocatable :: areas(:, :)
+    type(exact_sum_t) :: sum
     real(wp) :: largest
     integer :: i
 
@@ -163,11 +166,10 @@ contains
       if (i < model%distribution%owned) then
         if (node_of(i + 1) == node_of(i)) cycle
       end if
-      area = area + largest
+      call sum%add(largest)
       largest = 0
     end do
-    call model%communicator%sum(area)
-    area = area*model%mesh%multiplicity
+    area = total_of(model%communicator, sum)*model%mesh%multiplicity
 
   contains
 
@@ -188,17 +190,19 @@ contains
     type(model_t), intent(in) :: model
     !> (zones, local points); at the border of a zone a point of the joined layers has its part
     real(wp), allocatable :: areas(:, :)
-    real(wp) :: shares(size(model%zone))
+    real(wp) :: shares(size(model%zone)), field(1, model%borders%columns)
     integer :: zone, i
 
     allocate (areas(size(model%mesh%zones), size(model%zone)), source=0.0_wp)
     do zone = 1, size(areas, 1)
       if (model%scene%delaminations(zone)%law == law_cohesive) cycle
+      field = 0
       call add_patch_weights(model%elements, pack([(i, i=1, model%elements%elements)], &
                                                   [(in_delaminated_cell(i), i=1, model%elements%elements)]), &
-                             areas(zone, :))
+                             field(1, :))
+      call model%borders%add(field)
+      areas(zone, :) = field(1, :size(areas, 2))
     end do
-    call model%halo%accumulate(areas)
     shares = self%cohesive%shares(model)
     do i = 1, model%distribution%owned
       zone = model%zone(i)

@@ -5,6 +5,8 @@
 module rig_contact
   use kinds, only: wp
   use archives, only: archive_t
+  use exact_sums, only: exact_sum_t
+  use rank_totals, only: totals_of
   use face_contact, only: contact_pressure, unmet_contact, updated_multiplier
   use models, only: model_t
   use support_parameters, only: most_supports
@@ -202,6 +204,7 @@ contains
     real(wp), intent(in) :: loads(:, :)
     !> A force a rig, 0 for those that the deck does not have
     real(wp) :: reactions(most_supports)
+    type(exact_sum_t) :: sums(most_supports)
     integer :: i
 
     reactions = 0
@@ -213,23 +216,21 @@ contains
     do i = 1, model%distribution%owned
       associate (holds => model%rig%holds(i), bears => model%rig%bears(i), clamps => model%rig%clamps(i))
         if (holds > 0) then
-          reactions(holds) = reactions(holds) + loads(3, i) - internal(3, i) - inertia(3, i)
+          call sums(holds)%add(loads(3, i) - internal(3, i) - inertia(3, i))
         else
-          if (bears > 0) reactions(bears) = reactions(bears) + model%rig_area(i)*self%pressure(i)
-          if (clamps > 0) reactions(clamps) = reactions(clamps) + model%rig%springs(3, i)*displacement(3, i) &
-                                              - model%rig%presses(i)
+          if (bears > 0) call sums(bears)%add(model%rig_area(i)*self%pressure(i))
+          if (clamps > 0) call sums(clamps)%add(model%rig%springs(3, i)*displacement(3, i) - model%rig%presses(i))
         end if
       end associate
     end do
     do i = 1, size(model%rig%line_rig)
       associate (rig => model%rig%line_rig(i))
         if (rig == 0) cycle
-        reactions(rig) = reactions(rig) + model%rig%line_stiffness(i) &
-                         *dot_product(model%rig%line_weights(:, i), displacement(3, model%rig%line_points(:, i)))
+        call sums(rig)%add(model%rig%line_stiffness(i) &
+                           *dot_product(model%rig%line_weights(:, i), displacement(3, model%rig%line_points(:, i))))
       end associate
     end do
-    call model%communicator%sum(reactions)
-    reactions = reactions*model%mesh%multiplicity
+    reactions = totals_of(model%communicator, sums)*model%mesh%multiplicity
   end function reactions
 
   !> Saves or loads.

@@ -8,6 +8,7 @@
 module contact_areas
   use communicators, only: communicator_t
   use kinds, only: wp
+  use rank_totals, only: total_of
   implicit none
   private
   public :: contact_area_t, new_contact_area
@@ -66,7 +67,7 @@ contains
     !> (local points); ghosts zero
     real(wp), allocatable :: weights(:)
     real(wp), allocatable :: apart(:), pressure(:)
-    real(wp) :: least, sums(2)
+    real(wp) :: least, parts(2)
 
     weights = self%under
     if (.not. indentation > 0) return
@@ -74,9 +75,8 @@ contains
     least = -minval(apart, mask=self%under > 0 .or. self%beside > 0)
     call communicator%maximum(least)
     pressure = max(0.0_wp, edge_gap*indentation - least - apart)
-    sums = [self%area*dot_product(self%under, pressure), dot_product(self%beside, pressure)]
-    call communicator%sum(sums)
-    weights = (sums(1)*self%under + self%beside*pressure)/sum(sums)
+    parts = [self%area*total_of(communicator, self%under*pressure), total_of(communicator, self%beside*pressure)]
+    weights = (parts(1)*self%under + self%beside*pressure)/sum(parts)
   end function weights
 
   !> Area of the modelled part that has pressure. Collective.
@@ -91,8 +91,6 @@ contains
 
     largest = maxval(weights)
     call communicator%maximum(largest)
-    touched = sum(self%beside, mask=weights > noticed*largest)
-    call communicator%sum(touched)
-    touched = self%area + touched
+    touched = self%area + total_of(communicator, pack(self%beside, weights > noticed*largest))
   end function touched
 end module contact_areas

@@ -4,6 +4,7 @@
 !> the element's parabolas). A displacement is prescribed by stiff springs: a line on a lower layer moves with the jumps
 !> of all interfaces above it, so that no single unknown could be held instead.
 module placed_lines
+  use exact_sums, only: exact_sum_t
   use kinds, only: wp
   use mesh_parameters, only: is_mirrored
   use plies, only: ply_t
@@ -348,7 +349,7 @@ contains
     end do
   end subroutine spread
 
-  !> Force and mean motion of the line, of this rank's nodes.
+  !> Force and mean motion of the line, of this rank's nodes; exact, so that sums over the ranks do not depend on them.
   pure function totals(self, displacement, load_factor)
     !> The line
     class(placed_line_t), intent(in) :: self
@@ -357,13 +358,12 @@ contains
     !> Ramps over their full values
     real(wp), intent(in) :: load_factor
     !> Force of the whole plate's line, mean motion
-    real(wp) :: totals(2)
+    type(exact_sum_t) :: totals(2)
     integer :: node
 
-    totals = 0
     do node = 1, size(self%weight)
-      totals = totals + self%weight(node)*[self%force_at(node, displacement, load_factor), &
-                                           self%motion_at(node, displacement)]
+      call totals(1)%add(self%weight(node)*self%force_at(node, displacement, load_factor))
+      call totals(2)%add(self%weight(node)*self%motion_at(node, displacement))
     end do
   end function totals
 end module placed_lines

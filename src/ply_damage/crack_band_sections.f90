@@ -6,6 +6,7 @@ module crack_band_sections
   use archives, only: archive_t
   use crack_bands, only: crack_band_t, band_state_t, create_crack_band, strain_band, elasticity_left, onset_strain
   use element_batches, only: batch_of, first_element, lane_of, lanes
+  use exact_sums, only: exact_sum_t
   use free_strains, only: free_resultants
   use in_situ_strengths, only: material_in_place
   use joined_elements, only: joined_elements_t, find_joined_elements
@@ -56,6 +57,7 @@ module crack_band_sections
     procedure :: hand_over
     !> Energy that the trial dissipates in each mode, on this rank.
     procedure :: dissipation
+    procedure :: dissipation_sums
     !> Energy dissipated so far in each mode, on this rank.
     procedure :: dissipated
     !> Where fibres and matrix of one ply bear nothing any more, and where compression took most of its matrix.
@@ -287,26 +289,60 @@ contains
     do element = 1, size(self%touched)
       if (.not. self%touched(element)) cycle
       do ply = self%range(1, element), self%range(2, element)
-        energies = energies + self%area(element)*(self%plies(ply)%z_bottom - self%plies(ply)%z_top) &
-                   *(self%trial(ply, element)%dissipated - self%accepted(ply, element)%dissipated)
+        energies = energies + dissipated_in(self, ply, element)
       end do
     end do
   end function dissipation
 
-  !> Energy dissipated so far in each mode, of this rank's elements.
+  !> The same as exact sums, whose totals do not depend on ranks.
+  pure function dissipation_sums(self) result(energies)
+    !> The plies
+    class(crack_band_sections_t), intent(in) :: self
+    !> In the order of the modes
+    type(exact_sum_t) :: energies(energy_modes)
+    real(wp) :: dissipated(energy_modes)
+    integer :: element, ply, mode
+
+    do element = 1, size(self%touched)
+      if (.not. self%touched(element)) cycle
+      do ply = self%range(1, element), self%range(2, element)
+        dissipated = dissipated_in(self, ply, element)
+        do mode = 1, energy_modes
+          call energies(mode)%add(dissipated(mode))
+        end do
+      end do
+    end do
+  end function dissipation_sums
+
+  !> Energy that the trial dissipates in each mode in one ply of an element.
+  pure function dissipated_in(self, ply, element) result(energies)
+    !> The plies
+    class(crack_band_sections_t), intent(in) :: self
+    !> Ply of the laminate, and element of this rank
+    integer, intent(in) :: ply, element
+    !> In the order of the modes
+    real(wp) :: energies(energy_modes)
+
+    energies = self%area(element)*(self%plies(ply)%z_bottom - self%plies(ply)%z_top) &
+               *(self%trial(ply, element)%dissipated - self%accepted(ply, element)%dissipated)
+  end function dissipated_in
+
+  !> Energy dissipated so far in each mode, of this rank's elements, as exact sums.
   pure function dissipated(self) result(energies)
     !> The plies
     class(crack_band_sections_t), intent(in) :: self
     !> In the order of the modes
-    real(wp) :: energies(energy_modes)
-    integer :: element, ply
+    type(exact_sum_t) :: energies(energy_modes)
+    integer :: element, ply, mode
 
-    energies = 0
     do element = 1, size(self%touched)
       if (.not. self%touched(element)) cycle
       do ply = self%range(1, element), self%range(2, element)
-        energies = energies + self%area(element)*(self%plies(ply)%z_bottom - self%plies(ply)%z_top) &
-                   *self%accepted(ply, element)%dissipated
+        associate (volume => self%area(element)*(self%plies(ply)%z_bottom - self%plies(ply)%z_top))
+          do mode = 1, energy_modes
+            call energies(mode)%add(volume*self%accepted(ply, element)%dissipated(mode))
+          end do
+        end associate
       end do
     end do
   end function dissipated

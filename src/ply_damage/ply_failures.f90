@@ -1,5 +1,6 @@
 !> Failure of plies: the stiffness it takes from the elements, and the energy lost with it.
 module ply_failures
+  use exact_sums, only: exact_sum_t
   use free_strains, only: free_resultants
   use internal_forces, only: add_internal_force
   use kinds, only: wp
@@ -11,6 +12,7 @@ module ply_failures
   use stacking, only: in_plane_section, section_stiffness
   use section_stiffnesses, only: visit_stiffness
   use models, only: model_t
+  use rank_totals, only: totals_of
   use failed_modes, only: failed_modes_t, new_failed_modes
   use text, only: to_text
   implicit none
@@ -165,9 +167,7 @@ contains
 
     energy = 0
     if (.not. allocated(self%bands)) return
-    energies = self%bands%dissipation()
-    call model%communicator%sum(energies)
-    energies = energies*model%mesh%multiplicity
+    energies = totals_of(model%communicator, self%bands%dissipation_sums())*model%mesh%multiplicity
     self%dissipated = self%dissipated + energies
     energy = sum(energies)
   end subroutine book
@@ -178,9 +178,7 @@ contains
     class(ply_failure_t), intent(inout) :: self
     type(model_t), intent(in) :: model
 
-    self%dissipated = self%bands%dissipated()
-    call model%communicator%sum(self%dissipated)
-    self%dissipated = self%dissipated*model%mesh%multiplicity
+    self%dissipated = totals_of(model%communicator, self%bands%dissipated())*model%mesh%multiplicity
   end subroutine total_dissipation
 
   !> Judges whether a step has followed how plies soften: the work on them is then what they store and dissipate. A step
@@ -347,6 +345,7 @@ contains
     !> (modes, plies)
     real(wp) :: areas(failure_modes, size(model%plies))
     real(wp) :: cells(model%elements%elements)
+    type(exact_sum_t) :: sums(failure_modes, size(model%plies))
     integer :: ply, mode, i
 
     areas = 0
@@ -356,10 +355,12 @@ contains
     end do
     do ply = 1, size(model%plies)
       associate (failed => self%failed(ply))
-        areas(:, ply) = [(sum(cells, mask=failed(mode, :)), mode=1, failure_modes)]*model%mesh%multiplicity
+        do mode = 1, failure_modes
+          call sums(mode, ply)%add(pack(cells, failed(mode, :)))
+        end do
       end associate
-      call model%communicator%sum(areas(:, ply))
     end do
+    areas = reshape(totals_of(model%communicator, [sums]), shape(areas))*model%mesh%multiplicity
   end function areas
 
   !> Saves or loads the failures.

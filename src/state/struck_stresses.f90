@@ -1,9 +1,11 @@
 !> The bending stress at the struck point, by whose rate the time step is chosen (section 3.4).
 module struck_stresses
+  use exact_sums, only: exact_sum_t
   use kinds, only: wp
   use element_batches, only: lanes, batch_of, lane_of
   use strain_recovery, only: mean_strains
   use models, only: model_t
+  use rank_totals, only: totals_of
   implicit none
   private
   public :: struck_stress
@@ -16,9 +18,9 @@ contains
     !> Displacement, ghosts up to date, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     real(wp) :: curvature(3), moment(3), strains(lanes, 8)
+    type(exact_sum_t) :: sums(2)
     integer :: i
 
-    curvature = 0
     do i = 1, size(model%struck_elements)
       associate (element => model%struck_elements(i))
         if (model%map%layered) then
@@ -27,12 +29,12 @@ contains
         else
           call mean_strains(model%elements, batch_of(element), model%scene%kinematics, displacement, strains)
         end if
-        curvature = curvature + strains(lane_of(element), 4:6)/model%struck_count
+        call sums(1)%add(strains(lane_of(element), 4))
+        call sums(2)%add(strains(lane_of(element), 5))
       end associate
     end do
-    call model%communicator%sum(curvature)
     ! The twist vanishes at the struck point, but not in the mean over the elements of one quarter.
-    curvature(3) = 0
+    curvature = [totals_of(model%communicator, sums)/model%struck_count, 0.0_wp]
     associate (d => model%section%stiffness(13:18))
       moment = [d(1)*curvature(1) + d(2)*curvature(2) + d(3)*curvature(3), &
                 d(2)*curvature(1) + d(4)*curvature(2) + d(5)*curvature(3), &
