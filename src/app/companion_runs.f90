@@ -10,6 +10,7 @@ module companion_runs
   use models, only: model_t
   use queue_signals, only: stop_signal
   use run_records, only: run_record_t, new_run_record
+  use step_intervals, only: steps_between_looks, steps_between_stages
   use time_stepping, only: time_stepper_t
   implicit none
   private
@@ -42,16 +43,19 @@ contains
     type(interface_figures_t), allocatable :: figures(:)
     type(time_stepper_t) :: stepper
     type(error_t), allocatable :: error
+    integer :: looks
 
     coarse = coarser_deck(deck)
     call create_model(coarse%scene_t, communicator, model, error)
     if (.not. allocated(error)) call stepper%start(model, coarse%stepping, coarse%linear_solver, .false., error)
     if (allocated(error)) return
     companion%record = new_run_record(model)
+    looks = steps_between_looks(coarse%stepping, model%mesh%elements())
     do while (stepper%now%time < coarse%stepping%time%end)
       call stepper%advance(model, coarse%stepping%time%end, error)
       if (allocated(error)) exit
-      call companion%record%observe(model, stepper%now)
+      call companion%record%observe(model, stepper%now, steps_between_stages(coarse%stepping))
+      if (modulo(stepper%now%step, looks) > 0) cycle
       if (communicator%any(stop_signal() /= 0)) exit
     end do
     companion%done = .not. (stepper%now%time < coarse%stepping%time%end)

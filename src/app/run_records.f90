@@ -65,28 +65,28 @@ contains
   end function new_run_record
 
   !> Looks at an accepted step. Collective.
-  subroutine observe(self, model, now)
+  subroutine observe(self, model, now, between_stages)
     !> The record
     class(run_record_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> The state reached
     type(state_t), intent(in) :: now
+    !> Steps between two looks at the interfaces
+    integer, intent(in) :: between_stages
     integer :: stages(size(self%stage)), zone
-    real(wp) :: time
 
-    time = shown_time(now%time)
     if (now%force > self%peak_force) then
       self%peak_force = now%force
-      self%peak_time = time
+      self%peak_time = now%time
     end if
     if (abs(now%deflection) > abs(self%deflection)) then
       self%deflection = now%deflection
-      self%deflection_time = time
+      self%deflection_time = now%time
     end if
-    call follow_contact(self, time, now%force)
-    self%time = time
+    call follow_contact(self, now%time, now%force)
+    self%time = now%time
     self%force = now%force
-    if (all(self%stage == stage_grown)) return
+    if (all(self%stage == stage_grown) .or. modulo(now%step, between_stages) > 0) return
     stages = stages_of(model, now%interfaces)
     do zone = 1, size(stages)
       if (self%stage(zone) < stage_damaged .and. stages(zone) >= stage_damaged) self%onset(:, zone) = seen(now)
@@ -122,8 +122,8 @@ contains
       if (self%time > 0) from = (self%time + time)/2
     end if
     if (.not. force > 0) to = (self%time + time)/2
-    self%contact_duration = shown_time(self%contact_duration + (to - from))
-    self%contact_end = shown_time(to)
+    self%contact_duration = self%contact_duration + (to - from)
+    self%contact_end = to
   end subroutine follow_contact
 
   !> Notes a warning.

@@ -20,6 +20,7 @@ module simulations
   use run_records, only: run_record_t, new_run_record
   use run_reports, only: log_echo, log_model, log_costs, summary
   use run_warnings, only: find_warnings
+  use step_intervals, only: steps_between_looks, steps_between_stages
   use run_summaries, only: summarise
   use summary_file, only: summary_ending
   use history_file, only: history_file_t
@@ -248,28 +249,49 @@ contains
     class(simulation_t), intent(inout) :: self
     !> Set if no step converges, a file cannot be written, or the run has to stop
     type(error_t), allocatable, intent(out) :: error
-    real(wp) :: event, closest, step_begun
+    real(wp) :: event, closest, begun
 
     call self%timers%stop('set-up')
     closest = self%stepper%smallest_step(self%model)
     do while (self%stepper%now%time < end_of(self))
       event = next_event([self%history_clock, self%fields_clock, self%checkpoint_clock], end_of(self), closest)
-      step_begun = wall_time()
+      begun = wall_time()
       call self%timers%start('steps')
-      call advance(self%deck, self%model, self%stepper, event, self%log, error)
+      call advance_to_look(self, event, error)
       call self%timers%stop('steps')
       if (allocated(error)) return
       call self%timers%start('results')
       call write_results(self, self%stepper%now%time >= event, error)
       call self%timers%stop('results')
       if (allocated(error)) return
-      call self%progress%update(self%log, self%stepper%now%time/end_of(self), 'step '// &
-                                to_text(self%stepper%now%step)//', time '//rounded_text(self%stepper%now%time))
-      call self%wall_limit%learn(wall_time() - step_begun)
+      if (self%progress%is_due(self%log, self%stepper%now%time/end_of(self))) &
+        call self%progress%update(self%log, self%stepper%now%time/end_of(self), 'step '// &
+                                  to_text(self%stepper%now%step)//', time '//rounded_text(self%stepper%now%time))
+      call self%wall_limit%learn(wall_time() - begun)
       call stop_if_due(self, error)
       if (allocated(error)) return
     end do
   end subroutine run
+
+  !> Takes steps up to the next one whose results are due or looked at: each implicit one.
+  subroutine advance_to_look(self, event, error)
+    !> The run
+    class(simulation_t), intent(inout) :: self
+    !> Time, or load factor, not to be passed
+    real(wp), intent(in) :: event
+    !> Set if no step converges
+    type(error_t), allocatable, intent(out) :: error
+    integer :: steps
+
+    steps = steps_between_looks(self%deck%stepping, self%model%mesh%elements())
+    if (self%history_clock%interval <= 0) steps = 1
+    do
+      call advance(self%deck, self%model, self%stepper, event, self%log, error)
+      if (allocated(error)) return
+      call self%record%observe(self%model, self%stepper%now, steps_between_stages(self%deck%stepping))
+      if (modulo(self%stepper%now%step, steps) == 0 .or. self%stepper%now%time >= event) return
+    end do
+  end subroutine advance_to_look
 
   !> Ends the run with a checkpoint if a queue's signal has come or another step might take too long.
   subroutine stop_if_due(self, error)
@@ -288,7 +310,7 @@ contains
               rounded_text(self%stepper%now%time)//'; go on with: implam restart '//self%base//checkpoint_ending)
   end subroutine stop_if_due
 
-  !> Writes what is due after an accepted step. The clocks move before the checkpoint is saved, so that
+  !> Writes what is due after a step that is looked at. The clocks move before the checkpoint is saved, so that
   !> a run that goes on from it does not write twice.
   subroutine write_results(self, at_event, error)
     !> The run
@@ -301,7 +323,6 @@ contains
     real(wp) :: closest
     logical :: row_due, fields_due, checkpoint_due
 
-    call self%record%observe(self%model, self%stepper%now)
     call self%stepper%look(self%model)
     call warn(self, error)
     row_due = self%history_clock%interval <= 0 .or. self%stepper%now%time >= end_of(self)

@@ -8,6 +8,7 @@ module summary_file
   use impactors, only: impactor_energy, new_impactor
   use kinds, only: wp
   use output_streams, only: output_stream_t
+  use output_clocks, only: shown_time
   use profiles, only: profile_row_t
   use run_errors, only: run_errors_t
   use run_figures, only: ending_t, run_figures_t
@@ -56,11 +57,11 @@ contains
     call json%put('code', ending%code)
     call json%put('message', ending%message)
     call json%close()
-    call json%put(trim(merge('load_factor_reached', 'time_reached       ', deck%has_static)), record%time)
+    call json%put(trim(merge('load_factor_reached', 'time_reached       ', deck%has_static)), shown_time(record%time))
     call json%put('accepted_steps', stepper%now%step)
     if (deck%has_impactor .and. .not. deck%has_static) call put_impact(json, stepper%now, record)
     call json%put('largest_deflection', record%deflection)
-    call json%put('largest_deflection_at', record%deflection_time)
+    call json%put('largest_deflection_at', shown_time(record%deflection_time))
     call put_errors(json, errors)
     call put_energies(json, deck, stepper%now)
     if (size(figures%interfaces) > 0) call put_interfaces(json, deck, stepper%now, record, figures)
@@ -83,10 +84,10 @@ contains
     type(run_record_t), intent(in) :: record
 
     call json%put('peak_force', record%peak_force)
-    call json%put('peak_force_at', record%peak_time)
+    call json%put('peak_force_at', shown_time(record%peak_time))
     call json%put('contacts', record%contacts)
-    call json%put('contact_duration', record%contact_duration)
-    call json%put('contact_until', record%contact_end)
+    call json%put('contact_duration', shown_time(record%contact_duration))
+    call json%put('contact_until', shown_time(record%contact_end))
     call json%put('in_contact', now%force > 0)
     call json%put('impactor_displacement', now%impactor%displacement)
     call json%put('impactor_velocity', now%impactor%velocity)

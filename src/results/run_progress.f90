@@ -29,6 +29,7 @@ module run_progress
     integer(long) :: shown_at = 0
   contains
     procedure :: start
+    procedure :: is_due
     procedure :: update
     procedure :: finish
   end type progress_t
@@ -48,7 +49,27 @@ contains
     self%shown_at = self%started
   end subroutine start
 
-  !> Shows how far the run is, if it is time to.
+  !> True: it is time to show how far the run is.
+  logical function is_due(self, log, fraction)
+    !> The progress
+    class(progress_t), intent(in) :: self
+    !> Where it is shown
+    type(log_t), intent(in) :: log
+    !> Part of the run done
+    real(wp), intent(in) :: fraction
+    integer(long) :: now, rate
+    real(wp) :: since
+
+    call system_clock(now, rate)
+    since = real(now - self%shown_at, wp)/rate
+    if (log%interactive) then
+      is_due = .not. since < between_bars
+    else
+      is_due = .not. (since < between_lines .and. fraction < self%shown + part_between_lines)
+    end if
+  end function is_due
+
+  !> Shows how far the run is.
   subroutine update(self, log, fraction, text)
     !> The progress
     class(progress_t), intent(inout) :: self
@@ -60,15 +81,8 @@ contains
     character(len=*), intent(in) :: text
     character(len=:), allocatable :: line
     integer(long) :: now, rate
-    real(wp) :: since
 
     call system_clock(now, rate)
-    since = real(now - self%shown_at, wp)/rate
-    if (log%interactive) then
-      if (since < between_bars) return
-    else
-      if (since < between_lines .and. fraction < self%shown + part_between_lines) return
-    end if
     line = to_text(int(100*fraction))//' %, '//time_left(self, fraction, real(now - self%started, wp)/rate)//' left'
     if (len(text) > 0) line = line//', '//text
     if (log%interactive) then

@@ -1,0 +1,42 @@
+!> How often what is around a step is looked at. Steps by central differences are many and cheap: what need not be done
+!> in each of them is done after some.
+module step_intervals
+  use kinds, only: wp
+  use stepping_parameters, only: is_explicit, stepping_t
+  implicit none
+  private
+  public :: steps_between_looks, steps_between_stages
+
+  !> Seconds that central differences take of one processor for an element of one layer in one step. Measured on the
+  !> elastic Sun-Chen plate and on the panels of `input/experiments` with gcc -O3 on one core of 2.6 GHz.
+  real(wp), parameter, public :: seconds_per_element = 0.55e-6_wp
+  !> Seconds of one processor in which a run looks at its ledger, its limits, and at signals and the time on the wall.
+  real(wp), parameter :: seconds_between_looks = 1
+  !> Most steps between two looks. With these their costs, those of about one step, do not count.
+  integer, parameter :: most_between_looks = 64
+  !> Steps of central differences between two looks at what of the interfaces is damaged. A look costs a twentieth of a
+  !> step, and damage is found as late as a hundredth of the time in which the force of a blow rises.
+  integer, parameter :: between_stages = 8
+
+contains
+
+  !> Steps between two looks. The same on any number of ranks and after a restart, as warnings are given then.
+  pure integer function steps_between_looks(stepping, elements) result(steps)
+    !> How steps are taken
+    type(stepping_t), intent(in) :: stepping
+    !> Number of elements of all layers
+    integer, intent(in) :: elements
+
+    steps = 1
+    if (is_explicit(stepping)) steps = max(1, min(most_between_looks, int(seconds_between_looks/ &
+      (seconds_per_element*elements))))
+  end function steps_between_looks
+
+  !> Steps between two looks at what of the interfaces is damaged.
+  pure integer function steps_between_stages(stepping) result(steps)
+    !> How steps are taken
+    type(stepping_t), intent(in) :: stepping
+
+    steps = merge(between_stages, 1, is_explicit(stepping))
+  end function steps_between_stages
+end module step_intervals
