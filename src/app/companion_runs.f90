@@ -10,6 +10,7 @@ module companion_runs
   use models, only: model_t
   use queue_signals, only: stop_signal
   use run_records, only: run_record_t, new_run_record
+  use stepping_parameters, only: end_of_run
   use step_intervals, only: steps_between_looks, steps_between_stages
   use time_stepping, only: time_stepper_t
   implicit none
@@ -51,14 +52,14 @@ contains
     if (allocated(error)) return
     companion%record = new_run_record(model)
     looks = steps_between_looks(coarse%stepping, model%mesh%elements())
-    do while (stepper%now%time < coarse%stepping%time%end)
-      call stepper%advance(model, coarse%stepping%time%end, error)
+    do while (stepper%now%time < end_of_run(coarse%stepping%time, companion%record%contact_end))
+      call stepper%advance(model, end_of_run(coarse%stepping%time, companion%record%contact_end), error)
       if (allocated(error)) exit
       call companion%record%observe(model, stepper%now, steps_between_stages(coarse%stepping))
       if (modulo(stepper%now%step, looks) > 0) cycle
       if (communicator%any(stop_signal() /= 0)) exit
     end do
-    companion%done = .not. (stepper%now%time < coarse%stepping%time%end)
+    companion%done = .not. (stepper%now%time < end_of_run(coarse%stepping%time, companion%record%contact_end))
     companion%velocity = stepper%now%impactor%velocity
     figures = figures_of(model, stepper%now%interfaces)
     companion%area = sum(figures%area)
@@ -79,6 +80,7 @@ contains
       time%step = min(coarser*time%step, time%end)
       time%step_max = max(time%step, min(coarser*time%step_max, time%end))
     end associate
+    coarse%stepping%central%longest = coarser*deck%stepping%central%longest
     coarse%stepping%adapt%tolerance = coarser**3*deck%stepping%adapt%tolerance
   end function coarser_deck
 end module companion_runs

@@ -21,7 +21,9 @@ module programs
   use root_output, only: print_lines
   use queue_signals, only: release_stop_signals
   use result_explain, only: explain_results, is_result_topic, result_topics_sentence
+  use explicit_costs, only: cost_lines
   use model_sizes, only: model_size_t, size_of_model
+  use stepping_parameters, only: is_explicit
   use queue_scripts, only: queue_job_t, write_queue_script
   use shell_pages, only: completion, manual_page
   use starter_decks, only: starter_name, write_starter
@@ -202,7 +204,7 @@ contains
     call print_lines(communicator, [line_t(command%target//': no errors.')])
     if (symmetry_sentence(deck) /= '') call print_lines(communicator, [line_t(symmetry_sentence(deck))])
     call print_lines(communicator, [scale_lines(deck), strength_lines(deck)])
-    model_size = size_of_model(deck%scene_t)
-    call print_lines(communicator, [line_t(model_size%sentence())])
+    model_size = size_of_model(deck%scene_t, is_explicit(deck%stepping))
+    call print_lines(communicator, [line_t(model_size%sentence()), cost_lines(deck, model_size)])
   end subroutine check
 end module programs

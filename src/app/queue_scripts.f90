@@ -8,6 +8,7 @@ module queue_scripts
   use new_files, only: write_new_file
   use kinds, only: wp
   use model_sizes, only: model_size_t, size_of_model
+  use stepping_parameters, only: is_explicit
   use text, only: line_t, append, to_text
   implicit none
   private
@@ -95,7 +96,7 @@ contains
 
     call read_sound_deck(job%target, deck, error)
     if (allocated(error)) return
-    found = size_of_model(deck%scene_t)
+    found = size_of_model(deck%scene_t, is_explicit(deck%stepping))
     job%name = deck%name
     job%checkpoint = deck%output%directory//'/'//deck%name//'_restart.h5'
     if (job%ranks == 0) job%ranks = found%ranks
@@ -122,7 +123,7 @@ contains
       job%tasks = job%tasks + 1
       call read_sound_deck(trim(path), deck, error)
       if (allocated(error)) exit
-      found = size_of_model(deck%scene_t)
+      found = size_of_model(deck%scene_t, is_explicit(deck%stepping))
       ! What `--program` of the sweep says decides on the ranks: one without it.
       if (job%ranks == 0) job%ranks = 1
       job%megabytes = max(job%megabytes, ceiling(spare_memory*found%megabytes_a_rank(job%ranks)))

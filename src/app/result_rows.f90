@@ -1,9 +1,10 @@
 !> The columns of the history, joined from the rows that each folder brings, and the values of an accepted step. The
-!> rows behind them come again for each interface that may delaminate, the last for each line.
+!> rows behind them come again for each interface that may delaminate and for each line.
 module result_rows
   use delamination_parameters, only: delamination_t
   use interface_columns, only: area_rows, area_values, border_rows, border_values, interface_rows, interface_values, &
                                release_rows, release_values, rig_rows, rig_values
+  use force_filters, only: force_filter_t
   use kinds, only: wp
   use line_columns, only: line_column_rows, line_values
   use line_loads, only: line_load_t
@@ -24,22 +25,27 @@ module result_rows
   character(len=result_row_length), parameter :: limit_rows(*) = [character(len=result_row_length) :: &
     'limits_passed | integer | - | Limits of the model that the run has passed so far; log and summary tell which, &
       &and when.']
+  !> What a low pass leaves of the force.
+  character(len=result_row_length), parameter :: filter_rows(*) = [character(len=result_row_length) :: &
+    'force_filtered | real | force | Contact force behind the low pass of &output force_filter.']
   !> Columns that every history has, of which the first seventeen are the public interface.
   character(len=*), parameter :: plate_rows(*) = [character(len=result_row_length) :: &
     motion_rows, area_rows, ledger_rows, step_rows, release_rows, iteration_rows, operator_rows, ply_rows, &
     border_rows, rig_rows, heat_rows, limit_rows, contact_rows]
   !> The table of columns in their order.
   character(len=*), parameter, public :: column_rows(*) = [character(len=result_row_length) :: &
-    plate_rows, interface_rows, line_column_rows]
+    plate_rows, interface_rows, line_column_rows, filter_rows]
 
 contains
 
   !> Names of the columns.
-  pure function column_names(delaminations, lines) result(names)
+  pure function column_names(delaminations, lines, filtered) result(names)
     !> Interfaces that may delaminate
     type(delamination_t), intent(in) :: delaminations(:)
     !> Lines of the deck; without, their columns are left out
     type(line_load_t), intent(in) :: lines(:)
+    !> True: the force passes a filter, too
+    logical, intent(in) :: filtered
     !> In the order of the table
     character(len=result_name_length), allocatable :: names(:)
     integer :: zone, line
@@ -52,6 +58,7 @@ contains
     do line = 1, size(lines)
       names = [names, numbered(line_column_rows(2:), line)]
     end do
+    if (filtered) names = [names, names_of(filter_rows)]
   end function column_names
 
   !> Names of some rows.
@@ -96,15 +103,18 @@ contains
   end function are_whole
 
   !> Which columns hold whole numbers.
-  pure function column_whole(interfaces, lines) result(whole)
+  pure function column_whole(interfaces, lines, filtered) result(whole)
     !> Number of interfaces that may delaminate, and of lines
     integer, intent(in) :: interfaces, lines
+    !> True: the force passes a filter, too
+    logical, intent(in) :: filtered
     !> In the order of the table
     logical, allocatable :: whole(:)
     integer :: i
 
     whole = [are_whole(plate_rows), (are_whole(interface_rows), i=1, interfaces)]
     if (lines > 0) whole = [whole, are_whole(line_column_rows(:1)), (are_whole(line_column_rows(2:)), i=1, lines)]
+    if (filtered) whole = [whole, are_whole(filter_rows)]
   end function column_whole
 
   !> Forces of pressure and lines at the owned points.
@@ -125,12 +135,14 @@ contains
   end function loads_on
 
   !> Row of the state reached. Collective.
-  function row_of(model, stepper, limits) result(row)
+  function row_of(model, stepper, limits, filter) result(row)
     type(model_t), intent(in) :: model
     !> The time stepper
     type(time_stepper_t), intent(in) :: stepper
     !> Limits of the model passed so far
     integer, intent(in) :: limits
+    !> The low pass of the force
+    type(force_filter_t), intent(in) :: filter
     !> Values in the order of the columns
     real(wp), allocatable :: row(:)
     real(wp), allocatable :: loads(:, :)
@@ -144,6 +156,7 @@ contains
              rig_values(model, now%interfaces, now%motion, loads), heat_values(now%ledger), &
              real(limits, wp), model%pressed_area(), interface_values(model, now%interfaces), line_values(model, now)]
     end associate
+    if (filter%frequency > 0) row = [row, filter%force]
     row(1) = shown_time(row(1))
   end function row_of
 end module result_rows

@@ -1,6 +1,7 @@
 !> What a run remembers of its course for the summary at its end: extremes, contacts, onsets and warnings.
 module run_records
   use archives, only: archive_t
+  use force_filters, only: force_filter_t
   use interface_figures, only: stage_damaged, stage_grown, stage_intact, stages_of
   use kinds, only: wp
   use models, only: model_t
@@ -22,6 +23,10 @@ module run_records
   type :: run_record_t
     !> Largest contact force and its time
     real(wp) :: peak_force = 0, peak_time = 0
+    !> Low pass of the force
+    type(force_filter_t) :: filter
+    !> Largest force that it lets pass, and its time
+    real(wp) :: peak_filtered = 0, peak_filtered_time = 0
     !> Largest deflection of the struck point, either way, with its sign, and its time
     real(wp) :: deflection = 0, deflection_time = 0
     !> How often impactor and plate came into contact
@@ -78,6 +83,11 @@ contains
     if (now%force > self%peak_force) then
       self%peak_force = now%force
       self%peak_time = now%time
+    end if
+    call self%filter%advance(now%time - self%time, now%force)
+    if (self%filter%force > self%peak_filtered) then
+      self%peak_filtered = self%filter%force
+      self%peak_filtered_time = now%time
     end if
     if (abs(now%deflection) > abs(self%deflection)) then
       self%deflection = now%deflection
@@ -163,6 +173,9 @@ contains
 
     call archive%item('record/peak_force', self%peak_force)
     call archive%item('record/peak_time', self%peak_time)
+    call self%filter%visit(archive)
+    call archive%item('record/peak_filtered', self%peak_filtered)
+    call archive%item('record/peak_filtered_time', self%peak_filtered_time)
     call archive%item('record/deflection', self%deflection)
     call archive%item('record/deflection_time', self%deflection_time)
     call archive%item('record/contacts', self%contacts)

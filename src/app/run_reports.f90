@@ -1,6 +1,6 @@
 !> What a run tells of itself in its log: the keys in effect at its start, what it took at its end.
 module run_reports
-  use text, only: line_t, to_text
+  use text, only: line_t, rounded_text, to_text
   use logger, only: log_t
   use models, only: model_t
   use profiles, only: part_length, profile_row_t
@@ -53,14 +53,32 @@ contains
     if (allocated(stepper%explicit)) then
       call log%note('Model: '//to_text(model%mesh%elements())//' elements, '//to_text(count(.not. model%held))// &
                     ' unknowns, '//to_text(model%communicator%size)//' rank(s).')
+      call log_stable_step(stepper, log)
       return
     end if
     associate (operator => stepper%operator)
-    call log%note('Model: '//to_text(model%mesh%elements())//' elements, '//to_text(operator%numbering%total)// &
-                  ' unknowns, '//to_text(model%communicator%size)//' rank(s), factored by '// &
-                  operator%solver%package_used()//'.')
+      call log%note('Model: '//to_text(model%mesh%elements())//' elements, '//to_text(operator%numbering%total)// &
+                    ' unknowns, '//to_text(model%communicator%size)//' rank(s), factored by '// &
+                    operator%solver%package_used()//'.')
     end associate
   end subroutine log_model
+
+  !> Says what sets the stable step, and whether the deck's is longer.
+  subroutine log_stable_step(stepper, log)
+    !> The time stepper, by central differences
+    type(time_stepper_t), intent(in) :: stepper
+    !> The log
+    type(log_t), intent(inout) :: log
+    real(wp) :: stable
+
+    associate (explicit => stepper%explicit, parameters => stepper%explicit%parameters)
+      stable = 2/explicit%frequency
+      call log%note('Stable step '//rounded_text(stable)//' by element '//to_text(explicit%element)// &
+                    ', less what the contact needs; steps of '//rounded_text(parameters%step_factor)//' of it at most.')
+      if (parameters%longest > parameters%step_factor*stable) &
+        call log%note('The step of the deck, '//rounded_text(parameters%longest)//', is longer and is not taken.')
+    end associate
+  end subroutine log_stable_step
 
   !> Lists in the log what the profile has found, the parts that took longest first.
   subroutine log_profile(rows, log)

@@ -4,8 +4,10 @@ module run_warnings
   use deck_contents, only: deck_t
   use delamination_parameters, only: delamination_t
   use energy_watches, only: energy_watch_t, energy_created, energy_taken, energy_unaccounted, much
+  use errors, only: error_t, exit_convergence, fail
   use kinds, only: wp
   use layer_extents, only: cells_ahead, cells_at_once, thicknesses_ahead
+  use logger, only: log_t
   use mesh_parameters, only: edge_clamped
   use models, only: model_t
   use ply_damage_parameters, only: failure_modes, fibre_failure
@@ -15,9 +17,10 @@ module run_warnings
   use short_numbers, only: short_text
   use states, only: state_t
   use text, only: line_t, append, rounded_text, to_text
+  use time_stepping, only: time_stepper_t
   implicit none
   private
-  public :: find_warnings, warnings_given
+  public :: give_warnings, warnings_given
 
   !> Rotation up to which its cosine counts as 1, as von Karman's strains take it: 2 % are lost there.
   real(wp), parameter :: steepest = 0.2_wp
@@ -27,6 +30,34 @@ module run_warnings
   real(wp), parameter :: rounded_off = 1.0e-9_wp
 
 contains
+
+  !> Warns, once each, of what a user must not overlook; a strict run ends there. Collective.
+  subroutine give_warnings(deck, model, stepper, record, watch, log, error)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    type(model_t), intent(in) :: model
+    !> What has been reached
+    type(time_stepper_t), intent(in) :: stepper
+    !> Receives what is told
+    type(run_record_t), intent(inout) :: record
+    !> Looks after the energy that integrators create
+    type(energy_watch_t), intent(inout) :: watch
+    !> Where it is told
+    type(log_t), intent(inout) :: log
+    !> Set if the run is strict and has passed a limit of the model
+    type(error_t), allocatable, intent(out) :: error
+    type(line_t), allocatable :: told(:)
+    integer :: i
+
+    call find_warnings(deck, model, stepper%now, stepper%errs, record, watch, told)
+    do i = 1, size(told)
+      if (deck%strict) then
+        call fail(error, exit_convergence, told(i)%text)
+      else
+        call log%warning(told(i)%text)
+      end if
+    end do
+  end subroutine give_warnings
 
   !> Finds the warnings that an accepted step calls for and notes them. Collective.
   subroutine find_warnings(deck, model, now, step_errs, record, watch, told)

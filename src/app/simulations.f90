@@ -1,8 +1,8 @@
 !> A run: initialise, step until the end, finalise.
 module simulations
   use kinds, only: wp
-  use errors, only: error_t, fail, exit_stopped, exit_convergence
-  use text, only: line_t, rounded_text, to_text
+  use errors, only: error_t, fail, exit_stopped
+  use text, only: rounded_text, to_text
   use files, only: make_directory, remove_file
   use logger, only: log_t
   use profiles, only: profile_t, wall_time
@@ -19,8 +19,9 @@ module simulations
   use run_progress, only: progress_t
   use run_records, only: run_record_t, new_run_record
   use run_reports, only: log_echo, log_model, log_costs, summary
-  use run_warnings, only: find_warnings
-  use step_intervals, only: steps_between_looks, steps_between_stages
+  use run_steps, only: advance_to_look, row_is_due
+  use run_warnings, only: give_warnings
+  use stepping_parameters, only: end_of_run
   use run_summaries, only: summarise
   use summary_file, only: summary_ending
   use history_file, only: history_file_t
@@ -30,7 +31,7 @@ module simulations
   use queue_signals, only: stop_signal
   use output_clocks, only: clock_t, next_event, shown_time
   use energy_watches, only: energy_watch_t
-  use layer_following, only: advance, visit_evolving
+  use layer_following, only: visit_evolving
   use result_rows, only: row_of, column_names, column_whole
   use field_results, only: field_rows, part_of, write_fields, write_mesh
   implicit none
@@ -99,13 +100,16 @@ contains
     !> Set if files cannot be written or the model cannot be set up
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: retired
+    logical :: filtered
 
     call prepare(self, deck, communicator, profile, append=.false., error=error)
     if (.not. allocated(error)) call retire_checkpoint(communicator, self%base//checkpoint_ending, retired, error)
     if (allocated(error)) return
     if (retired /= '') call self%log%note('The checkpoint of an earlier run is now '//retired//'.')
-    call self%history%create(communicator, self%base//'_history.csv', column_names(deck%delaminations, deck%lines), &
-                             column_whole(size(deck%delaminations), size(deck%lines)), error)
+    filtered = deck%output%force_filter > 0
+    call self%history%create(communicator, self%base//'_history.csv', &
+                             column_names(deck%delaminations, deck%lines, filtered), &
+                             column_whole(size(deck%delaminations), size(deck%lines), filtered), error)
     if (allocated(error)) return
     call self%fields%create(communicator, self%base, self%provenance, part_of(self%deck), error)
     if (allocated(error)) return
@@ -167,6 +171,7 @@ contains
     call self%stepper%start(self%model, deck%stepping, deck%linear_solver, append, error)
     if (allocated(error)) return
     self%record = new_run_record(self%model)
+    self%record%filter%frequency = deck%output%force_filter
     call log_model(self%model, self%stepper, self%log)
     call self%progress%start(0.0_wp)
   end subroutine prepare
@@ -188,6 +193,7 @@ contains
     type(checkpoint_archive_t) :: archive
     real(wp), allocatable :: last_row(:)
     integer :: rows
+    logical :: filtered
 
     call prepare(self, deck, communicator, profile, append=.true., error=error)
     if (allocated(error)) return
@@ -200,8 +206,10 @@ contains
     call self%fields%check_deck(communicator, self%base, deck%text, error)
     if (allocated(error)) return
     last_row = self%history%last_row
-    call self%history%resume(communicator, self%base//'_history.csv', column_names(deck%delaminations, deck%lines), &
-                             column_whole(size(deck%delaminations), size(deck%lines)), rows, last_row, error)
+    filtered = deck%output%force_filter > 0
+    call self%history%resume(communicator, self%base//'_history.csv', &
+                             column_names(deck%delaminations, deck%lines, filtered), &
+                             column_whole(size(deck%delaminations), size(deck%lines), filtered), rows, last_row, error)
     if (allocated(error)) return
     if (self%history%rows /= rows) &
       call self%log%warning('The history before the checkpoint is not there; it goes on from here.')
@@ -240,7 +248,7 @@ contains
     class(simulation_t), intent(in) :: self
 
     end_of = 1
-    if (.not. self%deck%has_static) end_of = self%deck%stepping%time%end
+    if (.not. self%deck%has_static) end_of = end_of_run(self%deck%stepping%time, self%record%contact_end)
   end function end_of
 
   !> Steps until the end, or until a queue's signal or the time on the wall ends the run.
@@ -257,7 +265,7 @@ contains
       event = next_event([self%history_clock, self%fields_clock, self%checkpoint_clock], end_of(self), closest)
       begun = wall_time()
       call self%timers%start('steps')
-      call advance_to_look(self, event, error)
+      call advance_to_look(self%deck, self%model, self%stepper, self%record, event, self%log, error)
       call self%timers%stop('steps')
       if (allocated(error)) return
       call self%timers%start('results')
@@ -272,26 +280,6 @@ contains
       if (allocated(error)) return
     end do
   end subroutine run
-
-  !> Takes steps up to the next one whose results are due or looked at: each implicit one.
-  subroutine advance_to_look(self, event, error)
-    !> The run
-    class(simulation_t), intent(inout) :: self
-    !> Time, or load factor, not to be passed
-    real(wp), intent(in) :: event
-    !> Set if no step converges
-    type(error_t), allocatable, intent(out) :: error
-    integer :: steps
-
-    steps = steps_between_looks(self%deck%stepping, self%model%mesh%elements())
-    if (self%history_clock%interval <= 0) steps = 1
-    do
-      call advance(self%deck, self%model, self%stepper, event, self%log, error)
-      if (allocated(error)) return
-      call self%record%observe(self%model, self%stepper%now, steps_between_stages(self%deck%stepping))
-      if (modulo(self%stepper%now%step, steps) == 0 .or. self%stepper%now%time >= event) return
-    end do
-  end subroutine advance_to_look
 
   !> Ends the run with a checkpoint if a queue's signal has come or another step might take too long.
   subroutine stop_if_due(self, error)
@@ -324,8 +312,8 @@ contains
     logical :: row_due, fields_due, checkpoint_due
 
     call self%stepper%look(self%model)
-    call warn(self, error)
-    row_due = self%history_clock%interval <= 0 .or. self%stepper%now%time >= end_of(self)
+    call give_warnings(self%deck, self%model, self%stepper, self%record, self%energy_watch, self%log, error)
+    row_due = row_is_due(self%deck%output, self%stepper%now%step) .or. self%stepper%now%time >= end_of(self)
     fields_due = .false.
     checkpoint_due = .false.
     if (at_event) then
@@ -338,35 +326,26 @@ contains
     end if
     if (allocated(error)) then
       ! The row that passed the limit ends the history.
-      call self%history%write_row(row_of(self%model, self%stepper, size(self%record%warning_kinds)), row_error)
+      call self%history%write_row(row_reached(self), row_error)
       if (.not. allocated(row_error)) call self%history%flush(row_error)
       return
     end if
-    if (row_due) call self%history%write_row(row_of(self%model, self%stepper, size(self%record%warning_kinds)), error)
+    if (row_due) call self%history%write_row(row_reached(self), error)
     if (allocated(error)) return
     if (fields_due) call write_fields(self%model, self%stepper, self%deck%output, self%fields, error)
     if (allocated(error)) return
     if (checkpoint_due) call save_checkpoint(self, error)
   end subroutine write_results
 
-  !> Warns, once each, of what a user must not overlook; a strict run ends there.
-  subroutine warn(self, error)
+  !> Row of the state reached. Collective.
+  function row_reached(self) result(row)
     !> The run
-    class(simulation_t), intent(inout) :: self
-    !> Set if the run is strict and has passed a limit of the model
-    type(error_t), allocatable, intent(out) :: error
-    type(line_t), allocatable :: told(:)
-    integer :: i
+    class(simulation_t), intent(in) :: self
+    !> In the order of the columns
+    real(wp), allocatable :: row(:)
 
-    call find_warnings(self%deck, self%model, self%stepper%now, self%stepper%errs, self%record, self%energy_watch, told)
-    do i = 1, size(told)
-      if (self%deck%strict) then
-        call fail(error, exit_convergence, told(i)%text)
-      else
-        call self%log%warning(told(i)%text)
-      end if
-    end do
-  end subroutine warn
+    row = row_of(self%model, self%stepper, size(self%record%warning_kinds), self%record%filter)
+  end function row_reached
 
   !> Saves a checkpoint.
   subroutine save_checkpoint(self, error)

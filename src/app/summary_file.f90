@@ -4,6 +4,7 @@ module summary_file
   use delamination_parameters, only: law_cohesive
   use errors, only: error_t, exit_files, fail
   use files, only: rename_file
+  use force_filters, only: filter_kind
   use json_text, only: json_t
   use impactors, only: impactor_energy, new_impactor
   use kinds, only: wp
@@ -85,6 +86,14 @@ contains
 
     call json%put('peak_force', record%peak_force)
     call json%put('peak_force_at', shown_time(record%peak_time))
+    if (record%filter%frequency > 0) then
+      call json%open_object('force_filter')
+      call json%put('kind', filter_kind)
+      call json%put('frequency', record%filter%frequency)
+      call json%put('peak_force', record%peak_filtered)
+      call json%put('peak_force_at', shown_time(record%peak_filtered_time))
+      call json%close()
+    end if
     call json%put('contacts', record%contacts)
     call json%put('contact_duration', shown_time(record%contact_duration))
     call json%put('contact_until', shown_time(record%contact_end))

@@ -78,6 +78,10 @@ contains
 
     call tell(lines, 'peak force', rounded_text(record%peak_force)//' at time '//rounded_text(record%peak_time)// &
               within(errors%peak_force, record%peak_force)//within(errors%peak_time))
+    if (record%filter%frequency > 0) &
+      call tell(lines, 'filtered', rounded_text(record%peak_filtered)//' at time '// &
+                rounded_text(record%peak_filtered_time)//' behind the low pass of '// &
+                rounded_text(record%filter%frequency))
     if (now%force > 0) then
       call tell(lines, 'time in contact', rounded_text(record%contact_duration)//repeated(record%contacts)// &
                 ', and still at the end'//within(errors%contact_duration))

@@ -15,6 +15,7 @@ module deck_accuracy
   use scene_pilots, only: scene_pilot_t, start_pilot, contact_end, largest_step, largest_cell
   use scene_scales, only: scene_scales_t, scales_of, contact_side, has_blow
   use short_numbers, only: short_text
+  use stepping_parameters, only: is_explicit, past_contact
   use text, only: line_t, append, to_text
   use time_deck, only: time_group, key_end, key_step
   implicit none
@@ -23,8 +24,6 @@ module deck_accuracy
 
   !> Error of the history allowed over that of the peak: 3 % and 1 %. Mesh and step get half of both each.
   real(wp), parameter :: history_over_peak = 3, share = 0.5_wp
-  !> Time from touch to the end of the run over that to the end of the contact.
-  real(wp), parameter :: beyond_contact = 1.25_wp
   !> Most elements along one direction of the part modelled, twice that of a whole plate: more take hours.
   integer, parameter :: most_along = 100
   !> Waves of first contact on either side of the patch that have the elements asked for, where they are too many for
@@ -43,9 +42,11 @@ module deck_accuracy
 contains
 
   !> Keys that only `accuracy` makes up for.
-  subroutine check_left_out(settings, problems)
+  subroutine check_left_out(settings, explicit, problems)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
+    !> True: central differences find their step, and the end by the contact
+    logical, intent(in) :: explicit
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
 
@@ -56,7 +57,7 @@ contains
       call problems%error(0, mesh_group, '', '&'//mesh_group//' is missing; `implam explain '//mesh_group// &
                           '` shows what it takes.')
     end if
-    if (.not. settings%has_group(time_group)) return
+    if (explicit .or. .not. settings%has_group(time_group)) return
     call require(time_group, key_end, '1 real value > 0')
     call require(time_group, key_step, '1 real value > 0')
 
@@ -84,7 +85,7 @@ contains
     type(scene_scales_t) :: scales
 
     if (problems%errors() > 0) return
-    allocate (deck%reasons(0))
+    if (.not. allocated(deck%reasons)) allocate (deck%reasons(0))
     scales = scales_of(deck%scene_t)
     if (has_blow(deck%scene_t) .and. scales%area_mass > 0) then
       call choose_for_impact(deck, scales, problems)
@@ -120,8 +121,9 @@ contains
       pilot = start_pilot(deck%scene_t, scales)
       first = contact_end(pilot, end)
     end if
+    deck%stepping%time%follows_contact = is_explicit(deck%stepping) .and. .not. end > 0
     if (.not. end > 0) then
-      call choose_one(deck, time_group, key_end, beyond_contact*first%last_contact)
+      call choose_one(deck, time_group, key_end, past_contact*first%last_contact)
       end = deck%settings%real_of(time_group, key_end)
       call append(deck%reasons, 'End '//short_text(end)//': the contact, '//to_text(first%contacts)// &
                   ' time(s), is over at '//short_text(first%last_contact)//' in a pilot calculation by modes.')
@@ -130,17 +132,29 @@ contains
     follows = .not. step > 0
     if (follows) then
       call largest_step(pilot, end, bounds, step, error)
-      call choose_one(deck, time_group, key_step, step)
-      step = deck%settings%real_of(time_group, key_step)
-      call append(deck%reasons, 'Step '//short_text(step)//': '//to_text(ceiling(end/step))// &
-                  ' steps; by pilot calculations it changes the force history by '//short_text(100*error(2))//' %.')
+      if (.not. is_explicit(deck%stepping)) call choose_step(deck, end, error(2), step)
     end if
-    call choose_integrator(deck)
+    if (.not. is_explicit(deck%stepping)) call choose_integrator(deck)
     call choose_clocks(deck, step, end)
     if (deck%settings%is_given(mesh_group, key_elements)) return
-    call choose_elements(deck, largest_cell(pilot, step, min(end, beyond_contact*first%last_contact), bounds, &
+    call choose_elements(deck, largest_cell(pilot, step, min(end, past_contact*first%last_contact), bounds, &
                                             follows), scales, problems)
   end subroutine choose_for_impact
+
+  !> Sets the step.
+  subroutine choose_step(deck, end, error, step)
+    !> The deck
+    type(deck_t), intent(inout) :: deck
+    !> End of the run, and the history's error with the step
+    real(wp), intent(in) :: end, error
+    !> The step; receives the one that is set
+    real(wp), intent(inout) :: step
+
+    call choose_one(deck, time_group, key_step, step)
+    step = deck%settings%real_of(time_group, key_step)
+    call append(deck%reasons, 'Step '//short_text(step)//': '//to_text(ceiling(end/step))// &
+                ' steps; by pilot calculations it changes the force history by '//short_text(100*error)//' %.')
+  end subroutine choose_step
 
   !> Mesh, and in time the step, of a plate under pressure.
   subroutine choose_for_pressure(deck, scales, problems)
@@ -157,7 +171,7 @@ contains
     if (.not. deck%settings%is_given(time_group, key_end)) then
       call problems%error(deck%settings%line_of_group(time_group), time_group, key_end, '&'//time_group//' '// &
                           key_end//' is missing; &case accuracy chooses it where an impactor comes with a velocity.', 1)
-    else if (.not. deck%settings%is_given(time_group, key_step)) then
+    else if (.not. (deck%settings%is_given(time_group, key_step) .or. is_explicit(deck%stepping))) then
       call choose_one(deck, time_group, key_step, part_of_period*scales%first_period*sqrt(deck%accuracy))
     end if
   end subroutine choose_for_pressure

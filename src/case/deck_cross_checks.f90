@@ -27,6 +27,7 @@ module deck_cross_checks
   use support_deck, only: check_static_rigs
   use short_numbers, only: short_text
   use static_deck, only: static_group, key_dissipation
+  use stepping_parameters, only: is_explicit
   use text, only: line_t, append, joined, words_of
   use time_deck, only: time_group
   implicit none
@@ -192,6 +193,7 @@ contains
     if (.not. deck%has_time) return
     if (.not. problems%concern(time_group)) &
       call check_intervals(deck%settings, deck%stepping%time%step, deck%stepping%time%end, problems)
+    if (is_explicit(deck%stepping)) return
     if (size(deck%delaminations) > 0 .and. all(deck%delaminations%growth == growth_one_per_step)) return
     call remark_idle(deck%settings, problems, adapt_group, key_growth_step, &
                      'has no effect without growth = ''one_per_step''.')

@@ -5,10 +5,12 @@ module deck_reader
   use deck_accuracy, only: check_left_out, choose_by_accuracy
   use deck_contents, only: deck_t
   use deck_crack_bands, only: check_crack_bands
+  use deck_central_differences, only: choose_for_central_differences, find_stable_step
   use deck_cross_checks, only: check_across_groups
   use deck_interface_remarks, only: check_interfaces
   use deck_process_zones, only: check_process_zones, settle_flaws
   use deck_extents, only: check_sizes, check_extents
+  use deck_explicit_checks, only: check_central_differences
   use deck_first_zones, only: check_left_out_zones, set_first_zones
   use deck_problems, only: problems_t
   use deck_refinements, only: refine
@@ -42,11 +44,10 @@ module deck_reader
   use pressure_deck, only: fill_pressure, check_pressure, pressure_group
   use static_deck, only: fill_static, static_group
   use rigs, only: window_lines
-  use plate_options, only: mass_lumped
   use stepping_parameters, only: follows_error, is_explicit
   use support_deck, only: fill_supports, check_rigs
   use thermal_deck, only: fill_thermal, check_thermal, thermal_group
-  use time_deck, only: fill_time, check_time, time_group
+  use time_deck, only: fill_time, check_time, integrator_of, time_group
   implicit none
   private
   public :: deck_t, problems_t, read_deck, read_deck_text
@@ -100,19 +101,22 @@ contains
     call settle(scan, vocabulary, deck%settings, problems)
     if (problems%is_full()) return
     call note_groups(deck)
-    call check_left_out(deck%settings, problems)
     call fill_bodies(deck, problems)
+    deck%stepping%time%integrator = integrator_of(deck%settings)
+    call check_left_out(deck%settings, is_explicit(deck%stepping), problems)
     call fill_loads(deck, problems)
     call fill_steps(deck)
     call refine(deck)
     call check_groups(deck, problems)
     call check_sizes(deck, problems)
     call check_across_groups(deck, problems)
+    if (deck%has_time .and. is_explicit(deck%stepping)) call check_central_differences(deck, problems)
     call check_left_out_zones(deck, problems)
     call set_first_zones(deck, problems)
     call check_extents(deck, problems)
     call check_interfaces(deck, problems)
     call check_correction(deck, problems)
+    if (deck%has_time .and. is_explicit(deck%stepping)) call find_stable_step(deck, problems)
     if (deck%has_ply_damage) call check_crack_bands(deck, problems)
     call check_process_zones(deck, problems)
     call settle_flaws(deck, problems)
@@ -209,10 +213,10 @@ contains
       call fill_indentation(deck%settings, deck%impactor%radius, compliance, deck%indentation)
     end if
     if (deck%accuracy > 0) call choose_by_accuracy(deck, problems)
+    if (deck%has_time .and. is_explicit(deck%stepping)) call choose_for_central_differences(deck, problems)
     call fill_adapt(deck%settings, deck%stepping%adapt)
     if (deck%has_time) call fill_time(deck%settings, natural_rho_infinity(deck), follows_error(deck%stepping%adapt), &
                                       deck%stepping%time, deck%stepping%central)
-    if (is_explicit(deck%stepping)) deck%mesh%mass = mass_lumped
     if (deck%impactor%travel > 0 .and. deck%has_time .and. .not. deck%settings%is_given(impactor_group, impactor_key_rise)) &
       deck%impactor%rise = usual_rise*deck%stepping%time%end
     call fill_pressure(deck%settings, deck%stepping%time%end, deck%pressure)

@@ -2,6 +2,7 @@
 module deck_refinements
   use case_deck, only: case_group, key_refine
   use deck_contents, only: deck_t
+  use stepping_parameters, only: is_explicit
   use text, only: line_t, append, lower_case, to_text
   implicit none
   private
@@ -29,6 +30,8 @@ contains
       time%step_min = min(time%step_min, time%step)
       time%step_max = time%step_max/parts
     end associate
+    deck%stepping%central%step_factor = deck%stepping%central%step_factor/parts
+    deck%stepping%central%longest = deck%stepping%central%longest/parts
     deck%stepping%adapt%tolerance = deck%stepping%adapt%tolerance/parts**3
     deck%stepping%static_steps = parts*deck%stepping%static_steps
     if (.not. allocated(deck%reasons)) allocate (deck%reasons(0))
@@ -43,7 +46,9 @@ contains
     !> Such as , steps of 2e-6
     character(len=:), allocatable :: clause
 
-    if (deck%has_static) then
+    if (is_explicit(deck%stepping)) then
+      clause = ', '//to_text(deck%stepping%central%step_factor)//' of the stable step'
+    else if (deck%has_static) then
       clause = ', '//to_text(deck%stepping%static_steps)//' load step(s)'
     else
       clause = ', steps of '//to_text(deck%stepping%time%step)

@@ -21,13 +21,13 @@ module delamination_deck
   !> Names that checks across groups use.
   character(len=*), parameter, public :: key_zone = 'zone', key_starter = 'starter', key_toughness = 'G_c', &
                                          key_toughness_shear = 'G_IIc', key_strip = 'starter_strip', &
-                                         key_starter_at = 'starter_at', key_smoothing = 'smoothing', &
+                                         key_starter_at = 'starter_at', key_smoothing = 'smoothing', key_law = 'law', &
                                          key_flaws = 'cracks_as_flaws', key_shear_cracks = 'shear_cracks'
   character(len=*), parameter :: group = delamination_group
   !> Keys that have no effect on a cohesive interface, and on one with a front.
   character(len=*), parameter :: fronts_only = 'energy_release growth tie penalty unloading smoothing contact_exponent'
-  character(len=*), parameter :: &
-    law_only = 'strength_opening strength_shear stiffness friction '//key_flaws//' '//key_shear_cracks
+  character(len=*), parameter :: law_only = 'strength_opening strength_shear stiffness friction '//key_flaws// &
+                                            ' '//key_shear_cracks
   !> Row of the group.
   character(len=group_row_length), parameter, public :: delamination_group_row = &
     'delamination | several | Interfaces that may delaminate; one group for those that are alike.'
@@ -174,9 +174,9 @@ contains
     associate (below => delamination%below_ply)
       if (below >= 1 .and. below < size(strengths, 2)) weaker = minval(strengths(:, below:below + 1), dim=2)
     end associate
-    if (.not. settings%is_given(group, 'law', place)) call settings%derive(group, 'law', &
+    if (.not. settings%is_given(group, key_law, place)) call settings%derive(group, key_law, &
       trim(merge('cohesive', 'front   ', suits_cohesive(settings, place, weaker))), .true., place)
-    delamination%law = code_of(settings%text_of(group, 'law', place), 'front cohesive', [law_front, law_cohesive])
+    delamination%law = code_of(settings%text_of(group, key_law, place), 'front cohesive', [law_front, law_cohesive])
     if (delamination%law /= law_cohesive) return
     delamination%stiffness = settings%real_of(group, 'stiffness', place)
     call fill_strength(settings, place, 'strength_opening', weaker(1), delamination%strength_opening)
@@ -314,7 +314,7 @@ contains
     type(problems_t), intent(inout) :: problems
 
     if (delamination%law /= law_cohesive) then
-      if (.not. (settings%is_given(group, 'law', place) .or. asks_for_front(settings, place))) &
+      if (.not. (settings%is_given(group, key_law, place) .or. asks_for_front(settings, place))) &
         call remark(settings, problems, group, '', 'a front with a starter of the usual size holds the faces, as a '// &
                     'cohesive law needs strength_opening and strength_shear, or YT and S12 of the materials.', place)
       return

@@ -35,6 +35,8 @@ contains
     if (.not. allocated(delaminations)) return
     do i = 1, size(delaminations)
       associate (interface => delaminations(i))
+        ! A deck whose scales are looked at before it is checked may name a ply that is none.
+        if (interface%below_ply < 1 .or. interface%below_ply > size(strengths, 2)) cycle
         if (interface%strength_shear > 0) strengths(1, interface%below_ply) = interface%strength_shear
         if (interface%strength_opening > 0) strengths(2, interface%below_ply) = interface%strength_opening
       end associate

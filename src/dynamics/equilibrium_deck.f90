@@ -8,6 +8,8 @@ module equilibrium_deck
   private
   public :: fill_equilibrium
 
+  !> Name that checks across groups use.
+  character(len=*), parameter, public :: solver_group = 'solver'
   !> Row of the group.
   character(len=group_row_length), parameter, public :: solver_group_row = &
     'solver | settings | Convergence of equilibrium and linear algebra.'
@@ -27,7 +29,7 @@ contains
     !> Receives them
     type(equilibrium_t), intent(inout) :: equilibrium
 
-    equilibrium%tolerance = settings%real_of('solver', 'tolerance')
-    equilibrium%max_iterations = settings%integer_of('solver', 'max_iterations')
+    equilibrium%tolerance = settings%real_of(solver_group, 'tolerance')
+    equilibrium%max_iterations = settings%integer_of(solver_group, 'max_iterations')
   end subroutine fill_equilibrium
 end module equilibrium_deck

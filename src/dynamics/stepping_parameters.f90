@@ -4,7 +4,8 @@ module stepping_parameters
   use kinds, only: wp
   implicit none
   private
-  public :: time_t, adapt_t, equilibrium_t, outlook_t, stepping_t, follows_error, is_explicit
+  public :: time_t, adapt_t, equilibrium_t, outlook_t, stepping_t, follows_error, is_explicit, &
+            end_of_run
 
   !> Time integrators of the plate.
   integer, parameter, public :: integrator_newmark = 1, integrator_generalized_alpha = 2, &
@@ -14,10 +15,18 @@ module stepping_parameters
   !> What an adaptive step follows: the stress at the struck point (the paper's), or the error of each step.
   integer, parameter, public :: rule_stress_rate = 1, rule_local_error = 2
 
+  !> Time from touch to the end of a run over that to the end of the contact.
+  real(wp), parameter, public :: past_contact = 1.25_wp
+  !> Longest run that follows the contact, over the end that was chosen for it: an impactor that is not gone by then
+  !> perforates the plate or rests on it.
+  real(wp), parameter :: most_followed = 4
+
   !> Time integration of the plate.
   type :: time_t
     !> End of the run
     real(wp) :: end = 0
+    !> True: the run goes on beyond its end until the impactor has left
+    logical :: follows_contact = .false.
     !> First time step
     real(wp) :: step = 0
     !> Smallest step tried before giving up, and largest step taken
@@ -97,6 +106,17 @@ contains
 
     is_explicit = stepping%time%integrator == integrator_central_difference
   end function is_explicit
+
+  !> When a run ends whose contact, as far as it has come, ended or still went on at some time.
+  elemental real(wp) function end_of_run(time, contact_end)
+    !> Time integration
+    type(time_t), intent(in) :: time
+    !> When there was contact last
+    real(wp), intent(in) :: contact_end
+
+    end_of_run = time%end
+    if (time%follows_contact) end_of_run = min(most_followed*time%end, max(time%end, past_contact*contact_end))
+  end function end_of_run
 
   !> True: steps follow the error that each makes.
   elemental logical function follows_error(adapt)

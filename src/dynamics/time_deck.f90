@@ -12,19 +12,20 @@ module time_deck
   use text, only: to_text
   implicit none
   private
-  public :: fill_time, check_time
+  public :: fill_time, check_time, integrator_of
 
   !> Names that checks across groups use.
-  character(len=*), parameter, public :: time_group = 'time', key_end = 'end', key_step = 'step'
+  character(len=*), parameter, public :: time_group = 'time', key_end = 'end', key_step = 'step', &
+                                         key_mass_scaling = 'mass_scaling', key_integrator = 'integrator'
   !> Row of the group.
   character(len=group_row_length), parameter, public :: time_group_row = &
     'time | settings | Time integration of the plate; needed unless the analysis is static.'
   !> Rows of the keys.
   character(len=key_row_length), parameter, public :: time_rows(*) = [character(len=key_row_length) :: &
-    'time | end | real | 1 | time | = by &case accuracy | > 0 | &
+    'time | end | real | 1 | time | = by &case accuracy, central differences: past the contact | > 0 | &
       &End of the run.', &
-    'time | step | real | 1 | time | = by &case accuracy | > 0 | &
-      &First time step, and the step if it doesn''t adapt.', &
+    'time | step | real | 1 | time | = by &case accuracy, central differences: the stable one | > 0 | &
+      &First time step, and the step if it doesn''t adapt; central differences cut it to the stable one.', &
     'time | step_min | real | 1 | time | = step/1024 | > 0 | &
       &Smallest step tried before giving up.', &
     'time | step_max | real | 1 | time | = step, end with &adapt rule=''local_error'' | > 0 | &
@@ -41,7 +42,7 @@ module time_deck
       &Generalised-alpha''s spectral radius at high frequency: 1 damps nothing, 0 most.', &
     'time | step_factor | real | 1 | - | 0.9 | > 0, <= 1 | &
       &Part of the stable step that central differences take.', &
-    'time | mass_scaling | real | 1 | - | 1 | >= 1, <= 1000 | &
+    'time | mass_scaling | real | 1 | - | = up to 10, as the waves bear | >= 1, <= 1000 | &
       &Factor of in-plane and rotary inertia for central differences, never of the inertia of w; 1: none.']
 
   !> Most steps of a run: more pass the range of default integers.
@@ -65,25 +66,35 @@ contains
     associate (s => settings)
       time%end = s%real_of(time_group, key_end)
       time%step = s%real_of(time_group, key_step)
+      time%wall_limit = s%real_of(time_group, 'wall_limit')
+      time%integrator = integrator_of(s)
+      central%step_factor = s%real_of(time_group, 'step_factor')
+      central%mass_scaling = s%real_of(time_group, key_mass_scaling)
+      central%longest = time%step
+      if (time%integrator == integrator_central_difference) return
       if (.not. s%is_given(time_group, 'step_min')) &
         call s%derive(time_group, 'step_min', to_text(time%step/1024), .false.)
       if (.not. s%is_given(time_group, 'step_max')) call s%derive(time_group, 'step_max', to_text(merge(time%end, &
         time%step, grows)), .false.)
       time%step_min = s%real_of(time_group, 'step_min')
       time%step_max = s%real_of(time_group, 'step_max')
-      time%wall_limit = s%real_of(time_group, 'wall_limit')
-      time%integrator = code_of(s%text_of(time_group, 'integrator'), 'newmark generalized_alpha central_difference', &
-                                [integrator_newmark, integrator_generalized_alpha, integrator_central_difference])
       time%beta = s%real_of(time_group, 'beta')
       time%gamma = s%real_of(time_group, 'gamma')
       if (.not. s%is_given(time_group, 'rho_inf')) &
         call s%derive(time_group, 'rho_inf', to_text(rho_infinity), .false.)
       time%rho_infinity = s%real_of(time_group, 'rho_inf')
-      central%step_factor = s%real_of(time_group, 'step_factor')
-      central%mass_scaling = s%real_of(time_group, 'mass_scaling')
-      central%longest = time%step
     end associate
   end subroutine fill_time
+
+  !> The integrator of the plate.
+  pure integer function integrator_of(settings) result(integrator)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+
+    integrator = code_of(settings%text_of(time_group, key_integrator), &
+                         'newmark generalized_alpha central_difference', &
+                         [integrator_newmark, integrator_generalized_alpha, integrator_central_difference])
+  end function integrator_of
 
   !> Steps against each other, and the integrator's parameters.
   subroutine check_time(settings, time, problems)
@@ -94,7 +105,7 @@ contains
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
 
-    if (clear('step end')) then
+    if (time%step > 0 .and. time%end > 0 .and. clear('step end')) then
       if (time%step > time%end) then
         call tell(settings, problems, time_group, 'step', 'is longer than the run; allowed: up to end = '// &
                   to_text(time%end)//'.')
@@ -103,11 +114,18 @@ contains
                   'allowed: from '//to_text(time%end/most_steps)//'.')
       end if
     end if
+    if (time%integrator == integrator_central_difference) then
+      call remark_idle(settings, problems, time_group, 'step_min step_max beta gamma rho_inf', &
+                       'has no effect with integrator = ''central_difference''.')
+      return
+    end if
+    call remark_idle(settings, problems, time_group, 'step_factor '//key_mass_scaling, &
+                     'has no effect without integrator = ''central_difference''.')
     if (time%step_min > time%step .and. clear('step step_min')) call tell(settings, problems, time_group, 'step_min', &
       'is larger than the first step; allowed: up to step = '//to_text(time%step)//'.')
     if (time%step_max < time%step .and. clear('step step_max')) call tell(settings, problems, time_group, 'step_max', &
       'is smaller than the first step; allowed: from step = '//to_text(time%step)//'.')
-    if (.not. clear('integrator')) return
+    if (.not. clear(key_integrator)) return
     if (time%integrator == integrator_newmark) then
       if (2*time%beta < time%gamma .and. clear('beta gamma')) call tell(settings, problems, time_group, 'beta', &
         'the plate''s motion would be unstable; allowed: from gamma/2 = '//to_text(time%gamma/2)//'.')

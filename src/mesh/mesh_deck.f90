@@ -13,7 +13,8 @@ module mesh_deck
 
   !> Names that checks across groups use.
   character(len=*), parameter, public :: mesh_group = 'mesh', key_elements = 'elements', key_patch = 'patch', &
-                                         key_core = 'core', key_cell = 'cell', key_grading = 'grading'
+                                         key_core = 'core', key_cell = 'cell', key_grading = 'grading', &
+                                         key_mass = 'mass'
   !> Most elements: more pass the range of default integers.
   real(wp), parameter, public :: most_elements = 1.0e6_wp
   !> Row of the group.

@@ -13,7 +13,8 @@ module output_deck
   public :: fill_output, check_intervals, remark_idle_fields
 
   !> Names that checks across groups use.
-  character(len=*), parameter, public :: output_group = 'output', key_fields_every = 'fields_every'
+  character(len=*), parameter, public :: output_group = 'output', key_fields_every = 'fields_every', &
+                                         key_history_every = 'history_every', key_force_filter = 'force_filter'
   character(len=*), parameter :: group = output_group
   !> Row of the group.
   character(len=group_row_length), parameter, public :: output_group_row = &
@@ -22,12 +23,14 @@ module output_deck
   character(len=key_row_length), parameter, public :: output_rows(*) = [character(len=key_row_length) :: &
     'output | directory | text | 1 | - | ''.'' | not empty | &
       &Folder of the results, made if it isn''t there; --output overrides it.', &
-    'output | history_every | real | 1 | time | 0 | >= 0 | &
+    'output | history_every | real | 1 | time | = 0, with central differences about 2000 rows | >= 0 | &
       &Time between rows of the history; 0: every accepted step.', &
     'output | fields_every | real | 1 | time | 0 | >= 0 | &
       &Time between fields written; 0: only the last.', &
     'output | checkpoint_every | real | 1 | time | 0 | >= 0 | &
       &Time between checkpoints; 0: only when a queue stops the run.', &
+    'output | force_filter | real | 1 | 1/time | none | > 0 | &
+      &Corner frequency of a low pass, Butterworth of 4th order, that the column force_filtered has passed.', &
     'output | fields | choice | 1 or more | - | = all but stresses and onset | displacement rotation velocity gap &
       &contact_pressure delamination energy_release ply_damage stress face_stress onset | Fields, parted by commas.']
 
@@ -51,9 +54,10 @@ contains
     type(output_t), intent(inout) :: output
 
     output%directory = settings%text_of(group, 'directory')
-    output%history_every = settings%real_of(group, 'history_every')
+    output%history_every = settings%real_of(group, key_history_every)
     output%fields_every = settings%real_of(group, key_fields_every)
     output%checkpoint_every = settings%real_of(group, 'checkpoint_every')
+    output%force_filter = settings%real_of(group, key_force_filter)
     if (.not. settings%is_given(group, 'fields')) call settings%derive(group, 'fields', usual_fields, .true.)
     output%fields = lower_case(joined(words_of(joined(settings%texts_of(group, 'fields'), ','), ','), ','))
   end subroutine fill_output

@@ -18,10 +18,14 @@ module output_parameters
     character(len=:), allocatable :: directory
     !> Time between rows of the history; 0: every accepted step
     real(wp) :: history_every = 0
+    !> Accepted steps between rows if no time is given
+    integer :: steps_between_rows = 1
     !> Time between fields written; 0: only the last
     real(wp) :: fields_every = 0
     !> Time between checkpoints; 0: none but at a queue's signal
     real(wp) :: checkpoint_every = 0
+    !> Corner frequency of the low pass for the contact force; 0: none
+    real(wp) :: force_filter = 0
     !> Names of the fields wanted, in lower case, separated by commas without blanks
     character(len=:), allocatable :: fields
   contains

@@ -2,6 +2,7 @@
 module run_progress
   use kinds, only: long, wp
   use logger, only: log_t
+  use run_paces, only: run_pace_t
   use text, only: to_text
   implicit none
   private
@@ -19,8 +20,8 @@ module run_progress
   !> Progress of one run.
   type :: progress_t
     private
-    !> Part of the run done when this process took it up
-    real(wp) :: first = 0
+    !> How fast it goes
+    type(run_pace_t) :: pace
     !> Part done when it was last shown
     real(wp) :: shown = 0
     !> Clock when this process took the run up
@@ -42,11 +43,12 @@ contains
     class(progress_t), intent(inout) :: self
     !> Part of the run done already: 0, or more after a restart
     real(wp), intent(in) :: fraction
+    integer(long) :: rate
 
-    self%first = fraction
     self%shown = fraction
-    call system_clock(self%started)
+    call system_clock(self%started, rate)
     self%shown_at = self%started
+    call self%pace%start(0.0_wp, fraction)
   end subroutine start
 
   !> True: it is time to show how far the run is.
@@ -81,9 +83,12 @@ contains
     character(len=*), intent(in) :: text
     character(len=:), allocatable :: line
     integer(long) :: now, rate
+    real(wp) :: elapsed
 
     call system_clock(now, rate)
-    line = to_text(int(100*fraction))//' %, '//time_left(self, fraction, real(now - self%started, wp)/rate)//' left'
+    elapsed = real(now - self%started, wp)/rate
+    line = to_text(int(100*fraction))//' %, '//time_left(self%pace%left(elapsed, fraction))//' left'
+    call self%pace%note(elapsed, fraction)
     if (len(text) > 0) line = line//', '//text
     if (log%interactive) then
       call log%status(bar(fraction)//' '//line)
@@ -108,19 +113,15 @@ contains
     call log%note(text//' after '//duration(real(now - self%started, wp)/rate))
   end subroutine finish
 
-  !> Time left, if the rest goes as fast as what was done.
-  pure function time_left(self, fraction, elapsed) result(left)
-    !> The progress
-    class(progress_t), intent(in) :: self
-    !> Part of the run done
-    real(wp), intent(in) :: fraction
-    !> Seconds since this process took the run up
-    real(wp), intent(in) :: elapsed
+  !> Time left in words.
+  pure function time_left(seconds) result(left)
+    !> Seconds left; negative: not known
+    real(wp), intent(in) :: seconds
     !> The time, or a question mark
     character(len=:), allocatable :: left
 
     left = '?'
-    if (fraction > self%first) left = duration(elapsed*(1 - fraction)/(fraction - self%first))
+    if (seconds >= 0) left = duration(seconds)
   end function time_left
 
   !> A time as people say it.

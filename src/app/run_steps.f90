@@ -1,0 +1,57 @@
+!> Steps between two looks of a run at its results: one if steps are implicit, many by central differences.
+module run_steps
+  use deck_contents, only: deck_t
+  use errors, only: error_t
+  use kinds, only: wp
+  use layer_following, only: advance
+  use logger, only: log_t
+  use models, only: model_t
+  use output_parameters, only: output_t
+  use run_records, only: run_record_t
+  use step_intervals, only: steps_between_looks, steps_between_stages
+  use time_stepping, only: time_stepper_t
+  implicit none
+  private
+  public :: advance_to_look, row_is_due
+
+contains
+
+  !> Takes steps up to the next one whose results are due or looked at: each implicit one. Collective.
+  subroutine advance_to_look(deck, model, stepper, record, event, log, error)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> The model; layers may follow their damage
+    type(model_t), intent(inout) :: model
+    !> What evolves
+    type(time_stepper_t), intent(inout) :: stepper
+    !> Looks at each step
+    type(run_record_t), intent(inout) :: record
+    !> Time, or load factor, not to be passed
+    real(wp), intent(in) :: event
+    !> Receives a note of new layers
+    type(log_t), intent(inout) :: log
+    !> Set if no step converges
+    type(error_t), allocatable, intent(out) :: error
+    integer :: steps
+
+    steps = steps_between_looks(deck%stepping, model%mesh%elements())
+    do
+      call advance(deck, model, stepper, event, log, error)
+      if (allocated(error)) return
+      call record%observe(model, stepper%now, steps_between_stages(deck%stepping))
+      if (modulo(stepper%now%step, steps) == 0 .or. stepper%now%time >= event) return
+      if (row_is_due(deck%output, stepper%now%step)) return
+    end do
+  end subroutine advance_to_look
+
+  !> True: a row of the history is due by the number of steps.
+  pure logical function row_is_due(output, step)
+    !> What is written
+    type(output_t), intent(in) :: output
+    !> Accepted steps
+    integer, intent(in) :: step
+
+    row_is_due = .not. output%history_every > 0
+    if (row_is_due) row_is_due = modulo(step, output%steps_between_rows) == 0
+  end function row_is_due
+end module run_steps

@@ -1,0 +1,130 @@
+!> What a deck leaves out for central differences: end, factor of in-plane and rotary inertia, rows of the history, and
+!> the stable step. What the deck gives stands.
+module deck_central_differences
+  use deck_contents, only: deck_t
+  use deck_problems, only: problems_t
+  use element_steps, only: smallest_element_step
+  use impact_parameters, only: integrator_central
+  use impactor_deck, only: impactor_group, key_integrator
+  use kinds, only: wp
+  use mesh_deck, only: mesh_group, key_mass
+  use output_deck, only: output_group, key_history_every
+  use pilot_impacts, only: pilot_t
+  use plate_options, only: mass_lumped
+  use scene_pilots, only: contact_end, start_pilot
+  use scene_scales, only: has_blow, scales_of, scene_scales_t
+  use short_numbers, only: short_text
+  use stepping_parameters, only: past_contact
+  use text, only: append, to_text
+  use time_deck, only: key_end, key_mass_scaling, key_step, time_group
+  implicit none
+  private
+  public :: choose_for_central_differences, find_stable_step
+
+  !> Largest factor of in-plane and rotary inertia that is chosen. It slows membrane waves too, which no estimate here
+  !> knows, by its root.
+  real(wp), parameter :: most_scaling = 10
+  !> Error of a bending wave's frequency up to which inertia is scaled. By s times the rotary inertia a wave of number k
+  !> in a plate of thickness h is slower by s (k h)**2/24: rho h**3/12 k**2 beside rho h, halved by the root.
+  real(wp), parameter :: frequency_error = 0.005_wp
+  !> Rows of a history, about: as many as a plot shows. They are written at whole steps, which none is cut for.
+  real(wp), parameter :: rows = 2000
+  real(wp), parameter :: pi = acos(-1.0_wp)
+
+contains
+
+  !> Chooses what follows from the scene: end and scaling. The rest goes by the method.
+  subroutine choose_for_central_differences(deck, problems)
+    !> The deck, its bodies and loads filled
+    type(deck_t), intent(inout) :: deck
+    !> Faults so far; faults found are added
+    type(problems_t), intent(inout) :: problems
+    type(scene_scales_t) :: scales
+
+    if (.not. deck%settings%is_given(mesh_group, key_mass)) &
+      call deck%settings%derive(mesh_group, key_mass, 'lumped', .true.)
+    deck%mesh%mass = mass_lumped
+    if (.not. deck%settings%is_given(impactor_group, key_integrator)) then
+      call deck%settings%derive(impactor_group, key_integrator, 'central', .true.)
+      deck%impactor%integrator = integrator_central
+    end if
+    if (problems%errors() > 0) return
+    if (.not. allocated(deck%reasons)) allocate (deck%reasons(0))
+    scales = scales_of(deck%scene_t)
+    if (.not. deck%settings%is_given(time_group, key_end)) call choose_end(deck, scales, problems)
+    if (.not. deck%settings%is_given(time_group, key_mass_scaling)) call choose_scaling(deck, scales)
+  end subroutine choose_for_central_differences
+
+  !> End of the run: that of the contact of an undamaged plate, and some time. The contact of a damaged plate, which is
+  !> softer, lasts longer by as much as no pilot calculation knows; the run itself goes on until the impactor has left.
+  subroutine choose_end(deck, scales, problems)
+    !> The deck
+    type(deck_t), intent(inout) :: deck
+    !> Scales of its scene
+    type(scene_scales_t), intent(in) :: scales
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    type(pilot_t) :: pilot
+
+    deck%stepping%time%follows_contact = .true.
+    if (deck%settings%is_known(time_group, key_end)) return
+    if (.not. (has_blow(deck%scene_t) .and. scales%area_mass > 0)) then
+      if (.not. problems%concern(time_group, key_end)) &
+        call problems%error(deck%settings%line_of_group(time_group), time_group, key_end, '&'//time_group//' '// &
+                            key_end//' is missing; it follows from the contact only where an impactor comes with a '// &
+                            'velocity.', 1)
+      return
+    end if
+    pilot = contact_end(start_pilot(deck%scene_t, scales), 0.0_wp)
+    call deck%settings%derive(time_group, key_end, short_text(past_contact*pilot%last_contact), .false.)
+    call append(deck%reasons, 'End '//short_text(past_contact*pilot%last_contact)//': the contact of an undamaged '// &
+                'plate is over at '//short_text(pilot%last_contact)//' in a pilot calculation by modes; while it '// &
+                'lasts longer the run goes on.')
+  end subroutine choose_end
+
+  !> Factor of in-plane and rotary inertia that the waves of first contact bear.
+  subroutine choose_scaling(deck, scales)
+    !> The deck
+    type(deck_t), intent(inout) :: deck
+    !> Scales of its scene
+    type(scene_scales_t), intent(in) :: scales
+    real(wp) :: scaling, slowed
+
+    if (scales%wave_length > 0) then
+      slowed = (2*pi*scales%thickness/scales%wave_length)**2/24
+      scaling = max(1.0_wp, min(most_scaling, frequency_error/slowed))
+      call append(deck%reasons, 'Mass scaling '//short_text(scaling)//': with it rotary inertia slows the bending '// &
+                  'waves of first contact, '//short_text(scales%wave_length)//' long, by '// &
+                  short_text(100*scaling*slowed)//' %.')
+    else
+      scaling = 1
+      call append(deck%reasons, 'Mass scaling 1: no impact says how short the waves are.')
+    end if
+    call deck%settings%derive(time_group, key_mass_scaling, short_text(scaling), .false.)
+  end subroutine choose_scaling
+
+  !> Finds the stable step, which pilot calculations, costs and the number of rows go by; the run finds its own.
+  subroutine find_stable_step(deck, problems)
+    !> The deck, its mesh checked; receives the step
+    type(deck_t), intent(inout) :: deck
+    !> Faults so far
+    type(problems_t), intent(in) :: problems
+    real(wp) :: step
+
+    if (problems%errors() > 0) return
+    if (.not. allocated(deck%reasons)) allocate (deck%reasons(0))
+    step = deck%stepping%central%step_factor*smallest_element_step(deck, deck%stepping%central%mass_scaling)
+    if (.not. step > 0) return
+    associate (time => deck%stepping%time)
+      if (time%step > step) call append(deck%reasons, 'Steps of '//short_text(step)//' instead of '// &
+                                        short_text(time%step)//': longer ones are not stable.')
+      if (.not. time%step > 0 .or. time%step > step) time%step = min(step, time%end)
+    end associate
+    if (.not. deck%settings%is_given(time_group, key_step)) &
+      call deck%settings%derive(time_group, key_step, short_text(step), .false.)
+    if (deck%settings%is_given(output_group, key_history_every)) return
+    deck%output%steps_between_rows = max(1, nint(deck%stepping%time%end/deck%stepping%time%step/rows))
+    call append(deck%reasons, 'A row of the history every '//to_text(deck%output%steps_between_rows)// &
+                ' step(s); peaks are followed in every step.')
+  end subroutine find_stable_step
+end module deck_central_differences

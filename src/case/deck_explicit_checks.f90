@@ -1,0 +1,65 @@
+!> What central differences cannot do, and what has no effect on them. The key that asks for it is named with what to
+!> write instead.
+module deck_explicit_checks
+  use adapt_deck, only: adapt_group
+  use deck_contents, only: deck_t
+  use deck_problems, only: problems_t
+  use deck_remarks, only: are_clear, remark, remark_idle, tell
+  use delamination_deck, only: key_law
+  use delamination_parameters, only: law_front
+  use equilibrium_deck, only: solver_group
+  use impact_parameters, only: integrator_central
+  use impactor_deck, only: impactor_group, key_integrator
+  use interface_places, only: delamination_group
+  use mesh_deck, only: key_mass, mesh_group
+  use output_deck, only: key_history_every, output_group
+  use time_deck, only: time_group
+  implicit none
+  private
+  public :: check_central_differences
+
+  !> Why keys of implicit integrators are left unused.
+  character(len=*), parameter :: no_effect = 'has no effect with &time integrator = ''central_difference''.'
+
+contains
+
+  !> Refuses what the method cannot do, and remarks on what changes nothing.
+  subroutine check_central_differences(deck, problems)
+    !> The deck, filled
+    type(deck_t), intent(in) :: deck
+    !> Faults and remarks are added
+    type(problems_t), intent(inout) :: problems
+
+    call check_fronts(deck, problems)
+    associate (s => deck%settings)
+      if (s%text_of(mesh_group, key_mass) == 'consistent' .and. are_clear(s, problems, mesh_group, key_mass)) &
+        call tell(s, problems, mesh_group, key_mass, 'central differences need a lumped mass; leave it out, or '// &
+                  'write &time integrator = ''generalized_alpha''.')
+      if (s%has_group(adapt_group)) call remark(s, problems, adapt_group, '', no_effect)
+      ! Residual stresses are brought into equilibrium before the first step.
+      if (s%has_group(solver_group) .and. .not. deck%has_thermal) call remark(s, problems, solver_group, '', no_effect)
+      if (deck%impactor%integrator /= integrator_central) &
+        call remark_idle(s, problems, impactor_group, key_integrator, no_effect)
+    end associate
+  end subroutine check_central_differences
+
+  !> A front is released by its energy release rate at a frozen time, in equilibrium.
+  subroutine check_fronts(deck, problems)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Faults are added
+    type(problems_t), intent(inout) :: problems
+    integer :: i, before
+
+    before = 0
+    do i = 1, size(deck%delaminations)
+      associate (place => deck%delaminations(i)%group)
+        if (place == before .or. deck%delaminations(i)%law /= law_front) cycle
+        before = place
+        if (are_clear(deck%settings, problems, delamination_group, key_law, place)) &
+          call tell(deck%settings, problems, delamination_group, key_law, 'central differences move no front; '// &
+                    'write &time integrator = ''generalized_alpha'', or law = ''cohesive'' with strengths.', place)
+      end associate
+    end do
+  end subroutine check_fronts
+end module deck_explicit_checks

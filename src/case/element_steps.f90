@@ -1,0 +1,82 @@
+!> Stable step of central differences before there is a model: that of the smallest element with all its layers.
+!>
+!> The grid is a product of its lines along x and y, so that one of its elements has the shortest side along both. No
+!> element has a higher frequency, as sections are the same everywhere. In a run with layers that are not there yet the
+!> step is longer, and the contact's stiffness makes it shorter.
+module element_steps
+  use cell_grids, only: cell_edges
+  use communicators, only: communicator_t
+  use deck_contents, only: deck_t
+  use errors, only: error_t
+  use kinds, only: wp
+  use mesh_parameters, only: edge_free, mesh_t, symmetry_none
+  use model_building, only: create_model
+  use models, only: model_t
+  use ply_failures, only: ply_failure_t, new_ply_failure
+  use scenes, only: scene_t
+  use stable_steps, only: highest_element_frequency
+  implicit none
+  private
+  public :: smallest_element_step
+
+contains
+
+  !> Longest stable step; 0: none could be found.
+  real(wp) function smallest_element_step(deck, scaling) result(step)
+    !> The deck, its mesh checked
+    type(deck_t), intent(in) :: deck
+    !> Factor of in-plane and rotary inertia
+    real(wp), intent(in) :: scaling
+    type(model_t) :: model
+    type(ply_failure_t) :: plies
+    type(communicator_t) :: alone
+    type(error_t), allocatable :: error
+    real(wp) :: frequency
+    integer :: element
+
+    step = 0
+    call create_model(small_scene(deck), alone, model, error)
+    if (allocated(error)) return
+    plies = new_ply_failure(model)
+    call highest_element_frequency(model, plies%stiffness, scaling, frequency, element)
+    if (frequency > 0) step = 2/frequency
+  end function smallest_element_step
+
+  !> A free plate of two by two of the smallest elements, layered wherever an interface may delaminate.
+  pure function small_scene(deck) result(scene)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> The plate
+    type(scene_t) :: scene
+    integer :: i
+
+    scene%kinematics = deck%kinematics
+    scene%materials = deck%materials
+    scene%laminate = deck%laminate
+    scene%delaminations = deck%delaminations
+    scene%plate%length = 2*[shortest_edge(deck, 1), shortest_edge(deck, 2)]
+    scene%plate%edges = edge_free
+    scene%plate%symmetry = symmetry_none
+    scene%mesh = mesh_t(elements=2, grading=1, shear=deck%mesh%shear, mass=deck%mesh%mass)
+    do i = 1, size(scene%delaminations)
+      associate (d => scene%delaminations(i))
+        d%zone = scene%plate%length
+        d%follows = .false.
+        d%starter = 0
+        d%starter_strip = 0
+      end associate
+    end do
+  end function small_scene
+
+  !> Shortest side of elements along a direction.
+  pure real(wp) function shortest_edge(deck, direction) result(edge)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> 1 for x, 2 for y
+    integer, intent(in) :: direction
+    real(wp), allocatable :: edges(:)
+
+    edges = [cell_edges(deck%plate, deck%mesh, direction)]
+    edge = minval(edges(2:) - edges(:size(edges) - 1))
+  end function shortest_edge
+end module element_steps

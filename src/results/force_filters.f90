@@ -1,0 +1,83 @@
+!> Low pass of the contact force, as amplifiers of test rigs have one: Butterworth's of 4th order. It is causal, so that
+!> the filtered force lags by 2.6 over the corner's angular frequency.
+!>
+!> Two sections x'' + 2 zeta omega x' + omega**2 x = omega**2 f follow each other, zeta the cosine of pi/8 and of 3 pi/8
+!> (S. Butterworth, Experimental Wireless 7 (1930) 536). The trapezoidal rule takes each over a step of any length; it
+!> keeps a constant force and is stable.
+module force_filters
+  use archives, only: archive_t
+  use kinds, only: wp
+  implicit none
+  private
+  public :: force_filter_t
+
+  !> What a result says of it.
+  character(len=*), parameter, public :: filter_kind = 'Butterworth low pass of 4th order, causal'
+  real(wp), parameter :: pi = acos(-1.0_wp)
+  !> Damping of the two sections.
+  real(wp), parameter :: damping(2) = [cos(pi/8), cos(3*pi/8)]
+
+  !> A filter and its state.
+  type :: force_filter_t
+    !> Corner frequency, at which a half of the power passes; 0: everything passes
+    real(wp) :: frequency = 0
+    !> What comes out
+    real(wp) :: force = 0
+    !> What goes in, at the end of the last step
+    real(wp), private :: input = 0
+    !> What each section brings out, and its rate over omega, (2, sections)
+    real(wp), private :: state(2, 2) = 0
+  contains
+    !> Takes a step.
+    procedure :: advance
+    !> Saves or loads.
+    procedure :: visit
+  end type force_filter_t
+
+contains
+
+  !> Takes a step.
+  pure subroutine advance(self, step, force)
+    !> The filter
+    class(force_filter_t), intent(inout) :: self
+    !> Length of the step, and the force at its end
+    real(wp), intent(in) :: step, force
+    real(wp) :: half, before, input(2), rate
+    integer :: section
+
+    if (.not. self%frequency > 0) then
+      self%force = force
+      return
+    end if
+    half = pi*self%frequency*step
+    input = [self%input, force]
+    do section = 1, 2
+      associate (x => self%state(1, section), v => self%state(2, section), zeta => damping(section))
+        ! v' = omega (f - x - 2 zeta v), x' = omega v, both by their means over the step.
+        before = x
+        rate = (v*(1 - 2*zeta*half - half**2) + half*(sum(input) - 2*x))/(1 + 2*zeta*half + half**2)
+        x = x + half*(v + rate)
+        v = rate
+        input = [before, x]
+      end associate
+    end do
+    self%input = force
+    self%force = self%state(1, 2)
+  end subroutine advance
+
+  !> Saves or loads.
+  subroutine visit(self, archive)
+    !> The filter
+    class(force_filter_t), intent(inout) :: self
+    !> Where to or where from
+    class(archive_t), intent(inout) :: archive
+    real(wp), allocatable :: numbers(:)
+
+    if (.not. self%frequency > 0) return
+    numbers = [self%force, self%input, self%state]
+    call archive%item('filter/state', numbers)
+    self%force = numbers(1)
+    self%input = numbers(2)
+    self%state = reshape(numbers(3:6), [2, 2])
+  end subroutine visit
+end module force_filters
