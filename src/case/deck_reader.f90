@@ -7,6 +7,7 @@ module deck_reader
   use deck_crack_bands, only: check_crack_bands
   use deck_central_differences, only: choose_for_central_differences, find_stable_step
   use deck_cross_checks, only: check_across_groups
+  use deck_integrators, only: choose_integrator
   use deck_interface_remarks, only: check_interfaces
   use deck_process_zones, only: check_process_zones, settle_flaws
   use deck_extents, only: check_sizes, check_extents
@@ -47,7 +48,7 @@ module deck_reader
   use stepping_parameters, only: follows_error, is_explicit
   use support_deck, only: fill_supports, check_rigs
   use thermal_deck, only: fill_thermal, check_thermal, thermal_group
-  use time_deck, only: fill_time, check_time, integrator_of, time_group
+  use time_deck, only: fill_time, check_time, time_group
   implicit none
   private
   public :: deck_t, problems_t, read_deck, read_deck_text
@@ -102,7 +103,7 @@ contains
     if (problems%is_full()) return
     call note_groups(deck)
     call fill_bodies(deck, problems)
-    deck%stepping%time%integrator = integrator_of(deck%settings)
+    call choose_integrator(deck)
     call check_left_out(deck%settings, is_explicit(deck%stepping), problems)
     call fill_loads(deck, problems)
     call fill_steps(deck)

@@ -32,8 +32,8 @@ module time_deck
       &Largest step taken.', &
     'time | wall_limit | real | 1 | s | none | > 0 | &
       &Seconds on the wall by which the run ends with a checkpoint; --wall-limit overrides it.', &
-    'time | integrator | choice | 1 | - | ''generalized_alpha'' | newmark generalized_alpha central_difference | &
-      &Time integrator of the plate.', &
+    'time | integrator | choice | 1 | - | = by the scene | newmark generalized_alpha central_difference | &
+      &Time integrator of the plate; left out, central_difference where plies or interfaces soften.', &
     'time | beta | real | 1 | - | 0.25 | > 0, <= 1 | &
       &Newmark''s beta; 2 beta >= gamma keeps every step stable.', &
     'time | gamma | real | 1 | - | 0.5 | >= 0.5, <= 1 | &

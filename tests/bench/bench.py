@@ -35,7 +35,7 @@ PANEL = """&case         name='panel'  kinematics='linear' /
 &laminate     materials='T300/976'  angles=0, 90, 0, 90, 0, 90, 0  thicknesses=0.3e-3  shear_correction='5/6' /
 &impactor     mass=0.2  velocity=0.2  radius=10e-3 /
 &indentation  law='hertz' /
-&time         end=400e-6  step=4e-6 /
+&time         end=400e-6  step=4e-6  integrator='generalized_alpha' /
 """
 INTERFACE = '&delamination below_ply={plies} G_Ic=280 G_IIc=790 zone=40e-3, 40e-3 {more} /\n'
 # What is changed in it, or added to it.

@@ -36,7 +36,7 @@ def deck(seed, part):
 &indentation alpha_cr=80.3e-6 /
 &ply_damage criteria='{chance.choice(["hou", "hashin", "puck"])}' /
 {chance.choice(["", "&thermal delta_T=-120 /"])}
-&time end={end} step={part * chance.choice([8e-6, 16e-6])} /
+&time end={end} step={part * chance.choice([8e-6, 16e-6])} integrator='generalized_alpha' /
 &output fields_every={end} /
 """
 

@@ -90,7 +90,7 @@ def deck(s, turned=False, mirrored=False, scale=(1, 1, 1)):
 {"&thermal delta_T=-100 /" if s["thermal"] else ""}
 {groups}
 &solver tolerance=1e-9 /
-&time end={end} step={end / s["steps"]} /
+&time end={end} step={end / s["steps"]} integrator='generalized_alpha' /
 &output fields_every={end} /
 """
 
