@@ -6,12 +6,14 @@
 !> booked as lost. So the ledger's error shows what is left: forces that are not linear within a step.
 module central_difference_energies
   use central_differences, only: central_difference_t
+  use exact_sums, only: exact_sum_t
   use kinds, only: wp
   use models, only: model_t
+  use rank_totals, only: totals_of
   use states, only: state_t
   implicit none
   private
-  public :: book_energies, scaled_share
+  public :: book_energies
 
 contains
 
@@ -22,30 +24,35 @@ contains
     type(model_t), intent(in) :: model
     !> The state; receives its ledger
     type(state_t), intent(inout) :: now
-    real(wp) :: sums(8)
+    type(exact_sum_t) :: sums(8)
+    real(wp) :: totals(8)
+    integer :: i, b
 
-    sums(1:2) = kinetic_energies(method, model, now)
-    sums(3) = method%strain + interface_energy(method, model, now) + spring_energy(method, model, now)
-    sums(4:5) = 0
-    if (allocated(now%interfaces%cohesive%points)) then
-      associate (points => now%interfaces%cohesive%points)
-        sums(4) = sum(method%stacks%area*points%dissipated)
-        sums(5) = sum(method%stacks%area*points%sliding%heat)
-      end associate
-    end if
-    sums(6) = sum(method%stacks%lost(1, :)) + sum(method%rigs%frame_loss)
-    sums(7) = sum(method%stacks%lost(2, :)) + sum(method%rigs%spring_loss)
-    sums(8) = sum(method%lines%work)
-    call model%communicator%sum(sums)
-    sums = sums*model%mesh%multiplicity
+    call add_kinetic(method, model, now, sums(1), sums(2))
+    do b = 1, size(method%strain, 2)
+      call sums(3)%add(method%strain(:, b))
+    end do
+    call add_stored(method, model, now, sums(3))
+    do i = 1, model%distribution%owned
+      if (allocated(now%interfaces%cohesive%points)) then
+        associate (point => now%interfaces%cohesive%points(i), area => method%stacks%area(i))
+          call sums(4)%add(area*point%dissipated)
+          call sums(5)%add(area*point%sliding%heat)
+        end associate
+      end if
+      call sums(6)%add(method%stacks%lost(1, i) + method%rigs%frame_loss(i))
+      call sums(7)%add(method%stacks%lost(2, i) + method%rigs%spring_loss(i))
+      call sums(8)%add(method%lines%work(i))
+    end do
+    totals = totals_of(model%communicator, sums)*model%mesh%multiplicity
     associate (ledger => now%ledger)
-      ledger%kinetic = sums(1)
-      ledger%strain = sums(3)
-      ledger%delamination = sums(4)
-      ledger%friction = sums(5)
-      ledger%contact = sums(6)
-      ledger%algorithmic = sums(7)
-      ledger%external_work = method%initial_work + method%travel_work + sums(8)
+      ledger%kinetic = totals(1)
+      ledger%strain = totals(3)
+      ledger%delamination = totals(4)
+      ledger%friction = totals(5)
+      ledger%contact = totals(6)
+      ledger%algorithmic = totals(7)
+      ledger%external_work = method%initial_work + method%travel_work + totals(8)
       if (allocated(now%plies%bands)) then
         call now%plies%total_dissipation(model)
         ledger%ply_damage = sum(now%plies%dissipated)
@@ -60,87 +67,62 @@ contains
     end associate
   end subroutine book_energies
 
-  !> Kinetic energy of this rank's points, and the part of it in motions whose inertia is scaled.
-  function kinetic_energies(method, model, now) result(energies)
+  !> Adds the kinetic energy of this rank's points, and the part of it in motions whose inertia is scaled.
+  subroutine add_kinetic(method, model, now, kinetic, scaled)
     !> The method
     type(central_difference_t), intent(in) :: method
     type(model_t), intent(in) :: model
     !> The state
     type(state_t), intent(in) :: now
     !> All, and in the plane and of rotation
-    real(wp) :: energies(2)
+    type(exact_sum_t), intent(inout) :: kinetic, scaled
     real(wp), allocatable :: layer(:, :)
     real(wp) :: plane
     integer :: i
 
     layer = model%motion_of(now%motion%velocity)
-    energies = 0
     do i = 1, model%distribution%owned
       associate (m => method%inertia%mass(:, i), v => layer(:, i))
         plane = (m(1)*(v(1)**2 + v(2)**2) + m(3)*(v(4)**2 + v(5)**2))/2 + m(2)*(v(1)*v(4) + v(2)*v(5))
-        energies(1) = energies(1) + m(4)*v(3)**2/2 + plane + method%steps%now/2*dot_product(method%force(:, i), v)
-        energies(2) = energies(2) + plane
+        call scaled%add(plane)
+        plane = m(4)*v(3)**2/2 + plane + method%steps%now/2*dot_product(method%force(:, i), v) &
+                - (dot_product(method%stacks%forces(:, i), method%stacks%change(:, i)) &
+                   + method%rigs%reaction(i)*method%rigs%approach(i))/2
+        if (allocated(method%inertia%springs)) plane = plane - method%steps%now/2* &
+          sum(method%inertia%springs(:, i)*now%motion%displacement(:, i)*now%motion%velocity(:, i))
+        call kinetic%add(plane)
       end associate
     end do
-    energies(1) = energies(1) - sum(method%stacks%forces*method%stacks%change)/2 &
-                  - sum(method%rigs%reaction*method%rigs%approach)/2
-    if (size(method%lines%pins) > 0) &
-      energies(1) = energies(1) + sum(method%lines%pins%reaction*method%lines%pins%change)/2
-    if (allocated(method%inertia%springs)) energies(1) = energies(1) - method%steps%now/2* &
-      sum(method%inertia%springs*now%motion%displacement*now%motion%velocity)
-  end function kinetic_energies
+    do i = 1, size(method%lines%pins)
+      call kinetic%add(method%lines%pins(i)%reaction*method%lines%pins(i)%change/2)
+    end do
+  end subroutine add_kinetic
 
-  !> Largest share of the kinetic energy that scaled motions hold in a state. Collective.
-  real(wp) function scaled_share(method, model, now) result(share)
+  !> Adds the energy that this rank's interfaces, springs and pressing clamps store.
+  subroutine add_stored(method, model, now, stored)
     !> The method
     type(central_difference_t), intent(in) :: method
     type(model_t), intent(in) :: model
     !> The state
     type(state_t), intent(in) :: now
-    real(wp) :: energies(2)
-
-    energies = kinetic_energies(method, model, now)
-    call model%communicator%sum(energies)
-    share = 0
-    if (energies(1) > 0) share = energies(2)/energies(1)
-  end function scaled_share
-
-  !> Energy that this rank's interfaces store.
-  real(wp) function interface_energy(method, model, now) result(energy)
-    !> The method
-    type(central_difference_t), intent(in) :: method
-    type(model_t), intent(in) :: model
-    !> The state
-    type(state_t), intent(in) :: now
+    !> The energy
+    type(exact_sum_t), intent(inout) :: stored
     integer :: i
 
-    energy = 0
     associate (cohesive => now%interfaces%cohesive, u => now%motion%displacement)
-      if (.not. allocated(cohesive%cohesive)) return
       do i = 1, model%distribution%owned
+        if (allocated(method%inertia%springs)) call stored%add(sum(method%inertia%springs(:, i)*u(:, i)**2)/2)
+        if (model%rig%elastic) call stored%add(-model%rig%presses(i)*u(3, i))
+        if (.not. allocated(cohesive%cohesive)) cycle
         if (.not. (model%zone(i) > 0 .and. method%stacks%area(i) > 0)) cycle
         if (cohesive%points(i)%damage > 0) then
           associate (faces => cohesive%faces_of(model, model%zone(i), cohesive%strength(i)))
-            energy = energy + method%stacks%area(i)*faces%stored(u(1:3, i), cohesive%points(i))
+            call stored%add(method%stacks%area(i)*faces%stored(u(1:3, i), cohesive%points(i)))
           end associate
         else
-          energy = energy + sum(method%stacks%stiffness([1, 1, 2], i)*u(1:3, i)**2)/2
+          call stored%add(sum(method%stacks%stiffness([1, 1, 2], i)*u(1:3, i)**2)/2)
         end if
       end do
     end associate
-  end function interface_energy
-
-  !> Energy that springs of clamps and edges store.
-  real(wp) function spring_energy(method, model, now) result(energy)
-    !> The method
-    type(central_difference_t), intent(in) :: method
-    type(model_t), intent(in) :: model
-    !> The state
-    type(state_t), intent(in) :: now
-
-    energy = 0
-    if (allocated(method%inertia%springs)) energy = sum(method%inertia%springs*now%motion%displacement**2)/2
-    if (model%rig%elastic) energy = energy - sum(model%rig%presses(:model%distribution%owned) &
-                                                 *now%motion%displacement(3, :model%distribution%owned))
-  end function spring_energy
+  end subroutine add_stored
 end module central_difference_energies

@@ -14,9 +14,11 @@ module central_differences
   use line_steps, only: line_steps_t, create_line_steps
   use models, only: model_t
   use nodal_inertia, only: nodal_inertia_t, create_nodal_inertia
+  use element_batches, only: lanes
+  use rank_totals, only: total_of
   use rig_steps, only: rig_steps_t, create_rig_steps
   use smooth_starts, only: smooth_ramp
-  use stable_steps, only: highest_element_frequency, highest_frequency
+  use stable_steps, only: highest_element_frequency
   use stack_motions, only: accelerate, move_stacks, new_workspaces
   use stack_solutions, only: stack_t
   use states, only: state_t
@@ -59,14 +61,14 @@ module central_differences
     integer :: element = 0
     !> Stiffness of the contact that the step allows for
     real(wp) :: contact_stiffness = 0
-    !> Strain energy of this rank's elements
-    real(wp) :: strain = 0
+    !> Strain energy of this rank's elements, (lanes, batches)
+    real(wp), allocatable :: strain(:, :)
     !> Work of loads before the run began
     real(wp) :: initial_work = 0
     !> Work of an impactor whose travel is prescribed
     real(wp) :: travel_work = 0
-    !> Room for the motion of the layers, and for stacks
-    real(wp), allocatable, private :: motion(:, :)
+    !> Room for the motion of the layers, for forces with those of the borders between ranks, and for stacks
+    real(wp), allocatable, private :: motion(:, :), field(:, :)
     type(stack_t), allocatable, private :: workspaces(:)
   contains
     !> Sets up for a state.
@@ -106,15 +108,14 @@ contains
     self%inertia = create_nodal_inertia(model, parameters%mass_scaling)
     call self%inertia%invert(0.0_wp)
     call highest_element_frequency(model, now%plies%stiffness, parameters%mass_scaling, self%frequency, self%element)
-    print '(a,3es12.4)', 'steps: element, assembled', 2/self%frequency, &
-      2/highest_frequency(model, now%plies%stiffness, self%inertia)
     self%stacks = create_interface_stacks(model, now%interfaces%cohesive, self%inertia)
     self%workspaces = new_workspaces(self%stacks)
     self%rigs = create_rig_steps(model)
     self%circles = create_circle_frames(model)
     self%lines = create_line_steps(model, self%inertia)
     self%patch = create_struck_patch(model)
-    allocate (self%force(5, points), self%motion(5, points), source=0.0_wp)
+    allocate (self%force(5, points), self%motion(5, points), self%field(5, model%borders%columns), &
+              self%strain(lanes, model%elements%batches), source=0.0_wp)
     self%impactor_velocity = now%impactor%velocity
     self%initial_work = now%ledger%external_work
     call self%find_forces(model, now)
@@ -281,10 +282,10 @@ contains
     call model%profile%enter('elements')
     self%motion = now%motion%displacement
     if (model%map%layered) call model%map%to_motion(self%motion)
-    self%force = 0
-    call now%plies%add_layer_forces(model, self%motion, self%force, self%strain)
-    call model%halo%accumulate(self%force)
-    self%force = -self%force
+    self%field = 0
+    call now%plies%add_layer_forces(model, self%motion, self%field, self%strain)
+    call model%borders%add(self%field)
+    self%force = -self%field(:, :size(self%force, 2))
     call model%profile%leave()
     call self%patch%push(model%mesh%multiplicity, now%force, self%force)
     if (model%rig%elastic) self%force(3, :) = self%force(3, :) + model%rig%presses
@@ -326,10 +327,9 @@ contains
     type(state_t), intent(inout) :: now
     real(wp) :: lost
 
-    lost = self%strain
+    lost = total_of(model%communicator, self%strain)
     call self%renew_forces(model, now)
-    lost = lost - self%strain
-    call model%communicator%sum(lost)
+    lost = lost - total_of(model%communicator, self%strain)
     now%ledger%ply_damage = now%ledger%ply_damage + lost*model%mesh%multiplicity
   end subroutine book_failures
 

@@ -6,9 +6,11 @@
 !> other force moves it, and the velocity is corrected along M^-1 c. The reaction is what the layer's momentum then lacks.
 module line_steps
   use archives, only: archive_t
+  use exact_sums, only: exact_sum_t
   use kinds, only: wp
   use models, only: model_t
   use nodal_inertia, only: nodal_inertia_t
+  use rank_totals, only: totals_of
   use step_lengths, only: step_lengths_t
   implicit none
   private
@@ -257,15 +259,15 @@ contains
     type(model_t), intent(in) :: model
     !> Reactions of lines that prescribe motion, 0 for others
     real(wp) :: forces(size(model%lines))
+    type(exact_sum_t) :: sums(size(model%lines))
     integer :: i
 
-    forces = 0
     do i = 1, size(self%pins)
       associate (pin => self%pins(i))
-        forces(pin%line) = forces(pin%line) + pin%reaction/model%lines(pin%line)%share
+        call sums(pin%line)%add(pin%reaction/model%lines(pin%line)%share)
       end associate
     end do
-    call model%communicator%sum(forces)
+    forces = totals_of(model%communicator, sums)
   end function totals
 
   !> Saves or loads reactions, changes and work.

@@ -94,21 +94,24 @@ contains
     type(model_t), intent(in) :: model
     !> Receives them
     type(nodal_inertia_t), intent(inout) :: self
+    real(wp), allocatable :: field(:, :)
     integer :: i, k
 
     if (.not. (model%rig%elastic .or. allocated(model%rig%line_rig))) return
     allocate (self%springs(5, size(self%mass, 2)), source=0.0_wp)
     if (allocated(model%rig%line_rig)) then
+      allocate (field(5, model%rig%line_borders%columns), source=0.0_wp)
       do i = 1, size(model%rig%line_rig)
         if (model%rig%line_rig(i) /= 0) cycle
-        associate (component => model%rig%line_component(i), points => model%rig%line_points(:, i))
+        associate (component => model%rig%line_component(i), targets => model%rig%line_targets(:, i))
           do k = 1, 3
-            self%springs(component, points(k)) = self%springs(component, points(k)) &
-                                                 + model%rig%line_stiffness(i)*model%rig%line_weights(k, i)
+            field(component, targets(k)) = field(component, targets(k)) &
+                                           + model%rig%line_stiffness(i)*model%rig%line_weights(k, i)
           end do
         end associate
       end do
-      call model%halo%accumulate(self%springs)
+      call model%rig%line_borders%add(field)
+      self%springs = field(:, :size(self%springs, 2))
     end if
     if (model%rig%elastic) self%springs(1:3, :) = self%springs(1:3, :) + model%rig%springs
     call fold_mass(self, self%springs)

@@ -1,8 +1,10 @@
 !> Forces of rigs on the plate in steps by central differences.
 module rig_reactions
   use central_differences, only: central_difference_t
+  use exact_sums, only: exact_sum_t
   use kinds, only: wp
   use models, only: model_t
+  use rank_totals, only: totals_of
   use states, only: state_t
   use support_parameters, only: most_supports
   implicit none
@@ -21,6 +23,7 @@ contains
     type(state_t), intent(in) :: now
     !> 0 for rigs that the deck does not have
     real(wp) :: reactions(most_supports)
+    type(exact_sum_t) :: sums(most_supports)
     integer :: i
 
     reactions = 0
@@ -28,16 +31,16 @@ contains
     do i = 1, model%distribution%owned
       associate (holds => model%rig%holds(i), bears => model%rig%bears(i), clamps => model%rig%clamps(i))
         if (holds > 0) then
-          reactions(holds) = reactions(holds) + method%force(3, i)
-          if (has_interface_below(i)) reactions(holds) = reactions(holds) + method%stacks%forces(3, i + 1)
+          call sums(holds)%add(method%force(3, i))
+          if (has_interface_below(i)) call sums(holds)%add(method%stacks%forces(3, i + 1))
         else
-          if (bears > 0) reactions(bears) = reactions(bears) + method%rigs%reaction(i)
-          if (clamps > 0) reactions(clamps) = reactions(clamps) &
-                                              + model%rig%springs(3, i)*now%motion%displacement(3, i) - model%rig%presses(i)
+          if (bears > 0) call sums(bears)%add(method%rigs%reaction(i))
+          if (clamps > 0) &
+            call sums(clamps)%add(model%rig%springs(3, i)*now%motion%displacement(3, i) - model%rig%presses(i))
         end if
       end associate
     end do
-    call model%communicator%sum(reactions)
+    reactions = totals_of(model%communicator, sums)
     do i = 1, size(method%circles%rig)
       associate (rig => method%circles%rig(i))
         reactions(rig) = reactions(rig) + method%circles%forces(i)

@@ -5,12 +5,14 @@
 !> iteration too. Interfaces, clamps and frames are implicit and set no limit.
 module stable_steps
   use element_batches, only: lanes
+  use exact_sums, only: exact_sum_t
   use internal_forces, only: add_internal_force, batch_force
   use kinds, only: long, wp
   use lagrange9, only: gauss_shapes
   use models, only: model_t
   use nodal_inertia, only: nodal_inertia_t
   use plate_options, only: kinematics_linear
+  use rank_totals, only: total_of
   use stack_motions, only: accelerate
   implicit none
   private
@@ -32,7 +34,7 @@ contains
     real(wp) :: size_of_x, energy
     integer :: i, k, product
 
-    allocate (x(5, size(model%distribution%points)), force(5, size(model%distribution%points)))
+    allocate (x(5, size(model%distribution%points)), force(5, model%borders%columns))
     do i = 1, size(x, 2)
       do k = 1, 5
         x(k, i) = scattered(5*model%distribution%points(i) + k)
@@ -47,7 +49,7 @@ contains
       call model%halo%update(x)
       force = 0
       call add_internal_force(model%elements, stiffness, kinematics_linear, x, force, energy)
-      call model%halo%accumulate(force)
+      call model%borders%add(force)
       call inertia%fold(force)
       x = 0
       do i = 1, model%distribution%owned
@@ -71,21 +73,20 @@ contains
     type(nodal_inertia_t), intent(in) :: inertia
     !> The field, (5, points)
     real(wp), contiguous, intent(inout) :: x(:, :)
-    real(wp) :: force(5, size(x, 2)), sums(2), energy
+    real(wp) :: force(5, model%borders%columns), energies(lanes, model%elements%batches), energy
+    type(exact_sum_t) :: kinetic
     integer :: i
 
     call model%halo%update(x)
     force = 0
-    call add_internal_force(model%elements, stiffness, kinematics_linear, x, force, energy)
-    sums = [2*energy, 0.0_wp]
+    call add_internal_force(model%elements, stiffness, kinematics_linear, x, force, energy, energies=energies)
     do i = 1, model%distribution%owned
       associate (m => inertia%mass(:, i), a => x(:, i))
-        sums(2) = sums(2) + m(1)*(a(1)**2 + a(2)**2) + 2*m(2)*(a(1)*a(4) + a(2)*a(5)) + m(3)*(a(4)**2 + a(5)**2) &
-                  + m(4)*a(3)**2
+        call kinetic%add((m(1)*(a(1)**2 + a(2)**2) + m(3)*(a(4)**2 + a(5)**2) + m(4)*a(3)**2)/2 &
+                         + m(2)*(a(1)*a(4) + a(2)*a(5)))
       end associate
     end do
-    call model%communicator%sum(sums)
-    quotient = sums(1)/sums(2)
+    quotient = total_of(model%communicator, energies)/total_of(model%communicator, kinetic)
   end function rayleigh
 
   !> A number between -1 and 1 that goes with another one, the same everywhere (G. Marsaglia, Journal of Statistical Software

@@ -112,24 +112,25 @@ contains
 
   !> Adds the forces of the elements on the layers, with plies that soften as they are strained; what they remember is
   !> accepted at once. Collective.
-  subroutine add_layer_forces(self, model, motion, force, energy)
+  subroutine add_layer_forces(self, model, motion, force, energies)
     !> The failures
     class(ply_failure_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Motion of the layers, ghosts up to date, (5, points)
     real(wp), contiguous, intent(in) :: motion(:, :)
-    !> Internal forces on the layers, (5, points), added to
+    !> Internal forces on the layers, (5, columns of the borders), added to
     real(wp), contiguous, intent(inout) :: force(:, :)
-    !> Strain energy of this rank's elements
-    real(wp), intent(out) :: energy
+    !> Strain energy of each element, (lanes, batches)
+    real(wp), contiguous, intent(out) :: energies(:, :)
+    real(wp) :: energy
 
     if (allocated(self%bands)) then
       call add_internal_force(model%elements, self%stiffness, model%scene%kinematics, motion, force, energy, self%bands, &
-                              self%free)
+                              self%free, energies)
       call self%bands%hand_over(self%stiffness, self%free)
     else
       call add_internal_force(model%elements, self%stiffness, model%scene%kinematics, motion, force, energy, &
-                              free=self%free)
+                              free=self%free, energies=energies)
     end if
   end subroutine add_layer_forces
 
