@@ -10,11 +10,15 @@ module interface_flaws
   use models, only: model_t
   implicit none
   private
-  public :: weaken_beside, visit_flaws
+  public :: may_weaken, weaken_beside, visit_flaws
+
+  !> So that cells as far away as the reach count on every machine.
+  real(wp), parameter :: slack = 1 + 1.0e-9_wp
 
 contains
 
-  !> Weakens the undamaged points of an interface beside cracks of a ply.
+  !> Weakens the undamaged points of an interface beside cracks of a ply. Mirrored cells lie farther away than the cells
+  !> themselves; beyond the line at which a turned plate is cut lies the plate itself, turned.
   pure subroutine weaken_beside(interfaces, model, zone, cracked, reach, part)
     !> The interfaces
     type(cohesive_interfaces_t), intent(inout) :: interfaces
@@ -27,60 +31,89 @@ contains
     real(wp), intent(in) :: reach
     !> Part of the strengths that cracks leave
     real(wp), intent(in) :: part
-    integer :: i
+    integer :: cell
 
-    if (.not. any(cracked)) return
-    do i = 1, model%distribution%owned
-      if (model%zone(i) /= zone .or. interfaces%strength(i) <= part .or. interfaces%points(i)%damage > 0) cycle
-      associate (place => model%mesh%node_coordinates(:, model%mesh%point_node(model%distribution%points(i))))
-        if (is_beside(model%mesh, cracked, place, reach)) interfaces%strength(i) = part
-      end associate
-    end do
+    associate (mesh => model%mesh)
+      do cell = 1, size(cracked)
+        if (.not. cracked(cell)) cycle
+        associate (place => mesh%place_of(cell))
+          associate (x => mesh%x_edges(place(1):place(1) + 1), y => mesh%y_edges(place(2):place(2) + 1))
+            call weaken_around(interfaces, model, zone, x, y, reach, part)
+            if (mesh%halved(1) .and. .not. mesh%mirrored(1)) &
+              call weaken_around(interfaces, model, zone, -x([2, 1]), -y([2, 1]), reach, part)
+          end associate
+        end associate
+      end do
+    end associate
   end subroutine weaken_beside
 
-  !> True if a cracked cell lies within a distance. Mirrored cells lie farther away than the cells themselves; beyond
-  !> the line at which a turned plate is cut lies the plate itself, turned.
-  pure logical function is_beside(mesh, cracked, place, reach)
-    !> The mesh
-    type(layered_mesh_t), intent(in) :: mesh
-    !> True for cracked cells, (cells)
-    logical, intent(in) :: cracked(:)
-    !> Coordinates of a point
-    real(wp), intent(in) :: place(2)
+  !> Weakens the undamaged points of an interface within a distance of a rectangle.
+  pure subroutine weaken_around(interfaces, model, zone, x, y, reach, part)
+    !> The interfaces
+    type(cohesive_interfaces_t), intent(inout) :: interfaces
+    type(model_t), intent(in) :: model
+    !> Index of the zone
+    integer, intent(in) :: zone
+    !> Ends of the rectangle
+    real(wp), intent(in) :: x(2), y(2)
     !> The distance
     real(wp), intent(in) :: reach
+    !> Part of the strengths that cracks leave
+    real(wp), intent(in) :: part
+    integer :: i, j, columns(2), rows(2), node, local
 
-    is_beside = near(mesh, cracked, place, reach)
-    if (is_beside) return
-    if (mesh%halved(1) .and. .not. mesh%mirrored(1)) is_beside = near(mesh, cracked, -place, reach)
-  end function is_beside
-
-  !> True if a cracked cell of the model lies within a distance.
-  pure logical function near(mesh, cracked, place, reach)
-    !> The mesh
-    type(layered_mesh_t), intent(in) :: mesh
-    !> True for cracked cells, (cells)
-    logical, intent(in) :: cracked(:)
-    !> Coordinates of a point
-    real(wp), intent(in) :: place(2)
-    !> The distance
-    real(wp), intent(in) :: reach
-    ! So that cells as far away as the reach count on every machine.
-    real(wp), parameter :: slack = 1 + 1.0e-9_wp
-    real(wp) :: across
-    integer :: column, row
-
-    near = .false.
-    do row = 1, mesh%cells(2)
-      across = distance(place(2), mesh%y_edges(row:row + 1))
-      if (across > slack*reach) cycle
-      do column = 1, mesh%cells(1)
-        if (.not. cracked(mesh%cell_at(column, row))) cycle
-        near = norm2([distance(place(1), mesh%x_edges(column:column + 1)), across]) <= slack*reach
-        if (near) return
+    associate (mesh => model%mesh)
+      columns = lines_within(mesh%x_edges, x, reach)
+      rows = lines_within(mesh%y_edges, y, reach)
+      do j = rows(1), rows(2)
+        do i = columns(1), columns(2)
+          node = mesh%node_at(i, j)
+          if (mesh%lower_point(node, zone) == 0) cycle
+          local = model%distribution%local(mesh%lower_point(node, zone))
+          if (local == 0 .or. local > model%distribution%owned) cycle
+          if (model%zone(local) /= zone) cycle
+          if (interfaces%strength(local) <= part .or. interfaces%points(local)%damage > 0) cycle
+          associate (place => mesh%node_coordinates(:, node))
+            if (norm2([distance(place(1), x), distance(place(2), y)]) <= slack*reach) interfaces%strength(local) = part
+          end associate
+        end do
       end do
-    end do
-  end function near
+    end associate
+  end subroutine weaken_around
+
+  !> Lines of nodes that may lie within a distance of an interval, from 0.
+  pure function lines_within(edges, ends, reach) result(lines)
+    !> Edges of the cells, ascending
+    real(wp), intent(in) :: edges(:)
+    !> The interval
+    real(wp), intent(in) :: ends(2)
+    !> The distance
+    real(wp), intent(in) :: reach
+    !> First and last
+    integer :: lines(2)
+
+    lines(1) = 2*max(0, count(edges <= ends(1) - slack*reach) - 1)
+    lines(2) = 2*min(size(edges) - 1, count(edges < ends(2) + slack*reach))
+  end function lines_within
+
+  !> True if a crack in a cell can weaken points of a zone.
+  pure logical function may_weaken(mesh, zone, cell, reach)
+    !> The mesh
+    type(layered_mesh_t), intent(in) :: mesh
+    !> Index of the zone, and the cell
+    integer, intent(in) :: zone, cell
+    !> Distance from a crack that is weakened, length
+    real(wp), intent(in) :: reach
+    integer :: place(2)
+
+    place = mesh%place_of(cell)
+    associate (columns => mesh%zones(zone)%columns, rows => mesh%zones(zone)%rows, x => mesh%x_edges, y => mesh%y_edges)
+      may_weaken = x(place(1) + 1) + slack*reach >= x(columns(1)) .and. x(place(1)) - slack*reach <= x(columns(2) + 1) &
+                   .and. y(place(2) + 1) + slack*reach >= y(rows(1)) .and. y(place(2)) - slack*reach <= y(rows(2) + 1)
+    end associate
+    ! The image of a cell in a turned plate lies beside the cut only.
+    if (mesh%halved(1) .and. .not. mesh%mirrored(1)) may_weaken = may_weaken .or. mesh%x_edges(place(1)) <= slack*reach
+  end function may_weaken
 
   !> Distance of a coordinate from an interval.
   pure real(wp) function distance(x, ends)

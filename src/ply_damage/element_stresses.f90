@@ -10,7 +10,7 @@ module element_stresses
   use models, only: model_t
   implicit none
   private
-  public :: element_strains, stresses_of_ply
+  public :: element_strains, has_ply, stress_of_ply, stresses_of_ply
 
 contains
 
@@ -43,22 +43,61 @@ contains
     !> s11, s22, s12, s13, s23 in the ply's mid-plane, on its top and on its bottom; zero in elements without
     !> this ply, (5, 3, elements)
     real(wp), allocatable :: stresses(:, :, :)
-    type(elasticity_t) :: elasticity
-    real(wp), allocatable :: shear(:, :)
     integer :: element
 
     allocate (stresses(5, 3, size(strains, 2)), source=0.0_wp)
     do element = 1, size(strains, 2)
-      associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
-        if (ply < range(1) .or. ply > range(2)) cycle
-        shear = shear_of_plies(model%plies(range(1):range(2)), model%shear_shares(:, :, range(1):range(2)), &
-                               strains(7:8, element))
-        elasticity = failures%elasticity(model, ply, element)
-        stresses(:, 1, element) = middle_stress(model%plies(ply), elasticity, strains(:6, element), &
-                                                shear(:, ply - range(1) + 1))
-        stresses(:, 2:3, element) = face_stresses(model%plies(ply), elasticity, strains(:6, element), &
-                                                  shear(:, ply - range(1) + 1))
+      if (.not. has_ply(model, ply, element)) cycle
+      associate (shear => shear_of_ply(model, strains, ply, element), &
+                 elasticity => failures%elasticity(model, ply, element))
+        stresses(:, 1, element) = middle_stress(model%plies(ply), elasticity, strains(:6, element), shear)
+        stresses(:, 2:3, element) = face_stresses(model%plies(ply), elasticity, strains(:6, element), shear)
       end associate
     end do
   end function stresses_of_ply
+
+  !> Stress of one ply of one element in its own axes and its mid-plane: s11, s22, s12, s13, s23.
+  pure function stress_of_ply(model, elasticity, strains, ply, element) result(stress)
+    type(model_t), intent(in) :: model
+    !> Constants left in the ply
+    type(elasticity_t), intent(in) :: elasticity
+    !> Those of element_strains
+    real(wp), intent(in) :: strains(:, :)
+    !> Ply of the laminate, and element of this rank that has it
+    integer, intent(in) :: ply, element
+    !> The stress
+    real(wp) :: stress(5)
+
+    stress = middle_stress(model%plies(ply), elasticity, strains(:6, element), shear_of_ply(model, strains, ply, element))
+  end function stress_of_ply
+
+  !> Transverse shear stress of one ply of one element.
+  pure function shear_of_ply(model, strains, ply, element) result(shear)
+    type(model_t), intent(in) :: model
+    !> Those of element_strains
+    real(wp), intent(in) :: strains(:, :)
+    !> Ply of the laminate, and element of this rank that has it
+    integer, intent(in) :: ply, element
+    !> xz, yz
+    real(wp) :: shear(2)
+
+    associate (first => model%mesh%element_plies(1, model%distribution%elements(element)), &
+               last => model%mesh%element_plies(2, model%distribution%elements(element)))
+      associate (all => shear_of_plies(model%plies(first:last), model%shear_shares(:, :, first:last), &
+                                       strains(7:8, element)))
+        shear = all(:, ply - first + 1)
+      end associate
+    end associate
+  end function shear_of_ply
+
+  !> True if an element of this rank has a ply.
+  pure logical function has_ply(model, ply, element)
+    type(model_t), intent(in) :: model
+    !> Ply of the laminate, and element
+    integer, intent(in) :: ply, element
+
+    associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
+      has_ply = ply >= range(1) .and. ply <= range(2)
+    end associate
+  end function has_ply
 end module element_stresses

@@ -1,9 +1,9 @@
 !> Cracks of plies next to an interface, and the flaws that they leave there.
 module crack_flaws
   use delamination_parameters, only: law_cohesive
-  use element_stresses, only: element_strains, stresses_of_ply
+  use element_stresses, only: element_strains, has_ply, stress_of_ply
   use in_situ_strengths, only: crack_strengths
-  use interface_flaws, only: weaken_beside
+  use interface_flaws, only: may_weaken, weaken_beside
   use interface_states, only: interface_state_t
   use kinds, only: wp
   use matrix_exposures, only: matrix_strengths_t, cracks_on_a_plane, shear_across_strength
@@ -71,34 +71,37 @@ contains
       part = shear_across_strength(strengths)/scene%delaminations(zone)%strength_shear
     end associate
     if (part < 1) call weaken_beside(interfaces%cohesive, model, zone, &
-                                     sheared_cells(model, plies, strains, ply, strengths), reach, part)
+                                     sheared_cells(model, plies, strains, zone, ply, reach, strengths), &
+                                     reach, part)
   end subroutine weaken_by_shear
 
   !> Cells in which a ply has begun to crack or bears no more of its stresses, transverse shear counted, on any rank.
   !> Collective.
-  function sheared_cells(model, plies, strains, ply, strengths) result(cracked)
+  function sheared_cells(model, plies, strains, zone, ply, reach, strengths) result(cracked)
     type(model_t), intent(in) :: model
     !> Failures of the plies
     type(ply_failure_t), intent(in) :: plies
     !> Those of element_strains
     real(wp), intent(in) :: strains(:, :)
-    !> Ply of the laminate
-    integer, intent(in) :: ply
-    !> Its strengths
+    !> Index of the zone, and ply of the laminate
+    integer, intent(in) :: zone, ply
+    !> Distance from a crack that is weakened, length
+    real(wp), intent(in) :: reach
+    !> The ply's strengths
     type(matrix_strengths_t), intent(in) :: strengths
     !> (cells of the mesh)
     logical, allocatable :: cracked(:)
-    real(wp), allocatable :: stresses(:, :, :)
     logical :: cracks(size(strains, 2))
     type(elasticity_t) :: left
     integer :: i
 
-    stresses = stresses_of_ply(model, plies, strains, ply)
     do i = 1, size(cracks)
-      cracks(i) = cracks_on_a_plane(strengths, stresses(:, 1, i))
-      if (cracks(i)) cycle
+      cracks(i) = may_weaken(model%mesh, zone, model%mesh%element_cell(model%distribution%elements(i)), reach)
+      if (cracks(i)) cracks(i) = has_ply(model, ply, i)
+      if (.not. cracks(i)) cycle
       left = plies%elasticity(model, ply, i)
       cracks(i) = left%e2 < model%plies(ply)%elasticity%e2
+      if (.not. cracks(i)) cracks(i) = cracks_on_a_plane(strengths, stress_of_ply(model, left, strains, ply, i))
     end do
     cracked = cells_of(model, cracks)
   end function sheared_cells
