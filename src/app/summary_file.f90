@@ -10,6 +10,7 @@ module summary_file
   use kinds, only: wp
   use output_streams, only: output_stream_t
   use output_clocks, only: shown_time
+  use output_deck, only: key_force_filter
   use profiles, only: profile_row_t
   use run_errors, only: run_errors_t
   use run_figures, only: ending_t, run_figures_t
@@ -87,7 +88,7 @@ contains
     call json%put('peak_force', record%peak_force)
     call json%put('peak_force_at', shown_time(record%peak_time))
     if (record%filter%frequency > 0) then
-      call json%open_object('force_filter')
+      call json%open_object(key_force_filter)
       call json%put('kind', filter_kind)
       call json%put('frequency', record%filter%frequency)
       call json%put('peak_force', record%peak_filtered)

@@ -7,7 +7,8 @@ module deck_central_differences
   use impact_parameters, only: integrator_central
   use impactor_deck, only: impactor_group, key_integrator
   use kinds, only: wp
-  use mesh_deck, only: mesh_group, key_mass
+  use element_deck, only: key_mass
+  use mesh_deck, only: mesh_group
   use output_deck, only: output_group, key_history_every
   use pilot_impacts, only: pilot_t
   use plate_options, only: mass_lumped

@@ -11,8 +11,8 @@ module deck_explicit_checks
   use impact_parameters, only: integrator_central
   use impactor_deck, only: impactor_group, key_integrator
   use interface_places, only: delamination_group
-  use mesh_deck, only: key_mass, mesh_group
-  use output_deck, only: key_history_every, output_group
+  use element_deck, only: key_mass
+  use mesh_deck, only: mesh_group
   use time_deck, only: time_group
   implicit none
   private

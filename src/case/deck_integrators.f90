@@ -3,7 +3,8 @@
 module deck_integrators
   use deck_contents, only: deck_t
   use delamination_parameters, only: law_cohesive, law_front
-  use mesh_deck, only: mesh_group, key_mass
+  use element_deck, only: key_mass
+  use mesh_deck, only: mesh_group
   use text, only: append
   use time_deck, only: integrator_of, key_integrator, time_group
   implicit none

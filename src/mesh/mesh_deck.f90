@@ -13,8 +13,7 @@ module mesh_deck
 
   !> Names that checks across groups use.
   character(len=*), parameter, public :: mesh_group = 'mesh', key_elements = 'elements', key_patch = 'patch', &
-                                         key_core = 'core', key_cell = 'cell', key_grading = 'grading', &
-                                         key_mass = 'mass'
+                                         key_core = 'core', key_cell = 'cell', key_grading = 'grading'
   !> Most elements: more pass the range of default integers.
   real(wp), parameter, public :: most_elements = 1.0e6_wp
   !> Row of the group.

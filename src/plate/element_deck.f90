@@ -9,6 +9,8 @@ module element_deck
   private
   public :: fill_kinematics, fill_element
 
+  !> Name that checks across groups use.
+  character(len=*), parameter, public :: key_mass = 'mass'
   !> Rows of the keys.
   character(len=key_row_length), parameter, public :: kinematics_rows(*) = [character(len=key_row_length) :: &
     'case | kinematics | choice | 1 | - | ''von_karman'' | von_karman linear | &
@@ -44,6 +46,6 @@ contains
 
     shear = code_of(settings%text_of('mesh', 'shear'), 'assumed full selective', &
                     [shear_assumed, shear_full, shear_selective])
-    mass = code_of(settings%text_of('mesh', 'mass'), 'consistent lumped', [mass_consistent, mass_lumped])
+    mass = code_of(settings%text_of('mesh', key_mass), 'consistent lumped', [mass_consistent, mass_lumped])
   end subroutine fill_element
 end module element_deck

@@ -9,7 +9,8 @@ rejected from checkpoints next to rejected steps, while delaminations grow: bitw
 cohesive from the checkpoint after each step of a run whose interface is cohesive: bitwise
 layers   from the checkpoint after each step of a run whose layers follow their damage: bitwise
 softening from the checkpoint after each step of a run whose plies soften: bitwise
-nose     the same under a nose that presses where it touches: bitwise"""
+nose     the same under a nose that presses where it touches: bitwise
+explicit wherever a run by central differences looks at its limits, with a low pass of its force: bitwise"""
 
 import signal
 import sys
@@ -50,6 +51,9 @@ GROWING = ["mesh%elements=10,10", "impactor%velocity=3", "delamination%G_c=200",
 SOFTENING = ["time%end=120e-6", "thermal%delta_T=-150", "material%alpha1=-0.3e-6", "material%alpha2=28e-6"]
 NOSE = ["impactor%contact_area='sphere'", "time%step=16e-6", "time%end=400e-6",
         "material%shear_failure_strain=.05", "ply_damage%in_situ=.true."]
+# By central differences, with a row every fifty steps or so.
+EXPLICIT = ["time%integrator='central_difference'", "time%end=150e-6", "output%force_filter=2e4",
+            "output%history_every=4e-6"]
 # Steps of a second, with several releases each.
 RUNNING = ["mesh%elements=20,20", "impactor%velocity=3", "delamination%G_c=100", f"time%end={11 * STEP!r}",
            f"output%checkpoint_every={STEP!r}", f"output%fields_every={STEP!r}"]
@@ -99,6 +103,25 @@ def check_nose(implam, folder, _):
     check_all_checkpoints(implam, folder, "../small/crack_bands.nml", NOSE, "energy_ply_damage")
     areas = read_history(history_of(folder / "uninterrupted"))["contact_area"]
     require(len(set(areas)) > 2, "The area of contact changed less than twice: the trial proves nothing.")
+
+
+def check_explicit(implam, folder, _):
+    """From each look of a run by central differences at its limits, whose plies soften."""
+    reference = run_deck(implam, write_deck(folder / "uninterrupted", "../small/crack_bands.nml", EXPLICIT))
+    history = read_history(reference)
+    require(history["energy_ply_damage"][-1] > 0 and history["force_filtered"][-1] > 0, "The trial proves nothing.")
+    deck = write_deck(folder / "look_by_look", "../small/crack_bands.nml", EXPLICIT)
+    words, looks = [deck, "--output", deck.parent], 0
+    while run_to_look(implam, words) == EXIT_STOPPED:
+        words, looks = ["restart", checkpoint_of(deck.parent)], looks + 1
+    require(looks >= len(history["time"]), f"The run stopped {looks} times only: the trial proves nothing.")
+    require_same(history_of(deck.parent), reference, "a run for each look")
+    print(f"Stopped {looks} times and gone on with: the same to the last bit")
+
+
+def run_to_look(implam, words):
+    """Go on until the time on the wall is looked at; return the exit code."""
+    return exit_code(start(implam, *words, *SINGLE_STEP))
 
 
 def check_all_checkpoints(implam, folder, source, settings, grows="delaminated_area"):
@@ -220,7 +243,7 @@ def check_rejected(implam, folder, _):
 TRIALS = {"every": check_every, "splits": check_splits, "moments": check_moments, "ranks": check_ranks,
           "rejected": check_rejected, "cohesive": check_cohesive,
           "layers": check_layers,
-          "softening": check_softening, "nose": check_nose}
+          "softening": check_softening, "nose": check_nose, "explicit": check_explicit}
 
 
 if __name__ == "__main__":
