@@ -311,7 +311,8 @@ contains
     real(wp) :: closest
     logical :: row_due, fields_due, checkpoint_due
 
-    call self%stepper%look(self%model)
+    call self%stepper%look(self%model, error)
+    if (allocated(error)) return
     call give_warnings(self%deck, self%model, self%stepper, self%record, self%energy_watch, self%log, error)
     row_due = row_is_due(self%deck%output, self%stepper%now%step) .or. self%stepper%now%time >= end_of(self)
     fields_due = .false.

@@ -147,7 +147,8 @@ contains
     integer :: zone
 
     transfer%communicator = model%communicator
-    call stepper%look(model)
+    call stepper%look(model, error)
+    if (allocated(error)) return
     stepper%operator%ready = .false.
     call stepper%visit(transfer, model, error)
     if (allocated(error)) return
@@ -172,7 +173,7 @@ contains
     if (allocated(error)) return
     stepper%operator%timers = timers
     if (allocated(stepper%explicit)) then
-      call settle_explicit(model, transfer, stepper)
+      call settle_explicit(model, transfer, stepper, error)
       return
     end if
     call settle(model, transfer, stepper%now)
@@ -213,12 +214,14 @@ contains
   end subroutine settle
 
   !> Lets the new layers move with the plate that they were, and finds their forces. Collective.
-  subroutine settle_explicit(model, transfer, stepper)
+  subroutine settle_explicit(model, transfer, stepper, error)
     type(model_t), intent(inout) :: model
     !> Where points and elements come from
     type(layer_transfer_t), intent(in) :: transfer
     !> What evolves, loaded
     type(time_stepper_t), intent(inout) :: stepper
+    !> Set if the motion has become unstable
+    type(error_t), allocatable, intent(out) :: error
     real(wp) :: before
 
     associate (now => stepper%now, explicit => stepper%explicit)
@@ -228,7 +231,7 @@ contains
       call now%plies%restack(model, transfer%is_split(model%distribution%elements))
       call explicit%resume(model, now)
       call explicit%renew_forces(model, now)
-      call stepper%look(model)
+      call stepper%look(model, error)
       now%ledger%layers = now%ledger%layers + before - now%ledger%kinetic - now%ledger%strain
     end associate
   end subroutine settle_explicit

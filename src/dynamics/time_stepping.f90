@@ -6,9 +6,8 @@ module time_stepping
   use text, only: rounded_text
   use initial_equilibrium, only: find_initial_equilibrium, find_acceleration, has_initial_motion
   use step_errors, only: step_error_t
-  use central_difference_energies, only: book_energies
   use central_differences, only: central_difference_t
-  use rig_reactions, only: reactions_of
+  use explicit_steps, only: advance_explicit, complete_step, settle_stresses
   use stepping_parameters, only: stepping_t, follows_error, is_explicit
   use linear_solver_parameters, only: linear_solver_parameters_t
   use newmark_integrators, only: plate_integrator_t, plate_integrator
@@ -37,8 +36,6 @@ module time_stepping
   !> Answers to unit forces on cohesive points with which the operator goes into a step: more make each iteration dearer
   !> than a factorization, into which those go that have failed.
   integer, parameter :: most_answers = 400
-  !> Steps of central differences between two looks for cracks that are flaws of interfaces.
-  integer, parameter :: between_flaws = 8
 
   !> All that evolves during a run.
   type :: time_stepper_t
@@ -106,7 +103,7 @@ contains
     if (is_explicit(stepping)) then
       allocate (self%explicit)
       self%unknowns = count(.not. model%held)
-      if (.not. resumed .and. has_initial_motion(model)) call settle_stresses(self, model, linear_solver, error)
+      if (.not. resumed .and. has_initial_motion(model)) call settle_stresses(self%operator, model, linear_solver, self%now, error)
       if (.not. allocated(error)) call self%explicit%start(model, stepping%central, self%now)
       return
     end if
@@ -125,22 +122,6 @@ contains
       call find_acceleration(model, self%operator, self%integrator%mass_factor(stepping%time%step), self%now, error)
   end subroutine start
 
-  !> Brings a plate that central differences are to move into equilibrium with its residual stresses, so that nothing
-  !> rings. Collective.
-  subroutine settle_stresses(self, model, linear_solver, error)
-    !> The time stepper
-    class(time_stepper_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
-    !> The linear solver
-    type(linear_solver_parameters_t), intent(in) :: linear_solver
-    !> Set if there is no equilibrium
-    type(error_t), allocatable, intent(out) :: error
-
-    call self%operator%create(model, linear_solver%factorization, error)
-    if (.not. allocated(error)) call find_initial_equilibrium(model, self%operator, self%now, error)
-    call self%operator%release()
-  end subroutine settle_stresses
-
   !> Takes one step, at most to the next event; the step is tried again with half its length until
   !> equilibrium is reached or the smallest step of the deck has failed.
   subroutine advance(self, model, event, error)
@@ -155,7 +136,8 @@ contains
     logical :: converged, follows
 
     if (allocated(self%explicit)) then
-      call advance_explicit(self, model, event)
+      call advance_explicit(self%explicit, model, event, self%now)
+      self%controller%last = self%explicit%steps%now
       return
     end if
     follows = follows_error(self%stepping%adapt) .and. .not. model%scene%has_static
@@ -194,32 +176,6 @@ contains
     if (model%scene%has_static .and. self%now%plies%softened) call settle(self, model, error)
   end subroutine advance
 
-  !> Takes one step by central differences. Collective.
-  subroutine advance_explicit(self, model, event)
-    !> The time stepper
-    class(time_stepper_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
-    !> Time not to be passed
-    real(wp), intent(in) :: event
-
-    call self%explicit%advance(model, event, self%now)
-    self%controller%last = self%explicit%steps%now
-    associate (now => self%now)
-      if (model%scene%has_ply_damage .and. .not. allocated(now%plies%bands)) then
-        call model%profile%enter('ply criteria')
-        call now%plies%grow(model, now%motion%displacement)
-        call model%profile%leave()
-        if (now%plies%softened) call self%explicit%book_failures(model, now)
-      end if
-      if (modulo(now%step, between_flaws) == 0) then
-        call model%profile%enter('flaws')
-        call note_flaws(model, now%plies, now%motion%displacement, now%interfaces)
-        if (model%map%layered) call self%explicit%stacks%find_onsets(model, now%interfaces%cohesive)
-        call model%profile%leave()
-      end if
-    end associate
-  end subroutine advance_explicit
-
   !> Brings a plate whose plies have failed under a load back into equilibrium with it, until no more of them fail.
   subroutine settle(self, model, error)
     !> The time stepper
@@ -242,21 +198,16 @@ contains
     end do
   end subroutine settle
 
-  !> Completes what a step by central differences leaves until somebody looks: energies and stress. Collective.
-  subroutine look(self, model)
+  !> Completes what a step by central differences leaves until somebody looks. Collective.
+  subroutine look(self, model, error)
     !> The time stepper
     class(time_stepper_t), intent(inout) :: self
     !> Receives how the impactor's force is spread
     type(model_t), intent(inout) :: model
+    !> Set if the motion has become unstable
+    type(error_t), allocatable, intent(out) :: error
 
-    if (.not. allocated(self%explicit)) return
-    if (allocated(model%nose)) &
-      call model%spread_force(self%explicit%patch%local_weights(size(model%patch)), self%explicit%patch%offset)
-    call book_energies(self%explicit, model, self%now)
-    self%now%interfaces%rig%found = reactions_of(self%explicit, model, self%now)
-    if (size(model%lines) > 0) self%now%line_reactions = self%explicit%lines%totals(model)
-    self%now%stress = struck_stress(model, self%now%motion%displacement)
-    self%now%largest_stress = max(self%now%largest_stress, self%now%stress)
+    if (allocated(self%explicit)) call complete_step(self%explicit, model, self%now, error)
   end subroutine look
 
   !> Smallest step worth trying.

@@ -1,0 +1,68 @@
+!> Tells a motion that central differences have made unstable from one that is not.
+module unstable_motions
+  use errors, only: error_t, exit_convergence, fail
+  use kinds, only: wp
+  use models, only: model_t
+  use short_numbers, only: short_text
+  use states, only: state_t
+  use text, only: rounded_text, to_text
+  implicit none
+  private
+  public :: refuse_instability
+
+  !> Energy that nothing accounts for, over all energy that was there or brought in, from which a run ends. An unstable
+  !> mode grows by a factor each step and passes it at once; the watch of the ledger warns from a tenth of it.
+  real(wp), parameter :: most_created = 0.1_wp
+
+contains
+
+  !> Ends a run whose energy grows without a cause. Collective.
+  subroutine refuse_instability(model, now, error)
+    type(model_t), intent(in) :: model
+    !> The state, with its ledger
+    type(state_t), intent(in) :: now
+    !> Set if the motion is unstable; the same on every rank
+    type(error_t), allocatable, intent(out) :: error
+    real(wp) :: created, energy
+    character(len=:), allocatable :: amount
+
+    created = now%ledger%error()
+    energy = max(now%ledger%initial, now%ledger%external_work, now%ledger%initial + now%ledger%external_work)
+    if (created <= most_created*energy .or. .not. (energy > 0 .or. abs(created) > 0)) return
+    amount = 'the energy has become infinite'
+    if (abs(created) <= huge(created)) amount = rounded_text(created)//' of energy have appeared beside '// &
+                                                rounded_text(energy)
+    call fail(error, exit_convergence, 'Central differences have become unstable by time '//rounded_text(now%time)// &
+              ': '//amount//'; the fastest point is '//fastest_point(model, now%motion%velocity)// &
+              '. Take a smaller &time step_factor.')
+  end subroutine refuse_instability
+
+  !> Where the plate moves fastest across itself. Collective.
+  function fastest_point(model, velocity) result(place)
+    type(model_t), intent(in) :: model
+    !> Rates of the unknowns, (5, points)
+    real(wp), intent(in) :: velocity(:, :)
+    !> Coordinates and layer
+    character(len=:), allocatable :: place
+    real(wp), allocatable :: rates(:)
+    real(wp) :: largest
+    integer :: i, point
+
+    associate (share => model%distribution)
+      rates = abs(velocity(3, :share%owned))
+      where (.not. rates <= huge(rates)) rates = huge(rates)
+      largest = maxval(rates)
+      call model%communicator%maximum(largest)
+      point = huge(point)
+      do i = 1, share%owned
+        if (rates(i) >= largest) point = min(point, share%points(i))
+      end do
+    end associate
+    call model%communicator%minimum(point)
+    associate (node => model%mesh%point_node(point))
+      place = 'at x = '//short_text(model%mesh%node_coordinates(1, node))//', y = '// &
+              short_text(model%mesh%node_coordinates(2, node))//', layer '// &
+              to_text(point - model%mesh%first_point(node) + 1)
+    end associate
+  end function fastest_point
+end module unstable_motions
