@@ -100,16 +100,15 @@ contains
     !> Set if files cannot be written or the model cannot be set up
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: retired
-    logical :: filtered
 
     call prepare(self, deck, communicator, profile, append=.false., error=error)
     if (.not. allocated(error)) call retire_checkpoint(communicator, self%base//checkpoint_ending, retired, error)
     if (allocated(error)) return
     if (retired /= '') call self%log%note('The checkpoint of an earlier run is now '//retired//'.')
-    filtered = deck%output%force_filter > 0
     call self%history%create(communicator, self%base//'_history.csv', &
-                             column_names(deck%delaminations, deck%lines, filtered), &
-                             column_whole(size(deck%delaminations), size(deck%lines), filtered), error)
+                             column_names(deck%delaminations, deck%lines, deck%output%force_filter > 0), &
+                             column_whole(size(deck%delaminations), size(deck%lines), deck%output%force_filter > 0), &
+                             error)
     if (allocated(error)) return
     call self%fields%create(communicator, self%base, self%provenance, part_of(self%deck), error)
     if (allocated(error)) return
@@ -193,7 +192,6 @@ contains
     type(checkpoint_archive_t) :: archive
     real(wp), allocatable :: last_row(:)
     integer :: rows
-    logical :: filtered
 
     call prepare(self, deck, communicator, profile, append=.true., error=error)
     if (allocated(error)) return
@@ -206,10 +204,10 @@ contains
     call self%fields%check_deck(communicator, self%base, deck%text, error)
     if (allocated(error)) return
     last_row = self%history%last_row
-    filtered = deck%output%force_filter > 0
     call self%history%resume(communicator, self%base//'_history.csv', &
-                             column_names(deck%delaminations, deck%lines, filtered), &
-                             column_whole(size(deck%delaminations), size(deck%lines), filtered), rows, last_row, error)
+                             column_names(deck%delaminations, deck%lines, deck%output%force_filter > 0), &
+                             column_whole(size(deck%delaminations), size(deck%lines), deck%output%force_filter > 0), &
+                             rows, last_row, error)
     if (allocated(error)) return
     if (self%history%rows /= rows) &
       call self%log%warning('The history before the checkpoint is not there; it goes on from here.')

@@ -218,7 +218,8 @@ contains
     call fill_adapt(deck%settings, deck%stepping%adapt)
     if (deck%has_time) call fill_time(deck%settings, natural_rho_infinity(deck), follows_error(deck%stepping%adapt), &
                                       deck%stepping%time, deck%stepping%central)
-    if (deck%impactor%travel > 0 .and. deck%has_time .and. .not. deck%settings%is_given(impactor_group, impactor_key_rise)) &
+    if (deck%impactor%travel > 0 .and. deck%has_time .and. &
+        .not. deck%settings%is_given(impactor_group, impactor_key_rise)) &
       deck%impactor%rise = usual_rise*deck%stepping%time%end
     call fill_pressure(deck%settings, deck%stepping%time%end, deck%pressure)
     if (deck%has_thermal) call fill_thermal(deck%settings, deck%temperature_change)
