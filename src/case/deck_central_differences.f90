@@ -26,7 +26,7 @@ module deck_central_differences
   !> knows, by its root.
   real(wp), parameter :: most_scaling = 10
   !> Error of a bending wave's frequency up to which inertia is scaled. By s times the rotary inertia a wave of number k
-  !> in a plate of thickness h is slower by s (k h)**2/24: rho h**3/12 k**2 beside rho h, halved by the root.
+  !> in a plate of thickness h is slower by (s - 1) (k h)**2/24: rho h**3/12 k**2 beside rho h, halved by the root.
   real(wp), parameter :: frequency_error = 0.005_wp
   !> Rows of a history, about: as many as a plot shows. They are written at whole steps, which none is cut for.
   real(wp), parameter :: rows = 2000
@@ -93,10 +93,10 @@ contains
 
     if (scales%wave_length > 0) then
       slowed = (2*pi*scales%thickness/scales%wave_length)**2/24
-      scaling = max(1.0_wp, min(most_scaling, frequency_error/slowed))
-      call append(deck%reasons, 'Mass scaling '//short_text(scaling)//': with it rotary inertia slows the bending '// &
-                  'waves of first contact, '//short_text(scales%wave_length)//' long, by '// &
-                  short_text(100*scaling*slowed)//' %.')
+      scaling = min(most_scaling, 1 + frequency_error/slowed)
+      call append(deck%reasons, 'Mass scaling '//short_text(scaling)//': it slows the bending waves of first '// &
+                  'contact, '//short_text(scales%wave_length)//' long, by '// &
+                  short_text(100*(scaling - 1)*slowed)//' %.')
     else
       scaling = 1
       call append(deck%reasons, 'Mass scaling 1: no impact says how short the waves are.')

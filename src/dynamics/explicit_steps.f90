@@ -25,8 +25,8 @@ module explicit_steps
 
 contains
 
-  !> Brings a plate into equilibrium with its residual stresses and with lines that have moved it before the run, so that
-  !> nothing rings. Collective.
+  !> Brings a plate into equilibrium with its residual stresses and with lines that have moved it before the run, so
+  !> that nothing rings. Collective.
   subroutine settle_stresses(operator, model, linear_solver, now, error)
     !> The factored operator; released afterwards
     type(tangent_operator_t), intent(inout) :: operator
@@ -78,7 +78,8 @@ contains
     !> Set if the motion has become unstable
     type(error_t), allocatable, intent(out) :: error
 
-    if (allocated(model%nose)) call model%spread_force(method%patch%local_weights(size(model%patch)), method%patch%offset)
+    if (allocated(model%nose)) &
+      call model%spread_force(method%patch%local_weights(size(model%patch)), method%patch%offset)
     call book_energies(method, model, now)
     now%interfaces%rig%found = reactions_of(method, model, now)
     if (size(model%lines) > 0) now%line_reactions = method%lines%totals(model)

@@ -75,8 +75,8 @@ contains
     if (.not. allocated(error)) call follow_contact(model, stepper%now, stepper%operator, error)
   end subroutine advance_with_layers
 
-  !> Takes a step by central differences, and looks from time to time whether the plate needs more layers. Damage moves on
-  !> by less than a cell in a step, so that it does not cross the cells ahead of it meanwhile. Collective.
+  !> Takes a step by central differences, and looks from time to time whether the plate needs more layers. Damage
+  !> moves on by less than a cell in a step, so that it does not cross the cells ahead of it meanwhile. Collective.
   subroutine advance_explicit(model, stepper, linear_solver, event, switched, error)
     !> The model; receives larger zones
     type(model_t), intent(inout) :: model
@@ -215,6 +215,7 @@ contains
 
   !> Lets the new layers move with the plate that they were, and finds their forces. Collective.
   subroutine settle_explicit(model, transfer, stepper, error)
+    !> The model; receives how the impactor's force is spread
     type(model_t), intent(inout) :: model
     !> Where points and elements come from
     type(layer_transfer_t), intent(in) :: transfer

@@ -9,6 +9,7 @@ module ply_rounds
   use kinds, only: wp
   use models, only: model_t
   use ply_failures, only: ply_failure_t
+  use rank_totals, only: totals_of
   use states, only: state_t
   use stepping_parameters, only: equilibrium_t
   implicit none
@@ -96,12 +97,13 @@ contains
     real(wp) :: energies(2)
 
     associate (before => old%motion, after => new%motion)
-      energies = [sum(new%plies%bands%dissipation()), part &
+      energies = [0.0_wp, part &
         - model%product(after%displacement - before%displacement, after%internal + before%internal)/2 &
         - stored_beyond_work(new%interfaces%cohesive, model, old%interfaces%cohesive, before%displacement, &
                              after%displacement)]
     end associate
     call model%communicator%sum(energies)
+    energies(1) = sum(totals_of(model%communicator, new%plies%bands%dissipation_sums()))
     energies = energies*model%mesh%multiplicity
     call new%plies%judge(energies(1), energies(2) - old%ledger%strain, energy)
     missed = new%plies%haste

@@ -103,7 +103,8 @@ contains
     if (is_explicit(stepping)) then
       allocate (self%explicit)
       self%unknowns = count(.not. model%held)
-      if (.not. resumed .and. has_initial_motion(model)) call settle_stresses(self%operator, model, linear_solver, self%now, error)
+      if (.not. resumed .and. has_initial_motion(model)) &
+        call settle_stresses(self%operator, model, linear_solver, self%now, error)
       if (.not. allocated(error)) call self%explicit%start(model, stepping%central, self%now)
       return
     end if
@@ -317,24 +318,6 @@ contains
     if (self%now%path%by_dissipation) step_scale = self%stepping%dissipation/self%energy_rate()
   end function step_scale
 
-  !> Notes how a load step went, and by what the next is taken: the load or the energy dissipated, whichever went on
-  !> by a larger part of all that the deck asks for.
-  subroutine note_path(self, step)
-    !> The time stepper
-    class(time_stepper_t), intent(inout) :: self
-    !> Step taken
-    real(wp), intent(in) :: step
-
-    if (.not. (self%stepping%dissipation > 0 .and. step > 0)) return
-    associate (now => self%now, trial => self%trial)
-      trial%path%change = trial%motion%displacement - now%motion%displacement
-      trial%path%factor_change = trial%load_factor - now%load_factor
-      trial%path%force_change = trial%force - now%force
-      trial%path%dissipated = trial%ledger%delamination - now%ledger%delamination
-      trial%path%by_dissipation = trial%path%dissipated > self%stepping%dissipation*trial%path%factor_change
-    end associate
-  end subroutine note_path
-
   !> Makes the state tried the state reached.
   subroutine accept(self, model, step)
     !> The time stepper
@@ -347,7 +330,7 @@ contains
     logical :: extended
     integer :: lasting
 
-    call note_path(self, step)
+    if (self%stepping%dissipation > 0 .and. step > 0) call self%trial%note_path(self%now, self%stepping%dissipation)
     self%trial%stress = struck_stress(model, self%trial%motion%displacement)
     self%trial%largest_stress = max(self%now%largest_stress, self%trial%stress)
     change = 0

@@ -1,9 +1,10 @@
 !> Energy ledger of central differences, by the method's own algebra.
 !>
-!> The kinetic energy at the end of a step is T = v M v/2 + h (F - B^T lambda) v/2, v the velocity in the middle of the step:
-!> in a linear plate without interfaces T and the strain energy together stay what they are to the last digit, and T changes
-!> by the work of the mean of the forces at both ends. What tractions do beyond what interfaces store and dissipate is
-!> booked as lost. So the ledger's error shows what is left: forces that are not linear within a step.
+!> The kinetic energy at the end of a step is T = v M v/2 + h (F - B^T lambda) v/2, v the velocity in the middle of
+!> the step: in a linear plate without interfaces T and the strain energy together stay what they are to the last
+!> digit, and T changes by the work of the mean of the forces at both ends. What tractions do beyond what interfaces
+!> store and dissipate is booked as lost. So the ledger's error shows what is left: forces that are not linear within
+!> a step.
 module central_difference_energies
   use central_differences, only: central_difference_t
   use exact_sums, only: exact_sum_t

@@ -1,10 +1,10 @@
-!> Central differences in time: layers move by the forces on them, interfaces by tractions that are implicit node by node,
-!> and plies and interfaces are damaged as they are strained. Nothing is iterated and nothing factored.
+!> Central differences in time: layers move by the forces on them, interfaces by tractions that are implicit node by
+!> node, and plies and interfaces are damaged as they are strained. Nothing is iterated and nothing factored.
 !>
 !> Velocities belong to the middles of steps. A step finds them from the forces F at its start,
 !>   v(n+1/2) = v(n-1/2) + h M^-1 (F(n) - B^T lambda(n+1)),   u(n+1) = u(n) + h v(n+1/2),
-!> and then the forces at its end (K. J. Bathe, Finite Element Procedures, 1996, section 9.2.1, with the tractions lambda of
-!> the end of the step on the jumps B u).
+!> and then the forces at its end (K. J. Bathe, Finite Element Procedures, 1996, section 9.2.1, with the tractions
+!> lambda of the end of the step on the jumps B u).
 module central_differences
   use archives, only: archive_t
   use central_difference_parameters, only: central_difference_parameters_t
@@ -19,7 +19,8 @@ module central_differences
   use rig_steps, only: rig_steps_t, create_rig_steps
   use smooth_starts, only: smooth_ramp
   use stable_steps, only: highest_element_frequency
-  use stack_motions, only: accelerate, move_stacks, new_workspaces
+  use layer_motions, only: accelerate
+  use stack_motions, only: move_stacks, new_workspaces
   use stack_solutions, only: stack_t
   use states, only: state_t
   use step_lengths, only: step_lengths_t
@@ -32,7 +33,8 @@ module central_differences
   !> Growth of the contact's stiffness that a new length of the step allows for, so that it changes a few times only.
   real(wp), parameter :: slope_reserve = 2
 
-  !> What central differences know beside the state.
+  !> What central differences know beside the state. It has many components because inertia, stacks, lines, rigs and
+  !> patch each have their own part in a step.
   type :: central_difference_t
     !> How steps are taken
     type(central_difference_parameters_t) :: parameters
@@ -56,8 +58,9 @@ module central_differences
     type(step_lengths_t), private :: prepared
     !> Velocity of the impactor in the middle of the last step
     real(wp) :: impactor_velocity = 0
-    !> Highest frequency of the elements, and the element that has it
+    !> Highest frequency of the elements
     real(wp) :: frequency = 0
+    !> Element that has it
     integer :: element = 0
     !> Stiffness of the contact that the step allows for
     real(wp) :: contact_stiffness = 0
@@ -67,8 +70,9 @@ module central_differences
     real(wp) :: initial_work = 0
     !> Work of an impactor whose travel is prescribed
     real(wp) :: travel_work = 0
-    !> Room for the motion of the layers, for forces with those of the borders between ranks, and for stacks
+    !> Room for the motion of the layers, for forces with those of the borders between ranks
     real(wp), allocatable, private :: motion(:, :), field(:, :)
+    !> Room for stacks, one for each number of interfaces
     type(stack_t), allocatable, private :: workspaces(:)
   contains
     !> Sets up for a state.
@@ -122,8 +126,8 @@ contains
     call self%add_loads(model, now, [0.0_wp, 0.0_wp])
   end subroutine start
 
-  !> Step that the elements and the contact bear, times the part of it that is taken. Frequencies of springs added to each
-  !> other are at most the root of the sum of their squares.
+  !> Step that the elements and the contact bear, times the part of it that is taken. Frequencies of springs added to
+  !> each other are at most the root of the sum of their squares.
   real(wp) function longest_step(self, model, now) result(step)
     !> The method
     class(central_difference_t), intent(inout) :: self
@@ -174,8 +178,8 @@ contains
       call model%profile%enter('nodes')
       if (allocated(self%inertia%springs)) call self%rigs%pull(self%inertia%springs, self%steps, u, v, self%force)
       call move_single(self, model, u, v)
-      call move_stacks(self%stacks, self%workspaces, self%rigs, self%lines, model, self%inertia, self%steps, self%force, &
-                       now%interfaces%cohesive, u, v)
+      call move_stacks(self%stacks, self%workspaces, self%rigs, self%lines, model, self%inertia, self%steps, &
+                       self%force, now%interfaces%cohesive, u, v)
       if (allocated(self%inertia%springs)) call self%rigs%book_springs(self%inertia%springs, self%steps, u, v)
       call self%circles%hold(model, self%steps, u(3, :), v(3, :))
       call self%inertia%spread(u)
@@ -248,8 +252,8 @@ contains
     associate (impactor => now%impactor, parameters => model%scene%impactor)
       before = now%force
       if (parameters%travel > 0) then
-        change = parameters%travel*smooth_ramp(now%time/model%scene%ramp_time, parameters%rise/model%scene%ramp_time, 0) &
-                 - impactor%displacement
+        change = parameters%travel*smooth_ramp(now%time/model%scene%ramp_time, &
+                                               parameters%rise/model%scene%ramp_time, 0) - impactor%displacement
         self%impactor_velocity = change/self%steps%now
       else
         acceleration = parameters%gravity - now%force/parameters%mass
@@ -279,7 +283,7 @@ contains
     !> The state; its plies soften
     type(state_t), intent(inout) :: now
 
-    call model%profile%enter('elements')
+    call model%profile%enter('element forces')
     self%motion = now%motion%displacement
     if (model%map%layered) call model%map%to_motion(self%motion)
     self%field = 0

@@ -1,6 +1,6 @@
-!> Frames with a circular window in steps by central differences: w is held where the edge of the window crosses the sides
-!> of cells, a mean of three nodes each. The forces that hold all of these points are found together, from a matrix that
-!> stays what it is.
+!> Frames with a circular window in steps by central differences: w is held where the edge of the window crosses the
+!> sides of cells, a mean of three nodes each. The forces that hold all of these points are found together, from a
+!> matrix that stays what it is.
 module circle_frames
   use dense_systems, only: positive_factor_t
   use kinds, only: wp
@@ -19,8 +19,9 @@ module circle_frames
     real(wp), allocatable :: weights(:, :)
     !> The rig of each
     integer, allocatable :: rig(:)
-    !> Inverse inertia of w at the nodes, (3, crossings), and the factored matrix
+    !> Inverse inertia of w at the nodes, (3, crossings)
     real(wp), allocatable, private :: inverse(:, :)
+    !> The factored matrix
     type(positive_factor_t), private :: factor
     !> Forces of the last step
     real(wp), allocatable :: forces(:)

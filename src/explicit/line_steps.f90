@@ -1,9 +1,10 @@
-!> Lines in steps by central differences: those that press add forces to their layers, those that hold or move the plate
-!> prescribe the velocity of a layer at each node.
+!> Lines in steps by central differences: those that press add forces to their layers, those that hold or move the
+!> plate prescribe the velocity of a layer at each node.
 !>
-!> What a line prescribes is one component of a layer's motion, u + z theta_x at the layer's middle, v + z theta_y, w or a
-!> rotation: c v = q. The inverse inertia of the layer loses that direction, M^-1 - M^-1 c c^T M^-1/(c^T M^-1 c), so that no
-!> other force moves it, and the velocity is corrected along M^-1 c. The reaction is what the layer's momentum then lacks.
+!> What a line prescribes is one component of a layer's motion, u + z theta_x at the layer's middle, v + z theta_y, w
+!> or a rotation: c v = q. The inverse inertia of the layer loses that direction, M^-1 - M^-1 c c^T M^-1/(c^T M^-1
+!> c), so that no other force moves it, and the velocity is corrected along M^-1 c. The reaction is what the layer's
+!> momentum then lacks.
 module line_steps
   use archives, only: archive_t
   use exact_sums, only: exact_sum_t
@@ -20,8 +21,9 @@ module line_steps
   type :: pin_t
     !> Point of the layer, and the line
     integer :: point = 0, line = 0
-    !> Component of the motion, 1 to 5, and height at which it is prescribed
+    !> Component of the motion, 1 to 5
     integer :: component = 0
+    !> Height at which it is prescribed
     real(wp) :: height = 0
     !> Velocity that a unit of the component's velocity takes: of the displacement and of the rotation, or of w alone
     real(wp) :: gain(2) = 0
@@ -147,7 +149,8 @@ contains
 
     do i = 1, size(self%pins)
       associate (pin => self%pins(i))
-        pin%rate = (model%lines(pin%line)%load%at_factor(load_factor) - component_of(pin, motion(:, pin%point)))/steps%now
+        pin%rate = (model%lines(pin%line)%load%at_factor(load_factor) - component_of(pin, motion(:, pin%point))) &
+                   /steps%now
       end associate
     end do
   end subroutine find_rates
@@ -204,8 +207,8 @@ contains
     integer :: i
 
     gained = (after - before)/steps%mean()
-    missing = [mass(1)*gained(1:2) + mass(2)*gained(4:5), mass(4)*gained(3), mass(2)*gained(1:2) + mass(3)*gained(4:5)] &
-              - force
+    missing = [mass(1)*gained(1:2) + mass(2)*gained(4:5), mass(4)*gained(3), &
+               mass(2)*gained(1:2) + mass(3)*gained(4:5)] - force
     do i = self%first(p), self%first(p + 1) - 1
       associate (pin => self%pins(i))
         reaction = missing(pin%component)

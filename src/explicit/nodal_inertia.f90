@@ -1,9 +1,10 @@
 !> Lumped inertia of the layers at each node, and the inverse that turns forces on a layer into its accelerations.
 !>
-!> In each direction in the plane a layer has a displacement u of the mid-plane z = 0 and a rotation theta, coupled where
-!> the layer lies off the mid-plane: M = [I0 I1; I1 I2]. In-plane and rotary inertia may be scaled, which lengthens the
-!> stable step (L. Olovsson, K. Simonsson, M. Unosson, International Journal for Numerical Methods in Engineering 63 (2005)
-!> 1436-1445); the mass of w is never scaled. Points that take their motion from others add their inertia to these.
+!> In each direction in the plane a layer has a displacement u of the mid-plane z = 0 and a rotation theta, coupled
+!> where the layer lies off the mid-plane: M = [I0 I1; I1 I2]. In-plane and rotary inertia may be scaled, which
+!> lengthens the stable step (L. Olovsson, K. Simonsson, M. Unosson, International Journal for Numerical Methods in
+!> Engineering 63 (2005) 1436-1445); the mass of w is never scaled. Points that take their motion from others add
+!> their inertia to these.
 module nodal_inertia
   use kinds, only: wp
   use leading_points, only: find_leading_points
@@ -25,8 +26,9 @@ module nodal_inertia
     real(wp), allocatable :: springs(:, :)
     !> Inverse of inertia and implicit springs, zero for what is held, (7, points)
     real(wp), allocatable :: inverse(:, :)
-    !> Points that follow others, their leaders, and the signs of their motion, (followers) and (5, followers)
+    !> Points that follow others, and their leaders, (followers)
     integer, allocatable :: followers(:), leaders(:)
+    !> Signs of their motion, (5, followers)
     real(wp), allocatable :: signs(:, :)
   contains
     !> Finds the inverse for a step.

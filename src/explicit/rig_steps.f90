@@ -66,13 +66,15 @@ contains
     reaction = 0
     if (inverse > 0) reaction = (free - rate)/(steps%mean()*inverse)
     if (.not. w + steps%now*free > 0) reaction = 0
-    self%frame_loss(p) = self%frame_loss(p) + reaction*(steps%now*rate + steps%shift(self%approach(p), steps%now*rate)) &
+    self%frame_loss(p) = self%frame_loss(p) &
+                         + reaction*(steps%now*rate + steps%shift(self%approach(p), steps%now*rate)) &
                          + (reaction - self%reaction(p))*self%approach(p)/2
     self%reaction(p) = reaction
     self%approach(p) = steps%now*rate
   end subroutine bear
 
-  !> Adds the forces of springs at the end of the step, as far as its start tells them; the rest is in the inverse inertia.
+  !> Adds the forces of springs at the end of the step, as far as its start tells them; the rest is in the inverse
+  !> inertia.
   pure subroutine pull(self, springs, steps, u, v, force)
     !> The springs' state
     class(rig_steps_t), intent(in) :: self

@@ -1,96 +1,25 @@
 !> Stable step of central differences: 2/omega of the highest frequency that elements have on lumped inertia.
 !>
-!> No frequency of the assembled plate lies above the highest of a single element with its own part of the inertia (I. Fried,
-!> 1972; T. J. R. Hughes, The Finite Element Method, 1987, section 9.4.2). That of the assembled plate is found by power
-!> iteration too. Interfaces, clamps and frames are implicit and set no limit.
+!> No frequency of the assembled plate lies above the highest of a single element with its own part of the inertia
+!> (I. Fried, 1972; T. J. R. Hughes, The Finite Element Method, 1987, section 9.4.2). That of an element is found
+!> by power iteration. Interfaces, clamps and frames are implicit and set no limit.
 module stable_steps
   use element_batches, only: lanes
-  use exact_sums, only: exact_sum_t
-  use internal_forces, only: add_internal_force, batch_force
+  use internal_forces, only: batch_force
   use kinds, only: long, wp
   use lagrange9, only: gauss_shapes
   use models, only: model_t
-  use nodal_inertia, only: nodal_inertia_t
-  use plate_options, only: kinematics_linear
-  use rank_totals, only: total_of
-  use stack_motions, only: accelerate
   implicit none
   private
-  public :: highest_frequency, highest_element_frequency
+  public :: highest_element_frequency
 
   !> Products of the iterations. The estimate rises from below; after these it changes by less than 1e-3 a product.
-  integer, parameter :: products = 60, element_products = 40
+  integer, parameter :: products = 40
 
 contains
 
-  !> Highest angular frequency of the assembled plate. Collective.
-  real(wp) function highest_frequency(model, stiffness, inertia) result(omega)
-    type(model_t), intent(in) :: model
-    !> Section stiffness left in the elements, (lanes, 21, batches)
-    real(wp), contiguous, intent(in) :: stiffness(:, :, :)
-    !> Lumped inertia, inverted without springs
-    type(nodal_inertia_t), intent(in) :: inertia
-    real(wp), allocatable :: x(:, :), force(:, :)
-    real(wp) :: size_of_x, energy
-    integer :: i, k, product
-
-    allocate (x(5, size(model%distribution%points)), force(5, model%borders%columns))
-    do i = 1, size(x, 2)
-      do k = 1, 5
-        x(k, i) = scattered(5*model%distribution%points(i) + k)
-        ! Motion of like energy: rotations turn the layer's thickness.
-        if (inertia%inverse(7, i) > 0 .and. k > 3) x(k, i) = x(k, i)*sqrt(inertia%inverse(3, i)/inertia%inverse(7, i))
-      end do
-      where (inertia%held(:, i)) x(:, i) = 0
-    end do
-    call inertia%spread(x)
-    omega = 0
-    do product = 1, products
-      call model%halo%update(x)
-      force = 0
-      call add_internal_force(model%elements, stiffness, kinematics_linear, x, force, energy)
-      call model%borders%add(force)
-      call inertia%fold(force)
-      x = 0
-      do i = 1, model%distribution%owned
-        call accelerate(inertia%inverse(:, i), 1.0_wp, force(:, i), x(:, i))
-      end do
-      call inertia%spread(x)
-      size_of_x = maxval(abs(x(:, :model%distribution%owned)))
-      call model%communicator%maximum(size_of_x)
-      if (.not. size_of_x > 0) return
-      x = x/size_of_x
-    end do
-    omega = sqrt(rayleigh(model, stiffness, inertia, x))
-  end function highest_frequency
-
-  !> Rayleigh's quotient of a field. Collective.
-  real(wp) function rayleigh(model, stiffness, inertia, x) result(quotient)
-    type(model_t), intent(in) :: model
-    !> Section stiffness left in the elements, (lanes, 21, batches)
-    real(wp), contiguous, intent(in) :: stiffness(:, :, :)
-    !> Lumped inertia
-    type(nodal_inertia_t), intent(in) :: inertia
-    !> The field, (5, points)
-    real(wp), contiguous, intent(inout) :: x(:, :)
-    real(wp) :: force(5, model%borders%columns), energies(lanes, model%elements%batches), energy
-    type(exact_sum_t) :: kinetic
-    integer :: i
-
-    call model%halo%update(x)
-    force = 0
-    call add_internal_force(model%elements, stiffness, kinematics_linear, x, force, energy, energies=energies)
-    do i = 1, model%distribution%owned
-      associate (m => inertia%mass(:, i), a => x(:, i))
-        call kinetic%add((m(1)*(a(1)**2 + a(2)**2) + m(3)*(a(4)**2 + a(5)**2) + m(4)*a(3)**2)/2 &
-                         + m(2)*(a(1)*a(4) + a(2)*a(5)))
-      end associate
-    end do
-    quotient = total_of(model%communicator, energies)/total_of(model%communicator, kinetic)
-  end function rayleigh
-
-  !> A number between -1 and 1 that goes with another one, the same everywhere (G. Marsaglia, Journal of Statistical Software
-  !> 8 (2003) 14, xorshift).
+  !> A number between -1 and 1 that goes with another one, the same everywhere (G. Marsaglia, Journal of Statistical
+  !> Software 8 (2003) 14, xorshift).
   pure real(wp) function scattered(number)
     !> The other number
     integer, intent(in) :: number
@@ -162,13 +91,13 @@ contains
         end do
       end do
     end associate
-    do product = 1, element_products
+    do product = 1, products
       before = r
       call batch_force(model%elements, b, stiffness, r)
       squares = sum(sum(r*before, 3), 2)
       call divide(inverse, r)
       length = sqrt(squares)
-      if (product == element_products) squares = squares_of(model, b, stiffness, inverse, r)
+      if (product == products) squares = squares_of(model, b, stiffness, inverse, r)
       do k = 1, 5
         do a = 1, 9
           r(:, a, k) = r(:, a, k)/max(length, tiny(length)**0.25_wp)

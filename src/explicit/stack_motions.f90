@@ -5,6 +5,7 @@ module stack_motions
   use cohesive_points, only: cohesive_point_t
   use interface_stacks, only: interface_stacks_t
   use kinds, only: wp
+  use layer_motions, only: accelerate, find_rates, pull_on, push_layers, to_layers
   use line_steps, only: line_steps_t
   use models, only: model_t
   use nodal_inertia, only: nodal_inertia_t
@@ -14,7 +15,7 @@ module stack_motions
   use tridiagonal_systems, only: solve_factored, solve_tractions
   implicit none
   private
-  public :: move_stacks, new_workspaces, accelerate
+  public :: move_stacks, new_workspaces
 
 contains
 
@@ -164,113 +165,6 @@ contains
       call rigs%bear(p, steps, inverse, w, rate)
     end associate
   end subroutine rest_on_frame
-
-  !> Velocities of the layers from the rates of the unknowns.
-  pure subroutine to_layers(n, height, v, layer)
-    !> Interfaces
-    integer, intent(in) :: n
-    !> Height of the interface above each layer, (n + 1)
-    real(wp), intent(in) :: height(n + 1)
-    !> Rates of the unknowns, (5, n + 1)
-    real(wp), intent(in) :: v(5, n + 1)
-    !> Velocities of the layers, (5, n + 1)
-    real(wp), intent(out) :: layer(5, n + 1)
-    integer :: l
-
-    layer(:, 1) = v(:, 1)
-    do l = 2, n + 1
-      layer(1, l) = v(1, l) + layer(1, l - 1) + height(l)*(layer(4, l - 1) - v(4, l))
-      layer(2, l) = v(2, l) + layer(2, l - 1) + height(l)*(layer(5, l - 1) - v(5, l))
-      layer(3, l) = v(3, l) + layer(3, l - 1)
-      layer(4, l) = v(4, l)
-      layer(5, l) = v(5, l)
-    end do
-  end subroutine to_layers
-
-  !> Adds to the velocity of a layer what a force on it gives in a time.
-  pure subroutine accelerate(inverse, time, force, velocity)
-    !> Inverse inertia, as in nodal_inertia_t
-    real(wp), intent(in) :: inverse(7)
-    !> The time
-    real(wp), intent(in) :: time
-    !> Forces and moments
-    real(wp), intent(in) :: force(5)
-    !> Velocity of the layer
-    real(wp), intent(inout) :: velocity(5)
-
-    velocity(1) = velocity(1) + time*(inverse(1)*force(1) + inverse(2)*force(4))
-    velocity(4) = velocity(4) + time*(inverse(2)*force(1) + inverse(3)*force(4))
-    velocity(2) = velocity(2) + time*(inverse(4)*force(2) + inverse(5)*force(5))
-    velocity(5) = velocity(5) + time*(inverse(5)*force(2) + inverse(6)*force(5))
-    velocity(3) = velocity(3) + time*inverse(7)*force(3)
-  end subroutine accelerate
-
-  !> Rates of the jumps across the interfaces.
-  pure subroutine find_rates(n, height, layer, rates)
-    !> Interfaces
-    integer, intent(in) :: n
-    !> Height of the interface above each layer, (n + 1)
-    real(wp), intent(in) :: height(n + 1)
-    !> Velocities of the layers, (5, n + 1)
-    real(wp), intent(in) :: layer(5, n + 1)
-    !> Rates of the jumps, (3, n)
-    real(wp), intent(out) :: rates(3, n)
-    integer :: j
-
-    do j = 1, n
-      rates(1, j) = layer(1, j + 1) - layer(1, j) + height(j + 1)*(layer(4, j + 1) - layer(4, j))
-      rates(2, j) = layer(2, j + 1) - layer(2, j) + height(j + 1)*(layer(5, j + 1) - layer(5, j))
-      rates(3, j) = layer(3, j + 1) - layer(3, j)
-    end do
-  end subroutine find_rates
-
-  !> Adds to the velocities of the layers what the tractions between them give in a time.
-  pure subroutine push_layers(n, height, inverse, time, forces, layer)
-    !> Interfaces
-    integer, intent(in) :: n
-    !> Height of the interface above each layer, (n + 1)
-    real(wp), intent(in) :: height(n + 1)
-    !> Inverse inertia of the layers, (7, n + 1)
-    real(wp), intent(in) :: inverse(7, n + 1)
-    !> The time
-    real(wp), intent(in) :: time
-    !> Forces that pull the jumps back, (3, n)
-    real(wp), intent(in) :: forces(3, n)
-    !> Velocities of the layers, (5, n + 1)
-    real(wp), intent(inout) :: layer(5, n + 1)
-    real(wp) :: pull(5)
-    integer :: l
-
-    pull = 0
-    do l = 1, n
-      pull(1:3) = pull(1:3) + forces(:, l)
-      pull(4) = pull(4) + height(l + 1)*forces(1, l)
-      pull(5) = pull(5) + height(l + 1)*forces(2, l)
-      call accelerate(inverse(:, l), time, pull, layer(:, l))
-      pull(1:3) = -forces(:, l)
-      pull(4) = -height(l + 1)*forces(1, l)
-      pull(5) = -height(l + 1)*forces(2, l)
-    end do
-    call accelerate(inverse(:, n + 1), time, pull, layer(:, n + 1))
-  end subroutine push_layers
-
-  !> Force of the tractions on a layer.
-  pure function pull_on(n, height, forces, l) result(pull)
-    !> Interfaces
-    integer, intent(in) :: n
-    !> Height of the interface above each layer, (n + 1)
-    real(wp), intent(in) :: height(n + 1)
-    !> Forces that pull the jumps back, (3, n)
-    real(wp), intent(in) :: forces(3, n)
-    !> The layer
-    integer, intent(in) :: l
-    !> Forces and moments
-    real(wp) :: pull(5)
-
-    pull = 0
-    if (l > 1) pull = [-forces(:, l - 1), -height(l)*forces(1:2, l - 1)]
-    if (l <= n) pull = pull + [forces(:, l), height(l + 1)*forces(1:2, l)]
-  end function pull_on
 
   !> Books the reactions of lines on the layers of a stack.
   pure subroutine book_reactions(stacks, i, lines, inertia, steps, force, forces, before, after)

@@ -1,8 +1,9 @@
 !> Forces between the layers of one node at the end of a step.
 !>
-!> Tractions are implicit: they follow the jumps at the end of the step, with the damage of its start. So the stiffness of
-!> interfaces, of faces that press on each other and of friction sets no limit to the step. Openings are found first; the
-!> pressure that goes with them limits friction of the same step (return mapping of the predicted shear traction).
+!> Tractions are implicit: they follow the jumps at the end of the step, with the damage of its start. So the
+!> stiffness of interfaces, of faces that press on each other and of friction sets no limit to the step. Openings are
+!> found first; the pressure that goes with them limits friction of the same step (return mapping of the predicted
+!> shear traction).
 module stack_solutions
   use cohesive_points, only: cohesive_point_t
   use kinds, only: wp
@@ -99,7 +100,8 @@ contains
     call solve_both(stack, stiffness, given)
     if (.not. any(stack%limit > 0)) return
     slips = .false.
-    associate (jumps => stack%free(1:2, :) - reshape([reached(stack, 1), reached(stack, 2)], [2, stack%n], order=[2, 1]))
+    associate (jumps => stack%free(1:2, :) - reshape([reached(stack, 1), reached(stack, 2)], [2, stack%n], &
+                                                     order=[2, 1]))
       do j = 1, stack%n
         if (.not. stack%limit(j) > 0) cycle
         tried = stack%stiffness(1, j)*(jumps(:, j) - stack%points(j)%sliding%slip)

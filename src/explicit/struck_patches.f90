@@ -1,8 +1,9 @@
 !> Where the impactor presses in steps by central differences: the deck's patch, or what a nose reaches of the plate.
 !>
-!> The points within reach are listed in the order of the mesh and known to every rank, so that the mean deflection and the
-!> spreading of the force are the same to the last digit on any number of them. A nose spreads its force by the deflection
-!> at the end of each step (`contact_areas`): a spreading that lags behind would be a spring that feeds motion.
+!> The points within reach are listed in the order of the mesh and known to every rank, so that the mean deflection
+!> and the spreading of the force are the same to the last digit on any number of them. A nose spreads its force by
+!> the deflection at the end of each step (`contact_areas`): a spreading that lags behind would be a spring that
+!> feeds motion.
 module struck_patches
   use archives, only: archive_t
   use contact_areas, only: edge_gap

@@ -1,5 +1,5 @@
-!> Points that take their motion from others: on the line at which a turned plate is cut, and on all of a full plate that
-!> keeps its symmetry.
+!> Points that take their motion from others: on the line at which a turned plate is cut, and on all of a full plate
+!> that keeps its symmetry.
 module leading_points
   use kinds, only: wp
   use layered_meshes, only: layered_mesh_t

@@ -17,6 +17,7 @@ module crack_band_sections
   use ply_strains, only: strain_moments_t, strain_moments, strains_of_ply
   use section_laws, only: section_law_t
   use stacking, only: in_plane_section
+  use strain_bounds, only: largest_strains
   implicit none
   private
   public :: crack_band_sections_t, new_crack_band_sections
@@ -56,7 +57,6 @@ module crack_band_sections
     procedure :: commit
     procedure :: hand_over
     !> Energy that the trial dissipates in each mode, on this rank.
-    procedure :: dissipation
     procedure :: dissipation_sums
     !> Energy dissipated so far in each mode, on this rank.
     procedure :: dissipated
@@ -178,31 +178,6 @@ contains
     self%stiffness(:, :, b) = stiffness
   end subroutine soften
 
-  !> Bounds of the strains in the planes of all plies of a batch, root mean squares over each ply's volume.
-  pure function largest_strains(plies, weight, strains) result(bounds)
-    !> Plies of the laminate
-    type(ply_t), intent(in) :: plies(:)
-    !> Area of each Gauss point
-    real(wp), intent(in) :: weight(lanes, 9)
-    !> Strains exx, eyy, gxy, kxx, kyy, kxy (lane, point, component)
-    real(wp), intent(in) :: strains(lanes, 9, 6)
-    !> In the measure of onset_strain, (lane)
-    real(wp) :: bounds(lanes)
-    real(wp) :: membrane(lanes), curvature(lanes), area(lanes), height
-    integer :: g
-
-    membrane = 0
-    curvature = 0
-    area = tiny(area)
-    do g = 1, 9
-      area = area + weight(:, g)
-      membrane = membrane + weight(:, g)*(strains(:, g, 1)**2 + strains(:, g, 2)**2 + strains(:, g, 3)**2/2)
-      curvature = curvature + weight(:, g)*(strains(:, g, 4)**2 + strains(:, g, 5)**2 + strains(:, g, 6)**2/2)
-    end do
-    height = max(abs(plies(1)%z_top), abs(plies(size(plies))%z_bottom))
-    bounds = sqrt(membrane/area) + height*sqrt(curvature/area)
-  end function largest_strains
-
   !> Damage of the plies of one element under trial strains, and its section.
   pure subroutine soften_element(self, element, moments, stiffness)
     !> The plies
@@ -277,24 +252,8 @@ contains
     end do
   end subroutine hand_over
 
-  !> Energy that the trial dissipates in each mode beyond the accepted state, of this rank's elements.
-  pure function dissipation(self) result(energies)
-    !> The plies
-    class(crack_band_sections_t), intent(in) :: self
-    !> In the order of the modes
-    real(wp) :: energies(energy_modes)
-    integer :: element, ply
-
-    energies = 0
-    do element = 1, size(self%touched)
-      if (.not. self%touched(element)) cycle
-      do ply = self%range(1, element), self%range(2, element)
-        energies = energies + dissipated_in(self, ply, element)
-      end do
-    end do
-  end function dissipation
-
-  !> The same as exact sums, whose totals do not depend on ranks.
+  !> Energy that the trial dissipates in each mode beyond the accepted state, of this rank's elements, as exact sums,
+  !> whose totals do not depend on ranks.
   pure function dissipation_sums(self) result(energies)
     !> The plies
     class(crack_band_sections_t), intent(in) :: self

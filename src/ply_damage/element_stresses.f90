@@ -68,7 +68,8 @@ contains
     !> The stress
     real(wp) :: stress(5)
 
-    stress = middle_stress(model%plies(ply), elasticity, strains(:6, element), shear_of_ply(model, strains, ply, element))
+    stress = middle_stress(model%plies(ply), elasticity, strains(:6, element), &
+                           shear_of_ply(model, strains, ply, element))
   end function stress_of_ply
 
   !> Transverse shear stress of one ply of one element.

@@ -125,8 +125,8 @@ contains
     real(wp) :: energy
 
     if (allocated(self%bands)) then
-      call add_internal_force(model%elements, self%stiffness, model%scene%kinematics, motion, force, energy, self%bands, &
-                              self%free, energies)
+      call add_internal_force(model%elements, self%stiffness, model%scene%kinematics, motion, force, energy, &
+                              self%bands, self%free, energies)
       call self%bands%hand_over(self%stiffness, self%free)
     else
       call add_internal_force(model%elements, self%stiffness, model%scene%kinematics, motion, force, energy, &
@@ -147,12 +147,14 @@ contains
     real(wp) :: energies(2), energy
 
     allocate (force, mold=displacement)
-    energies = [self%energy, sum(self%bands%dissipation())]
+    energies = [self%energy, sum(totals_of(model%communicator, self%bands%dissipation_sums()))]
+    call model%communicator%sum(energies(1))
     self%lagging = .false.
     call self%find_forces(model, displacement, force, energy)
     self%lagging = .true.
-    energies = [energies(1) - energy, sum(self%bands%dissipation()) - energies(2)]
-    call model%communicator%sum(energies)
+    call model%communicator%sum(energy)
+    energies = [energies(1) - energy, &
+                sum(totals_of(model%communicator, self%bands%dissipation_sums())) - energies(2)]
     lost = energies(1)*model%mesh%multiplicity
     excess = lost - energies(2)*model%mesh%multiplicity
   end subroutine follow

@@ -69,6 +69,8 @@ module states
     procedure :: has_broken
     !> Counts a step and its iterations.
     procedure :: count_step
+    !> Notes how a load step went.
+    procedure :: note_path
     !> Saves or loads the state.
     procedure :: visit
   end type state_t
@@ -154,6 +156,23 @@ contains
     self%all_force_iterations = old%all_force_iterations + self%force_iterations
     self%all_contact_iterations = old%all_contact_iterations + self%contact_iterations
   end subroutine count_step
+
+  !> Notes how a load step went, and by what the next is taken: the load or the energy dissipated, whichever went on
+  !> by a larger part of all that the deck requires.
+  pure subroutine note_path(self, old, dissipation)
+    !> State at the end of the step
+    class(state_t), intent(inout) :: self
+    !> State at its start
+    type(state_t), intent(in) :: old
+    !> Energy dissipated at which the analysis ends
+    real(wp), intent(in) :: dissipation
+
+    self%path%change = self%motion%displacement - old%motion%displacement
+    self%path%factor_change = self%load_factor - old%load_factor
+    self%path%force_change = self%force - old%force
+    self%path%dissipated = self%ledger%delamination - old%ledger%delamination
+    self%path%by_dissipation = self%path%dissipated > dissipation*self%path%factor_change
+  end subroutine note_path
 
   !> Saves or loads the state.
   subroutine visit(self, archive, model)

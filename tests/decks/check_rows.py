@@ -26,7 +26,7 @@ OTHERS = (
     ("base/text.f90", "e", "the exponent of a number"),
     ("deck/deck_scanner.f90", "end", "&end, which closes a group in old decks"),
     ("deck/deck_values.f90", "name", "a kind of value"),
-    ("dynamics/states.f90", "stress force", "an item of a checkpoint"),
+    ("state/states.f90", "time step iterations stress force", "an item of a checkpoint"),
     ("interfaces/interface_ties.f90", "zone", "an item of a checkpoint"),
     ("petsc/petsc_session.f90", "petsc_options", "PETSc's own variable of the environment"),
     ("model/motion_fields.f90", "velocity", "a field in NAME.h5, which users read"),
