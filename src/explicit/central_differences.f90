@@ -19,7 +19,7 @@ module central_differences
   use rig_steps, only: rig_steps_t, create_rig_steps
   use smooth_starts, only: smooth_ramp
   use stable_steps, only: highest_element_frequency
-  use layer_motions, only: accelerate
+  use layer_motions, only: accelerate, move_points
   use stack_motions, only: move_stacks, new_workspaces
   use stack_solutions, only: stack_t
   use states, only: state_t
@@ -56,6 +56,8 @@ module central_differences
     type(step_lengths_t) :: steps
     !> Step for which inertia and stacks are prepared
     type(step_lengths_t), private :: prepared
+    !> Points of nodes with one layer: those that only forces move, and those that a frame or a line guides
+    integer, allocatable, private :: plain(:), guided(:)
     !> Velocity of the impactor in the middle of the last step
     real(wp) :: impactor_velocity = 0
     !> Highest frequency of the elements
@@ -117,6 +119,7 @@ contains
     self%rigs = create_rig_steps(model)
     self%circles = create_circle_frames(model)
     self%lines = create_line_steps(model, self%inertia)
+    call sort_points(self)
     self%patch = create_struck_patch(model)
     allocate (self%force(5, points), self%motion(5, points), self%field(5, model%borders%columns), &
               self%strain(lanes, model%elements%batches), source=0.0_wp)
@@ -125,6 +128,19 @@ contains
     call self%find_forces(model, now)
     call self%add_loads(model, now, [0.0_wp, 0.0_wp])
   end subroutine start
+
+  !> Tells points that a frame or a line guides from those that only forces move.
+  subroutine sort_points(self)
+    !> The method
+    type(central_difference_t), intent(inout) :: self
+    logical :: guided(size(self%stacks%single))
+    integer :: i
+
+    guided = [(self%rigs%bears(self%stacks%single(i)) .or. self%lines%is_pinned(self%stacks%single(i)), &
+               i=1, size(guided))]
+    self%plain = pack(self%stacks%single, .not. guided)
+    self%guided = pack(self%stacks%single, guided)
+  end subroutine sort_points
 
   !> Step that the elements and the contact bear, times the part of it that is taken. Frequencies of springs added to
   !> each other are at most the root of the sum of their squares.
@@ -216,12 +232,13 @@ contains
     type(central_difference_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Unknowns and their rates, (5, points)
-    real(wp), intent(inout) :: u(:, :), v(:, :)
+    real(wp), contiguous, intent(inout) :: u(:, :), v(:, :)
     real(wp) :: before(5)
     integer :: i, p
 
-    do i = 1, size(self%stacks%single)
-      p = self%stacks%single(i)
+    call move_points(self%plain, self%inertia%inverse, self%steps%mean(), self%steps%now, self%force, u, v)
+    do i = 1, size(self%guided)
+      p = self%guided(i)
       if (self%lines%is_pinned(p)) before = v(:, p)
       call accelerate(self%inertia%inverse(:, p), self%steps%mean(), self%force(:, p), v(:, p))
       if (self%lines%is_pinned(p)) then

@@ -3,7 +3,7 @@ module layer_motions
   use kinds, only: wp
   implicit none
   private
-  public :: accelerate, find_rates, pull_on, push_layers, to_layers
+  public :: accelerate, accelerate_layers, find_rates, move_points, pull_on, push_layers, to_layers
 
 contains
 
@@ -46,6 +46,46 @@ contains
     velocity(5) = velocity(5) + time*(inverse(5)*force(2) + inverse(6)*force(5))
     velocity(3) = velocity(3) + time*inverse(7)*force(3)
   end subroutine accelerate
+
+  !> The same for all layers of a node.
+  pure subroutine accelerate_layers(layers, inverse, time, force, velocity)
+    !> Number of layers
+    integer, intent(in) :: layers
+    !> Inverse inertia, (7, layers)
+    real(wp), intent(in) :: inverse(7, layers)
+    !> The time
+    real(wp), intent(in) :: time
+    !> Forces and moments, (5, layers)
+    real(wp), intent(in) :: force(5, layers)
+    !> Velocities of the layers, (5, layers)
+    real(wp), intent(inout) :: velocity(5, layers)
+    integer :: l
+
+    do l = 1, layers
+      call accelerate(inverse(:, l), time, force(:, l), velocity(:, l))
+    end do
+  end subroutine accelerate_layers
+
+  !> Moves points that have one layer and that nothing but forces on it moves.
+  pure subroutine move_points(points, inverse, mean, step, force, u, v)
+    !> The points
+    integer, intent(in) :: points(:)
+    !> Inverse inertia, (7, points of this rank)
+    real(wp), contiguous, intent(in) :: inverse(:, :)
+    !> Time between the velocities before and after, and length of the step
+    real(wp), intent(in) :: mean, step
+    !> Forces on the layers, (5, points of this rank)
+    real(wp), contiguous, intent(in) :: force(:, :)
+    !> Unknowns and their rates, (5, points of this rank)
+    real(wp), contiguous, intent(inout) :: u(:, :), v(:, :)
+    integer :: i, p
+
+    do i = 1, size(points)
+      p = points(i)
+      call accelerate(inverse(:, p), mean, force(:, p), v(:, p))
+      u(:, p) = u(:, p) + step*v(:, p)
+    end do
+  end subroutine move_points
 
   !> Rates of the jumps across the interfaces.
   pure subroutine find_rates(n, height, layer, rates)

@@ -5,7 +5,7 @@ module stack_motions
   use cohesive_points, only: cohesive_point_t
   use interface_stacks, only: interface_stacks_t
   use kinds, only: wp
-  use layer_motions, only: accelerate, find_rates, pull_on, push_layers, to_layers
+  use layer_motions, only: accelerate_layers, find_rates, pull_on, push_layers, to_layers
   use line_steps, only: line_steps_t
   use models, only: model_t
   use nodal_inertia, only: nodal_inertia_t
@@ -89,15 +89,20 @@ contains
     real(wp), intent(inout) :: u(:, :), v(:, :)
     real(wp) :: layer(5, stacks%layers(i)), free(3, work%n), forces(3, work%n)
     integer :: n, p, q, k
+    logical :: pinned
 
     n = work%n
     p = stacks%first(i)
     q = p + n
     call to_layers(n, stacks%height(p:q), v(:, p:q), layer)
-    do k = 0, n
-      call accelerate(inertia%inverse(:, p + k), steps%mean(), force(:, p + k), layer(:, k + 1))
-      if (lines%is_pinned(p + k)) call lines%prescribe(p + k, layer(:, k + 1))
-    end do
+    call accelerate_layers(n + 1, inertia%inverse(:, p:q), steps%mean(), force(:, p:q), layer)
+    pinned = size(lines%pins) > 0
+    if (pinned) pinned = any([(lines%is_pinned(k), k=p, q)])
+    if (pinned) then
+      do k = 0, n
+        if (lines%is_pinned(p + k)) call lines%prescribe(p + k, layer(:, k + 1))
+      end do
+    end if
     call find_rates(n, stacks%height(p:q), layer, free)
     free = u(1:3, p + 1:q) + steps%now*free
     if (stacks%damaged(i)) then
@@ -112,7 +117,7 @@ contains
                                           forces(3, :))
     call push_layers(n, stacks%height(p:q), inertia%inverse(:, p:q), steps%mean(), forces, layer)
     if (rigs%bears(p)) layer(3, 1) = rigs%approach(p)/steps%now
-    if (any([(lines%is_pinned(k), k=p, q)])) &
+    if (pinned) &
       call book_reactions(stacks, i, lines, inertia, steps, force(:, p:q), forces, v(:, p:q), layer)
     call find_rates(n, stacks%height(p:q), layer, free)
     v(:, p) = layer(:, 1)
