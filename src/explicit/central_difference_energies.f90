@@ -42,7 +42,7 @@ contains
         end associate
       end if
       call sums(6)%add(method%stacks%lost(1, i) + method%rigs%frame_loss(i))
-      call sums(7)%add(method%stacks%lost(2, i) + method%rigs%spring_loss(i))
+      call sums(7)%add(method%stacks%lost(2, i) + method%rigs%step_loss(i))
       call sums(8)%add(method%lines%work(i))
     end do
     totals = totals_of(model%communicator, sums)*model%mesh%multiplicity
@@ -52,7 +52,7 @@ contains
       ledger%delamination = totals(4)
       ledger%friction = totals(5)
       ledger%contact = totals(6)
-      ledger%algorithmic = totals(7)
+      ledger%algorithmic = totals(7) + method%impactor_loss
       ledger%external_work = method%initial_work + method%travel_work + totals(8)
       if (allocated(now%plies%bands)) then
         call now%plies%total_dissipation(model)

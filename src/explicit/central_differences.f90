@@ -14,6 +14,7 @@ module central_differences
   use line_steps, only: line_steps_t, create_line_steps
   use models, only: model_t
   use nodal_inertia, only: nodal_inertia_t, create_nodal_inertia
+  use cohesive_interfaces, only: cohesive_interfaces_t
   use element_batches, only: lanes
   use rank_totals, only: total_of
   use rig_steps, only: rig_steps_t, create_rig_steps
@@ -72,6 +73,8 @@ module central_differences
     real(wp) :: initial_work = 0
     !> Work of an impactor whose travel is prescribed
     real(wp) :: travel_work = 0
+    !> What changes of the step's length have taken of the energy of the impactor
+    real(wp) :: impactor_loss = 0
     !> Room for the motion of the layers, for forces with those of the borders between ranks
     real(wp), allocatable, private :: motion(:, :), field(:, :)
     !> Room for stacks, one for each number of interfaces
@@ -83,6 +86,8 @@ module central_differences
     procedure :: longest_step
     !> Takes one step.
     procedure :: advance
+    !> Books a change of the step's length.
+    procedure, private :: change_length
     !> Finds the forces on the layers.
     procedure :: find_forces
     procedure :: add_loads
@@ -170,7 +175,9 @@ contains
     if (self%parameters%longest > 0) step = min(step, self%parameters%longest)
   end function longest_step
 
-  !> Takes one step, of which a whole number reaches an event. Collective.
+  !> Takes one step. Its length changes only where the stable step asks for it, as steps whose lengths alternate excite
+  !> the highest modes (R. D. Skeel, BIT 33 (1993) 172-175); so events are met by the first step that reaches them.
+  !> Collective.
   subroutine advance(self, model, event, now)
     !> The method
     class(central_difference_t), intent(inout) :: self
@@ -179,17 +186,16 @@ contains
     real(wp), intent(in) :: event
     !> The state
     type(state_t), intent(inout) :: now
-    real(wp) :: step, remaining, load_factors(2)
+    real(wp) :: step, longest, load_factors(2)
 
-    remaining = event - now%time
-    step = self%longest_step(model, now)
-    step = remaining/max(1.0_wp, real(ceiling(remaining/step*(1 - 1.0e-9_wp)), wp))
-    ! Rounding of the time is no other step.
-    if (abs(step - self%steps%now) <= 1.0e-9_wp*step) step = self%steps%now
+    step = self%steps%now
+    longest = self%longest_step(model, now)
+    if (.not. (step > 0 .and. step <= longest)) step = whole_step(model%scene%ramp_time, longest)
     self%steps = step_lengths_t(now=step, last=self%steps%now)
     call prepare(self, model)
     load_factors = [now%load_factor, (now%time + step)/model%scene%ramp_time]
     call self%lines%find_rates(model, self%steps, load_factors(2), self%motion)
+    call self%change_length(model, now%motion%velocity, -1)
     associate (u => now%motion%displacement, v => now%motion%velocity)
       call model%profile%enter('nodes')
       if (allocated(self%inertia%springs)) call self%rigs%pull(self%inertia%springs, self%steps, u, v, self%force)
@@ -200,6 +206,8 @@ contains
       call self%circles%hold(model, self%steps, u(3, :), v(3, :))
       call self%inertia%spread(u)
       call self%inertia%spread(v)
+      call follow_damage(self, now%interfaces%cohesive)
+      call self%change_length(model, v, 1)
       call model%profile%leave()
       call model%halo%update(u)
     end associate
@@ -211,6 +219,51 @@ contains
     call self%find_forces(model, now)
     call add_loads(self, model, now, load_factors)
   end subroutine advance
+
+  !> Length of steps of which a whole number makes up a time.
+  pure real(wp) function whole_step(time, longest) result(step)
+    !> The time, and the longest step
+    real(wp), intent(in) :: time, longest
+    real(wp) :: steps
+
+    steps = aint(time/longest)
+    if (steps*longest < time*(1 - 1.0e-9_wp)) steps = steps + 1
+    step = time/max(1.0_wp, steps)
+  end function whole_step
+
+  !> Books what a change of the step's length does to the work of the forces of its start: the kinetic energy of whole
+  !> steps takes them over half of each step (`step_lengths`).
+  subroutine change_length(self, model, v, sign)
+    !> The method
+    class(central_difference_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> Rates of the unknowns before the step or after it, (5, points)
+    real(wp), contiguous, intent(in) :: v(:, :)
+    !> -1 before the step, 1 after it
+    integer, intent(in) :: sign
+
+    if (.not. abs(self%steps%now - self%steps%last) > 0) return
+    self%rigs%step_loss = self%rigs%step_loss + sign*(self%steps%now - self%steps%last)/4* &
+                          sum(self%force*model%motion_of(v), 1)
+  end subroutine change_length
+
+  !> Gives the interfaces at points that follow others the state of those.
+  pure subroutine follow_damage(self, cohesive)
+    !> The method
+    type(central_difference_t), intent(in) :: self
+    !> The interfaces
+    type(cohesive_interfaces_t), intent(inout) :: cohesive
+    integer :: i
+
+    if (.not. any(self%stacks%damaged)) return
+    do i = 1, size(self%inertia%followers)
+      associate (follower => self%inertia%followers(i))
+        if (.not. cohesive%cohesive(follower)) cycle
+        cohesive%points(follower) = cohesive%points(self%inertia%leaders(i))
+        cohesive%points(follower)%sliding%slip = self%inertia%signs(1:2, i)*cohesive%points(follower)%sliding%slip
+      end associate
+    end do
+  end subroutine follow_damage
 
   !> Inverse inertia and compliances for the length of the step.
   subroutine prepare(self, model)
@@ -274,6 +327,8 @@ contains
         self%impactor_velocity = change/self%steps%now
       else
         acceleration = parameters%gravity - now%force/parameters%mass
+        self%impactor_loss = self%impactor_loss + parameters%mass*acceleration*(self%steps%now - self%steps%last)/4* &
+                             self%steps%mean()*acceleration
         self%impactor_velocity = self%impactor_velocity + self%steps%mean()*acceleration
         change = self%steps%now*self%impactor_velocity
       end if
@@ -379,6 +434,7 @@ contains
 
     call self%stacks%find_onsets(model, now%interfaces%cohesive)
     call self%stacks%find_damaged(now%interfaces%cohesive)
+    self%motion = model%motion_of(now%motion%displacement)
     self%prepared = step_lengths_t()
   end subroutine resume
 
@@ -397,6 +453,7 @@ contains
     call archive%item('explicit/contact_stiffness', self%contact_stiffness)
     call archive%item('explicit/initial_work', self%initial_work)
     call archive%item('explicit/travel_work', self%travel_work)
+    call archive%item('explicit/impactor_loss', self%impactor_loss)
     associate (owned => model%distribution%points(:model%distribution%owned), points => model%mesh%points())
       call archive%field('explicit/forces', owned, points, self%force)
       call self%rigs%visit(archive, owned, points)

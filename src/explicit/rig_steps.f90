@@ -17,8 +17,8 @@ module rig_steps
     logical, allocatable :: bears(:)
     !> Reaction of the frame in the last step, force, and change of w in it
     real(wp), allocatable :: reaction(:), approach(:)
-    !> Energy lost so far on frames, and to the implicit treatment of springs
-    real(wp), allocatable :: frame_loss(:), spring_loss(:)
+    !> Energy lost so far on frames, and to the implicit treatment of springs and to changes of the step's length
+    real(wp), allocatable :: frame_loss(:), step_loss(:)
   contains
     !> Brings a node to rest on its frame.
     procedure :: bear
@@ -41,7 +41,7 @@ contains
     points = size(model%distribution%points)
     allocate (self%bears(points), source=.false.)
     if (model%rig%unilateral) self%bears = model%rig%bears > 0
-    allocate (self%reaction(points), self%approach(points), self%frame_loss(points), self%spring_loss(points), &
+    allocate (self%reaction(points), self%approach(points), self%frame_loss(points), self%step_loss(points), &
               source=0.0_wp)
   end function create_rig_steps
 
@@ -101,7 +101,7 @@ contains
     !> Unknowns and their rates at the end of the step, (5, points)
     real(wp), intent(in) :: u(:, :), v(:, :)
 
-    self%spring_loss = self%spring_loss + sum(springs*(steps%now*v)**2, 1)
+    self%step_loss = self%step_loss + sum(springs*(steps%now*v)**2, 1)
   end subroutine book_springs
 
   !> Saves or loads.
@@ -117,11 +117,11 @@ contains
     fields(1, :) = self%reaction
     fields(2, :) = self%approach
     fields(3, :) = self%frame_loss
-    fields(4, :) = self%spring_loss
+    fields(4, :) = self%step_loss
     call archive%field('explicit/frames', owned, points, fields)
     self%reaction = fields(1, :)
     self%approach = fields(2, :)
     self%frame_loss = fields(3, :)
-    self%spring_loss = fields(4, :)
+    self%step_loss = fields(4, :)
   end subroutine visit
 end module rig_steps
