@@ -2,14 +2,15 @@
 module stack_motions
   use cohesive_faces, only: cohesive_faces_t
   use cohesive_interfaces, only: cohesive_interfaces_t
-  use cohesive_points, only: cohesive_point_t
+  use cohesive_laws, only: weakened
+  use cohesive_points, only: cohesive_point_t, cohesive_reach, grown_damage
   use interface_stacks, only: interface_stacks_t
   use kinds, only: wp
   use layer_motions, only: accelerate_layers, find_rates, pull_on, push_layers, to_layers
   use line_steps, only: line_steps_t
   use models, only: model_t
   use nodal_inertia, only: nodal_inertia_t
-  use stack_solutions, only: stack_t, solve_openings, solve_shears
+  use stack_solutions, only: stack_t, jumps_of, solve_openings, solve_shears
   use step_lengths, only: step_lengths_t
   use rig_steps, only: rig_steps_t
   use tridiagonal_systems, only: solve_factored, solve_tractions
@@ -31,7 +32,8 @@ contains
     do n = 1, size(work)
       work(n)%n = n
       allocate (work(n)%area(n), work(n)%stiffness(2, n), work(n)%diagonal(3, n), work(n)%beside(3, n), &
-                work(n)%free(3, n), work(n)%start(3, n), work(n)%points(n), work(n)%closing(n), work(n)%friction(n), &
+                work(n)%free(3, n), work(n)%start(3, n), work(n)%points(n), work(n)%damage(n), &
+                work(n)%closing(n), work(n)%friction(n), &
                 work(n)%forces(3, n), work(n)%limit(n))
     end do
   end function new_workspaces
@@ -107,8 +109,7 @@ contains
     free = u(1:3, p + 1:q) + steps%now*free
     if (stacks%damaged(i)) then
       call load_stack(stacks, work, model, cohesive, p, u, free)
-      call solve_openings(work)
-      call solve_shears(work)
+      call solve_damaged(work, model, cohesive, p)
       forces = work%forces
     else
       call solve_factored(n, stacks%factors(:, :, p + 1:q), free, forces)
@@ -200,6 +201,42 @@ contains
     end associate
   end subroutine book_reactions
 
+  !> Forces of a damaged stack. Where damage grows they are found once more with the mean of what it was and has become.
+  !> With what it was tractions of a step would do more work than the law dissipates and stores, with what it has become
+  !> less: by plus and minus half of what the growth of damage takes off the traction, times the change of the jump.
+  pure subroutine solve_damaged(work, model, cohesive, p)
+    !> The stack; receives its forces
+    type(stack_t), intent(inout) :: work
+    type(model_t), intent(in) :: model
+    !> The interfaces
+    type(cohesive_interfaces_t), intent(in) :: cohesive
+    !> First point of the stack
+    integer, intent(in) :: p
+    real(wp) :: jumps(3, work%n), energy
+    logical :: grows
+    integer :: j
+
+    call solve_openings(work)
+    call solve_shears(work)
+    jumps = jumps_of(work)
+    grows = .false.
+    do j = 1, work%n
+      associate (law => model%cohesive_laws(model%zone(p + j)), strength => cohesive%strength(p + j))
+        energy = (law%stiffness_shear*(jumps(1, j)**2 + jumps(2, j)**2) &
+                  + law%stiffness_opening*max(jumps(3, j), 0.0_wp)**2)/2
+        ! N Y = G_c at the onset, and no mixture of modes is less tough than the weaker of the pure ones.
+        if (energy*law%failure_ratio < strength**2*min(law%toughness_opening, law%toughness_shear)) cycle
+        work%damage(j) = grown_damage(weakened(law, strength), &
+                                      cohesive_reach(weakened(law, strength), jumps(:, j), 0.0_wp), work%points(j))
+      end associate
+      grows = grows .or. work%damage(j) > work%points(j)%damage
+      work%damage(j) = (work%damage(j) + work%points(j)%damage)/2
+    end do
+    if (.not. grows) return
+    call solve_openings(work)
+    call solve_shears(work)
+  end subroutine solve_damaged
+
   !> Takes the state of a damaged stack.
   pure subroutine load_stack(stacks, work, model, cohesive, p, u, free)
     !> The stacks
@@ -226,6 +263,7 @@ contains
       work%free = free
       work%start = u(1:3, p + 1:q)
       work%points = cohesive%points(p + 1:q)
+      work%damage = work%points%damage
     end associate
     do j = 1, work%n
       faces = cohesive%faces_of(model, model%zone(p + j), 1.0_wp)

@@ -10,7 +10,7 @@ module stack_solutions
   use tridiagonal_systems, only: solve_tractions
   implicit none
   private
-  public :: stack_t, solve_openings, solve_shears
+  public :: stack_t, jumps_of, solve_openings, solve_shears
 
   !> The interfaces of one node in a step, from the struck side downwards, (n) each.
   type :: stack_t
@@ -24,6 +24,8 @@ module stack_solutions
     real(wp), allocatable :: free(:, :), start(:, :)
     !> Damage and sliding at the start
     type(cohesive_point_t), allocatable :: points(:)
+    !> Damage with which the forces are found
+    real(wp), allocatable :: damage(:)
     !> True: faces do not pass through each other where they are damaged
     logical, allocatable :: closing(:)
     !> Coefficient of friction
@@ -50,20 +52,33 @@ contains
     do round = 0, stack%n + 1
       do j = 1, stack%n
         stiffness(j) = stack%stiffness(2, j)
-        if (.not. (closed(j) .and. stack%closing(j))) stiffness(j) = (1 - stack%points(j)%damage)*stiffness(j)
+        if (.not. (closed(j) .and. stack%closing(j))) stiffness(j) = (1 - stack%damage(j))*stiffness(j)
       end do
       call solve_tractions(stack%n, stiffness, none, stack%diagonal(3, :), stack%beside(3, :), stack%free(3, :), &
                            stack%forces(3, :))
       opening = stack%free(3, :) - reached(stack, 3)
       before = closed
       closed = opening < 0
-      if (all((before .eqv. closed) .or. .not. stack%points%damage > 0)) exit
+      if (all((before .eqv. closed) .or. (.not. stack%damage > 0))) exit
     end do
     do j = 1, stack%n
       stack%limit(j) = 0
-      if (stack%closing(j)) stack%limit(j) = stack%friction(j)*stack%points(j)%damage*max(0.0_wp, -stack%forces(3, j))
+      if (stack%closing(j)) stack%limit(j) = stack%friction(j)*stack%damage(j)*max(0.0_wp, -stack%forces(3, j))
     end do
   end subroutine solve_openings
+
+  !> Jumps at the end of the step with the forces found.
+  pure function jumps_of(stack) result(jumps)
+    !> The stack with its forces
+    type(stack_t), intent(in) :: stack
+    !> Two shears and opening, (3, n)
+    real(wp) :: jumps(3, stack%n)
+    integer :: k
+
+    do k = 1, 3
+      jumps(k, :) = stack%free(k, :) - reached(stack, k)
+    end do
+  end function jumps_of
 
   !> What the forces take off the jumps.
   pure function reached(stack, k) result(change)
@@ -91,7 +106,7 @@ contains
     logical :: slips
 
     do j = 1, stack%n
-      stiffness(j) = (1 - stack%points(j)%damage)*stack%stiffness(1, j)
+      stiffness(j) = (1 - stack%damage(j))*stack%stiffness(1, j)
       given(:, j) = 0
       if (.not. stack%limit(j) > 0) cycle
       stiffness(j) = stiffness(j) + stack%stiffness(1, j)
@@ -107,7 +122,7 @@ contains
         tried = stack%stiffness(1, j)*(jumps(:, j) - stack%points(j)%sliding%slip)
         if (.not. norm2(tried) > stack%limit(j)) cycle
         slips = .true.
-        stiffness(j) = (1 - stack%points(j)%damage)*stack%stiffness(1, j)
+        stiffness(j) = (1 - stack%damage(j))*stack%stiffness(1, j)
         given(:, j) = stack%limit(j)*(tried/norm2(tried))
       end do
     end associate
