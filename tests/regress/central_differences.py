@@ -1,0 +1,201 @@
+"""Runs by central differences whose plies and interfaces fail, against themselves and closed forms.
+Usage: central_differences.py TRIAL IMPLAM FOLDER [LAUNCHER...]     (LAUNCHER takes the number of ranks last)
+
+ranks    on 1, 2 and 3 ranks, and from a checkpoint of one number of ranks on another: bitwise
+signal   TERM, USR1 and INT end a run with a checkpoint, from which it goes on: bitwise
+kill     SIGKILL at any moment leaves a checkpoint from which the run goes on: bitwise
+events   output times, however they lie, change no step so that motion is fed: the ledger stays closed
+travel   an impactor moved slowly has the force of load steps, and says so where it is not slow
+lines    prescribed lines are held exactly; moved smoothly, with the force of load steps
+fracture what is booked as fracture is the toughness times the area, to 1e-6"""
+
+import random
+import re
+import signal
+import sys
+import time
+from itertools import pairwise
+from pathlib import Path
+
+from restart import (
+    EXIT_DONE,
+    EXIT_STOPPED,
+    copy_run,
+    exit_code,
+    go_on,
+    main,
+    model_lines,
+    require_same,
+    stamp,
+    start,
+    wait_until,
+)
+from solver_runs import checkpoint_of, history_of, read_history, require, run_deck, write_deck
+
+EXPLICIT = "time%integrator='central_difference'"
+# Plies and an interface that break, layers that follow their damage, turned halves on a frame that they may lift off,
+# plies that soften as fibres fail, and lines that hold, move and press.
+SCENES = {"breaking": ("../small/breaking_rounds.nml", [EXPLICIT]), "layers": ("../small/layers.nml", [EXPLICIT]),
+          "turned": ("../small/turned.nml", [EXPLICIT, "time%end=150e-6"]),
+          "softening": ("../small/crack_bands.nml", [EXPLICIT, "time%end=150e-6"]),
+          "lines": ("three_point.nml", ["time%end=1e-4", EXPLICIT])}
+
+
+def deck_of(folder, scene, *settings):
+    """Write the deck of a scene and return its path."""
+    source, own = SCENES[scene]
+    deck = write_deck(folder, source, [*own, *settings])
+    text = deck.read_text(encoding="utf-8")
+    deck.write_text("\n".join(line for line in text.splitlines() if not line.startswith("&static")) + "\n",
+                    encoding="utf-8")
+    return deck
+
+
+def check_ranks(implam, folder, launcher):
+    """All histories are the same, and so is one that goes on with another number of ranks."""
+    for scene in SCENES:
+        reference = run_deck(implam, deck_of(folder / scene / "1", scene))
+        for ranks in ("2", "3"):
+            found = run_deck(implam, deck_of(folder / scene / ranks, scene), [*launcher, ranks])
+            require_same(found, reference, f"{scene} on {ranks} ranks")
+        end = read_history(reference)["time"][-1]
+        split = deck_of(folder / scene / "split", scene, f"output%checkpoint_every={0.53 * end!r}")
+        uninterrupted = run_deck(implam, split, [*launcher, "2"])
+        for ranks in ("1", "3"):
+            again = go_on(implam, copy_run(split.parent, split.parent.with_name(f"again_{ranks}")), [*launcher, ranks])
+            require_same(again, uninterrupted, f"{scene}: from 2 ranks to {ranks}")
+        print(f"{scene}: the same to the last bit on 1, 2 and 3 ranks", flush=True)
+
+
+def check_signal(implam, folder, _):
+    """Stopped by the queue, once and again."""
+    reference = run_deck(implam, deck_of(folder / "uninterrupted", "breaking"))
+    deck = deck_of(folder / "stopped", "breaking")
+    process = start(implam, deck, "--output", deck.parent)
+    for runs, stop in enumerate((signal.SIGTERM, signal.SIGUSR1, signal.SIGINT), start=1):
+        wait_until(lambda runs=runs: model_lines(deck.parent) >= runs, process)
+        time.sleep(0.1)
+        process.send_signal(stop)
+        code = exit_code(process)
+        require(code == EXIT_STOPPED, f"After {stop.name} the exit code is {code}, not {EXIT_STOPPED}.")
+        print(f"{stop.name} after {len(read_history(history_of(deck.parent))['time'])} rows", flush=True)
+        process = start(implam, "restart", checkpoint_of(deck.parent))
+    require(exit_code(process) == EXIT_DONE, "The last restart failed.")
+    require_same(history_of(deck.parent), reference, "signals")
+
+
+def check_kill(implam, folder, _):
+    """Killed at random moments until the end is reached, while plies break and layers appear."""
+    moments = random.Random(1)
+    for scene, every in (("breaking", 5e-6), ("layers", 8e-6)):
+        settings = [f"output%checkpoint_every={every!r}"]
+        reference = run_deck(implam, deck_of(folder / scene / "uninterrupted", scene, *settings))
+        deck = deck_of(folder / scene / "killed", scene, *settings)
+        process = start(implam, deck, "--output", deck.parent)
+        for _ in range(5):
+            before = stamp(deck.parent)
+            wait_until(lambda before=before, deck=deck: stamp(deck.parent) != before, process)
+            time.sleep(moments.uniform(0, 0.03))
+            process.kill()
+            process.wait()
+            process = start(implam, "restart", checkpoint_of(deck.parent))
+        require(exit_code(process) == EXIT_DONE, f"The last run ended with {process.returncode}.")
+        require_same(history_of(deck.parent), reference, f"{scene}: kills")
+        print(f"{scene}: 5 kills; the same to the last bit", flush=True)
+
+
+def check_events(implam, folder, _):
+    """Karas' elastic impact with output times near each other: steps of alternating lengths fed the fastest modes until
+    the plate held 1e9 times the energy of the impact."""
+    settings = [EXPLICIT, "time%end=200e-6", "time%mass_scaling=1"]
+    outputs = {"none": [], "near": ["output%fields_every=0.17e-6", "output%history_every=0.23e-6"],
+               "far": ["output%fields_every=2.3e-6", "output%history_every=1.7e-6"]}
+    for name, output in outputs.items():
+        history = read_history(run_deck(implam, write_deck(folder / name, "karas.nml", [*settings, *output])))
+        error = max(map(abs, history["energy_error"]))/history["energy_impactor"][0]
+        print(f"{name}: {history['step'][-1]:.0f} steps, the ledger is closed to {error:.1e}")
+        require(error < 1e-4, f"{name}: {error:.2g} of the impact are not accounted for.")
+        require(abs(history["impactor_velocity"][-1]/-0.65693 - 1) < 2e-3, f"{name}: another rebound.")
+
+
+def check_travel(implam, folder, _):
+    """An elastic plate is indented slowly, and not so slowly."""
+    push = ["impactor%travel=1e-3", "indentation%k=1e9"]
+    elastic = "indented.nml", [*push, "case%kinematics='von_karman'"]
+    static = write_deck(folder / "static", elastic[0], elastic[1])
+    moved = write_deck(folder / "moved", elastic[0], [*elastic[1], EXPLICIT, "time%end=8e-3", "impactor%rise=4e-3"])
+    fast = write_deck(folder / "fast", elastic[0], [*elastic[1], EXPLICIT, "time%end=0.2e-3"])
+    for deck, group in ((static, None), (moved, "&static"), (fast, "&static")):
+        lines = [line for line in deck.read_text(encoding="utf-8").split("\n&")
+                 if not line.startswith("delamination") and not (group and line.startswith(group[1:]))]
+        text = "\n&".join(lines)
+        deck.write_text(text.replace("dissipation=0.36", ""), encoding="utf-8")
+    expected, found = (read_history(run_deck(implam, deck)) for deck in (static, moved))
+    worst = max(abs(force - between(found, "impactor_displacement", place, "force"))
+                for place, force in zip(expected["impactor_displacement"], expected["force"], strict=True)
+                if place > 0.4e-3)/expected["force"][-1]
+    kinetic = max(found["energy_kinetic"])/found["work_external"][-1]
+    error = max(map(abs, found["energy_error"]))/found["work_external"][-1]
+    print(f"The force differs by {worst:.2g} of the largest; of the work kinetic {kinetic:.1e}, ledger {error:.1e}")
+    require(worst < 0.01, f"The force differs from that of load steps by {100*worst:.2g} %.")
+    require(kinetic < 0.01 and error < 1e-4, "Motion or error is not small.")
+    run_deck(implam, fast)
+    log = next(fast.parent.glob("*.log")).read_text(encoding="utf-8")
+    require(re.search(r"warning.*kinetic", log, re.IGNORECASE), "Nobody warns of a travel that is fast.")
+
+
+def between(history, column, place, name):
+    """Return a column where another one passes a place, straight between rows."""
+    rows = list(zip(history[column], history[name], strict=True))
+    for (before, first), (after, second) in pairwise(rows):
+        if before <= place <= after and after > before:
+            return first + (place - before)/(after - before)*(second - first)
+    return rows[-1][1]
+
+
+CANTILEVER = """&case name='cantilever' kinematics='linear' /
+&plate length=0.1, 0.02 edges='clamped','free','free','free' in_plane='fixed' /
+&mesh elements=20, 4 /
+&material name='al' density=2700 E=70e9 nu=0.3 /
+&laminate materials='al' angles=0 thicknesses=2e-3 /
+"""
+
+
+def check_lines(implam, folder, _):
+    """A cantilever is moved at once, smoothly, and in load steps."""
+    end, held = 4e-3, 1e-4
+    groups = {"static": "&static steps=1 /", "ramp": f"&time {EXPLICIT[5:]} end={end} /",
+              "smooth": f"&time {EXPLICIT[5:]} end={end} /"}
+    found = {}
+    for name, group in groups.items():
+        deck = write_deck(folder / name, "karas.nml")
+        rise = f"rise={0.5 * end}" if name == "smooth" else ""
+        deck.write_text(f"{CANTILEVER}&line at=0.05 displacement={held} {rise} /\n{group}\n", encoding="utf-8")
+        found[name] = read_history(run_deck(implam, deck))
+        error = max(map(abs, found[name]["energy_error"]))/max(map(abs, found[name]["work_external"]))
+        print(f"{name}: the ledger is closed to {error:.1e} of the work")
+        require(error < 1e-6, f"{name}: {error:.2g} of the work are not accounted for.")
+        require(abs(found[name]["line_displacement_1"][-1]/held - 1) < 1e-9, f"{name}: the line is elsewhere.")
+    for moment, place in zip(found["ramp"]["time"], found["ramp"]["line_displacement_1"], strict=True):
+        require(abs(place - held*moment/end) < 1e-9*held, "The line is not where the ramp is.")
+    force = found["smooth"]["line_force_1"][-1]/found["static"]["line_force_1"][-1]
+    print(f"Moved smoothly, the force is {force:.4f} of that in load steps")
+    require(abs(force - 1) < 0.05, "The force is not that of load steps.")
+
+
+def check_fracture(implam, folder, _):
+    """G_c times the area that has been dissipated, where one toughness is for all modes."""
+    deck = deck_of(folder / "deck", "breaking")
+    history = read_history(run_deck(implam, deck))
+    starter = history["delaminated_area"][0]
+    booked, area = history["energy_delamination"][-1], history["delaminated_area"][-1] - starter
+    print(f"{booked:.6g} J are booked for {1e6*area:.3f} mm2")
+    require(area > 5e-5 and abs(booked/(490*area) - 1) < 1e-6, "Fracture is not booked by the area.")
+
+
+TRIALS = {"ranks": check_ranks, "signal": check_signal, "kill": check_kill, "events": check_events,
+          "travel": check_travel, "lines": check_lines, "fracture": check_fracture}
+
+if __name__ == "__main__":
+    Path(sys.argv[3]).parent.mkdir(parents=True, exist_ok=True)
+    raise SystemExit(main(TRIALS, *sys.argv[1:]))
