@@ -1,0 +1,348 @@
+#!/usr/bin/env python3
+"""What central differences are to hold, as a table: a row a figure, with its bound. See README.md.
+Usage: explicit_table.py IMPLAM PART...     (with Python of .venv; PARTs with --list)"""
+
+import argparse
+import csv
+import json
+import math
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import time
+
+import numpy as np
+
+HERE = pathlib.Path(__file__).resolve().parent
+INPUT = HERE.parents[1]/'input'
+sys.path[:0] = [str(HERE), str(HERE.parent/'regress')]
+import breaking_scenes
+import cohesive_study
+import damaging_scenes
+import elastic_scenes
+from modal_impact import Scene, answer
+from solver_runs import change_deck
+
+EXPLICIT = "integrator='central_difference'"
+IMPLICIT = "integrator='generalized_alpha'"
+ENVIRONMENT = dict(elastic_scenes.ENVIRONMENT, OMPI_MCA_mpi_yield_when_idle='1')
+MOST_STEPS = 1e6
+
+
+class Run:
+    """A run: exit code, processor time, rows and summary."""
+
+    def __init__(self, program, text, launcher=(), seconds=3600):
+        with tempfile.TemporaryDirectory() as folder:
+            deck = pathlib.Path(folder, 'deck.nml')
+            deck.write_text(text, encoding='utf-8')
+            before = os.times()
+            begun = time.monotonic()
+            try:
+                done = subprocess.run([*launcher, program, deck, '--output', folder], env=ENVIRONMENT, text=True,
+                                      stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=seconds, check=False)
+                self.code, self.said = done.returncode, done.stdout
+            except subprocess.TimeoutExpired:
+                self.code, self.said = 'timeout', ''
+            self.wall = time.monotonic() - begun
+            after = os.times()
+            self.seconds = after.children_user + after.children_system - before.children_user - before.children_system
+            self.rows, self.history = [], b''
+            for path in pathlib.Path(folder).glob('*_history.csv'):
+                self.history = path.read_bytes()
+                with path.open(encoding='utf-8') as lines:
+                    self.rows = [{name.strip(): float(value) for name, value in row.items()}
+                                 for row in csv.DictReader(line for line in lines if not line.startswith('#'))]
+            self.summary, self.log = {}, ''
+            for path in pathlib.Path(folder).glob('*_summary.json'):
+                self.summary = json.loads(path.read_text(encoding='utf-8'))
+            for path in pathlib.Path(folder).glob('*.log'):
+                self.log = path.read_text(encoding='utf-8')
+
+    def largest(self, column):
+        """Largest value of a column."""
+        return max(row[column] for row in self.rows)
+
+    def ledger(self):
+        """Least and largest share of the impact that is not accounted for, and what meeting surfaces lose."""
+        impact = self.rows[0]['energy_impactor'] + self.rows[0]['energy_indentation']
+        impact = max(impact, self.summary.get('energy_impact') or 0)
+        errors = [row['energy_error']/impact for row in self.rows]
+        return min(errors), max(errors), self.rows[-1]['energy_contact']/impact
+
+    def wrong(self):
+        """What is to be said of a run that has not ended well; empty: nothing."""
+        if not self.code:
+            return ''
+        return f'ends with {self.code}: {(self.said.splitlines() or [""])[-1][:100]}'
+
+
+def explicit(text, keys=''):
+    """A deck by central differences, with some keys of &time instead of step, damping and integrator."""
+    group = re.search(r'^&time\b[^/]*/', text, re.MULTILINE)[0]
+    changed = re.sub(r"\s+(step|rho_inf|integrator)=('\w+'|\S+)", '', group)
+    return text.replace(group, f'{changed[:-1].rstrip()} {EXPLICIT} {keys} /')
+
+
+def row(name, figure, bound='', good=None):
+    """Print a row of the table."""
+    verdict = '' if good is None else 'holds' if good else '**misses**'
+    print(f'| {name} | {figure} | {bound} | {verdict} |', flush=True)
+
+
+def steps_of(program, text):
+    """Steps of a run and seconds of one processor, as the check foresees them; nothing if it says none."""
+    said = subprocess.run([program, 'check', '/dev/stdin'], env=ENVIRONMENT, capture_output=True, text=True,
+                          input=text, check=False).stdout
+    found = re.search(r'About ([\d.e+]+) steps', said)
+    return float(found[1]) if found else None
+
+
+def elastic(program, options):
+    """Histories of elastic impacts against semi-analytic ones, on the meshes of accuracy='reference'."""
+    moduli = (120e9, 7.9e9, 5.5e9, 5.5e9, 5.5e9, .3)
+    steel = 206.8e9/2.56
+    scenes = [Scene((.2, .2), [0, 90, 0, 90, 0, 0, 90, 0, 90, 0], .269e-3, moduli, 1580, 8.537e-3, 3, 6.35e-3, 8.112e8,
+                    name='sun_chen'),
+              Scene((.2, .2), [0], 8e-3, (206.8e9, 206.8e9, steel, steel, steel, .28), 7833, .0328108, 1, .01,
+                    1.49595e10, name='karas')]
+    scenes += elastic_scenes.random_scenes(options.count, 1)
+    for scaling, bound in (('mass_scaling=1', .5), ('', 1)):
+        held = run_count = 0
+        for scene in scenes:
+            text = elastic_scenes.deck_of(scene, case="accuracy='reference'", time=f'&time {EXPLICIT} {scaling} /')
+            steps = steps_of(program, text)
+            name = f'{scene.name}, {scaling or "default scaling"}'
+            if steps is None or steps > options.most_steps:
+                row(name, f'{steps or 0:.2g} steps, not run')
+                continue
+            run = elastic_scenes.Run(program, text, scene.name, 3600)
+            run_count += 1
+            if run.code:
+                row(name, f'ends with {run.code}: {(run.said.splitlines() or [""])[-1][:80]}', '', False)
+                continue
+            end, patch = run.key('time', 'end')[0], run.key('mesh', 'patch')[0]
+            fine = (20, 20) if end > 300*scene.contact_time() else (60, 50)
+            peak, history = (100*error for error in run.errors(*answer(scene, patch, end, *fine)[:2]))
+            scaled = run.key('time', 'mass_scaling')[0]
+            held += history <= bound
+            row(name, f'history {history:.2f} %, peak {peak:+.2f} %, scaling {scaled:g}, {run.steps} steps, '
+                f'{run.unknowns} unknowns, {run.seconds:.1f} s', f'{bound} %', history <= bound)
+        row(f'elastic, {scaling or "default scaling"}', f'{held} of {run_count} within', f'{bound} %',
+            held == run_count)
+
+
+def peanut_text(cell):
+    """The peanut on cells of some mm; those of .6 mm have a patch and a core of whole ones."""
+    text = (INPUT/'peanut.nml').read_text(encoding='utf-8')
+    text = change_deck(text, ['output%fields_every=4e-3'])
+    if cell == .8:
+        return text
+    return change_deck(text, ['mesh%elements=40, 20', 'mesh%patch=1.2e-3', 'mesh%core=40.8e-3, 15.6e-3',
+                              'mesh%cell=0.6e-3', 'delamination%zone=40.8e-3, 15.6e-3'])
+
+
+def peanut(program, options):
+    """First growth, peak and area of the peanut by both ways."""
+    for cell in options.cells or (.8, .6):
+        text = peanut_text(cell)
+        found = {}
+        for way, deck in (('implicit', change_deck(text, [f'time%{IMPLICIT}'])),
+                          ('explicit', explicit(text))):
+            run = Run(program, deck)
+            if run.wrong():
+                row(f'peanut {cell} mm, {way}', run.wrong(), '', False)
+                return
+            growth = run.summary['interfaces'][0]['first_growth']['force']
+            found[way] = growth, run.summary['peak_force'], 1e6*run.summary['delaminated_area']
+            least, largest, contact = run.ledger()
+            row(f'peanut {cell} mm, {way}', '{:.0f} N, {:.0f} N, {:.1f} mm2'.format(*found[way]) +
+                f', ledger {100*least:.4f} to {100*largest:+.4f} %, contact {100*contact:.2f} %, {run.seconds:.0f} s',
+                '.2 %, +.05 %', way == 'implicit' or (least > -2e-3 and largest < 5e-4))
+        apart = [100*(b/a - 1) for a, b in zip(found['implicit'], found['explicit'], strict=True)]
+        row(f'peanut {cell} mm: first growth, peak, area', '{:+.1f} %, {:+.1f} %, {:+.1f} %'.format(*apart), '2 %',
+            max(map(abs, apart)) <= 2)
+
+
+def thresholds(program, options):
+    """Mean force while a delamination grows, against the closed form."""
+    for cell, elements in ((2, 15), (1, 26), (.5, 50)):
+        if options.cells and cell not in options.cells:
+            continue
+        settings = [f'mesh%elements={elements}, {elements}', f'mesh%cell={cell}e-3',
+                    f'delamination%starter={12e-3 if cell == 2 else 10e-3}']
+        text = explicit(change_deck(cohesive_study.THRESHOLD.read_text(encoding='utf-8'), settings))
+        run = Run(program, text)
+        if run.wrong():
+            row(f'threshold {cell} mm', run.wrong(), '', False)
+            continue
+        # While the area grows from twice the starter's to two cells off the border of the zone.
+        start = 2*run.rows[0]['delaminated_area']
+        end = math.pi*(.02 - 2e-3*cell)**2
+        growing = [(after['force'], after['delaminated_area'] - before['delaminated_area'])
+                   for before, after in zip(run.rows, run.rows[1:], strict=False)
+                   if start < after['delaminated_area'] < end]
+        # Over time, as a testing machine would show it, and over the area.
+        mean = np.mean([force for force, _ in growing])
+        by_area = sum(force*area for force, area in growing)/sum(area for _, area in growing)
+        ratio = mean/cohesive_study.CLOSED_FORM
+        least, largest, contact = run.ledger()
+        row(f'threshold {cell} mm', f'{mean:.0f} N over time, {by_area:.0f} N over area, peak '
+            f'{run.summary["peak_force"]:.0f} N, ledger {100*least:.4f} to {100*largest:+.4f} %, contact '
+            f'{100*contact:.2f} %, {run.seconds:.0f} s', '1756 N, 3 %', abs(ratio - 1) <= .03)
+
+
+def damaging(program, options):
+    """Random scenes whose interfaces delaminate."""
+    ended = quick = booked = closed = 0
+    for seed in range(1, options.count + 1):
+        scene = damaging_scenes.scene(seed)
+        run = Run(program, explicit(damaging_scenes.deck(scene)), seconds=600)
+        if run.wrong():
+            row(f'damaging {seed}', run.wrong(), '', False)
+            continue
+        ended += 1
+        quick += run.seconds < 20
+        last = run.rows[-1]
+        area = last['delaminated_area'] - (run.rows[0]['delaminated_area'] if scene['starter'] else 0)
+        cost, energy = scene['G_c']*area, last['energy_delamination']
+        right = abs(energy - cost) <= 1e-6*max(cost, 1e-12)
+        # What the tractions did beyond what is stored, booked as fracture, friction or lost where surfaces meet.
+        beyond = last['energy_algorithmic']/energy if energy > 0 else 0
+        least, largest, contact = run.ledger()
+        good = least > -2e-3 and largest < 5e-4
+        booked += right
+        closed += good
+        row(f'damaging {seed}', f'{1e6*area:.1f} mm2, booked over G_c area - 1 '
+            f'{energy/cost - 1 if cost > 0 else 0:.1e}, algorithmic {100*beyond:+.1f} % of fracture, ledger '
+            f'{100*least:.4f} to {100*largest:+.4f} %, contact {100*contact:.2f} %, {last["step"]:.0f} steps, '
+            f'{run.seconds:.1f} s', '', right and good and run.seconds < 20)
+    row('damaging: end, under 20 s, G_c area to 1e-6, ledger', f'{ended}, {quick}, {booked}, {closed}',
+        f'{options.count} each', min(ended, quick, booked, closed) == options.count)
+
+
+def breaking(program, options):
+    """Random scenes whose plies break."""
+    held, worst = 0, [0.0, 0.0, 0.0]
+    for seed in range(options.count):
+        run = Run(program, explicit(breaking_scenes.deck(seed, 1)), seconds=600)
+        if run.wrong():
+            row(f'breaking {seed}', run.wrong(), '', False)
+            continue
+        least, largest, contact = run.ledger()
+        good = least > -2e-3 and largest < 5e-4 and contact < .02
+        held += good
+        worst = [min(worst[0], least), max(worst[1], largest), max(worst[2], contact)]
+        row(f'breaking {seed}', f'ledger {100*least:.4f} to {100*largest:+.4f} %, contact {100*contact:.2f} %, '
+            f'{run.rows[-1]["fibre_failures"]:.0f} fibre failures, {run.rows[-1]["step"]:.0f} steps, '
+            f'{run.seconds:.1f} s', '-.2 to +.05 %, 2 %', good)
+    row('breaking scenes', f'{held} of {options.count}; worst ' +
+        '{:.3f} %, {:+.4f} %, {:.2f} %'.format(*(100*value for value in worst)), '', held == options.count)
+
+
+def remainder(run):
+    """Root mean square of what is not accounted for, over the impact."""
+    impact = run.summary['energy_impact']
+    return math.sqrt(np.mean([(entry['energy_error']/impact)**2 for entry in run.rows]))
+
+
+def halves(program, options):
+    """What half the step leaves of the remainder of the ledger."""
+    texts = {'karas': (INPUT/'verify/karas.nml').read_text(encoding='utf-8'),
+             'sun_chen_elastic': (INPUT/'verify/sun_chen_elastic.nml').read_text(encoding='utf-8'),
+             'cohesive': (INPUT/'small/cohesive.nml').read_text(encoding='utf-8')}
+    if not options.quick:
+        texts['peanut'] = peanut_text(.8)
+    for name, text in texts.items():
+        whole, half = (remainder(Run(program, explicit(text, f'step_factor={part}'))) for part in (.9, .45))
+        row(f'{name}: remainder with half the step', f'{half:.1e} of {whole:.1e}', 'half', half <= .55*whole)
+    found = []
+    for seed in range(10):
+        runs = [Run(program, explicit(breaking_scenes.deck(seed, 1), f'step_factor={part}')) for part in (.9, .45)]
+        if not any(run.wrong() for run in runs):
+            found.append([remainder(run) for run in runs])
+    whole, half = np.mean(found, axis=0)
+    row(f'{len(found)} breaking scenes: remainder with half the step', f'{half:.1e} of {whole:.1e}', 'no larger',
+        half <= 1.05*whole)
+
+
+def ranks(program, options):
+    """Histories on several ranks, byte for byte."""
+    mpirun = ('mpirun', '--allow-run-as-root', '--oversubscribe', '-n')
+    texts = {f'damaging {seed}': explicit(damaging_scenes.deck(damaging_scenes.scene(seed))) for seed in range(1, 6)}
+    for name, text in texts.items():
+        one = Run(program, text)
+        same = [Run(program, text, (*mpirun, str(number))).history == one.history for number in (2, 3, 4)]
+        row(f'{name} on 2, 3, 4 ranks', ', '.join('same' if each else 'other' for each in same), 'same', all(same))
+
+
+def panels(program, options):
+    """Cost of the panels: foreseen, and paid with --run."""
+    text = (INPUT/'experiments/t700_m21_25J.nml').read_text(encoding='utf-8')
+    for name, deck in (('25 J, as it is', text), ('6.5 J, as it is',
+                                                  (INPUT/'experiments/t700_m21_6.5J.nml').read_text(encoding='utf-8'))):
+        said = subprocess.run([program, 'check', '/dev/stdin'], env=ENVIRONMENT, capture_output=True, text=True,
+                              input=deck, check=False).stdout
+        told = [line for line in said.splitlines() if line.startswith('About')]
+        row(name, ' '.join(told))
+        if not options.run:
+            continue
+        run = Run(program, deck)
+        if run.wrong():
+            row(name, run.wrong(), '', False)
+            continue
+        least, largest, contact = run.ledger()
+        row(name, f'peak {run.summary["peak_force"]:.0f} N, {1e3*run.summary["largest_deflection"]:.2f} mm, '
+            f'{1e6*run.summary["delaminated_area"]:.0f} mm2, ledger {100*least:.4f} to {100*largest:+.4f} %, contact '
+            f'{100*contact:.2f} %, {run.seconds:.0f} s', '153 s, +.05 %, 1.5 %',
+            run.seconds <= 153 and least > -2e-3 and largest < 5e-4 and contact < .015)
+
+
+def costs(program, options):
+    """Cost of a step against the number of elements."""
+    text = cohesive_study.THRESHOLD.read_text(encoding='utf-8')
+    for elements in (20, 40, 80, 160, 320)[:3 if options.quick else 5]:
+        steps = 2_000_000//elements**2
+        settings = [f'mesh%elements={elements}, {elements}', f'mesh%cell={.03/elements}',
+                    'output%history_every=1', 'output%fields=none']
+        deck = explicit(change_deck(text, settings[:2]))
+        foreseen = steps_of(program, deck)
+        step = 6.5e-3/foreseen
+        deck = re.sub(r'\bend=\S+', f'end={steps*step}', deck)
+        run = Run(program, deck)
+        if run.wrong():
+            row(f'{elements}x{elements}', run.wrong(), '', False)
+            continue
+        unknowns = int(re.search(r'(\d+) unknowns', run.log)[1])
+        count = int(re.search(r'(\d+) elements', run.log)[1])
+        taken = run.rows[-1]['step']
+        row(f'{unknowns} unknowns, {count} elements of layers', f'{1e6*run.seconds/taken/count:.3f} us an element and '
+            f'step, {taken:.0f} steps')
+
+
+PARTS = {part.__name__: part for part in (elastic, peanut, thresholds, damaging, breaking, halves, ranks, panels,
+                                          costs)}
+
+
+def main():
+    """Run the parts asked for."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
+                                     epilog='\n'.join(f'{name:12}{part.__doc__}' for name, part in PARTS.items()))
+    parser.add_argument('program')
+    parser.add_argument('parts', nargs='*', choices=[*PARTS, []], metavar='PART', help='all if none is given')
+    parser.add_argument('--count', type=int, default=20, help='random scenes of a part')
+    parser.add_argument('--most-steps', type=float, default=MOST_STEPS, help='longer elastic runs are left out')
+    parser.add_argument('--cells', type=float, nargs='+', help='of peanut and thresholds, mm')
+    parser.add_argument('--quick', action='store_true', help='leave out the peanut of halves and the last of costs')
+    parser.add_argument('--run', action='store_true', help='run the panels, too')
+    options = parser.parse_args()
+    print('| what | figure | bound | |\n|---|---|---|---|')
+    for part in options.parts or PARTS:
+        PARTS[part](os.path.abspath(options.program), options)
+
+
+if __name__ == '__main__':
+    main()
