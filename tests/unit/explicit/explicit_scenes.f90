@@ -148,8 +148,8 @@ contains
     call self%count_from()
   end subroutine shake
 
-  !> Takes the first step, and the energy after it for that of the start: plates begin at rest, and work in the first half
-  !> step is counted for that.
+  !> Takes the first step, and the energy after it for that of the start: plates begin at rest, and work in the first
+  !> half step is counted for that.
   subroutine count_from(self)
     !> The run
     class(explicit_run_t), intent(inout) :: self
