@@ -14,10 +14,10 @@ module run_records
   !> Kinds of warnings that a run gives: a delamination has reached the border of its zone; integrators have created or
   !> taken energy; an indentation over the thickness; slopes beyond small rotations; a clamped plate with broken fibres,
   !> stretched far; a hole; layers that follow their damage out of the core; steps that err too much and get no shorter;
-  !> energy that the ledger does not account for.
+  !> energy that the ledger does not account for; kinetic energy in slow motion.
   integer, parameter, public :: warning_border = 1, warning_energy = 2, warning_loss = 3, warning_indentation = 4, &
                                 warning_slopes = 5, warning_torn = 6, warning_hole = 7, warning_core = 8, &
-                                warning_steps = 9, warning_ledger = 10
+                                warning_steps = 9, warning_ledger = 10, warning_kinetic = 11
 
   !> Record of a run. It has many components because it is nothing but what the summary asks for.
   type :: run_record_t

@@ -12,10 +12,11 @@ module run_warnings
   use models, only: model_t
   use ply_damage_parameters, only: failure_modes, fibre_failure
   use run_records, only: run_record_t, warning_border, warning_core, warning_energy, warning_hole, &
-                         warning_indentation, warning_ledger, warning_loss, warning_slopes, warning_steps, &
+                         warning_indentation, warning_kinetic, warning_ledger, warning_loss, warning_slopes, warning_steps, &
                          warning_torn
   use short_numbers, only: short_text
   use states, only: state_t
+  use stepping_parameters, only: is_explicit
   use text, only: line_t, append, rounded_text, to_text
   use time_stepping, only: time_stepper_t
   implicit none
@@ -28,6 +29,10 @@ module run_warnings
   real(wp), parameter :: deepest = 3
   !> Part of an area that rounding may take away.
   real(wp), parameter :: rounded_off = 1.0e-9_wp
+
+  !> Share of the work that the kinetic energy of a slow motion may be, a few per cent, and part of the run from which on
+  !> it is looked at: by then the velocity is constant, and the work no longer that of the start alone.
+  real(wp), parameter :: most_kinetic = 0.05_wp, slow_start = 0.25_wp
 
 contains
 
@@ -103,6 +108,9 @@ contains
       amplitude = deck%pressure%amplitude(now%time)
     end if
     alarms = watch%look(now%ledger, now%interfaces%unreleased(model), amplitude, deck%has_static)
+    if (is_slow_motion(deck) .and. now%time > slow_start*deck%stepping%time%end) then
+      if (now%ledger%kinetic > most_kinetic*abs(now%ledger%external_work)) call tell(warning_kinetic, 0)
+    end if
     if (alarms(energy_created)) call tell(warning_energy, 0)
     if (alarms(energy_taken)) call tell(warning_loss, 0)
     if (alarms(energy_unaccounted)) call tell(warning_ledger, 0)
@@ -116,9 +124,18 @@ contains
 
       if (record%has_warned(kind, zone)) return
       call record%note_warning(kind, zone, now%time)
-      call append(told, warning_text(kind, zone, now%time, deck%delaminations, deck%has_static))
+      call append(told, warning_text(kind, zone, now%time, deck%delaminations, deck%has_static, &
+                                      is_explicit(deck%stepping)))
     end subroutine tell
   end subroutine find_warnings
+
+  !> True: a prescribed motion in time stands for a quasi-static test.
+  pure logical function is_slow_motion(deck)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+
+    is_slow_motion = .not. deck%has_static .and. is_explicit(deck%stepping) .and. deck%impactor%travel > 0
+  end function is_slow_motion
 
   !> True: layers that follow their damage reach so far beyond the core that what they follow does too.
   pure logical function leaves_core(deck, interface) result(leaves)
@@ -173,7 +190,7 @@ contains
   end function is_torn
 
   !> What a warning says.
-  pure function warning_text(kind, zone, time, delaminations, static) result(text)
+  pure function warning_text(kind, zone, time, delaminations, static, explicit) result(text)
     !> One of the kinds of warnings
     integer, intent(in) :: kind
     !> Zone that it concerns; 0: none
@@ -182,8 +199,8 @@ contains
     real(wp), intent(in) :: time
     !> The interfaces
     type(delamination_t), intent(in) :: delaminations(:)
-    !> True: of load steps
-    logical, intent(in) :: static
+    !> True: of load steps; of central differences
+    logical, intent(in) :: static, explicit
     !> One sentence
     character(len=:), allocatable :: text
 
@@ -199,12 +216,15 @@ contains
              ', where its cells grow: make the core larger.'
     case (warning_energy)
       text = energy_text('created', 'take smaller steps, &impactor integrator=''conserving'', or more damping '// &
-                         '(rho_inf) with delamination.')
+                         '(rho_inf) with delamination.', 'take a smaller step_factor.')
     case (warning_loss)
-      text = energy_text('taken', 'take smaller steps, or less damping (rho_inf).')
+      text = energy_text('taken', 'take smaller steps, or less damping (rho_inf).', 'take a smaller step_factor.')
     case (warning_ledger)
       text = 'More than '//short_text(100*much)//' % of the energy is not accounted for since '//at()// &
-             ' (energy_error): take a smaller tolerance of &solver.'
+             ' (energy_error): take a smaller '//trim(merge('step_factor.         ', 'tolerance of &solver.', explicit))
+    case (warning_kinetic)
+      text = 'The plate''s kinetic energy is more than '//short_text(100*most_kinetic)//' % of the work since '//at()// &
+             ': the motion is too fast to stand for a quasi-static test; take a longer end, or a longer rise.'
     case (warning_indentation)
       text = 'The indentation is deeper than the laminate is thick since time '//rounded_text(time)// &
              ': no contact law holds there; give a lighter blow or a blunter nose.'
@@ -227,17 +247,20 @@ contains
   contains
 
     !> What was done to more than the energy allowed, and what helps.
-    pure function energy_text(what, cure) result(words)
+    pure function energy_text(what, cure, explicit_cure) result(words)
       !> created or taken
       character(len=*), intent(in) :: what
-      !> What helps in a run in time
-      character(len=*), intent(in) :: cure
+      !> What helps in a run in time, by implicit steps and by central differences
+      character(len=*), intent(in) :: cure, explicit_cure
       !> The sentence
       character(len=:), allocatable :: words
 
       if (static) then
         words = 'Load steps have '//what//' more than '//short_text(100*much)//' % of the energy by '//at()// &
                 ' (energy_algorithmic): take more steps, unless failures or snaps set it free, as motion takes that.'
+      else if (explicit) then
+        words = 'Central differences have '//what//' more than '//short_text(100*much)//' % of the energy by '//at() &
+                //' (energy_algorithmic): '//explicit_cure
       else
         words = 'The time integrators have '//what//' more than '//short_text(100*much)//' % of the energy by '//at() &
                 //': '//cure
@@ -266,7 +289,7 @@ contains
     allocate (lines(0))
     do i = 1, size(record%warning_kinds)
       call append(lines, warning_text(record%warning_kinds(i), record%warning_zones(i), record%warning_times(i), &
-                                      deck%delaminations, deck%has_static))
+                                      deck%delaminations, deck%has_static, is_explicit(deck%stepping)))
     end do
   end function warnings_given
 end module run_warnings

@@ -3,6 +3,7 @@
 module deck_central_differences
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
+  use deck_remarks, only: tell
   use element_steps, only: smallest_element_step
   use impact_parameters, only: integrator_central
   use impactor_deck, only: impactor_group, key_integrator
@@ -17,7 +18,7 @@ module deck_central_differences
   use short_numbers, only: short_text
   use stepping_parameters, only: past_contact
   use text, only: append, to_text
-  use time_deck, only: key_end, key_mass_scaling, key_step, time_group
+  use time_deck, only: key_end, key_mass_scaling, key_step, most_steps, time_group
   implicit none
   private
   public :: choose_for_central_differences, find_stable_step
@@ -108,14 +109,19 @@ contains
   subroutine find_stable_step(deck, problems)
     !> The deck, its mesh checked; receives the step
     type(deck_t), intent(inout) :: deck
-    !> Faults so far
-    type(problems_t), intent(in) :: problems
+    !> Faults so far; one is added if there are too many steps
+    type(problems_t), intent(inout) :: problems
     real(wp) :: step
 
     if (problems%errors() > 0) return
     if (.not. allocated(deck%reasons)) allocate (deck%reasons(0))
     step = deck%stepping%central%step_factor*smallest_element_step(deck, deck%stepping%central%mass_scaling)
     if (.not. step > 0) return
+    if (deck%stepping%time%end > most_steps*step) then
+      call tell(deck%settings, problems, time_group, key_end, 'takes more than '//to_text(most_steps)//' stable '// &
+                'steps of '//short_text(step)//'; allowed: up to '//short_text(most_steps*step)//'.')
+      return
+    end if
     associate (time => deck%stepping%time)
       if (time%step > step) call append(deck%reasons, 'Steps of '//short_text(step)//' instead of '// &
                                         short_text(time%step)//': longer ones are not stable.')

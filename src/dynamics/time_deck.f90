@@ -46,7 +46,7 @@ module time_deck
       &Factor of in-plane and rotary inertia for central differences, never of the inertia of w; 1: none.']
 
   !> Most steps of a run: more pass the range of default integers.
-  real(wp), parameter :: most_steps = 1.0e8_wp
+  real(wp), parameter, public :: most_steps = 1.0e8_wp
 
 contains
 

@@ -4,6 +4,7 @@ module stack_motions
   use cohesive_interfaces, only: cohesive_interfaces_t
   use cohesive_laws, only: weakened
   use cohesive_points, only: cohesive_point_t, cohesive_reach, grown_damage
+  use face_friction, only: sliding_t
   use interface_stacks, only: interface_stacks_t
   use kinds, only: wp
   use layer_motions, only: accelerate_layers, find_rates, pull_on, push_layers, to_layers
@@ -331,17 +332,37 @@ contains
     type(cohesive_interfaces_t), intent(inout) :: cohesive
     type(cohesive_faces_t) :: faces
     type(cohesive_point_t) :: old
-    real(wp) :: traction(3)
+    real(wp) :: traction(3), before
 
     faces = cohesive%faces_of(model, model%zone(p), cohesive%strength(p))
     old = cohesive%points(p)
+    before = old%sliding%limit
     old%sliding%limit = limit
     call faces%traction(jumps, old, traction, cohesive%points(p))
+    if (faces%friction > 0) call add_release_heat(faces%law%stiffness_shear, before, old%sliding, &
+                                                  cohesive%points(p)%sliding)
     ! What damage and slip leave stored, and what they dissipate, is no longer lost otherwise.
     stacks%lost(2, p) = stacks%lost(2, p) - stacks%area(p)*(faces%stored(jumps, cohesive%points(p)) - &
       faces%stored(jumps, old) + cohesive%points(p)%dissipated - old%dissipated + &
       cohesive%points(p)%sliding%heat - old%sliding%heat)
   end subroutine damage_point
+
+  !> Adds to the heat of slipping that of a limit which falls within the step: friction follows it down and slips at what
+  !> it is then, so that all that sticking has stored becomes heat.
+  pure subroutine add_release_heat(stiffness, before, old, new)
+    !> Stiffness of sticking faces, pressure per jump
+    real(wp), intent(in) :: stiffness
+    !> Limit at the start of the step
+    real(wp), intent(in) :: before
+    !> The faces at the start, with the limit of its end, and at the end
+    type(sliding_t), intent(in) :: old
+    type(sliding_t), intent(inout) :: new
+    real(wp) :: slipped, highest
+
+    slipped = norm2(new%slip - old%slip)
+    highest = min(old%limit + stiffness*slipped, max(before, old%limit))
+    new%heat = new%heat + (highest - old%limit)*slipped/2
+  end subroutine add_release_heat
 
   !> Moves the jumps of a damaged stack and its damage, and books what the forces on them did beyond what is stored. The
   !> kinetic energy of the layers, taken at whole steps with the forces F of interfaces and elements there, changes by
