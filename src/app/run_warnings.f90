@@ -12,8 +12,8 @@ module run_warnings
   use models, only: model_t
   use ply_damage_parameters, only: failure_modes, fibre_failure
   use run_records, only: run_record_t, warning_border, warning_core, warning_energy, warning_hole, &
-                         warning_indentation, warning_kinetic, warning_ledger, warning_loss, warning_slopes, warning_steps, &
-                         warning_torn
+                         warning_indentation, warning_kinetic, warning_ledger, warning_loss, warning_slopes, &
+                         warning_steps, warning_torn
   use short_numbers, only: short_text
   use states, only: state_t
   use stepping_parameters, only: is_explicit
@@ -223,8 +223,8 @@ contains
       text = 'More than '//short_text(100*much)//' % of the energy is not accounted for since '//at()// &
              ' (energy_error): take a smaller '//trim(merge('step_factor.         ', 'tolerance of &solver.', explicit))
     case (warning_kinetic)
-      text = 'The plate''s kinetic energy is more than '//short_text(100*most_kinetic)//' % of the work since '//at()// &
-             ': the motion is too fast to stand for a quasi-static test; take a longer end, or a longer rise.'
+      text = 'The plate''s kinetic energy is more than '//short_text(100*most_kinetic)//' % of the work since '// &
+             at()//': the motion is too fast to stand for a quasi-static test; take a longer end, or a longer rise.'
     case (warning_indentation)
       text = 'The indentation is deeper than the laminate is thick since time '//rounded_text(time)// &
              ': no contact law holds there; give a lighter blow or a blunter nose.'

@@ -79,7 +79,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     if (allocated(model%nose)) &
-      call model%spread_force(method%patch%local_weights(size(model%patch)), method%patch%offset)
+      call model%spread_force(method%impact%patch%local_weights(size(model%patch)), method%impact%patch%offset)
     call book_energies(method, model, now)
     now%interfaces%rig%found = reactions_of(method, model, now)
     if (size(model%lines) > 0) now%line_reactions = method%lines%totals(model)

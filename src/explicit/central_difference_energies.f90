@@ -52,8 +52,8 @@ contains
       ledger%delamination = totals(4)
       ledger%friction = totals(5)
       ledger%contact = totals(6)
-      ledger%algorithmic = totals(7) + method%impactor_loss
-      ledger%external_work = method%initial_work + method%travel_work + totals(8)
+      ledger%algorithmic = totals(7) + method%impact%loss
+      ledger%external_work = method%initial_work + method%impact%work + totals(8)
       if (allocated(now%plies%bands)) then
         call now%plies%total_dissipation(model)
         ledger%ply_damage = sum(now%plies%dissipated)
@@ -61,10 +61,7 @@ contains
       if (.not. model%scene%has_impactor) return
       ledger%indentation = now%indentation%work
       if (model%scene%impactor%travel > 0) return
-      associate (parameters => model%scene%impactor, v => method%impactor_velocity)
-        ledger%impactor = parameters%mass*(v*(v + method%steps%now*(parameters%gravity - now%force/parameters%mass))/2 &
-                                           - parameters%gravity*now%impactor%displacement)
-      end associate
+      ledger%impactor = method%impact%energy(model, method%steps%now, now)
     end associate
   end subroutine book_energies
 

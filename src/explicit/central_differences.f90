@@ -9,6 +9,7 @@ module central_differences
   use archives, only: archive_t
   use central_difference_parameters, only: central_difference_parameters_t
   use circle_frames, only: circle_frames_t, create_circle_frames
+  use impactor_steps, only: impactor_steps_t, create_impactor_steps
   use interface_stacks, only: interface_stacks_t, create_interface_stacks
   use kinds, only: wp
   use line_steps, only: line_steps_t, create_line_steps
@@ -18,21 +19,18 @@ module central_differences
   use element_batches, only: lanes
   use rank_totals, only: total_of
   use rig_steps, only: rig_steps_t, create_rig_steps
-  use smooth_starts, only: smooth_ramp
   use stable_steps, only: highest_element_frequency
   use layer_motions, only: accelerate, move_points
   use stack_motions, only: move_stacks, new_workspaces
   use stack_solutions, only: stack_t
   use states, only: state_t
   use step_lengths, only: step_lengths_t
-  use struck_patches, only: struck_patch_t, create_struck_patch
-  use tan_sun_indentation, only: commit_indentation, indentation_force, indentation_stiffness
   implicit none
   private
   public :: central_difference_t
 
-  !> Growth of the contact's stiffness that a new length of the step allows for, so that it changes a few times only.
-  real(wp), parameter :: slope_reserve = 2
+  !> Part of a step by which sums of millions of them may miss an event by rounding.
+  real(wp), parameter :: rounded_off = 1.0e-3_wp
 
   !> What central differences know beside the state. It has many components because inertia, stacks, lines, rigs and
   !> patch each have their own part in a step.
@@ -45,8 +43,8 @@ module central_differences
     type(interface_stacks_t) :: stacks
     !> Forces on the layers at the end of the last step, loads less internal forces, (5, points)
     real(wp), allocatable :: force(:, :)
-    !> Where the impactor presses
-    type(struck_patch_t) :: patch
+    !> The impactor and where it presses
+    type(impactor_steps_t) :: impact
     !> What lines do
     type(line_steps_t) :: lines
     !> What frames and springs do
@@ -59,22 +57,14 @@ module central_differences
     type(step_lengths_t), private :: prepared
     !> Points of nodes with one layer: those that only forces move, and those that a frame or a line guides
     integer, allocatable, private :: plain(:), guided(:)
-    !> Velocity of the impactor in the middle of the last step
-    real(wp) :: impactor_velocity = 0
     !> Highest frequency of the elements
     real(wp) :: frequency = 0
     !> Element that has it
     integer :: element = 0
-    !> Stiffness of the contact that the step allows for
-    real(wp) :: contact_stiffness = 0
     !> Strain energy of this rank's elements, (lanes, batches)
     real(wp), allocatable :: strain(:, :)
     !> Work of loads before the run began
     real(wp) :: initial_work = 0
-    !> Work of an impactor whose travel is prescribed
-    real(wp) :: travel_work = 0
-    !> What changes of the step's length have taken of the energy of the impactor
-    real(wp) :: impactor_loss = 0
     !> Room for the motion of the layers, for forces with those of the borders between ranks
     real(wp), allocatable, private :: motion(:, :), field(:, :)
     !> Room for stacks, one for each number of interfaces
@@ -125,10 +115,9 @@ contains
     self%circles = create_circle_frames(model)
     self%lines = create_line_steps(model, self%inertia)
     call sort_points(self)
-    self%patch = create_struck_patch(model)
+    self%impact = create_impactor_steps(model, now%impactor%velocity)
     allocate (self%force(5, points), self%motion(5, points), self%field(5, model%borders%columns), &
               self%strain(lanes, model%elements%batches), source=0.0_wp)
-    self%impactor_velocity = now%impactor%velocity
     self%initial_work = now%ledger%external_work
     call self%find_forces(model, now)
     call self%add_loads(model, now, [0.0_wp, 0.0_wp])
@@ -155,22 +144,11 @@ contains
     type(model_t), intent(in) :: model
     !> The state
     type(state_t), intent(in) :: now
-    real(wp) :: slope, compliance, square, inverse(size(self%patch%local))
-    integer :: i
+    real(wp) :: square
 
     square = self%frequency**2
-    if (model%scene%has_impactor) then
-      slope = indentation_stiffness(model%scene%indentation, now%indentation, now%indentation%alpha)
-      if (slope > self%contact_stiffness) self%contact_stiffness = slope_reserve*slope
-      inverse = 0
-      do i = 1, size(inverse)
-        if (self%patch%local(i) > 0) inverse(i) = self%inertia%inverse(7, self%patch%local(i))
-      end do
-      call model%communicator%sum(inverse)
-      compliance = sum(self%patch%weights**2*inverse)/model%mesh%multiplicity
-      if (.not. model%scene%impactor%travel > 0) compliance = compliance + 1/model%scene%impactor%mass
-      square = square + self%contact_stiffness*compliance
-    end if
+    if (model%scene%has_impactor) &
+      square = square + self%impact%contact_frequency_square(model, now%indentation, self%inertia%inverse(7, :))
     step = self%parameters%step_factor*2/sqrt(square)
     if (self%parameters%longest > 0) step = min(step, self%parameters%longest)
   end function longest_step
@@ -212,10 +190,10 @@ contains
       call model%halo%update(u)
     end associate
     now%time = now%time + step
-    if (abs(now%time - event) <= 1.0e-9_wp*step) now%time = event
+    if (abs(now%time - event) <= rounded_off*step) now%time = event
     now%step = now%step + 1
     now%load_factor = load_factors(2)
-    call move_impactor(self, model, now)
+    call self%impact%move(model, self%steps, now)
     call self%find_forces(model, now)
     call add_loads(self, model, now, load_factors)
   end subroutine advance
@@ -306,47 +284,6 @@ contains
     end do
   end subroutine move_single
 
-  !> Moves the impactor, and finds the force at the end of the step.
-  subroutine move_impactor(self, model, now)
-    !> The method
-    type(central_difference_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
-    !> The state
-    type(state_t), intent(inout) :: now
-    real(wp) :: acceleration, alpha, before, change, w(size(self%patch%local))
-
-    now%deflection = model%deflection(now%motion%displacement)
-    w = self%patch%deflections(model, now%motion%displacement)
-    now%patch_mean = self%patch%mean(w)
-    if (.not. model%scene%has_impactor) return
-    associate (impactor => now%impactor, parameters => model%scene%impactor)
-      before = now%force
-      if (parameters%travel > 0) then
-        change = parameters%travel*smooth_ramp(now%time/model%scene%ramp_time, &
-                                               parameters%rise/model%scene%ramp_time, 0) - impactor%displacement
-        self%impactor_velocity = change/self%steps%now
-      else
-        acceleration = parameters%gravity - now%force/parameters%mass
-        self%impactor_loss = self%impactor_loss + parameters%mass*acceleration*(self%steps%now - self%steps%last)/4* &
-                             self%steps%mean()*acceleration
-        self%impactor_velocity = self%impactor_velocity + self%steps%mean()*acceleration
-        change = self%steps%now*self%impactor_velocity
-      end if
-      impactor%displacement = impactor%displacement + change
-      alpha = impactor%displacement - now%patch_mean
-      now%force = indentation_force(model%scene%indentation, now%indentation, alpha)
-      call commit_indentation(model%scene%indentation, now%indentation, alpha)
-      impactor%force = now%force
-      call self%patch%spread(w, alpha)
-      impactor%velocity = self%impactor_velocity
-      if (parameters%travel > 0) then
-        self%travel_work = self%travel_work + (before + now%force)/2*change
-      else
-        impactor%velocity = impactor%velocity + self%steps%now/2*(parameters%gravity - now%force/parameters%mass)
-      end if
-    end associate
-  end subroutine move_impactor
-
   !> Finds the forces on the layers. Collective.
   subroutine find_forces(self, model, now)
     !> The method
@@ -363,7 +300,7 @@ contains
     call model%borders%add(self%field)
     self%force = -self%field(:, :size(self%force, 2))
     call model%profile%leave()
-    call self%patch%push(model%mesh%multiplicity, now%force, self%force)
+    call self%impact%patch%push(model%mesh%multiplicity, now%force, self%force)
     if (model%rig%elastic) self%force(3, :) = self%force(3, :) + model%rig%presses
     call self%inertia%fold(self%force)
   end subroutine find_forces
@@ -449,15 +386,11 @@ contains
 
     call archive%item('explicit/step', self%steps%now)
     call archive%item('explicit/step_before', self%steps%last)
-    call archive%item('explicit/impactor_velocity', self%impactor_velocity)
-    call archive%item('explicit/contact_stiffness', self%contact_stiffness)
     call archive%item('explicit/initial_work', self%initial_work)
-    call archive%item('explicit/travel_work', self%travel_work)
-    call archive%item('explicit/impactor_loss', self%impactor_loss)
     associate (owned => model%distribution%points(:model%distribution%owned), points => model%mesh%points())
       call archive%field('explicit/forces', owned, points, self%force)
       call self%rigs%visit(archive, owned, points)
-      call self%patch%visit(archive)
+      call self%impact%visit(archive)
       if (size(model%lines) > 0 .or. allocated(model%pressure)) call self%lines%visit(archive, owned, points)
       if (.not. model%map%layered) return
       allocate (interfaces(8, size(self%force, 2)))

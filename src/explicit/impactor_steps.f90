@@ -1,0 +1,168 @@
+!> The impactor in steps by central differences: it moves by the force at the start of the step, or as its travel is
+!> prescribed, and its force follows from the indentation at the end.
+module impactor_steps
+  use archives, only: archive_t
+  use kinds, only: wp
+  use models, only: model_t
+  use smooth_starts, only: smooth_ramp
+  use states, only: state_t
+  use step_lengths, only: step_lengths_t
+  use struck_patches, only: struck_patch_t, create_struck_patch
+  use tan_sun_indentation, only: commit_indentation, indentation_force, indentation_stiffness, indentation_t
+  implicit none
+  private
+  public :: impactor_steps_t, create_impactor_steps
+
+  !> Growth of the contact's stiffness that a new length of the step allows for, so that it changes a few times only.
+  real(wp), parameter :: slope_reserve = 2
+
+  !> The impactor.
+  type :: impactor_steps_t
+    !> Where it presses
+    type(struck_patch_t) :: patch
+    !> Its velocity in the middle of the last step
+    real(wp) :: velocity = 0
+    !> Stiffness of the contact that the step allows for
+    real(wp) :: contact_stiffness = 0
+    !> Work of a travel that is prescribed
+    real(wp) :: work = 0
+    !> What changes of the step's length have taken of its energy
+    real(wp) :: loss = 0
+  contains
+    !> Square of the frequency that the contact adds to those of the plate.
+    procedure :: contact_frequency_square
+    !> Moves it, and finds the force at the end of the step.
+    procedure :: move
+    !> Kinetic energy and potential.
+    procedure :: energy
+    !> Saves or loads.
+    procedure :: visit
+  end type impactor_steps_t
+
+contains
+
+  !> The impactor at the start. Collective.
+  function create_impactor_steps(model, velocity) result(self)
+    type(model_t), intent(in) :: model
+    !> Its velocity
+    real(wp), intent(in) :: velocity
+    !> The impactor
+    type(impactor_steps_t) :: self
+
+    self%patch = create_struck_patch(model)
+    self%velocity = velocity
+  end function create_impactor_steps
+
+  !> Square of the frequency that the contact adds to those of the plate: its steepest slope so far, with some reserve,
+  !> on the mass under the patch and that of the impactor. Collective.
+  real(wp) function contact_frequency_square(self, model, indentation, inverse) result(square)
+    !> The impactor
+    class(impactor_steps_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> The contact
+    type(indentation_t), intent(in) :: indentation
+    !> Inverse inertia of w, (points)
+    real(wp), intent(in) :: inverse(:)
+    real(wp) :: slope, compliance, reached(size(self%patch%local))
+    integer :: i
+
+    slope = indentation_stiffness(model%scene%indentation, indentation, indentation%alpha)
+    if (slope > self%contact_stiffness) self%contact_stiffness = slope_reserve*slope
+    reached = 0
+    do i = 1, size(reached)
+      if (self%patch%local(i) > 0) reached(i) = inverse(self%patch%local(i))
+    end do
+    call model%communicator%sum(reached)
+    compliance = sum(self%patch%weights**2*reached)/model%mesh%multiplicity
+    if (.not. model%scene%impactor%travel > 0) compliance = compliance + 1/model%scene%impactor%mass
+    square = self%contact_stiffness*compliance
+  end function contact_frequency_square
+
+  !> Moves the impactor, and finds the force at the end of the step. Collective.
+  subroutine move(self, model, steps, now)
+    !> The impactor
+    class(impactor_steps_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> The step and the one before
+    type(step_lengths_t), intent(in) :: steps
+    !> The state, at the end of the step but for the impactor
+    type(state_t), intent(inout) :: now
+    real(wp) :: alpha, before, change, w(size(self%patch%local))
+
+    now%deflection = model%deflection(now%motion%displacement)
+    w = self%patch%deflections(model, now%motion%displacement)
+    now%patch_mean = self%patch%mean(w)
+    if (.not. model%scene%has_impactor) return
+    associate (impactor => now%impactor, parameters => model%scene%impactor)
+      before = now%force
+      if (parameters%travel > 0) then
+        change = parameters%travel*smooth_ramp(now%time/model%scene%ramp_time, &
+                                               parameters%rise/model%scene%ramp_time, 0) - impactor%displacement
+        self%velocity = change/steps%now
+      else
+        call accelerate(self, model, steps, before)
+        change = steps%now*self%velocity
+      end if
+      impactor%displacement = impactor%displacement + change
+      alpha = impactor%displacement - now%patch_mean
+      now%force = indentation_force(model%scene%indentation, now%indentation, alpha)
+      call commit_indentation(model%scene%indentation, now%indentation, alpha)
+      impactor%force = now%force
+      call self%patch%spread(w, alpha)
+      impactor%velocity = self%velocity
+      if (parameters%travel > 0) then
+        self%work = self%work + (before + now%force)/2*change
+      else
+        impactor%velocity = impactor%velocity + steps%now/2*(parameters%gravity - now%force/parameters%mass)
+      end if
+    end associate
+  end subroutine move
+
+  !> Velocity in the middle of the step, and what a change of its length takes (`step_lengths`).
+  pure subroutine accelerate(self, model, steps, force)
+    !> The impactor
+    type(impactor_steps_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> The step and the one before
+    type(step_lengths_t), intent(in) :: steps
+    !> Contact force at the start of the step
+    real(wp), intent(in) :: force
+    real(wp) :: acceleration
+
+    associate (parameters => model%scene%impactor)
+      acceleration = parameters%gravity - force/parameters%mass
+      self%loss = self%loss + parameters%mass*acceleration**2*(steps%now - steps%last)/4*steps%mean()
+      self%velocity = self%velocity + steps%mean()*acceleration
+    end associate
+  end subroutine accelerate
+
+  !> Kinetic energy at the end of a step, as that of the plate is taken there, and potential of gravity.
+  pure real(wp) function energy(self, model, step, now)
+    !> The impactor
+    class(impactor_steps_t), intent(in) :: self
+    type(model_t), intent(in) :: model
+    !> Length of the step
+    real(wp), intent(in) :: step
+    !> The state
+    type(state_t), intent(in) :: now
+
+    associate (parameters => model%scene%impactor)
+      energy = parameters%mass*(self%velocity*(self%velocity + step*(parameters%gravity &
+        - now%force/parameters%mass))/2 - parameters%gravity*now%impactor%displacement)
+    end associate
+  end function energy
+
+  !> Saves or loads.
+  subroutine visit(self, archive)
+    !> The impactor
+    class(impactor_steps_t), intent(inout) :: self
+    !> Where to or where from
+    class(archive_t), intent(inout) :: archive
+
+    call self%patch%visit(archive)
+    call archive%item('explicit/impactor_velocity', self%velocity)
+    call archive%item('explicit/contact_stiffness', self%contact_stiffness)
+    call archive%item('explicit/travel_work', self%work)
+    call archive%item('explicit/impactor_loss', self%loss)
+  end subroutine visit
+end module impactor_steps
