@@ -7,6 +7,7 @@ kill     SIGKILL at any moment leaves a checkpoint from which the run goes on: b
 events   output times, however they lie, change no step so that motion is fed: the ledger stays closed
 travel   an impactor moved slowly has the force of load steps, and says so where it is not slow
 lines    prescribed lines are held exactly; moved smoothly, with the force of load steps
+steep    where slopes stiffen the plate, steps of scaled inertia feed no motion
 fracture what is booked as fracture is the toughness times the area, to 1e-6"""
 
 import random
@@ -183,6 +184,27 @@ def check_lines(implam, folder, _):
     require(abs(force - 1) < 0.05, "The force is not that of load steps.")
 
 
+STEEP = """&case name='steep' /
+&plate length=0.05, 0.05 edges='clamped' symmetry='quarter' /
+&mesh elements=8, 8 grading=1 patch=3e-3 /
+&material name='m' density=1600 E1=130e9 E2=7.7e9 G12=4.8e9 G23=3.8e9 nu12=0.30 /
+&laminate materials='m' angles=0, 90, 90, 0 thicknesses=0.25e-3 /
+&impactor mass=0.15 velocity=40 radius=6e-3 /
+&indentation alpha_cr=80.3e-6 /
+"""
+
+
+def check_steep(implam, folder, _):
+    """A plate that deflects by eight thicknesses: membrane forces and slopes act on w, whose inertia is not scaled."""
+    for scaling in (1, 10):
+        deck = write_deck(folder / str(scaling), "karas.nml")
+        deck.write_text(f"{STEEP}&time {EXPLICIT[5:]} end=400e-6 mass_scaling={scaling} /\n", encoding="utf-8")
+        history = read_history(run_deck(implam, deck))
+        error = max(map(abs, history["energy_error"]))/history["energy_impactor"][0]
+        print(f"Scaled {scaling} times: {history['step'][-1]:.0f} steps, the ledger is closed to {error:.1e}")
+        require(error < 1e-4, f"{error:.2g} of the impact are not accounted for.")
+
+
 def check_fracture(implam, folder, _):
     """G_c times the area that has been dissipated, where one toughness is for all modes."""
     deck = deck_of(folder / "deck", "breaking")
@@ -194,7 +216,7 @@ def check_fracture(implam, folder, _):
 
 
 TRIALS = {"ranks": check_ranks, "signal": check_signal, "kill": check_kill, "events": check_events,
-          "travel": check_travel, "lines": check_lines, "fracture": check_fracture}
+          "travel": check_travel, "lines": check_lines, "steep": check_steep, "fracture": check_fracture}
 
 if __name__ == "__main__":
     Path(sys.argv[3]).parent.mkdir(parents=True, exist_ok=True)
