@@ -110,6 +110,8 @@ def elastic(program, options):
               Scene((.2, .2), [0], 8e-3, (206.8e9, 206.8e9, steel, steel, steel, .28), 7833, .0328108, 1, .01,
                     1.49595e10, name='karas')]
     scenes += elastic_scenes.random_scenes(options.count, 1)
+    if options.only:
+        scenes = [scene for scene in scenes if scene.name in options.only]
     for scaling, bound in (('mass_scaling=1', .5), ('', 1)):
         held = run_count = 0
         for scene in scenes:
@@ -335,6 +337,7 @@ def main():
     parser.add_argument('parts', nargs='*', choices=[*PARTS, []], metavar='PART', help='all if none is given')
     parser.add_argument('--count', type=int, default=20, help='random scenes of a part')
     parser.add_argument('--most-steps', type=float, default=MOST_STEPS, help='longer elastic runs are left out')
+    parser.add_argument('--only', nargs='+', help='elastic scenes by name, as scene_3 or karas')
     parser.add_argument('--cells', type=float, nargs='+', help='of peanut and thresholds, mm')
     parser.add_argument('--quick', action='store_true', help='leave out the peanut of halves and the last of costs')
     parser.add_argument('--run', action='store_true', help='run the panels, too')
