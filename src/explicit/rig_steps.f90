@@ -90,7 +90,8 @@ contains
     force = force - springs*(u + steps%now*v)
   end subroutine pull
 
-  !> Books what springs did in a step beyond what they store, as for interfaces.
+  !> Books what springs did in a step beyond what they store: half their stiffness times the change in the step, times
+  !> that and the change in the step before, for which this one is taken. The difference is of third order.
   pure subroutine book_springs(self, springs, steps, u, v)
     !> The springs' state
     class(rig_steps_t), intent(inout) :: self
