@@ -30,8 +30,8 @@ module run_warnings
   !> Part of an area that rounding may take away.
   real(wp), parameter :: rounded_off = 1.0e-9_wp
 
-  !> Share of the work that the kinetic energy of a slow motion may be, a few per cent, and part of the run from which on
-  !> it is looked at: by then the velocity is constant, and the work no longer that of the start alone.
+  !> Share of the work that the kinetic energy of a slow motion may be, a few per cent, and part of the run from
+  !> which on it is looked at: by then the velocity is constant, and the work no longer that of the start alone.
   real(wp), parameter :: most_kinetic = 0.05_wp, slow_start = 0.25_wp
 
 contains

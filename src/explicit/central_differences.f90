@@ -15,20 +15,24 @@ module central_differences
   use line_steps, only: line_steps_t, create_line_steps
   use models, only: model_t
   use nodal_inertia, only: nodal_inertia_t, create_nodal_inertia
-  use cohesive_interfaces, only: cohesive_interfaces_t
   use element_batches, only: lanes
   use rank_totals, only: total_of
   use rig_steps, only: rig_steps_t, create_rig_steps
-  use stable_steps, only: highest_element_frequency
+  use plate_options, only: kinematics_von_karman
+  use stable_steps, only: highest_element_frequency, stiffened_frequency
   use layer_motions, only: accelerate, move_points
   use stack_motions, only: move_stacks, new_workspaces
   use stack_solutions, only: stack_t
   use states, only: state_t
-  use step_lengths, only: step_lengths_t
+  use step_lengths, only: step_lengths_t, whole_step
   implicit none
   private
   public :: central_difference_t
 
+  !> Steps between two looks at what slopes and tension do to the highest frequency, and what is allowed for beyond it
+  !> until the next: a slope grows by less than the velocity times the time over an element, far below a hundredth.
+  integer, parameter :: between_frequencies = 16
+  real(wp), parameter :: stiffened_reserve = 1.01_wp
   !> Part of a step by which sums of millions of them may miss an event by rounding.
   real(wp), parameter :: rounded_off = 1.0e-3_wp
 
@@ -57,8 +61,10 @@ module central_differences
     type(step_lengths_t), private :: prepared
     !> Points of nodes with one layer: those that only forces move, and those that a frame or a line guides
     integer, allocatable, private :: plain(:), guided(:)
-    !> Highest frequency of the elements
-    real(wp) :: frequency = 0
+    !> Highest frequency of the elements, without motion and that which the step allows for
+    real(wp) :: frequency = 0, stiffened = 0
+    !> Square of the highest frequency in each batch of elements
+    real(wp), allocatable, private :: of_batches(:)
     !> Element that has it
     integer :: element = 0
     !> Strain energy of this rank's elements, (lanes, batches)
@@ -108,7 +114,9 @@ contains
     self%parameters = parameters
     self%inertia = create_nodal_inertia(model, parameters%mass_scaling)
     call self%inertia%invert(0.0_wp)
-    call highest_element_frequency(model, now%plies%stiffness, parameters%mass_scaling, self%frequency, self%element)
+    call highest_element_frequency(model, now%plies%stiffness, parameters%mass_scaling, self%frequency, self%element, &
+                                   self%of_batches)
+    self%stiffened = self%frequency
     self%stacks = create_interface_stacks(model, now%interfaces%cohesive, self%inertia)
     self%workspaces = new_workspaces(self%stacks)
     self%rigs = create_rig_steps(model)
@@ -146,7 +154,11 @@ contains
     type(state_t), intent(in) :: now
     real(wp) :: square
 
-    square = self%frequency**2
+    if (model%scene%kinematics == kinematics_von_karman .and. modulo(now%step, between_frequencies) == 0) then
+      square = stiffened_frequency(model, self%of_batches, self%parameters%mass_scaling, self%motion)
+      if (square > self%stiffened) self%stiffened = stiffened_reserve*square
+    end if
+    square = self%stiffened**2
     if (model%scene%has_impactor) &
       square = square + self%impact%contact_frequency_square(model, now%indentation, self%inertia%inverse(7, :))
     step = self%parameters%step_factor*2/sqrt(square)
@@ -184,7 +196,7 @@ contains
       call self%circles%hold(model, self%steps, u(3, :), v(3, :))
       call self%inertia%spread(u)
       call self%inertia%spread(v)
-      call follow_damage(self, now%interfaces%cohesive)
+      call self%stacks%follow(self%inertia, now%interfaces%cohesive)
       call self%change_length(model, v, 1)
       call model%profile%leave()
       call model%halo%update(u)
@@ -197,17 +209,6 @@ contains
     call self%find_forces(model, now)
     call add_loads(self, model, now, load_factors)
   end subroutine advance
-
-  !> Length of steps of which a whole number makes up a time.
-  pure real(wp) function whole_step(time, longest) result(step)
-    !> The time, and the longest step
-    real(wp), intent(in) :: time, longest
-    real(wp) :: steps
-
-    steps = aint(time/longest)
-    if (steps*longest < time*(1 - 1.0e-9_wp)) steps = steps + 1
-    step = time/max(1.0_wp, steps)
-  end function whole_step
 
   !> Books what a change of the step's length does to the work of the forces of its start: the kinetic energy of whole
   !> steps takes them over half of each step (`step_lengths`).
@@ -224,24 +225,6 @@ contains
     self%rigs%step_loss = self%rigs%step_loss + sign*(self%steps%now - self%steps%last)/4* &
                           sum(self%force*model%motion_of(v), 1)
   end subroutine change_length
-
-  !> Gives the interfaces at points that follow others the state of those.
-  pure subroutine follow_damage(self, cohesive)
-    !> The method
-    type(central_difference_t), intent(in) :: self
-    !> The interfaces
-    type(cohesive_interfaces_t), intent(inout) :: cohesive
-    integer :: i
-
-    if (.not. any(self%stacks%damaged)) return
-    do i = 1, size(self%inertia%followers)
-      associate (follower => self%inertia%followers(i))
-        if (.not. cohesive%cohesive(follower)) cycle
-        cohesive%points(follower) = cohesive%points(self%inertia%leaders(i))
-        cohesive%points(follower)%sliding%slip = self%inertia%signs(1:2, i)*cohesive%points(follower)%sliding%slip
-      end associate
-    end do
-  end subroutine follow_damage
 
   !> Inverse inertia and compliances for the length of the step.
   subroutine prepare(self, model)
@@ -387,6 +370,8 @@ contains
     call archive%item('explicit/step', self%steps%now)
     call archive%item('explicit/step_before', self%steps%last)
     call archive%item('explicit/initial_work', self%initial_work)
+    call archive%item('explicit/frequency', self%stiffened)
+    self%stiffened = max(self%stiffened, self%frequency)
     associate (owned => model%distribution%points(:model%distribution%owned), points => model%mesh%points())
       call archive%field('explicit/forces', owned, points, self%force)
       call self%rigs%visit(archive, owned, points)

@@ -42,6 +42,8 @@ module interface_stacks
     procedure :: find_damaged
     !> Finds the onsets, which flaws lower.
     procedure :: find_onsets
+    !> Gives points that follow others their state.
+    procedure :: follow
   end type interface_stacks_t
 
 contains
@@ -136,6 +138,26 @@ contains
       end associate
     end do
   end subroutine find_damaged
+
+  !> Gives the interfaces at points that follow others the state of those.
+  pure subroutine follow(self, inertia, cohesive)
+    !> The stacks
+    class(interface_stacks_t), intent(in) :: self
+    !> Lumped inertia, with the points that follow
+    type(nodal_inertia_t), intent(in) :: inertia
+    !> The interfaces
+    type(cohesive_interfaces_t), intent(inout) :: cohesive
+    integer :: i
+
+    if (.not. any(self%damaged)) return
+    do i = 1, size(inertia%followers)
+      associate (follower => inertia%followers(i))
+        if (.not. cohesive%cohesive(follower)) cycle
+        cohesive%points(follower) = cohesive%points(inertia%leaders(i))
+        cohesive%points(follower)%sliding%slip = inertia%signs(1:2, i)*cohesive%points(follower)%sliding%slip
+      end associate
+    end do
+  end subroutine follow
 
   !> Compliances of the layers between interfaces for steps of a length, and factors of stacks without damage.
   pure subroutine prepare(self, inertia, step_square)

@@ -88,8 +88,8 @@ contains
       cohesive%points(p)%sliding%heat - old%sliding%heat)
   end subroutine damage_point
 
-  !> Adds to the heat of slipping that of a limit which falls within the step: friction follows it down and slips at what
-  !> it is then, so that all that sticking has stored becomes heat.
+  !> Adds to the heat of slipping that of a limit which falls within the step: friction follows it down and slips at
+  !> what it is then, so that all that sticking has stored becomes heat.
   pure subroutine add_release_heat(stiffness, before, old, new)
     !> Stiffness of sticking faces, pressure per jump
     real(wp), intent(in) :: stiffness

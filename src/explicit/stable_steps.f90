@@ -4,14 +4,17 @@
 !> (I. Fried, 1972; T. J. R. Hughes, The Finite Element Method, 1987, section 9.4.2). That of an element is found
 !> by power iteration. Interfaces, clamps and frames are implicit and set no limit.
 module stable_steps
+  use batch_strains, only: in_plane_strains
   use element_batches, only: lanes
   use internal_forces, only: batch_force
   use kinds, only: long, wp
   use lagrange9, only: gauss_shapes
   use models, only: model_t
+  use plate_options, only: kinematics_von_karman
+  use reference_fields, only: gather
   implicit none
   private
-  public :: highest_element_frequency
+  public :: highest_element_frequency, stiffened_frequency
 
   !> Products of the iterations. The estimate rises from below; after these it changes by less than 1e-3 a product.
   integer, parameter :: products = 40
@@ -33,7 +36,7 @@ contains
   end function scattered
 
   !> Highest angular frequency of any element of all ranks, and the element of the mesh that has it. Collective.
-  subroutine highest_element_frequency(model, stiffness, scaling, omega, element)
+  subroutine highest_element_frequency(model, stiffness, scaling, omega, element, of_batches)
     type(model_t), intent(in) :: model
     !> Section stiffness left in the elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
@@ -43,13 +46,17 @@ contains
     real(wp), intent(out) :: omega
     !> The element
     integer, intent(out) :: element
+    !> Square of the highest frequency in each batch
+    real(wp), allocatable, intent(out), optional :: of_batches(:)
     real(wp) :: squares(lanes), largest
     integer :: b, lane
 
     largest = 0
     element = 0
+    if (present(of_batches)) allocate (of_batches(model%elements%batches))
     do b = 1, model%elements%batches
       squares = batch_frequencies(model, b, stiffness(:, :, b), scaling)
+      if (present(of_batches)) of_batches(b) = maxval(squares(:model%elements%lanes_used(b)))
       do lane = 1, model%elements%lanes_used(b)
         if (.not. squares(lane) > largest) cycle
         largest = squares(lane)
@@ -62,6 +69,33 @@ contains
     call model%communicator%minimum(element)
     omega = sqrt(omega)
   end subroutine highest_element_frequency
+
+  !> Highest frequency with the slopes and the tension of a motion. Where the plate is sloped its membrane stiffness
+  !> acts on w too, whose mass is not scaled, and tension adds as much as strain is to 1: frequencies grow to
+  !> omega**2 (1 + s (w,x**2 + w,y**2 + e)) at most, s the scaling and e the largest strain. Collective.
+  real(wp) function stiffened_frequency(model, of_batches, scaling, motion) result(omega)
+    type(model_t), intent(in) :: model
+    !> Square of the highest frequency in each batch without motion
+    real(wp), intent(in) :: of_batches(:)
+    !> Factor of in-plane and rotary inertia
+    real(wp), intent(in) :: scaling
+    !> Motion of the layers, ghosts up to date, (5, points)
+    real(wp), contiguous, intent(in) :: motion(:, :)
+    real(wp) :: r(lanes, 9, 5), strains(lanes, 9, 6), slopes(lanes, 9, 2)
+    integer :: b
+
+    omega = 0
+    do b = 1, model%elements%batches
+      call gather(model%elements%points(:, :, b), motion, r)
+      call in_plane_strains(model%elements%inverse_jacobian(:, :, :, b), kinematics_von_karman, r, strains, slopes)
+      associate (slope => maxval(slopes(:, :, 1)**2 + slopes(:, :, 2)**2), &
+                 strain => max(0.0_wp, maxval(strains(:, :, 1:2))) + maxval(abs(strains(:, :, 3)))/2)
+        omega = max(omega, of_batches(b)*(1 + scaling*(slope + strain)))
+      end associate
+    end do
+    call model%communicator%maximum(omega)
+    omega = sqrt(omega)
+  end function stiffened_frequency
 
   !> Squares of the highest frequencies of the elements of a batch.
   function batch_frequencies(model, b, stiffness, scaling) result(squares)

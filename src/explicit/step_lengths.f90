@@ -3,7 +3,7 @@ module step_lengths
   use kinds, only: wp
   implicit none
   private
-  public :: step_lengths_t
+  public :: step_lengths_t, whole_step
 
   !> A step and the one before it.
   type :: step_lengths_t
@@ -41,4 +41,15 @@ contains
     if (self%last > 0) shift = shift + before/self%last
     shift = (self%now - self%last)/4*shift
   end function shift
+
+  !> Length of steps of which a whole number makes up a time.
+  pure real(wp) function whole_step(time, longest) result(step)
+    !> The time, and the longest step
+    real(wp), intent(in) :: time, longest
+    real(wp) :: steps
+
+    steps = aint(time/longest)
+    if (steps*longest < time*(1 - 1.0e-9_wp)) steps = steps + 1
+    step = time/max(1.0_wp, steps)
+  end function whole_step
 end module step_lengths
