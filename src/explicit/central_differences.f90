@@ -33,6 +33,8 @@ module central_differences
   !> until the next: a slope grows by less than the velocity times the time over an element, far below a hundredth.
   integer, parameter :: between_frequencies = 16
   real(wp), parameter :: stiffened_reserve = 1.01_wp
+  !> Part of what is allowed for below which steps become longer again: so their length seldom changes.
+  real(wp), parameter :: relaxed = 0.8_wp
   !> Part of a step by which sums of millions of them may miss an event by rounding.
   real(wp), parameter :: rounded_off = 1.0e-3_wp
 
@@ -63,8 +65,8 @@ module central_differences
     integer, allocatable, private :: plain(:), guided(:)
     !> Highest frequency of the elements, without motion and that which the step allows for
     real(wp) :: frequency = 0, stiffened = 0
-    !> Square of the highest frequency in each batch of elements
-    real(wp), allocatable, private :: of_batches(:)
+    !> Square of the highest frequency of each element without motion, (lanes, batches)
+    real(wp), allocatable, private :: of_elements(:, :)
     !> Element that has it
     integer :: element = 0
     !> Strain energy of this rank's elements, (lanes, batches)
@@ -115,7 +117,7 @@ contains
     self%inertia = create_nodal_inertia(model, parameters%mass_scaling)
     call self%inertia%invert(0.0_wp)
     call highest_element_frequency(model, now%plies%stiffness, parameters%mass_scaling, self%frequency, self%element, &
-                                   self%of_batches)
+                                   self%of_elements)
     self%stiffened = self%frequency
     self%stacks = create_interface_stacks(model, now%interfaces%cohesive, self%inertia)
     self%workspaces = new_workspaces(self%stacks)
@@ -155,8 +157,9 @@ contains
     real(wp) :: square
 
     if (model%scene%kinematics == kinematics_von_karman .and. modulo(now%step, between_frequencies) == 0) then
-      square = stiffened_frequency(model, self%of_batches, self%parameters%mass_scaling, self%motion)
-      if (square > self%stiffened) self%stiffened = stiffened_reserve*square
+      square = stiffened_frequency(model, now%plies%stiffness, self%of_elements, self%parameters%mass_scaling, &
+                                   self%motion)
+      if (square > self%stiffened .or. square < relaxed*self%stiffened) self%stiffened = stiffened_reserve*square
     end if
     square = self%stiffened**2
     if (model%scene%has_impactor) &
@@ -180,7 +183,7 @@ contains
 
     step = self%steps%now
     longest = self%longest_step(model, now)
-    if (.not. (step > 0 .and. step <= longest)) step = whole_step(model%scene%ramp_time, longest)
+    if (.not. (step <= longest .and. step > relaxed*longest)) step = whole_step(model%scene%ramp_time, longest)
     self%steps = step_lengths_t(now=step, last=self%steps%now)
     call prepare(self, model)
     load_factors = [now%load_factor, (now%time + step)/model%scene%ramp_time]

@@ -36,7 +36,7 @@ contains
   end function scattered
 
   !> Highest angular frequency of any element of all ranks, and the element of the mesh that has it. Collective.
-  subroutine highest_element_frequency(model, stiffness, scaling, omega, element, of_batches)
+  subroutine highest_element_frequency(model, stiffness, scaling, omega, element, of_elements)
     type(model_t), intent(in) :: model
     !> Section stiffness left in the elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
@@ -46,17 +46,17 @@ contains
     real(wp), intent(out) :: omega
     !> The element
     integer, intent(out) :: element
-    !> Square of the highest frequency in each batch
-    real(wp), allocatable, intent(out), optional :: of_batches(:)
+    !> Square of the highest frequency of each element, (lanes, batches)
+    real(wp), allocatable, intent(out), optional :: of_elements(:, :)
     real(wp) :: squares(lanes), largest
     integer :: b, lane
 
     largest = 0
     element = 0
-    if (present(of_batches)) allocate (of_batches(model%elements%batches))
+    if (present(of_elements)) allocate (of_elements(lanes, model%elements%batches), source=0.0_wp)
     do b = 1, model%elements%batches
       squares = batch_frequencies(model, b, stiffness(:, :, b), scaling)
-      if (present(of_batches)) of_batches(b) = maxval(squares(:model%elements%lanes_used(b)))
+      if (present(of_elements)) of_elements(:model%elements%lanes_used(b), b) = squares(:model%elements%lanes_used(b))
       do lane = 1, model%elements%lanes_used(b)
         if (.not. squares(lane) > largest) cycle
         largest = squares(lane)
@@ -70,28 +70,33 @@ contains
     omega = sqrt(omega)
   end subroutine highest_element_frequency
 
-  !> Highest frequency with the slopes and the tension of a motion. Where the plate is sloped its membrane stiffness
-  !> acts on w too, whose mass is not scaled, and tension adds as much as strain is to 1: frequencies grow to
-  !> omega**2 (1 + s (w,x**2 + w,y**2 + e)) at most, s the scaling and e the largest strain. Collective.
-  real(wp) function stiffened_frequency(model, of_batches, scaling, motion) result(omega)
+  !> Highest frequency with the slopes and the tension of a motion. Where the plate is sloped its membrane stiffness acts
+  !> on w too, whose mass is not scaled, and tension adds as much as strain is to 1: frequencies grow to
+  !> omega**2 (1 + s m (w,x**2 + w,y**2 + e)) at most, s the scaling, e the largest strain, and m the part of the membrane
+  !> stiffness that damage has left. Collective.
+  real(wp) function stiffened_frequency(model, stiffness, of_elements, scaling, motion) result(omega)
     type(model_t), intent(in) :: model
-    !> Square of the highest frequency in each batch without motion
-    real(wp), intent(in) :: of_batches(:)
+    !> Section stiffness left in the elements, (lanes, 21, batches)
+    real(wp), contiguous, intent(in) :: stiffness(:, :, :)
+    !> Square of the highest frequency of each element without motion, (lanes, batches)
+    real(wp), contiguous, intent(in) :: of_elements(:, :)
     !> Factor of in-plane and rotary inertia
     real(wp), intent(in) :: scaling
     !> Motion of the layers, ghosts up to date, (5, points)
     real(wp), contiguous, intent(in) :: motion(:, :)
-    real(wp) :: r(lanes, 9, 5), strains(lanes, 9, 6), slopes(lanes, 9, 2)
+    real(wp) :: r(lanes, 9, 5), strains(lanes, 9, 6), slopes(lanes, 9, 2), growth(lanes), left(lanes)
     integer :: b
 
     omega = 0
     do b = 1, model%elements%batches
       call gather(model%elements%points(:, :, b), motion, r)
       call in_plane_strains(model%elements%inverse_jacobian(:, :, :, b), kinematics_von_karman, r, strains, slopes)
-      associate (slope => maxval(slopes(:, :, 1)**2 + slopes(:, :, 2)**2), &
-                 strain => max(0.0_wp, maxval(strains(:, :, 1:2))) + maxval(abs(strains(:, :, 3)))/2)
-        omega = max(omega, of_batches(b)*(1 + scaling*(slope + strain)))
+      growth = maxval(slopes(:, :, 1)**2 + slopes(:, :, 2)**2, 2) &
+               + max(0.0_wp, maxval(maxval(strains(:, :, 1:2), 3), 2)) + maxval(abs(strains(:, :, 3)), 2)/2
+      associate (whole => model%elements%stiffness(:, :, b))
+        left = max(stiffness(:, 1, b), stiffness(:, 4, b))/max(tiny(left), whole(:, 1), whole(:, 4))
       end associate
+      omega = max(omega, maxval(of_elements(:, b)*(1 + scaling*left*growth)))
     end do
     call model%communicator%maximum(omega)
     omega = sqrt(omega)
