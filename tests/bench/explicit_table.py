@@ -139,7 +139,7 @@ def elastic(program, options):
 
 def peanut_text(cell):
     """The peanut on cells of some mm; those of .6 mm have a patch and a core of whole ones."""
-    text = (INPUT/'peanut.nml').read_text(encoding='utf-8')
+    text = (INPUT/'peanut.nml').read_text(encoding='utf-8').replace('mass_scaling=6', 'step=16e-6')
     text = change_deck(text, ['output%fields_every=4e-3'])
     if cell == .8:
         return text
