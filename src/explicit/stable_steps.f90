@@ -70,10 +70,10 @@ contains
     omega = sqrt(omega)
   end subroutine highest_element_frequency
 
-  !> Highest frequency with the slopes and the tension of a motion. Where the plate is sloped its membrane stiffness acts
-  !> on w too, whose mass is not scaled, and tension adds as much as strain is to 1: frequencies grow to
-  !> omega**2 (1 + s m (w,x**2 + w,y**2 + e)) at most, s the scaling, e the largest strain, and m the part of the membrane
-  !> stiffness that damage has left. Collective.
+  !> Highest frequency with the slopes and the tension of a motion. Where the plate is sloped its membrane stiffness
+  !> acts on w too, whose mass is not scaled, and tension adds as much as strain is to 1: frequencies grow to
+  !> omega**2 (1 + s m (w,x**2 + w,y**2 + e)) at most, s the scaling, e the largest strain, and m the part of the
+  !> membrane stiffness that damage has left. Collective.
   real(wp) function stiffened_frequency(model, stiffness, of_elements, scaling, motion) result(omega)
     type(model_t), intent(in) :: model
     !> Section stiffness left in the elements, (lanes, 21, batches)
