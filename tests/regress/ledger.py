@@ -31,15 +31,15 @@ LOADS = {
     "travel": "&impactor travel=0.8e-3 radius=10e-3 /\n&indentation law='hertz' k=1e9 /",
     "nose": "&impactor travel=0.8e-3 radius=10e-3 contact_area='sphere' /\n&indentation law='hertz' k=1e9 /",
 }
+CLAMPS = "clamps=-45e-3,20e-3, -45e-3,-20e-3, 45e-3,20e-3, 45e-3,-20e-3"
 PARTS = {
     "nothing": "",
     "plies": "&ply_damage criteria='hashin' /",
     "softening": "&ply_damage criteria='hashin' /",
     "interface": "&delamination below_ply=2 law='cohesive' G_Ic=50 G_IIc=100 strength_opening=5e6 "
                  "strength_shear=5e6 zone=60e-3,60e-3 /",
-    "rig": "&support shape='rectangle' window=80e-3,60e-3 unilateral=.true. clamps=-45e-3,20e-3, -45e-3,-20e-3, 45e-3,20e-3, 45e-3,-20e-3 "
-           "clamp_force=200 /",
-    "springs": "&support clamps=-45e-3,20e-3, -45e-3,-20e-3, 45e-3,20e-3, 45e-3,-20e-3 clamp_stiffness=1e6 /",
+    "rig": f"&support shape='rectangle' window=80e-3,60e-3 unilateral=.true. {CLAMPS} clamp_force=200 /",
+    "springs": f"&support {CLAMPS} clamp_stiffness=1e6 /",
     "thermal": "&thermal delta_T=-100 /",
 }
 TOGETHER = [("plies",), ("softening",), ("interface",), ("rig",), ("springs",), ("thermal",), ("nothing",),
