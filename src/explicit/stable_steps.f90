@@ -4,6 +4,7 @@
 !> (I. Fried, 1972; T. J. R. Hughes, The Finite Element Method, 1987, section 9.4.2). That of an element is found
 !> by power iteration. Interfaces, clamps and frames are implicit and set no limit.
 module stable_steps
+  use batch_resultants, only: in_plane_resultants
   use batch_strains, only: in_plane_strains
   use element_batches, only: lanes
   use internal_forces, only: batch_force
@@ -71,9 +72,10 @@ contains
   end subroutine highest_element_frequency
 
   !> Highest frequency with the slopes and the tension of a motion. Where the plate is sloped its membrane stiffness
-  !> acts on w too, whose mass is not scaled, and tension adds as much as strain is to 1: frequencies grow to
-  !> omega**2 (1 + s m (w,x**2 + w,y**2 + e)) at most, s the scaling, e the largest strain, and m the part of the
-  !> membrane stiffness that damage has left. Collective.
+  !> acts on w too, whose mass is not scaled, and so does tension. With S the derivatives of the membrane strains by
+  !> grad w, G = S^T A S + N is what an area has against grad w, and frequencies grow to
+  !> omega**2 (1 + s g/a) at most: s the scaling, g the larger eigenvalue of G with what damage has left of A, a the
+  !> larger of A_xx and A_yy of the undamaged section. Collective.
   real(wp) function stiffened_frequency(model, stiffness, of_elements, scaling, motion) result(omega)
     type(model_t), intent(in) :: model
     !> Section stiffness left in the elements, (lanes, 21, batches)
@@ -84,23 +86,49 @@ contains
     real(wp), intent(in) :: scaling
     !> Motion of the layers, ghosts up to date, (5, points)
     real(wp), contiguous, intent(in) :: motion(:, :)
-    real(wp) :: r(lanes, 9, 5), strains(lanes, 9, 6), slopes(lanes, 9, 2), growth(lanes), left(lanes)
+    real(wp) :: r(lanes, 9, 5), strains(lanes, 9, 6), slopes(lanes, 9, 2), unused(lanes), added(lanes)
+    real(wp), parameter :: unit_area(lanes, 9) = 1
     integer :: b
 
     omega = 0
+    unused = 0
     do b = 1, model%elements%batches
       call gather(model%elements%points(:, :, b), motion, r)
       call in_plane_strains(model%elements%inverse_jacobian(:, :, :, b), kinematics_von_karman, r, strains, slopes)
-      growth = maxval(slopes(:, :, 1)**2 + slopes(:, :, 2)**2, 2) &
-               + max(0.0_wp, maxval(maxval(strains(:, :, 1:2), 3), 2)) + maxval(abs(strains(:, :, 3)), 2)/2
+      call in_plane_resultants(stiffness(:, :, b), unit_area, strains, unused)
       associate (whole => model%elements%stiffness(:, :, b))
-        left = max(stiffness(:, 1, b), stiffness(:, 4, b))/max(tiny(left), whole(:, 1), whole(:, 4))
+        added = geometric_stiffness(stiffness(:, :, b), slopes, strains)/max(tiny(added), whole(:, 1), whole(:, 4))
+        omega = max(omega, maxval(of_elements(:, b)*(1 + scaling*added)))
       end associate
-      omega = max(omega, maxval(of_elements(:, b)*(1 + scaling*left*growth)))
     end do
     call model%communicator%maximum(omega)
     omega = sqrt(omega)
   end function stiffened_frequency
+
+  !> Largest stiffness against slopes that membrane stiffness and membrane forces give the points of a batch, per area:
+  !> the larger eigenvalue of S^T A S + N.
+  pure function geometric_stiffness(c, slopes, forces) result(largest)
+    !> Section stiffness
+    real(wp), intent(in) :: c(lanes, 21)
+    !> w,x and w,y at the Gauss points
+    real(wp), intent(in) :: slopes(lanes, 9, 2)
+    !> Nxx, Nyy, Nxy there, and moments
+    real(wp), intent(in) :: forces(lanes, 9, 6)
+    !> (lane)
+    real(wp) :: largest(lanes)
+    real(wp) :: xx(lanes), yy(lanes), xy(lanes)
+    integer :: g
+
+    largest = 0
+    do g = 1, 9
+      associate (x => slopes(:, g, 1), y => slopes(:, g, 2))
+        xx = c(:, 1)*x*x + 2*c(:, 3)*x*y + c(:, 6)*y*y + forces(:, g, 1)
+        yy = c(:, 4)*y*y + 2*c(:, 5)*x*y + c(:, 6)*x*x + forces(:, g, 2)
+        xy = (c(:, 2) + c(:, 6))*x*y + c(:, 3)*x*x + c(:, 5)*y*y + forces(:, g, 3)
+      end associate
+      largest = max(largest, (xx + yy)/2 + sqrt(((xx - yy)/2)**2 + xy**2))
+    end do
+  end function geometric_stiffness
 
   !> Squares of the highest frequencies of the elements of a batch.
   function batch_frequencies(model, b, stiffness, scaling) result(squares)
