@@ -31,17 +31,18 @@ module step_columns
     'energy_delamination | real | energy | Fracture energy of the delaminated cells: critical energy release &
       &rate times area.', &
     'energy_ply_damage | real | energy | Strain energy lost as failures of plies took stiffness away.', &
-    'energy_contact | real | energy | Work done against contact of separated faces and against penalty ties.', &
-    'energy_algorithmic | real | energy | Algorithmic dissipation: energy that time integrators and fading ties &
-      &took out of the motion, less energy_delamination.', &
+    'energy_contact | real | energy | Work done against contact of separated faces and penalty ties, and what &
+      &faces and frame lose as they meet.', &
+    'energy_algorithmic | real | energy | Algorithmic dissipation: energy that time integrators, implicit &
+      &interfaces and fading ties took out of the motion, less energy_delamination.', &
     'energy_error | real | energy | What the ledger fails to account for: the sum of the eight energies before, &
       &energy_friction and energy_layers, less work_external and the energy at the start.']
 
   !> The rest of the state and the length of the step.
   character(len=result_row_length), parameter, public :: step_rows(*) = [character(len=result_row_length) :: &
     'patch_deflection | real | length | Mean deflection of the patch, positive along the impact.', &
-    'work_external | real | energy | Work so far of pressure and lines, and in a static analysis of what moves the &
-      &impactor.', &
+    'work_external | real | energy | Work so far of pressure and lines, and of what moves an impactor whose travel &
+      &is given.', &
     'step_length | real | time | Length of the step; 0 in a static analysis.', &
     'stress | real | pressure | Bending stress 6 M/h^2 of the undamaged laminate around the struck point, which the &
       &adaptive step follows.']
