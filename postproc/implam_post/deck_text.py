@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from implam_post.errors import DeckError
 from implam_post.namelist import Token, Value, is_key, read_namelist, read_tokens
 
+_GROUP = re.compile(r"([A-Za-z]\w*)(?:\[(\d+|\*)\])?")
 _PATH = re.compile(r"([A-Za-z]\w*)(?:\[(\d+|\*)\])?[.%]([A-Za-z]\w*)")
 
 
@@ -36,9 +37,10 @@ class _Span:
 
 @dataclass(frozen=True)
 class _Place:
-    """Where a group stands: its closing slash and its keys by lower-case name."""
+    """Where a group stands: its first letter, its closing slash, and its keys by lower-case name."""
 
     name: str
+    start: int
     end: Token
     keys: dict[str, _Span]
 
@@ -50,6 +52,14 @@ def key_path(text: str) -> KeyPath | None:
         return None
     number = None if match[2] is None else 0 if match[2] == "*" else int(match[2])
     return KeyPath(match[1].lower(), number, match[3])
+
+
+def group_path(text: str) -> tuple[str, int | None] | None:
+    """Return the group and its number that group, group[2] or group[*] stand for; None for any other text."""
+    match = _GROUP.fullmatch(text.strip())
+    if match is None or match[2] == "0":
+        return None
+    return match[1].lower(), None if match[2] is None else 0 if match[2] == "*" else int(match[2])
 
 
 def deck_value(value: object) -> str:
@@ -86,6 +96,27 @@ def set_keys(text: str, settings: Mapping[KeyPath, str], name: str = "deck") -> 
     return text
 
 
+def drop_group(text: str, group: str, number: int | None, name: str = "deck") -> str:
+    """Return the deck without a group, counted from 1 among those of its name, or without all of them."""
+    places = [place for place in _places(text, name) if place.name == group]
+    if not places or (number or 1) > len(places):
+        raise DeckError(f"{name}: there are {len(places)} groups &{group}.")
+    if number is None and len(places) > 1:
+        raise DeckError(f"{name}: there are {len(places)} groups &{group}: write {group}[1], or {group}[*] for all.")
+    for place in reversed([places[(number or 1) - 1]] if number != 0 else places):
+        text = text[:place.start] + text[place.end.end:]
+    return text
+
+
+def numbers_of(text: str, path: KeyPath, name: str = "deck") -> list[float]:
+    """Return the numbers that a key has in a deck."""
+    groups = read_namelist(text, name).get(path.group, [])
+    values = groups[(path.number or 1) - 1].get(path.key.lower(), []) if len(groups) >= (path.number or 1) else []
+    if not values or any(isinstance(value, (bool, str)) for value in values):
+        raise DeckError(f"{name}: {path} holds no numbers in the deck.")
+    return values
+
+
 def number_of(text: str, path: KeyPath, name: str = "deck") -> float:
     """Return the number that a key has in a deck."""
     groups = read_namelist(text, name).get(path.group, [])
@@ -112,7 +143,7 @@ def _places(text: str, name: str) -> list[_Place]:
     read_namelist(text, name)  # tells what is wrong with the deck
     tokens, found, position = read_tokens(text, name), [], 0
     while position < len(tokens):
-        group, keys = tokens[position].text[1:].strip().lower(), {}
+        group, start, keys = tokens[position].text[1:].strip().lower(), tokens[position].start, {}
         position += 1
         while tokens[position].kind != "end":
             first = position + 2
@@ -121,7 +152,7 @@ def _places(text: str, name: str) -> list[_Place]:
                 last += 1
             keys[tokens[position].text.lower()] = _Span(tokens[position], tokens[first], tokens[last])
             position = last + 1
-        found.append(_Place(group, tokens[position], keys))
+        found.append(_Place(group, start, tokens[position], keys))
         position += 1
     return found
 

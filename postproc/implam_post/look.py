@@ -29,6 +29,11 @@ class Look:
     kind: str = "png"
     projected: str = "depth"
 
+    @property
+    def seconds(self) -> float:
+        """Seconds of the unit of time of the results; 1 in an unknown system."""
+        return SYSTEMS[self.system][2] if self.system in SYSTEMS else 1.0
+
     def axis(self, label: str, dimension: str, values: Iterable[float]) -> Axis:
         """Return factor and label of an axis, in units that suit its values."""
         return axis_of(label, dimension, np.ravel(np.asarray(values, dtype=float)), self.system)

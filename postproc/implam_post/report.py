@@ -1,31 +1,23 @@
 """One page a run (`implam-report NAME_summary.json`): what it says, with curves and maps, in one HTML file."""
 
 import argparse
-import json
-from collections.abc import Iterable, Mapping, Sequence
+import math
+from collections.abc import Mapping, Sequence
 from html import escape
 from pathlib import Path
 from typing import Any
 
-from matplotlib.figure import Figure
+from implam_post.damage_resistance import DIRECTIONS, extent, kinds_of_damage
+from implam_post.errors import EXIT_DONE, CommandParser, FileError, run
+from implam_post.files import write_text
+from implam_post.history import ENERGY_NAMES, UNACCOUNTED
+from implam_post.look import Look
+from implam_post.report_html import number, page, picture, table
+from implam_post.report_pictures import history_pictures, layup_figure, map_pictures, plan_figure
+from implam_post.run_figures import SUMMARY, Results, corner_of, read_results, resistance
+from implam_post.scatter_report import write_page
+from implam_post.scatter_results import STATISTICS
 
-from implam_post.deck import Deck
-from implam_post.errors import EXIT_DONE, CommandParser, FileError, ImplamError, run
-from implam_post.fields import read_fields
-from implam_post.files import read_text, write_text
-from implam_post.history import ENERGY_NAMES, UNACCOUNTED, read_history
-from implam_post.look import Look, system_of_deck
-from implam_post.report_pictures import as_image, history_pictures, layup_figure, map_pictures, plan_figure
-
-_ENDING = "_summary.json"
-_STYLE = """
-body { font-family: sans-serif; max-width: 62em; margin: 2em auto; padding: 0 1em; color: #222; }
-table { border-collapse: collapse; margin: .6em 0; }
-td, th { border-bottom: 1px solid #ccc; padding: .2em .8em .2em 0; text-align: left; vertical-align: top; }
-td.number, th.number { text-align: right; font-variant-numeric: tabular-nums; }
-img { max-width: 100%; } pre { background: #f4f4f4; padding: .8em; overflow-x: auto; }
-.done { color: #176117; } .stopped, .failed, .warning { color: #a01010; }
-"""
 # Rows of the table at the top: label, member, its dimension, member with its time.
 _FIGURES = (
     ("peak force", "peak_force", "force", "peak_force_at"),
@@ -50,15 +42,6 @@ _UNKNOWN = {"energy_absorbed": "contact has not ended"}
 _PROVENANCE = ("version", "commit", "compiler", "petsc_version", "ranks", "started")
 
 
-def number(value: object) -> str:
-    """Return a number rounded to four digits; a dash for what is not there."""
-    if value is None:
-        return "-"
-    if isinstance(value, bool) or not isinstance(value, (int, float)):
-        return str(value)
-    return str(value) if isinstance(value, int) else f"{value:.4g}"
-
-
 def said(look: Look, dimension: str, value: object) -> str:
     """Return a figure to four digits, as the summary in the log has them, with its unit where that is known."""
     if value is None or not dimension:
@@ -66,57 +49,67 @@ def said(look: Look, dimension: str, value: object) -> str:
     return look.said(dimension, value, 4)
 
 
-def look_of_summary(summary: Mapping[str, Any]) -> Look:
-    """Return the units of a run, those that its deck tells."""
-    try:
-        return Look(system_of_deck(Deck(summary["provenance"]["deck"], Path(f"{summary['case']}.nml"))))
-    except ImplamError:
-        return Look()
-
-
-def table(head: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
-    """Return a table; numbers stand on the right."""
-    def cell(tag: str, value: object) -> str:
-        kind = ' class="number"' if isinstance(value, (int, float)) else ""
-        return f"<{tag}{kind}>{escape(number(value))}</{tag}>"
-
-    lines = ["<table>"]
-    if head:
-        lines.append("<tr>" + "".join(cell("th", name) for name in head) + "</tr>")
-    lines += ["<tr>" + "".join(cell("td", value) for value in row) + "</tr>" for row in rows]
-    return "\n".join([*lines, "</table>"])
-
-
-def picture(figure: Figure, text: str) -> str:
-    """Return a figure as an image within the page."""
-    return f'<p><img alt="{escape(text)}" src="data:image/png;base64,{as_image(figure)}"></p>'
-
-
-def read_summary(path: Path) -> dict[str, Any]:
-    """Read what a run says."""
-    try:
-        summary = json.loads(read_text(path, "the summary"))
-    except ValueError as error:
-        raise FileError(f"{path} isn't a summary written by implam ({error}).") from None
-    if not isinstance(summary, dict) or not {"case", "exit", "plies", "provenance"} <= summary.keys():
-        raise FileError(f"{path} isn't a summary written by implam.")
-    return summary
-
-
-def report(summary: Mapping[str, Any], base: Path) -> str:
-    """Return the page of a run whose history and fields have a path that begins with `base`."""
-    title, look = summary["title"] or summary["case"], look_of_summary(summary)
+def report(results: Results, base: Path) -> str:
+    """Return the page of a run; `base` is what the names of its results begin with."""
+    summary, look = results.summary, Look(results.system)
+    title = summary["title"] or summary["case"]
     parts = [f"<h1>{escape(title)}</h1>", _ending(summary, look), "<h2>Summary</h2>", _figures(summary, look)]
+    if "energy_absorbed" in summary and results.history is not None:
+        parts += ["<h2>Damage resistance, as ASTM D7136 asks for it</h2>", _resistance(results, look)]
     if summary.get("interfaces"):
         parts += ["<h2>Interfaces</h2>", _interfaces(summary, look)]
     parts += ["<h2>Plate and lay-up</h2>", _plate(summary, look)]
-    parts += ["<h2>Curves</h2>", _curves(base, look), "<h2>Maps</h2>", _maps(base, look)]
+    parts += ["<h2>Curves</h2>", _curves(results, base, look), "<h2>Maps</h2>", _maps(results, base, look)]
     parts += ["<h2>Energy ledger at the end</h2>", _ledger(summary, look)]
     parts += ["<h2>Warnings</h2>", _warnings(summary), "<h2>Provenance</h2>", _provenance(summary)]
     parts += ["<h2>Deck</h2>", f"<pre>{escape(summary['provenance']['deck'])}</pre>"]
-    body = "\n".join(parts)
-    return (f'<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n<title>{escape(title)}</title>\n'
-            f"<style>{_STYLE}</style>\n</head>\n<body>\n{body}\n</body>\n</html>\n")
+    return page(title, parts)
+
+
+def _resistance(results: Results, look: Look) -> str:
+    """Return threshold, energies, size and type of the damage."""
+    summary, found = results.summary, resistance(results)
+
+    def row(name: str, key: str, missing: str = "-", at: str = "") -> tuple[str, str, str]:
+        if key not in found or math.isnan(found[key].value):
+            return name, missing, ""
+        return name, said(look, found[key].dimension, found[key].value), at
+
+    corner = corner_of(results)
+    behind = f", behind a low pass of {_frequency(look, corner)}" if corner else ""
+    unknown = "the force never drops by damage" if corner else "not known without units"
+    reached = "threshold_at" in found and not math.isnan(found["threshold_at"].value)
+    when = f"at {said(look, 'time', found['threshold_at'].value)}" if reached else ""
+    rows = [row(f"threshold: force where its curve first drops by damage{behind}", "threshold_force", unknown, when),
+            ("peak force", said(look, "force", summary["peak_force"]),
+             f"at {said(look, 'time', summary['peak_force_at'])}"),
+            row("energy to the threshold", "energy_to_threshold"), row("energy to the peak force", "energy_to_peak"),
+            ("absorbed energy", "contact has not ended" if summary["energy_absorbed"] is None
+             else said(look, "energy", summary["energy_absorbed"]), "")]
+    if results.fields is not None and "damage_diameter" in found:
+        rows += _sizes(results, look)
+    kinds = kinds_of_damage(summary)
+    rows += [("type of damage" if place == 0 else "", kind, "") for place, kind in enumerate(kinds or ["none"])]
+    return table((), rows)
+
+
+def _frequency(look: Look, corner: float) -> str:
+    """Return a frequency with its unit."""
+    return f"{corner / look.seconds / 1e3:.4g} kHz" if look.system else number(corner)
+
+
+def _sizes(results: Results, look: Look) -> list[tuple[str, str, str]]:
+    """Return the rows that tell the size of the projected damage."""
+    size = extent(results.fields)
+    if size is None:
+        return [("projected damage", "none", "")]
+    rows = [("largest diameter of the projected damage", said(look, "length", size.diameter),
+             f"along {size.direction:.0f}°"),
+            ("its length along 0°, x", said(look, "length", size.length), ""),
+            ("its width along 90°, y", said(look, "length", size.width), "")]
+    return rows + [(f"between its outermost points through the struck point, along {angle}°",
+                    said(look, "length", size.through[angle]) if size.through[angle] else "none there", "")
+                   for angle in DIRECTIONS]
 
 
 def _ledger(summary: Mapping[str, Any], look: Look) -> str:
@@ -199,20 +192,18 @@ def _plate(summary: Mapping[str, Any], look: Look) -> str:
                       picture(layup_figure(summary), "lay-up from the struck face"), table(head, rows)])
 
 
-def _curves(base: Path, look: Look) -> str:
+def _curves(results: Results, base: Path, look: Look) -> str:
     """Return the curves of the history, or why there are none."""
-    path = base.with_name(f"{base.name}_history.csv")
-    if not path.exists():
-        return f"<p>There is no {escape(path.name)}.</p>"
-    return "\n".join(picture(figure, text) for text, figure in history_pictures(read_history(path), look))
+    if results.history is None:
+        return f"<p>There is no {escape(base.name)}_history.csv.</p>"
+    return "\n".join(picture(figure, text) for text, figure in history_pictures(results.history, look))
 
 
-def _maps(base: Path, look: Look) -> str:
+def _maps(results: Results, base: Path, look: Look) -> str:
     """Return what the fields show in plan, or why there is nothing."""
-    path = base.with_name(f"{base.name}.h5")
-    if not path.exists():
-        return f"<p>There is no {escape(path.name)}.</p>"
-    pictures = [picture(figure, text) for text, figure in map_pictures(read_fields(path), look)]
+    if results.fields is None:
+        return f"<p>There is no {escape(base.name)}.h5.</p>"
+    pictures = [picture(figure, text) for text, figure in map_pictures(results.fields, look)]
     return "\n".join(pictures) or "<p>The fields hold neither interfaces nor failures of plies.</p>"
 
 
@@ -231,30 +222,32 @@ def _provenance(summary: Mapping[str, Any]) -> str:
 
 
 def summaries_at(path: Path) -> list[Path]:
-    """Return the summaries of a folder, or the one that a path names."""
-    if not path.is_dir():
+    """Return the summaries of a folder, or the one that a path names; the folder of a sweep stands for itself."""
+    if not path.is_dir() or (path / STATISTICS).exists():
         return [path]
-    found = sorted(path.glob(f"*{_ENDING}"))
+    found = sorted(path.glob(f"*{SUMMARY}"))
     if not found:
-        raise FileError(f"{path} holds no summary of a run ({_ENDING.removeprefix('_')}).")
+        raise FileError(f"{path} holds no summary of a run ({SUMMARY.removeprefix('_')}).")
     return found
 
 
 def write_report(path: Path, output: Path | None) -> Path:
-    """Write the page of a summary and return its path."""
-    if not path.name.endswith(_ENDING):
-        raise FileError(f"{path} isn't NAME{_ENDING}; a report is made of that file, or of the folder that holds it.")
-    base = path.with_name(path.name.removesuffix(_ENDING))
-    page = (output or path.parent) / f"{base.name}_report.html"
-    summary = read_summary(path)
+    """Write the page of a summary, or that of a sweep, and return its path."""
+    if path.is_dir():
+        return write_page(path, output)
+    if not path.name.endswith(SUMMARY):
+        raise FileError(f"{path} isn't NAME{SUMMARY}; a report is made of that file, or of the folder that holds it.")
+    base = path.with_name(path.name.removesuffix(SUMMARY))
+    written = (output or path.parent) / f"{base.name}_report.html"
+    results = read_results(path)
     try:
-        text = report(summary, base)
+        text = report(results, base)
     except KeyError as error:
         raise FileError(f"the summary {path} lacks {error}: another version of implam wrote it.") from None
     except (TypeError, ValueError, IndexError, AttributeError) as error:
         raise FileError(f"{path} isn't a summary written by implam, or it is damaged ({error}).") from None
-    write_text(page, text)
-    return page
+    write_text(written, text)
+    return written
 
 
 def _command(options: argparse.Namespace) -> int:
@@ -269,9 +262,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command."""
     parser = CommandParser("implam-report", description="Write NAME_report.html, one page that needs no other file: "
                            "the summary of a run, its plate and lay-up, curves of NAME_history.csv, maps of NAME.h5, "
-                           "the ledger, warnings, provenance and the deck.")
+                           "the ledger, warnings, provenance and the deck. Of a sweep with random inputs the page has "
+                           "means with their scatter instead.")
     parser.add_argument("results", nargs="+", type=Path, metavar="RESULT",
-                        help="NAME_summary.json, or a folder with such files")
+                        help="NAME_summary.json, a folder with such files, or the folder of a sweep")
     parser.add_argument("--output", type=Path, metavar="DIR", help="folder of the pages (default: beside each summary)")
     return run(_command, parser, arguments)
 

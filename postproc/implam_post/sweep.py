@@ -16,7 +16,7 @@ from implam_post.case_run import case_command, forget
 from implam_post.errors import EXIT_DONE, EXIT_USAGE, CommandParser, DeckError, FileError, count, run
 from implam_post.files import try_lock, write_text
 from implam_post.program import EXIT_STOPPED, PROGRAM_HELP, check_deck, find_program, processors
-from implam_post.sweep_plan import FORMAT, Case, read_plan
+from implam_post.sweep_plan import FORMAT, Case, is_random, read_plan
 from implam_post.sweep_runs import NOT_RUN, STOPPED, Sweep, run_cases
 
 if TYPE_CHECKING:  # it takes numpy, which a faulty sweep needn't wait for
@@ -24,6 +24,7 @@ if TYPE_CHECKING:  # it takes numpy, which a faulty sweep needn't wait for
 
 _TABLE_EVERY = 10.0  # seconds between tables written on the way
 _SHOWN = 20  # faulty decks told one by one
+_NUMBER = re.compile(r"\d+(?:\.\d*)?(?:[eE][-+]?\d+)?")
 
 
 def check_decks(sweep: Sweep, cases: Sequence[Case], jobs: int) -> None:
@@ -36,10 +37,13 @@ def check_decks(sweep: Sweep, cases: Sequence[Case], jobs: int) -> None:
     if faulty:
         more = f" (the first {_SHOWN} are told)" if len(faulty) > _SHOWN else ""
         raise DeckError(f"{len(faulty)} of {len(sweep.plan.cases)} decks are faulty{more}; nothing was run.")
-    told = (re.match(r".*?: warning: (.*)", line) for _, said in verdicts for line in set(said))
-    warnings = Counter(found[1] for found in told if found)
-    for warning, number in warnings.items():
-        print(f"warning, {number} of {len(cases)} decks: {warning}", file=sys.stderr)
+    told = [{found[1] for line in said if (found := re.match(r".*?: warning: (.*)", line))} for _, said in verdicts]
+    # Decks that differ in numbers alone are warned alike: the first one's words stand for all.
+    words = [{_NUMBER.sub("#", warning): warning for warning in warnings} for warnings in told]
+    numbers = Counter(alike for warnings in words for alike in warnings)
+    first = {alike: warning for warnings in reversed(words) for alike, warning in warnings.items()}
+    for alike, number in numbers.items():
+        print(f"warning, {number} of {len(cases)} decks: {first[alike]}", file=sys.stderr)
 
 
 class _Tables:
@@ -79,10 +83,27 @@ def _gather(sweep: Sweep, tables: _Tables) -> int:
     output = sweep.plan.output
     table = tables.write()
     write_hdf5(table, output / "table.h5")
-    print(output / "table.csv", output / "table.h5", *plot_table(table, output), sep="\n")
-    for note in table.notes:
+    # Where inputs scatter, a figure against one of them is a cloud: their statistics have pictures of their own.
+    plots = [] if sweep.plan.scatter else plot_table(table, output)
+    print(output / "table.csv", output / "table.h5", *plots, sep="\n")
+    if is_random(sweep.plan):
+        _tell_scatter(sweep, table.system)
+    for note in (*table.notes, *sweep.plan.notes):
         print(f"note: {note}")
     return tell_ends(sweep)
+
+
+def _tell_scatter(sweep: Sweep, system: str) -> None:
+    """Write and print what runs with random inputs come to."""
+    from implam_post.look import Look
+    from implam_post.scatter_plots import plot_scatter
+    from implam_post.scatter_results import curves_of, groups_of, write_statistics
+    from implam_post.scatter_text import statistics_text
+    groups, look = groups_of(sweep), Look(system)
+    files = write_statistics(sweep, groups, system)
+    pictures = plot_scatter(groups, curves_of(sweep.plan.measured), look, sweep.plan.output)
+    print(*files, *pictures, sep="\n")
+    print(statistics_text(sweep.plan, groups, look))
 
 
 def tell_ends(sweep: Sweep) -> int:

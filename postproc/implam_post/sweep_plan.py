@@ -4,16 +4,18 @@ import hashlib
 import itertools
 import math
 import tomllib
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
-from implam_post.deck_text import KeyPath, deck_value, key_path, number_of, set_keys
+from implam_post.deck import Deck
+from implam_post.deck_text import KeyPath, deck_value, drop_group, group_path, key_path, number_of, set_keys
 from implam_post.errors import DeckError
 from implam_post.expressions import CONSTANTS, FUNCTIONS, evaluate
 from implam_post.files import read_text
 from implam_post.samples import METHODS, draw
+from implam_post.scatter_plan import Scatter, read_scatter
 from implam_post.units import SYSTEMS
 
 FORMAT = """
@@ -42,6 +44,17 @@ The file of a sweep:
     [derived]                                 # in this order, from names, keys of the case's deck, and numbers
     "impactor.velocity" = "sqrt(2*energy/impactor.mass)"
 
+    [scatter]                                 # runs with inputs drawn within their tolerances
+    number = 10
+    seed = 1                                  # default 1; method as above
+    strengths = 0.08                          # coefficients of variation instead of the defaults, 0: as in the deck
+    "delamination.G_IIc" = 0.1                # of one key alone
+
+    [variants]                                # decks to be compared, with the same random inputs
+    "as it is" = {}
+    "no friction" = { "delamination[*].friction" = 0 }
+    "no clamps" = { drop = ["support[2]"] }   # without a group
+
 Several tables together are combined: each row of [grid] with each of [list] with each of [samples]. `deck` may be swept
 too. Text that reads as values of a deck stands there as it is; any other is put in quotes.
 """
@@ -50,6 +63,7 @@ COLUMNS = ("case", "impact_energy", "peak_force", "peak_force_time", "contact_du
            "rebound_velocity", "absorbed_energy", "delaminated_area", "first_growth_force", "first_growth_time",
            "exit_code", "cpu_time", "version", "folder")
 _TABLES = ("grid", "list", "samples", "derived")
+VARIANT = "variant"
 _SAMPLES = {"number": None, "seed": 1, "method": "random"}
 
 
@@ -71,14 +85,28 @@ class Case:
 
     @property
     def label(self) -> str:
-        """Return the values in one line, to six digits."""
-        return "  ".join(f"{name}={value:.6g}" if isinstance(value, float) else f"{name}={deck_value(value)}"
-                         for name, value in self.values.items())
+        """Return the values in one line, to six digits, without those drawn by [scatter]."""
+        told = [f"{name}={value:.6g}" if isinstance(value, float) else f"{name}={deck_value(value)}"
+                for name, value in self.values.items() if " " not in name]
+        return "  ".join([*told, *["random inputs"] * (len(told) < len(self.values))])
+
+
+@dataclass(frozen=True)
+class Variant:
+    """A deck that is compared with others: its name, keys that it sets, and groups that it leaves out."""
+
+    name: str
+    settings: dict[str, object]
+    dropped: list[str]
 
 
 @dataclass(frozen=True)
 class Plan:
-    """All cases of a sweep, the text of its file, the names of what is set and derived, and where results go."""
+    """All cases of a sweep, the text of its file, the names of what is set and derived, and where results go.
+
+    `random` names what is drawn at random of what is set. `scatter` is the table [scatter], `measured` a curve beside
+    which histories are drawn, and `notes` tell what does not scatter.
+    """
 
     path: Path
     text: str
@@ -87,6 +115,10 @@ class Plan:
     cases: list[Case]
     output: Path
     units: str
+    random: frozenset[str] = field(default=frozenset(), kw_only=True)
+    scatter: Scatter | None = field(default=None, kw_only=True)
+    measured: Path | None = field(default=None, kw_only=True)
+    notes: tuple[str, ...] = field(default=(), kw_only=True)
 
 
 def read_plan(path: Path, output: Path | None = None) -> Plan:
@@ -95,18 +127,59 @@ def read_plan(path: Path, output: Path | None = None) -> Plan:
     try:
         content = tomllib.loads(text)
         tables = {name: flat_table(content.pop(name, {}), name) for name in _TABLES}
-        base, folder, units = content.pop("deck", ""), content.pop("output", path.stem), content.pop("units", "")
+        scatter, variants = read_scatter(content.pop("scatter", None)), read_variants(content.pop("variants", {}))
+        words = {"deck": "", "output": path.stem, "units": "", "measured": ""}
+        base, folder, units, measured = (content.pop(name, default) for name, default in words.items())
         if content:
-            raise DeckError(f"'{next(iter(content))}' is none of deck, output, units, {', '.join(_TABLES)}.")
-        if not all(isinstance(word, str) for word in (base, folder, units)) or units not in ("", *SYSTEMS):
-            raise DeckError(f"deck and output are text, and units one of {', '.join(SYSTEMS)}.")
+            raise DeckError(f"'{next(iter(content))}' is none of {', '.join(words)}, {', '.join(_TABLES)}, scatter, "
+                            "variants.")
+        if not all(isinstance(word, str) for word in (base, folder, units, measured)) or units not in ("", *SYSTEMS):
+            raise DeckError(f"deck, output and measured are text, and units one of {', '.join(SYSTEMS)}.")
         check_names(tables)
-        cases = CaseMaker(path.parent, base, tables["derived"])
-        made = [cases.make(number, values) for number, values in enumerate(combinations(tables), start=1)]
+        cases = CaseMaker(path.parent, base, tables["derived"], scatter)
+        made = _cases(cases, tables, variants)
         cases.check_use(name for table in ("grid", "list", "samples") for name in tables[table])
     except (tomllib.TOMLDecodeError, DeckError) as error:
         raise DeckError(f"{path}: {error}") from None
-    return Plan(path, text, list(made[0].values), list(tables["derived"]), made, output or path.parent / folder, units)
+    names = list(dict.fromkeys(name for case in made for name in case.values))
+    drawn = frozenset(name for name in names if name in tables["samples"]) | cases.drawn
+    return Plan(path, text, names, list(tables["derived"]), made, output or path.parent / folder, units, random=drawn,
+                scatter=scatter, measured=path.parent / measured if measured else None, notes=tuple(cases.notes))
+
+
+def _cases(maker: "CaseMaker", tables: dict[str, dict[str, object]], variants: Sequence["Variant"]) -> list[Case]:
+    """Return the cases: each variant with each row of what is swept, run by run."""
+    runs = maker.scatter.number if maker.scatter else 1
+    swept = any(tables[name] for name in ("grid", "list", "samples"))
+    rows = list(combinations(tables)) if swept or not (maker.scatter or variants) else [{}]
+    if (count := max(len(variants), 1) * len(rows) * runs) > MOST_CASES:
+        raise DeckError(f"the sweep has {count} cases; {MOST_CASES} are the most.")
+    chosen = itertools.product(variants or [None], rows, range(runs))
+    return [maker.make(number, row, variant, run) for number, (variant, row, run) in enumerate(chosen, start=1)]
+
+
+def read_variants(table: object) -> list[Variant]:
+    """Return the variants of a sweep, in order."""
+    if not isinstance(table, dict) or not all(isinstance(value, dict) for value in table.values()):
+        raise DeckError('variants is a table of tables: [variants] "name" = { "group.key" = value }.')
+    return [_variant(name, dict(value)) for name, value in table.items()]
+
+
+def _variant(name: str, table: dict[str, object]) -> Variant:
+    """Return one variant."""
+    dropped = table.pop("drop", [])
+    if not isinstance(dropped, list) or not all(isinstance(word, str) and group_path(word) for word in dropped):
+        raise DeckError(f"[variants] {name}: drop is a list of groups, as [\"support[2]\"].")
+    settings = flat_table(table, f"variants.{name}")
+    for key in settings:
+        if key != "deck" and key_path(key) is None:
+            raise DeckError(f"[variants] {name}: '{key}' is no key of the deck, as group.key or group[2].key.")
+    return Variant(name, settings, dropped)
+
+
+def is_random(plan: Plan) -> bool:
+    """Tell whether a sweep has runs that differ in random inputs."""
+    return bool(plan.random) or plan.scatter is not None
 
 
 def flat_table(table: object, name: str) -> dict[str, object]:
@@ -133,7 +206,7 @@ def check_names(tables: dict[str, dict[str, object]]) -> None:
             if path is None and (not name.isidentifier() or name in FUNCTIONS or name in CONSTANTS):
                 raise DeckError(f"[{table}] '{name}' is neither a key of the deck, as group.key or group[2].key, "
                                 "nor a free name.")
-            if name in COLUMNS:
+            if name in (*COLUMNS, VARIANT):
                 raise DeckError(f"[{table}] '{name}' is the name of another column of the table.")
             same = str(path).lower() if path else name
             if same in seen:
@@ -154,7 +227,7 @@ def combinations(tables: dict[str, dict[str, object]]) -> Iterator[dict[str, obj
         raise DeckError("[list] needs lists of one length, not " +
                         ", ".join(f"{name} with {length}" for name, length in lengths.items()) + ".")
     if not grid and not side_by_side and not samples:
-        raise DeckError("nothing is swept: [grid], [list] or [samples] is needed.")
+        raise DeckError("nothing is swept: [grid], [list], [samples], [scatter] or [variants] is needed.")
     rows = [list(itertools.islice(zip(*table.values(), strict=True), MOST_CASES)) if table else [()]
             for table in (side_by_side, samples)]
     count = math.prod(len(values) for values in grid.values()) * len(rows[0]) * len(rows[1])
@@ -179,30 +252,49 @@ def _samples(table: Mapping[str, object]) -> dict[str, list[float]]:
 
 
 class CaseMaker:
-    """Makes the cases from the base decks, and keeps in mind which free names a formula uses."""
+    """Makes the cases from the base decks, and keeps in mind which free names a formula uses, and what is drawn."""
 
-    def __init__(self, folder: Path, base: str, derived: dict[str, object]) -> None:
+    def __init__(self, folder: Path, base: str, derived: dict[str, object], scatter: Scatter | None = None) -> None:
         """Decks lie in `folder`; `base` is the deck where none is swept."""
-        self._folder, self._base, self._derived = folder, base, derived
+        self._folder, self._base, self._derived, self.scatter = folder, base, derived, scatter
         self._texts: dict[str, str] = {}
         self._used: set[str] = set()
+        self.drawn: frozenset[str] = frozenset()
+        self.notes: list[str] = []
 
-    def make(self, number: int, swept: dict[str, object]) -> Case:
-        """Return the case of these swept values."""
-        values = dict(swept)
-        base = values.get("deck", self._base)
+    def make(self, number: int, swept: dict[str, object], variant: Variant | None = None, run: int = 0) -> Case:
+        """Return the case of these swept values, of a variant and a run with its random inputs."""
+        values = ({VARIANT: variant.name} if variant else {}) | swept
+        set_too = variant.settings if variant else {}
+        base = values.get("deck", set_too.get("deck", self._base))
         if not isinstance(base, str) or not base:
             raise DeckError("deck, the deck that all cases start from, is needed.")
-        settings = {path: deck_value(value) for name, value in values.items() if (path := key_path(name))}
+        settings = {path: deck_value(value) for name, value in {**set_too, **swept}.items() if (path := key_path(name))}
         name = f"{Path(base).stem}.nml"
-        text = set_keys(self._text(base), settings, name)
+        text = self._text(base)
+        # A group is counted among those of the deck, so groups are left out first, the last ones before others.
+        dropped = sorted(map(group_path, variant.dropped if variant else ()), key=lambda found: -(found[1] or 0))
+        for group, place in dropped:
+            text = drop_group(text, group, place, name)
+        text = set_keys(text, settings, name)
         for target, formula in self._derived.items():
             if not isinstance(formula, str):
                 raise DeckError(f"[derived] {target} needs a formula, as text.")
             values[target] = evaluate(formula, lambda word, text=text: self._look_up(word, values, text, name))
             if path := key_path(target):
                 text = set_keys(text, {path: deck_value(values[target])}, name)
-        return Case(number, values, name, text)
+        return Case(number, *self._scattered(values, text, name, run))
+
+    def _scattered(self, values: dict[str, object], text: str, name: str, run: int) -> tuple[dict, str, str]:
+        """Return the values, the name and the text of a deck with its inputs drawn at random, if they are."""
+        if self.scatter is None:
+            return values, name, text
+        note = self.scatter.note(Deck(text, Path(name)))
+        if note and note not in self.notes:
+            self.notes.append(note)
+        text, drawn = self.scatter.set(text, name, run)
+        self.drawn |= drawn.keys()
+        return values | drawn, name, text
 
     def check_use(self, names: Iterator[str]) -> None:
         """Refuse free names that no formula uses: they would make no difference."""

@@ -80,7 +80,7 @@ def make_table(sweep: Sweep, known: dict[str, dict[str, object]]) -> Table:
                   decks=[case.deck for case in cases])
     table.columns["case"] = [case.number for case in cases]
     for name in sweep.plan.names:
-        table.columns[name] = [_plain(case.values[name]) for case in cases]
+        table.columns[name] = [_plain(case.values.get(name, "")) for case in cases]
     rows = []
     for case in cases:
         folder = sweep.folder(case)

@@ -98,6 +98,9 @@ class ReportTest(unittest.TestCase):
         self.assertIsNone(summary["energy_absorbed"])
         self.assertIn("contact has not ended", page.cells)
         self.assertIn("algorithmic dissipation", page.cells)
+        self.assertIn("threshold: force where its curve first drops by damage, behind a low pass of 6 kHz", page.cells)
+        self.assertIn("largest diameter of the projected damage", page.cells)
+        self.assertIn("delamination below ply 2", page.cells)
         growth = summary["interfaces"][0]["first_growth"]
         self.assertIn(f"{growth['force'] / 1e3:.4g} kN at {1e3 * growth['at']:.4g} ms", page.cells)
         self.assertIn(summary["provenance"]["commit"], page.cells)

@@ -1,0 +1,95 @@
+"""Statistics of runs with random inputs as text and as rows of tables, in units that are easy to read."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+
+from implam_post.look import Look
+from implam_post.scatter_results import Group, Held, held_against, pairs_of
+from implam_post.scatter_statistics import Difference, Spread, spreads
+from implam_post.sweep_plan import Plan
+
+# Figures that are printed; all are in the files.
+SHOWN = ("peak_force", "peak_force_at", "threshold_force", "largest_displacement", "largest_deflection",
+         "contact_duration", "rebound_velocity", "energy_absorbed", "delaminated_area", "projected_area",
+         "damage_diameter", "damage_length", "damage_width")
+HEAD = ("", "mean", "standard error", "standard deviation", "5 % point", "95 % point", "runs")
+PAIRED = ("", "first", "difference", "scatter of it", "", "pairs")
+HELD = ("", "measured", "aim", "mean", "standard error", "off by", "")
+
+
+def statistics_text(plan: Plan, groups: Sequence[Group], look: Look) -> str:
+    """Return what is printed at the end of a sweep."""
+    parts = []
+    for group in groups:
+        seconds = sum(run.seconds for run in group.ended)
+        parts += [f"\n{group.name or 'Statistics'}: {len(group.ended)} of {len(group.runs)} runs, {seconds:.4g} s of "
+                  "the processor", *_lines(HEAD, spread_rows(spreads(group.numbers), group.dimensions, look, SHOWN))]
+        if plan.measured is not None and (held := held_against(group, plan.measured)):
+            parts += ["", *_lines(HELD, held_rows(held))]
+    for group, found in pairs_of(groups):
+        parts += [f"\n{group.name} against {groups[0].name}, runs with the same inputs",
+                  *_lines(PAIRED, difference_rows(found, group.dimensions, look, SHOWN))]
+    return "\n".join(parts)
+
+
+def spread_rows(found: Mapping[str, Spread], dimensions: Mapping[str, str], look: Look,
+                names: Sequence[str]) -> Iterator[tuple[str, ...]]:
+    """Give a row a figure: mean, its standard deviation, that of the runs, points of 5 and 95 %, number of runs."""
+    for name in names:
+        if name in found and found[name].number:
+            one = found[name]
+            said = _sayer(look, dimensions.get(name, ""), one.mean, one.high)
+            deviation = f"{said(one.deviation)}{_percent(one.deviation, one.mean)}"
+            yield (words_of(name), said(one.mean), said(one.error), deviation, said(one.low), said(one.high),
+                   str(one.number))
+
+
+def difference_rows(found: Mapping[str, Difference], dimensions: Mapping[str, str], look: Look,
+                    names: Sequence[str]) -> Iterator[tuple[str, ...]]:
+    """Give a row a figure: mean of the first, difference, what of it is scatter, and whether it is told from that."""
+    for name in names:
+        if name in found and found[name].number:
+            one = found[name]
+            said = _sayer(look, dimensions.get(name, ""), one.first, one.mean)
+            verdict = "differs" if one.differs else "equal" if one.number > 1 else "not told by one pair"
+            yield (words_of(name), said(one.first), f"{said(one.mean)}{_percent(one.mean, one.first)}",
+                   said(one.least), verdict, str(one.number))
+
+
+def held_rows(held: Sequence[Held]) -> Iterator[tuple[str, ...]]:
+    """Give a row a measured figure: that, what is aimed at, the mean, how far it is off, and whether it is within."""
+    for row in held:
+        expected, found = row.expected, row.found
+        aim = f"{100 * expected.relative:.3g} %" if expected.relative is not None else f"{expected.absolute:.3g}"
+        off = f"{100 * (found.mean / expected.value - 1):+.1f} %" if expected.value else f"{found.mean:.3g}"
+        yield (expected.label, f"{expected.value:.4g}", aim, _number(found.mean), _number(found.error), off,
+               "within" if row.passed else "beyond")
+
+
+def words_of(name: str) -> str:
+    """Return a figure's name in words."""
+    return name.replace("_", " ")
+
+
+def _sayer(look: Look, dimension: str, *values: float) -> Callable[[float], str]:
+    """Return what writes values in the unit that suits the largest of some of them."""
+    axis = look.axis("", dimension, values)
+    unit = axis.label.strip(" []") if look.system and dimension else ""
+    return lambda value: "-" if value != value else f"{axis.factor * value:.4g} {unit}".strip()
+
+
+def _percent(part: float, whole: float) -> str:
+    """Return a part of a whole in per cent, in brackets; nothing where there is no such part."""
+    return "" if part != part or not whole else f" ({100 * part / abs(whole):.3g} %)"
+
+
+def _number(value: float) -> str:
+    """Return a number to four digits; a dash for none."""
+    return "-" if value != value else f"{value:.4g}"
+
+
+def _lines(head: Sequence[str], rows: Iterator[tuple[str, ...]]) -> list[str]:
+    """Return a table as lines of text, first column on the left."""
+    table = [tuple(head), *rows]
+    widths = [max(map(len, column)) for column in zip(*table, strict=True)]
+    return ["  ".join(cell.ljust(width) if place == 0 else cell.rjust(width)
+                      for place, (cell, width) in enumerate(zip(row, widths, strict=True))).rstrip() for row in table]
