@@ -75,7 +75,7 @@ def projected_figure(fields: Fields, look: Look = _PLAIN) -> Figure:
     """
     interfaces, last = fields.snapshots[-1].mesh.interfaces, len(fields.snapshots) - 1
     seen = fields.projected(last)
-    figure = Figure(figsize=(7, height_of(7 - 2 * _BESIDE, reach_of(seen, fields)) + _WORDS + _CAPTION),
+    figure = Figure(figsize=(7, height_of(7 - _BESIDE, reach_of(seen, fields)) + _WORDS + _CAPTION),
                     layout="constrained")
     axes = figure.subplots()
     if look.projected == "time":

@@ -14,7 +14,7 @@ from implam_post.history import ENERGY_NAMES, UNACCOUNTED
 from implam_post.look import Look
 from implam_post.report_html import number, page, picture, table
 from implam_post.report_pictures import history_pictures, layup_figure, map_pictures, plan_figure
-from implam_post.run_figures import SUMMARY, Results, corner_of, read_results, resistance
+from implam_post.run_figures import SUMMARY, Measured, Results, corner_of, read_results, resistance
 from implam_post.scatter_report import write_page
 from implam_post.scatter_results import STATISTICS
 
@@ -53,22 +53,23 @@ def report(results: Results, base: Path) -> str:
     """Return the page of a run; `base` is what the names of its results begin with."""
     summary, look = results.summary, Look(results.system)
     title = summary["title"] or summary["case"]
+    found = resistance(results)
     parts = [f"<h1>{escape(title)}</h1>", _ending(summary, look), "<h2>Summary</h2>", _figures(summary, look)]
     if "energy_absorbed" in summary and results.history is not None:
-        parts += ["<h2>Damage resistance, as ASTM D7136 asks for it</h2>", _resistance(results, look)]
+        parts += ["<h2>Damage resistance, as ASTM D7136 asks for it</h2>", _resistance(results, found, look)]
     if summary.get("interfaces"):
         parts += ["<h2>Interfaces</h2>", _interfaces(summary, look)]
     parts += ["<h2>Plate and lay-up</h2>", _plate(summary, look)]
-    parts += ["<h2>Curves</h2>", _curves(results, base, look), "<h2>Maps</h2>", _maps(results, base, look)]
+    parts += ["<h2>Curves</h2>", _curves(results, found, base, look), "<h2>Maps</h2>", _maps(results, base, look)]
     parts += ["<h2>Energy ledger at the end</h2>", _ledger(summary, look)]
     parts += ["<h2>Warnings</h2>", _warnings(summary), "<h2>Provenance</h2>", _provenance(summary)]
     parts += ["<h2>Deck</h2>", f"<pre>{escape(summary['provenance']['deck'])}</pre>"]
     return page(title, parts)
 
 
-def _resistance(results: Results, look: Look) -> str:
+def _resistance(results: Results, found: Mapping[str, Measured], look: Look) -> str:
     """Return threshold, energies, size and type of the damage."""
-    summary, found = results.summary, resistance(results)
+    summary = results.summary
 
     def row(name: str, key: str, missing: str = "-", at: str = "") -> tuple[str, str, str]:
         if key not in found or math.isnan(found[key].value):
@@ -192,11 +193,13 @@ def _plate(summary: Mapping[str, Any], look: Look) -> str:
                       picture(layup_figure(summary), "lay-up from the struck face"), table(head, rows)])
 
 
-def _curves(results: Results, base: Path, look: Look) -> str:
+def _curves(results: Results, found: Mapping[str, Measured], base: Path, look: Look) -> str:
     """Return the curves of the history, or why there are none."""
     if results.history is None:
         return f"<p>There is no {escape(base.name)}_history.csv.</p>"
-    return "\n".join(picture(figure, text) for text, figure in history_pictures(results.history, look))
+    mark = tuple(found[name].value for name in ("threshold_at", "threshold_force")) if "threshold_at" in found else None
+    pictures = history_pictures(results.history, look, mark if mark and not math.isnan(mark[0]) else None)
+    return "\n".join(picture(figure, text) for text, figure in pictures)
 
 
 def _maps(results: Results, base: Path, look: Look) -> str:

@@ -92,11 +92,15 @@ def plan_figure(summary: Mapping[str, Any], look: Look) -> Figure:
     return figure
 
 
-def history_pictures(history: History, look: Look) -> Iterator[tuple[str, Figure]]:
-    """Give the curves of a history: force, force against displacements, deflection, areas and energies."""
+def history_pictures(history: History, look: Look,
+                     threshold: tuple[float, float] | None = None) -> Iterator[tuple[str, Figure]]:
+    """Give the curves of a history: force, force against displacements, deflection, areas and energies.
+
+    Time and force of a threshold are marked on the curve of the force.
+    """
     if np.any(history["force"]):
         shown = in_contact(history)
-        yield "contact force against time", _curve(history, "time", "force", look)
+        yield "contact force against time", _curve(history, "time", "force", look, threshold)
         if np.any(history.columns.get("impactor_displacement", 0)):
             yield "contact force against displacement of the impactor", _curve(shown, "impactor_displacement", "force",
                                                                                look)
@@ -111,8 +115,9 @@ def history_pictures(history: History, look: Look) -> Iterator[tuple[str, Figure
     yield "energies against time", _curves(history, energies, "energy", "energy", look)
 
 
-def _curve(history: History, against: str, column: str, look: Look) -> Figure:
-    """Draw one column; steps in which delaminations grew are marked on the force."""
+def _curve(history: History, against: str, column: str, look: Look,
+           mark: tuple[float, float] | None = None) -> Figure:
+    """Draw one column; steps in which delaminations grew are marked on the force, and a threshold if there is one."""
     figure = Figure(figsize=(7, 3.4), layout="constrained")
     axes = figure.subplots()
     along, up = (look.axis(*AXES[name], history[name]) for name in (against, column))
@@ -121,6 +126,9 @@ def _curve(history: History, against: str, column: str, look: Look) -> Figure:
     if column == "force" and len(grown):
         axes.plot(along.factor * history[against][grown], up.factor * history[column][grown], "o", markersize=3,
                   label="delamination grows")
+    if mark is not None:
+        axes.plot(along.factor * mark[0], up.factor * mark[1], "kx", label="threshold behind the low pass")
+    if axes.get_legend_handles_labels()[0]:
         axes.legend()
     axes.set(xlabel=along.label, ylabel=up.label)
     axes.grid(alpha=0.3)

@@ -11,6 +11,9 @@ from implam_post.sweep_plan import Plan
 SHOWN = ("peak_force", "peak_force_at", "threshold_force", "largest_displacement", "largest_deflection",
          "contact_duration", "rebound_velocity", "energy_absorbed", "delaminated_area", "projected_area",
          "damage_diameter", "damage_length", "damage_width")
+# What variants are held by, side by side.
+COMPARED = ("peak_force", "largest_displacement", "contact_duration", "energy_absorbed", "projected_area",
+            "damage_diameter")
 HEAD = ("", "mean", "standard error", "standard deviation", "5 % point", "95 % point", "runs")
 PAIRED = ("", "first", "difference", "scatter of it", "", "pairs")
 HELD = ("", "measured", "aim", "mean", "standard error", "off by", "")
@@ -25,10 +28,40 @@ def statistics_text(plan: Plan, groups: Sequence[Group], look: Look) -> str:
                   "the processor", *_lines(HEAD, spread_rows(spreads(group.numbers), group.dimensions, look, SHOWN))]
         if plan.measured is not None and (held := held_against(group, plan.measured)):
             parts += ["", *_lines(HELD, held_rows(held))]
+    if len(groups) > 1:
+        parts += ["\nMeans ± standard errors; * differs from the first by more than the scatter of the difference",
+                  markdown(variants_table(groups, look))]
     for group, found in pairs_of(groups):
         parts += [f"\n{group.name} against {groups[0].name}, runs with the same inputs",
                   *_lines(PAIRED, difference_rows(found, group.dimensions, look, SHOWN))]
     return "\n".join(parts)
+
+
+def variants_table(groups: Sequence[Group], look: Look) -> list[tuple[str, ...]]:
+    """Return a row a variant, the names of the figures above: mean and standard error of what variants are held by.
+
+    A star stands where the difference from the first variant is larger than the scatter of its mean.
+    """
+    apart = {id(group): found for group, found in pairs_of(groups)}
+    told = [(group, spreads(group.numbers)) for group in groups]
+    names = [name for name in COMPARED if any(name in found and found[name].number for _, found in told)]
+    rows = [("", "runs", *map(words_of, names))]
+    for group, found in told:
+        cells = []
+        for name in names:
+            if name not in found or not found[name].number:
+                cells.append("-")
+                continue
+            said = _sayer(look, group.dimensions.get(name, ""), found[name].mean)
+            star = " *" if name in apart.get(id(group), {}) and apart[id(group)][name].differs else ""
+            cells.append(f"{said(found[name].mean)} ± {said(found[name].error)}{star}")
+        rows.append((group.name, str(len(group.ended)), *cells))
+    return rows
+
+
+def markdown(rows: Sequence[Sequence[str]]) -> str:
+    """Return a table as a page of a manual has it."""
+    return "\n".join(f"| {' | '.join(row)} |" for row in [rows[0], ["---"] * len(rows[0]), *rows[1:]])
 
 
 def spread_rows(found: Mapping[str, Spread], dimensions: Mapping[str, str], look: Look,

@@ -16,7 +16,7 @@ from implam_post.case_run import case_command, forget
 from implam_post.errors import EXIT_DONE, EXIT_USAGE, CommandParser, DeckError, FileError, count, run
 from implam_post.files import try_lock, write_text
 from implam_post.program import EXIT_STOPPED, PROGRAM_HELP, check_deck, find_program, processors
-from implam_post.sweep_plan import FORMAT, Case, is_random, read_plan
+from implam_post.sweep_plan import FORMAT, Case, is_random, only, read_plan
 from implam_post.sweep_runs import NOT_RUN, STOPPED, Sweep, run_cases
 
 if TYPE_CHECKING:  # it takes numpy, which a faulty sweep needn't wait for
@@ -88,7 +88,7 @@ def _gather(sweep: Sweep, tables: _Tables) -> int:
     print(output / "table.csv", output / "table.h5", *plots, sep="\n")
     if is_random(sweep.plan):
         _tell_scatter(sweep, table.system)
-    for note in (*table.notes, *sweep.plan.notes):
+    for note in table.notes:
         print(f"note: {note}")
     return tell_ends(sweep)
 
@@ -103,7 +103,9 @@ def _tell_scatter(sweep: Sweep, system: str) -> None:
     files = write_statistics(sweep, groups, system)
     pictures = plot_scatter(groups, curves_of(sweep.plan.measured), look, sweep.plan.output)
     print(*files, *pictures, sep="\n")
-    print(statistics_text(sweep.plan, groups, look))
+    text = statistics_text(sweep.plan, groups, look)
+    write_text(sweep.plan.output / "statistics.txt", f"{text.strip()}\n")
+    print(text)
 
 
 def tell_ends(sweep: Sweep) -> int:
@@ -132,6 +134,8 @@ def _work(sweep: Sweep, options: argparse.Namespace) -> int:
     check_decks(sweep, cases, options.jobs)
     if options.array:
         return _write_array(sweep, cases)
+    for note in sweep.plan.notes:
+        print(f"note: {note}")
     print(f"{len(sweep.plan.cases)} cases, {len(cases)} decks to run", flush=True)
     finished = run_cases(sweep, cases, options.jobs, tables.write_now_and_then)
     code = _gather(sweep, tables)
@@ -140,7 +144,8 @@ def _work(sweep: Sweep, options: argparse.Namespace) -> int:
 
 def _command(options: argparse.Namespace) -> int:
     """Read the sweep and work on it, alone in its folder."""
-    sweep = Sweep(read_plan(options.sweep, options.output), find_program(options.program))
+    plan = read_plan(options.sweep, options.output)
+    sweep = Sweep(only(plan, options.only) if options.only else plan, find_program(options.program))
     try:
         sweep.plan.output.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -169,6 +174,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     what.add_argument("--array", action="store_true",
                       help="run nothing; list decks (decks.txt) and commands (array.txt) for a queue's job array")
     what.add_argument("--table", action="store_true", help="run nothing; write table and plots of what is there")
+    parser.add_argument("--only", nargs="+", metavar="VARIANT",
+                        help="of [variants] only these, and the first one, which others are held against")
     parser.add_argument("--retry", action="store_true", help="also run again what found no convergence, all afresh")
     return run(_command, parser, arguments)
 

@@ -5,7 +5,7 @@ import itertools
 import math
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -175,6 +175,16 @@ def _variant(name: str, table: dict[str, object]) -> Variant:
         if key != "deck" and key_path(key) is None:
             raise DeckError(f"[variants] {name}: '{key}' is no key of the deck, as group.key or group[2].key.")
     return Variant(name, settings, dropped)
+
+
+def only(plan: Plan, variants: Sequence[str]) -> Plan:
+    """Return the plan with its first variant and some others alone."""
+    names = list(dict.fromkeys(str(case.values[VARIANT]) for case in plan.cases if VARIANT in case.values))
+    for name in variants:
+        if name not in names:
+            raise DeckError(f"{plan.path}: '{name}' is none of the variants {', '.join(names) or '(there are none)'}.")
+    kept = {names[0], *variants}
+    return replace(plan, cases=[case for case in plan.cases if case.values[VARIANT] in kept])
 
 
 def is_random(plan: Plan) -> bool:

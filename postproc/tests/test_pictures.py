@@ -14,9 +14,9 @@ from matplotlib.patches import PathPatch
 from PIL import Image
 
 from implam_post import movie, plot
-from implam_post.fields import area, read_fields
+from implam_post.fields import Fields, Mesh, Snapshot, area, read_fields
 from implam_post.history import ENERGIES, History
-from implam_post.look import Look
+from implam_post.look import Look, settle
 from implam_post.plan import along_fibres, delamination_figure, failures_figure, projected_figure
 from tests.test_fields import write_fields
 
@@ -153,3 +153,14 @@ class PicturesTest(unittest.TestCase):
         measured.write_text("time,load\n0,0\n1e-3,1900\n")
         self.assertEqual(self.plot(run, "--measured", measured)[0], 4)
         self.assertEqual(self.plot(run, "--dpi", "1")[0], 1)
+
+    def test_titles_are_whole(self) -> None:
+        """Where axes keep equal scales, titles lie within the picture whatever the shape of the damage."""
+        for length, width in ((57, 32), (38, 14), (20, 20), (15, 45)):
+            corners = np.array([[0, 0], [length, 0], [length, width], [0, width]]) - np.array([length, width]) / 2
+            mesh = Mesh(np.stack([corners, corners / 2]), *2 * [np.array([2, 3])], np.zeros(2, dtype=bool))
+            snapshot = Snapshot(1.0, mesh, np.ones((2, 9)), {}, np.zeros(2))
+            figure = projected_figure(Fields("none.h5", "whole", [snapshot]), Look("mm-t-s"))
+            settle(figure)
+            beyond = figure.axes[0].title.get_window_extent().y1 - figure.bbox.height
+            self.assertLess(beyond, 0, (length, width))

@@ -12,7 +12,7 @@ from implam_post.namelist import read_namelist
 from implam_post.scatter_plan import KINDS
 from implam_post.scatter_plots import inside
 from implam_post.scatter_statistics import difference_of, spread_of, student
-from implam_post.sweep_plan import Plan, read_plan
+from implam_post.sweep_plan import Plan, only, read_plan
 
 DECK = """
 &case units='SI' /
@@ -97,6 +97,16 @@ class ScatterPlanTest(unittest.TestCase):
             self.assertEqual((len(first["support"]), len(second["support"])), (2, 1))
             self.assertIn("window", second["support"][0])
         self.assertEqual(set(plan.names) - {"variant"}, plan.random)
+
+    def test_some_variants(self) -> None:
+        """The first variant and those asked for, with the decks that they have among all; a sentence for others."""
+        text = "[variants]\na = {}\nb = { 'impactor.energy' = 5 }\nc = { 'impactor.energy' = 6 }\n"
+        plan = self.plan(text)
+        some = only(plan, ["c"])
+        self.assertEqual([(case.values["variant"], case.key) for case in some.cases],
+                         [(case.values["variant"], case.key) for case in plan.cases[::2]])
+        with self.assertRaisesRegex(DeckError, "'d' is none of the variants a, b, c"):
+            only(plan, ["d"])
 
     def test_a_part_of_the_plate(self) -> None:
         """Under symmetry the place of impact stays, and a note says so."""
