@@ -108,6 +108,20 @@ class ScatterPlanTest(unittest.TestCase):
         with self.assertRaisesRegex(DeckError, "'d' is none of the variants a, b, c"):
             only(plan, ["d"])
 
+    def test_sweeps_of_the_panels(self) -> None:
+        """Their files can be read, and each variant has decks of its own, but for one that is the deck as it is."""
+        paths = sorted((Path(__file__).resolve().parents[2] / "tests/bench/scatter").glob("*.toml"))
+        self.assertGreaterEqual(len(paths), 3)
+        for path in paths:
+            plan = read_plan(path)
+            decks = {}
+            for case in plan.cases:
+                decks.setdefault(case.values.get("variant", ""), []).append(case.key)
+            firsts = [tuple(keys) for keys in decks.values()]
+            self.assertEqual({len(keys) for keys in firsts}, {10})
+            self.assertGreaterEqual(len(set(firsts)), len(firsts) - 2)
+            self.assertTrue(all(len(set(keys)) == 10 for keys in firsts))
+
     def test_a_part_of_the_plate(self) -> None:
         """Under symmetry the place of impact stays, and a note says so."""
         plan = self.plan("[scatter]\nnumber = 1\n", "symmetry='point'")
