@@ -42,17 +42,27 @@ contains
     end do
   end subroutine log_echo
 
-  !> Says in the log how large the model is, and what factors its operator.
+  !> Says in the log how large the model is, and what factors its operator. Collective.
   subroutine log_model(model, stepper, log)
     type(model_t), intent(in) :: model
     !> The time stepper
     type(time_stepper_t), intent(in) :: stepper
     !> The log
     type(log_t), intent(inout) :: log
+    integer :: unknowns, most, least
 
     if (allocated(stepper%explicit)) then
-      call log%note('Model: '//to_text(model%mesh%elements())//' elements, '//to_text(count(.not. model%held))// &
-                    ' unknowns, '//to_text(model%communicator%size)//' rank(s).')
+      associate (share => model%distribution)
+        unknowns = count(.not. model%held(:, :share%owned))
+        most = size(share%elements)
+      end associate
+      least = most
+      call model%communicator%sum(unknowns)
+      call model%communicator%maximum(most)
+      call model%communicator%minimum(least)
+      call log%note('Model: '//to_text(model%mesh%elements())//' elements, '//to_text(unknowns)//' unknowns, '// &
+                    to_text(model%communicator%size)//' rank(s) of '//to_text(least)//' to '//to_text(most)// &
+                    ' elements.')
       call log_stable_step(stepper, log)
       return
     end if

@@ -28,7 +28,9 @@ module deck_central_differences
   real(wp), parameter :: most_scaling = 10
   !> Error of a bending wave's frequency up to which inertia is scaled. By s times the rotary inertia a wave of number k
   !> in a plate of thickness h is slower by (s - 1) (k h)**2/24: rho h**3/12 k**2 beside rho h, halved by the root.
-  real(wp), parameter :: frequency_error = 0.005_wp
+  !> The history of the force errs by up to 2.7 times as much, in the relative L2 norm over twenty random scenes
+  !> (tests/bench/explicit_table.py elastic): so it errs by less than 1 %.
+  real(wp), parameter :: frequency_error = 0.0035_wp
   !> Rows of a history, about: as many as a plot shows. They are written at whole steps, which none is cut for.
   real(wp), parameter :: rows = 2000
   real(wp), parameter :: pi = acos(-1.0_wp)

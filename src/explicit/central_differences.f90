@@ -126,6 +126,7 @@ contains
     self%lines = create_line_steps(model, self%inertia)
     call sort_points(self)
     self%impact = create_impactor_steps(model, now%impactor%velocity)
+    call self%impact%patch%gather(model, self%inertia%inverse(7, :))
     allocate (self%force(5, points), self%motion(5, points), self%field(5, model%borders%columns), &
               self%strain(lanes, model%elements%batches), source=0.0_wp)
     self%initial_work = now%ledger%external_work
@@ -163,7 +164,7 @@ contains
     end if
     square = self%stiffened**2
     if (model%scene%has_impactor) &
-      square = square + self%impact%contact_frequency_square(model, now%indentation, self%inertia%inverse(7, :))
+      square = square + self%impact%contact_frequency_square(model, now%indentation)
     step = self%parameters%step_factor*2/sqrt(square)
     if (self%parameters%longest > 0) step = min(step, self%parameters%longest)
   end function longest_step
@@ -239,6 +240,7 @@ contains
     call self%inertia%invert(self%steps%now*self%steps%mean())
     call self%lines%project(self%inertia%inverse)
     call self%circles%prepare(model, self%inertia%inverse(7, :))
+    call self%impact%patch%gather(model, self%inertia%inverse(7, :))
     call self%stacks%prepare(self%inertia, self%steps%now*self%steps%mean())
     self%prepared = self%steps
   end subroutine prepare
@@ -359,6 +361,7 @@ contains
     call self%stacks%find_damaged(now%interfaces%cohesive)
     self%motion = model%motion_of(now%motion%displacement)
     self%prepared = step_lengths_t()
+    if (self%steps%now > 0) call prepare(self, model)
   end subroutine resume
 
   !> Saves or loads.

@@ -54,26 +54,18 @@ contains
   end function create_impactor_steps
 
   !> Square of the frequency that the contact adds to those of the plate: its steepest slope so far, with some reserve,
-  !> on the mass under the patch and that of the impactor. Collective.
-  real(wp) function contact_frequency_square(self, model, indentation, inverse) result(square)
+  !> on the mass under the patch and that of the impactor.
+  real(wp) function contact_frequency_square(self, model, indentation) result(square)
     !> The impactor
     class(impactor_steps_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> The contact
     type(indentation_t), intent(in) :: indentation
-    !> Inverse inertia of w, (points)
-    real(wp), intent(in) :: inverse(:)
-    real(wp) :: slope, compliance, reached(size(self%patch%local))
-    integer :: i
+    real(wp) :: slope, compliance
 
     slope = indentation_stiffness(model%scene%indentation, indentation, indentation%alpha)
     if (slope > self%contact_stiffness) self%contact_stiffness = slope_reserve*slope
-    reached = 0
-    do i = 1, size(reached)
-      if (self%patch%local(i) > 0) reached(i) = inverse(self%patch%local(i))
-    end do
-    call model%communicator%sum(reached)
-    compliance = sum(self%patch%weights**2*reached)/model%mesh%multiplicity
+    compliance = sum(self%patch%weights**2*self%patch%inverse)/model%mesh%multiplicity
     if (.not. model%scene%impactor%travel > 0) compliance = compliance + 1/model%scene%impactor%mass
     square = self%contact_stiffness*compliance
   end function contact_frequency_square
@@ -89,8 +81,7 @@ contains
     type(state_t), intent(inout) :: now
     real(wp) :: alpha, before, change, w(size(self%patch%local))
 
-    now%deflection = model%deflection(now%motion%displacement)
-    w = self%patch%deflections(model, now%motion%displacement)
+    call self%patch%find_deflections(model, now%motion%displacement, w, now%deflection)
     now%patch_mean = self%patch%mean(w)
     if (.not. model%scene%has_impactor) return
     associate (impactor => now%impactor, parameters => model%scene%impactor)

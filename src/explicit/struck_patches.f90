@@ -19,8 +19,8 @@ module struck_patches
     integer, allocatable :: local(:)
     !> Weights of the deck's patch, area beside it, and height of the nose's surface above its tip, (reached)
     real(wp), allocatable, private :: under(:), beside(:), rise(:)
-    !> Weights by which the force is spread, (reached)
-    real(wp), allocatable :: weights(:)
+    !> Weights by which the force is spread, and inverse inertia of w, (reached)
+    real(wp), allocatable :: weights(:), inverse(:)
     !> What the mean deflection had more when the weights were others
     real(wp) :: offset = 0
     !> True: the force follows the nose
@@ -29,7 +29,9 @@ module struck_patches
     real(wp), private :: area = 0
   contains
     !> Deflections of the points.
-    procedure :: deflections
+    procedure :: find_deflections
+    !> Takes over the inverse inertia of the points.
+    procedure :: gather
     !> Deflection under the impactor.
     procedure :: mean
     !> Spreads the force anew.
@@ -82,23 +84,46 @@ contains
     if (self%follows) self%area = model%nose%area
   end function create_struck_patch
 
-  !> Deflections of the points, the same on every rank.
-  function deflections(self, model, displacement) result(w)
+  !> Deflections of the points and that of the struck point, the same on every rank: one message. Collective.
+  subroutine find_deflections(self, model, displacement, w, struck)
     !> The points
     class(struck_patch_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> (reached)
-    real(wp) :: w(size(self%local))
+    real(wp), intent(out) :: w(:)
+    !> At the struck point
+    real(wp), intent(out) :: struck
+    real(wp) :: list(size(w) + 1)
     integer :: i
 
-    w = 0
+    list = 0
     do i = 1, size(w)
-      if (self%local(i) > 0) w(i) = displacement(3, self%local(i))
+      if (self%local(i) > 0) list(i) = displacement(3, self%local(i))
     end do
-    call model%communicator%sum(w)
-  end function deflections
+    if (model%struck > 0) list(size(list)) = displacement(3, model%struck)
+    call model%communicator%sum(list)
+    w = list(:size(w))
+    struck = list(size(list))
+  end subroutine find_deflections
+
+  !> Takes over the inverse inertia of the points from the ranks that have them. Collective.
+  subroutine gather(self, model, inverse)
+    !> The points
+    class(struck_patch_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> Inverse inertia of w, (points)
+    real(wp), intent(in) :: inverse(:)
+    integer :: i
+
+    if (.not. allocated(self%inverse)) allocate (self%inverse(size(self%local)))
+    self%inverse = 0
+    do i = 1, size(self%local)
+      if (self%local(i) > 0) self%inverse(i) = inverse(self%local(i))
+    end do
+    call model%communicator%sum(self%inverse)
+  end subroutine gather
 
   !> Deflection under the impactor.
   pure real(wp) function mean(self, w)

@@ -325,8 +325,95 @@ def costs(program, options):
             f'step, {taken:.0f} steps')
 
 
+def sent(folder, ranks):
+    """Messages between neighbours, collective calls to each other rank, bytes of both, most of any rank: what Open
+    MPI's monitoring has counted."""
+    found = np.zeros((ranks, 4))
+    for rank in range(ranks):
+        for line in (folder/f'count.{rank}.prof').read_text(encoding='utf-8').splitlines():
+            entry = re.match(r'([EC])\t(\d+)\t(\d+)\t(\d+) bytes\t(\d+) msgs', line)
+            if entry and entry[2] != entry[3]:
+                found[rank, 0 if entry[1] == 'E' else 1] += int(entry[5])
+                found[rank, 2 if entry[1] == 'E' else 3] += int(entry[4])
+    found[:, [1, 3]] /= max(ranks - 1, 1)
+    return found
+
+
+def messages(program, options):
+    """Messages and bytes of a step on several ranks, and the time on 64 that follows from them."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        for cell in options.cells or (3, 1.5):
+            text = (INPUT/'experiments/t700_m21_25J.nml').read_text(encoding='utf-8')
+            if cell == 1.5:
+                text = change_deck(text, ['mesh%elements=34, 52', 'mesh%cell=1.5e-3'])
+            for ranks in (2, 4, 8, 16):
+                counts, shares = [], None
+                for steps in (200, 400):
+                    deck = folder/'deck.nml'
+                    deck.write_text(change_deck(text, [f'time%end={steps*1.2e-7}', 'output%history_every=1',
+                                                       'output%fields_every=1']), encoding='utf-8')
+                    done = subprocess.run(
+                        ['mpirun', '--allow-run-as-root', '--oversubscribe', '-n', str(ranks), '--mca',
+                         'pml_monitoring_enable', '2', '--mca', 'pml_monitoring_enable_output', '3', '--mca',
+                         'pml_monitoring_filename', folder/'count', program, deck, '--output', folder],
+                        env=ENVIRONMENT, capture_output=True, text=True, check=False)
+                    if done.returncode:
+                        row(f'{cell} mm on {ranks} ranks', f'ends with {done.returncode}', '', False)
+                        return
+                    counts.append(sent(folder, ranks))
+                    log = next(folder.glob('*.log')).read_text(encoding='utf-8')
+                    shares = re.search(r'of (\d+) to (\d+) elements', log)
+                neighbours, collective, near, far = np.max(counts[1] - counts[0], axis=0)/200
+                row(f'{cell} mm on {ranks} ranks', f'{shares[1]} to {shares[2]} elements a rank, {neighbours:.1f} messages '
+                    f'to neighbours of {near:.0f} bytes in all, {collective:.1f} sums over all ranks of {far:.0f} bytes '
+                    'in all, a step')
+
+
+# Keys changed in the small scene of breaking plies and interfaces.
+EXTREMES = {
+    'as it is': [],
+    'plies of .02 mm beside a core of 10 mm': ['laminate%angles=0, 90, 0, 90, 0',
+                                               'laminate%thicknesses=0.02e-3, 0.02e-3, 10e-3, 0.02e-3, 0.02e-3'],
+    'moduli 1e4 apart': ['material%E1=7.7e12', 'material%E2=7.7e8', 'material%G12=4.8e8', 'material%G23=3.8e8'],
+    'impactor of 1 g': ['impactor%mass=1e-3'],
+    'impactor of 1 t': ['impactor%mass=1e3', 'impactor%velocity=1'],
+    '1 mm/s': ['impactor%velocity=1e-3'],
+    '100 m/s': ['impactor%velocity=100'],
+    'toughness of 1 J/m2': ['delamination%G_c=1'],
+    'toughness of 1e5 J/m2': ['delamination%G_c=1e5'],
+    'friction of 10': ['delamination%friction=10'],
+    'no friction': ['delamination%friction=0'],
+    'cells 20 times longer than wide': ['mesh%elements=8, 32', 'mesh%cell=3.16e-3, 0.158e-3', 'mesh%core=15.8e-3, 3.16e-3',
+                                        'mesh%patch=3.16e-3', 'delamination%zone=15.8e-3, 3.16e-3',
+                                        'delamination%starter=1.58e-3'],
+    'steps of a thousandth of the stable one': ['time%step_factor=1e-3', 'time%end=5e-6'],
+}
+
+
+def extremes(program, options):
+    """A scene of breaking plies and interfaces, at extremes of its keys."""
+    text = (INPUT/'small/breaking_rounds.nml').read_text(encoding='utf-8')
+    for name, settings in EXTREMES.items():
+        deck = change_deck(explicit(text), settings)
+        steps = steps_of(program, deck)
+        if steps is not None and steps > options.most_steps:
+            row(name, f'{steps:.3g} steps foreseen, not run')
+            continue
+        run = Run(program, deck)
+        if run.wrong():
+            row(name, run.wrong(), 'a sentence', run.code == 2)
+            continue
+        least, largest, contact = run.ledger()
+        warnings = sum(len(line) > 0 for line in re.findall('warning', run.said))
+        row(name, f'{run.rows[-1]["step"]:.0f} steps ({steps or 0:.0f} foreseen), peak {run.summary["peak_force"]:.0f} N, '
+            f'{run.rows[-1]["fibre_failures"]:.0f} fibre failures, ledger {100*least:.4f} to {100*largest:+.4f} %, '
+            f'contact {100*contact:.2f} %, {warnings} warnings, {run.seconds:.0f} s', '1 %',
+            least > -.01 and largest < .01)
+
+
 PARTS = {part.__name__: part for part in (elastic, peanut, thresholds, damaging, breaking, halves, ranks, panels,
-                                          costs)}
+                                          costs, messages, extremes)}
 
 
 def main():
