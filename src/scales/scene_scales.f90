@@ -14,7 +14,7 @@ module scene_scales
   use threshold_forces, only: effective_bending_stiffness, threshold_force
   implicit none
   private
-  public :: scene_scales_t, scales_of, plate_modes, contact_side, has_blow
+  public :: scene_scales_t, scales_of, plate_modes, contact_side, free_span, has_blow
 
   !> Scales of a scene. It has many components because each is one line of the table that users read.
   type :: scene_scales_t
