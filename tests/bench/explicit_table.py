@@ -322,6 +322,27 @@ def costs(program, options):
             f'{1e6*(runs[1].seconds - runs[0].seconds)/steps/count:.3f} us an element and step, {steps:.0f} steps')
 
 
+def scaling(program, options):
+    """What the factor of in-plane and rotary inertia changes of elastic and breaking impacts."""
+    decks = {'Sun-Chen': INPUT/'verify/sun_chen_elastic.nml', 'Karas': INPUT/'verify/karas.nml', 'peanut': INPUT/'peanut.nml'}
+    if options.run:
+        decks['25 J panel, 3 mm'] = INPUT/'experiments/t700_m21_25J.nml'
+    for name, path in decks.items():
+        text = re.sub(r'mass_scaling=\S+', '', path.read_text(encoding='utf-8'))
+        for factor in (1, 3, 6, 10, 20, 40):
+            run = Run(program, explicit(text, f'mass_scaling={factor}'))
+            if run.wrong():
+                row(f'{name}, factor {factor}', run.wrong(), '', False)
+                continue
+            last = run.rows[-1]
+            left = last['energy_impactor'] + last['energy_indentation']
+            least, largest, _ = run.ledger()
+            row(f'{name}, factor {factor}', f'peak {run.summary["peak_force"]:.1f} N, area '
+                f'{1e6*(run.summary.get("delaminated_area") or 0):.1f} mm2, absorbed '
+                f'{run.summary["energy_impact"] - left:.4g} J, ledger {100*least:.4f} to {100*largest:+.4f} %, '
+                f'{last["step"]:.0f} steps, {run.seconds:.1f} s')
+
+
 def sent(folder, ranks):
     """Messages between neighbours, collective calls to each other rank, bytes of both, most of any rank: what Open
     MPI's monitoring has counted."""
@@ -410,7 +431,7 @@ def extremes(program, options):
 
 
 PARTS = {part.__name__: part for part in (elastic, peanut, thresholds, damaging, breaking, halves, ranks, panels,
-                                          costs, messages, extremes)}
+                                          costs, scaling, messages, extremes)}
 
 
 def main():
