@@ -28,15 +28,16 @@ contains
     type(model_size_t), intent(in) :: model_size
     !> The sentence
     type(line_t), allocatable :: lines(:)
-    real(wp) :: steps
+    real(wp) :: steps, step
     character(len=:), allocatable :: bound
 
     allocate (lines(0))
     if (.not. is_explicit(deck%stepping) .or. deck%has_static .or. .not. deck%stepping%time%step > 0) return
     steps = deck%stepping%time%end/deck%stepping%time%step*shortened(deck)
+    step = deck%stepping%time%end/steps
     bound = ''
     if (any(deck%delaminations%follows)) bound = 'at most '
-    call append(lines, 'About '//rounded_text(steps)//' steps of '//rounded_text(deck%stepping%time%end/steps)//' for '// &
+    call append(lines, 'About '//rounded_text(steps)//' steps of '//rounded_text(step)//' for '// &
                 bound//rounded_text(model_size%elements)//' elements of all layers: '// &
                 spoken(seconds_of_element(deck)*steps*model_size%elements)//' of one processor.')
   end function cost_lines
