@@ -25,6 +25,7 @@ _DIMENSIONS = (("_at", "time"), ("contact_duration", "time"), ("contact_until", 
                ("force", "force"), ("velocity", "velocity"), ("area", "area"), ("energy", "energy"),
                ("work_external", "energy"), ("deflection", "length"), ("displacement", "length"), ("dent", "length"),
                ("damage_", "length"), ("depth", "length"))
+_OF_ENDED_CONTACT = ("contact_duration", "contact_until")
 _EVENTS = ("onset", "first_growth")
 
 
@@ -119,6 +120,8 @@ def _numbers(summary: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
     for name, value in summary.items():
         if name in _APART:
             continue
+        if summary.get("in_contact") and name in _OF_ENDED_CONTACT:
+            value = None
         if name == "force_filter" and value:
             yield "filtered_peak_force", value["peak_force"]
         elif _is_number(value):

@@ -19,7 +19,7 @@ from implam_post.scatter_results import Group
 BAND, SHARE = "force_band.png", "delaminated_share.png"
 _PIXELS = 240  # of the longer side of the map of shares
 _LEVELS = (0.05, 0.5, 0.95)
-_WIDTH, _WORDS, _BESIDE, _COLUMNS = 5.6, 1.9, 0.9, 3
+_WIDTH, _WORDS, _CAPTION, _BESIDE, _COLUMNS = 5.6, 2.0, 0.6, 0.9, 3
 
 
 def plot_scatter(groups: Sequence[Group], curves: Sequence[History], look: Look, folder: Path) -> list[Path]:
@@ -68,7 +68,7 @@ def share_figure(groups: Sequence[Group], look: Look) -> Figure:
     reach = np.max([reach_of(cells, like) for cells in itertools.chain(*regions)], axis=0)
     columns = min(len(groups), _COLUMNS)
     rows = -(-len(groups) // columns)
-    figure = Figure(figsize=(_WIDTH * columns, (height_of(_WIDTH - _BESIDE, reach) + _WORDS) * rows),
+    figure = Figure(figsize=(_WIDTH * columns, (height_of(_WIDTH - _BESIDE, reach) + _WORDS) * rows + _CAPTION),
                     layout="constrained")
     grid = figure.subplots(rows, columns, squeeze=False).ravel()
     for axes, group, cells in zip(grid, groups, regions, strict=False):

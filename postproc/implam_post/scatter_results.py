@@ -49,6 +49,7 @@ class Group:
 
     name: str
     runs: list[Run | None] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
 
     @property
     def ended(self) -> list[Run]:
@@ -104,19 +105,19 @@ def groups_of(sweep: Sweep) -> list[Group]:
         kept = {name: value for name, value in case.values.items() if name not in (*plan.random, *plan.derived)}
         name = ", ".join(str(value) if key == VARIANT else f"{key}={deck_value(value)}" for key, value in kept.items())
         group = found.setdefault(name, Group(name))
-        group.runs.append(None if sweep.failure(case) else _run(sweep, case))
+        try:
+            group.runs.append(None if sweep.failure(case) else _run(sweep, case))
+        except ImplamError as error:
+            group.runs.append(None)
+            group.notes.append(f"case {case.number} is left out of the statistics: {error}")
     return list(found.values())
 
 
-def _run(sweep: Sweep, case: Case) -> Run | None:
-    """Return a run with its figures; nothing if what it has left cannot be read."""
+def _run(sweep: Sweep, case: Case) -> Run:
+    """Return a run with its figures."""
     folder = sweep.folder(case)
-    record = read_record(folder)
-    try:
-        results = results_in(folder)
-        return Run(case, results, figures(results), record.cpu_time if record else math.nan)
-    except ImplamError:
-        return None
+    record, results = read_record(folder), results_in(folder)
+    return Run(case, results, figures(results), record.cpu_time if record else math.nan)
 
 
 def held_against(group: Group, measured: Path) -> list[Held]:
@@ -197,7 +198,8 @@ def write_statistics(sweep: Sweep, groups: Sequence[Group], system: str) -> list
         tables["force_band.csv"] = (("group", "time", "mean", "low_5", "high_95"), bands)
     for name, (columns, rows) in tables.items():
         write_text(output / name, _csv(columns, rows))
-    content = {"sweep": plan.text, "title": _title(groups), "system": system, "notes": list(plan.notes),
+    notes = [*plan.notes, *(note for group in groups for note in group.notes)]
+    content = {"sweep": plan.text, "title": _title(groups), "system": system, "notes": notes,
                "groups": [{"name": group.name, "runs": len(group.runs), "ended": len(group.ended),
                            "seconds": sum(run.seconds for run in group.ended)} for group in groups],
                "inputs": inputs_of(plan)}

@@ -45,18 +45,25 @@ def variants_table(groups: Sequence[Group], look: Look) -> list[tuple[str, ...]]
     apart = {id(group): found for group, found in pairs_of(groups)}
     told = [(group, spreads(group.numbers)) for group in groups]
     names = [name for name in COMPARED if any(name in found and found[name].number for _, found in told)]
-    rows = [("", "runs", *map(words_of, names))]
+    axes = {name: look.axis(words_of(name), _dimension(groups, name), [
+        found[name].mean for _, found in told if name in found]) for name in names}
+    rows = [("", "runs", *(axes[name].label.replace(" [", ", ").rstrip("]") for name in names))]
     for group, found in told:
         cells = []
         for name in names:
             if name not in found or not found[name].number:
                 cells.append("-")
                 continue
-            said = _sayer(look, group.dimensions.get(name, ""), found[name].mean)
             star = " *" if name in apart.get(id(group), {}) and apart[id(group)][name].differs else ""
-            cells.append(f"{said(found[name].mean)} ± {said(found[name].error)}{star}")
+            mean, error = (axes[name].factor * value for value in (found[name].mean, found[name].error))
+            cells.append(f"{mean:.4g}{'' if error != error else f' ± {error:.2g}'}{star}")
         rows.append((group.name, str(len(group.ended)), *cells))
     return rows
+
+
+def _dimension(groups: Sequence[Group], name: str) -> str:
+    """Return the dimension of a figure, told by any group that has it."""
+    return next((group.dimensions[name] for group in groups if name in group.dimensions), "")
 
 
 def markdown(rows: Sequence[Sequence[str]]) -> str:
@@ -71,8 +78,8 @@ def spread_rows(found: Mapping[str, Spread], dimensions: Mapping[str, str], look
         if name in found and found[name].number:
             one = found[name]
             said = _sayer(look, dimensions.get(name, ""), one.mean, one.high)
-            deviation = f"{said(one.deviation)}{_percent(one.deviation, one.mean)}"
-            yield (words_of(name), said(one.mean), said(one.error), deviation, said(one.low), said(one.high),
+            deviation = f"{said(one.deviation, 3)}{_percent(one.deviation, one.mean)}"
+            yield (words_of(name), said(one.mean), said(one.error, 2), deviation, said(one.low), said(one.high),
                    str(one.number))
 
 
@@ -84,8 +91,8 @@ def difference_rows(found: Mapping[str, Difference], dimensions: Mapping[str, st
             one = found[name]
             said = _sayer(look, dimensions.get(name, ""), one.first, one.mean)
             verdict = "differs" if one.differs else "equal" if one.number > 1 else "not told by one pair"
-            yield (words_of(name), said(one.first), f"{said(one.mean)}{_percent(one.mean, one.first)}",
-                   said(one.least), verdict, str(one.number))
+            yield (words_of(name), said(one.first), f"{said(one.mean, 3)}{_percent(one.mean, one.first)}",
+                   said(one.least, 2), verdict, str(one.number))
 
 
 def held_rows(held: Sequence[Held]) -> Iterator[tuple[str, ...]]:
@@ -103,11 +110,11 @@ def words_of(name: str) -> str:
     return name.replace("_", " ")
 
 
-def _sayer(look: Look, dimension: str, *values: float) -> Callable[[float], str]:
+def _sayer(look: Look, dimension: str, *values: float) -> Callable[..., str]:
     """Return what writes values in the unit that suits the largest of some of them."""
     axis = look.axis("", dimension, values)
     unit = axis.label.strip(" []") if look.system and dimension else ""
-    return lambda value: "-" if value != value else f"{axis.factor * value:.4g} {unit}".strip()
+    return lambda value, digits=4: "-" if value != value else f"{axis.factor * value:.{digits}g} {unit}".strip()
 
 
 def _percent(part: float, whole: float) -> str:

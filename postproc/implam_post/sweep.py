@@ -106,6 +106,8 @@ def _tell_scatter(sweep: Sweep, system: str) -> None:
     text = statistics_text(sweep.plan, groups, look)
     write_text(sweep.plan.output / "statistics.txt", f"{text.strip()}\n")
     print(text)
+    for note in (note for group in groups for note in group.notes):
+        print(f"note: {note}")
 
 
 def tell_ends(sweep: Sweep) -> int:

@@ -109,6 +109,10 @@ class ScatterTest(unittest.TestCase):
         next(iter(self.output.glob("cases/*/damage_history.csv"))).write_text("")
         self.assertIn("12 cases, 1 decks to run", self.sweep())
         self.assertEqual((self.output / "statistics.csv").read_text(), before)
+        first = self.output / self.rows("table.csv")[0]["folder"] / "damage.h5"
+        first.write_bytes(b"no fields")
+        self.assertIn("note: case 1 is left out of the statistics: the fields", self.sweep())
+        self.assertEqual(self.rows("statistics.csv")[0]["runs"], "3")
 
 
 if __name__ == "__main__":
