@@ -62,15 +62,21 @@ def read_history(path: Path | str) -> History:
 def read_columns(path: Path | str) -> History:
     """Read columns of numbers under their names, in any order of the rows and with or without a time."""
     path = Path(path)
-    lines = [line for line in read_text(path, "the history").splitlines() if line.strip() and line[0] != "#"]
-    rows = list(csv.reader(lines, skipinitialspace=True))
+    lines = [(number, line) for number, line in enumerate(read_text(path, "the history").splitlines(), start=1)
+             if line.strip() and line[0] != "#"]
+    try:
+        rows = list(csv.reader((line for _, line in lines), skipinitialspace=True))
+    except csv.Error as error:
+        raise FileError(f"the history {path} is no table of numbers ({error}).") from None
     if len(rows) < 2:
         raise FileError(f"the history {path} has no rows.")
     names = [name.strip() for name in rows[0]]
-    try:
-        table = np.array([[float(cell) for cell in row] for row in rows[1:]])
-    except ValueError as error:
-        raise FileError(f"the history {path} has unequal rows or a cell that is no number ({error}).") from None
-    if table.shape[1] != len(names):
-        raise FileError(f"the history {path} has {table.shape[1]} columns under {len(names)} names.")
+    table = np.empty((len(rows) - 1, len(names)))
+    for place, ((number, _), row) in enumerate(zip(lines[1:], rows[1:], strict=False)):
+        if len(row) != len(names):
+            raise FileError(f"the history {path} has {len(row)} cells under {len(names)} names in line {number}.")
+        try:
+            table[place] = [float(cell) for cell in row]
+        except ValueError:
+            raise FileError(f"the history {path} has a cell in line {number} that is no number.") from None
     return History(dict(zip(names, table.T, strict=True)), str(path))

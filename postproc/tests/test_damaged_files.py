@@ -15,6 +15,7 @@ from implam_post import movie, paraview, plot
 from implam_post.errors import FileError, ImplamError
 from implam_post.exchange import results
 from implam_post.fields import read_fields
+from implam_post.history import read_columns
 from tests.program import run_quietly
 from tests.test_fields import write_fields
 from tests.test_pictures import DECK
@@ -86,6 +87,17 @@ class DamagedFilesTest(unittest.TestCase):
                     file[name] = np.zeros(3)
                 with self.subTest(name), self.assertRaisesRegex(FileError, "damaged"):
                     read_fields(path)
+
+    def test_histories(self) -> None:
+        """A row that is cut or spoilt is told by its line, in words of a user's."""
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "case_history.csv"
+            for rows, told in (("0,1\n1,\n", "a cell in line 4 that is no number"),
+                               ("0,1\n1,2\n\n2\n", "1 cells under 2 names in line 6"),
+                               ("", "has no rows")):
+                path.write_text(f"# a comment\ntime, force\n{rows}", encoding="utf-8")
+                with self.subTest(rows), self.assertRaisesRegex(FileError, told):
+                    read_columns(path)
 
 
 if __name__ == "__main__":
