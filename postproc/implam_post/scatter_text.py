@@ -56,7 +56,7 @@ def variants_table(groups: Sequence[Group], look: Look) -> list[tuple[str, ...]]
                 continue
             star = " *" if name in apart.get(id(group), {}) and apart[id(group)][name].differs else ""
             mean, error = (axes[name].factor * value for value in (found[name].mean, found[name].error))
-            cells.append(f"{mean:.4g}{'' if error != error else f' ± {error:.2g}'}{star}")
+            cells.append(f"{_rounded(mean, 4)}{'' if error != error else f' ± {_rounded(error, 2)}'}{star}")
         rows.append((group.name, str(len(group.ended)), *cells))
     return rows
 
@@ -114,7 +114,13 @@ def _sayer(look: Look, dimension: str, *values: float) -> Callable[..., str]:
     """Return what writes values in the unit that suits the largest of some of them."""
     axis = look.axis("", dimension, values)
     unit = axis.label.strip(" []") if look.system and dimension else ""
-    return lambda value, digits=4: "-" if value != value else f"{axis.factor * value:.{digits}g} {unit}".strip()
+    return lambda value, digits=4: "-" if value != value else f"{_rounded(axis.factor * value, digits)} {unit}".strip()
+
+
+def _rounded(value: float, digits: int) -> str:
+    """Return a number to some digits, a large one as a whole number."""
+    text = f"{value:.{digits}g}"
+    return f"{value:.0f}" if "e+" in text and abs(value) < 1e6 else text
 
 
 def _percent(part: float, whole: float) -> str:
