@@ -324,7 +324,8 @@ def costs(program, options):
 
 def scaling(program, options):
     """What the factor of in-plane and rotary inertia changes of elastic and breaking impacts."""
-    decks = {'Sun-Chen': INPUT/'verify/sun_chen_elastic.nml', 'Karas': INPUT/'verify/karas.nml', 'peanut': INPUT/'peanut.nml'}
+    decks = {'Sun-Chen': INPUT/'verify/sun_chen_elastic.nml', 'Karas': INPUT/'verify/karas.nml',
+             'peanut': INPUT/'peanut.nml'}
     if options.run:
         decks['25 J panel, 3 mm'] = INPUT/'experiments/t700_m21_25J.nml'
     for name, path in decks.items():
@@ -383,9 +384,9 @@ def messages(program, options):
                     log = next(folder.glob('*.log')).read_text(encoding='utf-8')
                     shares = re.search(r'of (\d+) to (\d+) elements', log)
                 neighbours, collective, near, far = np.max(counts[1] - counts[0], axis=0)/200
-                row(f'{cell} mm on {ranks} ranks', f'{shares[1]} to {shares[2]} elements a rank, {neighbours:.1f} messages '
-                    f'to neighbours of {near:.0f} bytes in all, {collective:.1f} sums over all ranks of {far:.0f} bytes '
-                    'in all, a step')
+                row(f'{cell} mm on {ranks} ranks', f'{shares[1]} to {shares[2]} elements a rank, {neighbours:.1f} '
+                    f'messages to neighbours of {near:.0f} bytes in all, {collective:.1f} sums over all ranks of '
+                    f'{far:.0f} bytes in all, a step')
 
 
 # Keys changed in the small scene of breaking plies and interfaces.
@@ -402,7 +403,8 @@ EXTREMES = {
     'toughness of 1e5 J/m2': ['delamination%G_c=1e5'],
     'friction of 10': ['delamination%friction=10'],
     'no friction': ['delamination%friction=0'],
-    'cells 20 times longer than wide': ['mesh%elements=8, 32', 'mesh%cell=3.16e-3, 0.158e-3', 'mesh%core=15.8e-3, 3.16e-3',
+    'cells 20 times longer than wide': ['mesh%elements=8, 32', 'mesh%cell=3.16e-3, 0.158e-3',
+                                        'mesh%core=15.8e-3, 3.16e-3',
                                         'mesh%patch=3.16e-3', 'delamination%zone=15.8e-3, 3.16e-3',
                                         'delamination%starter=1.58e-3'],
     'steps of a thousandth of the stable one': ['time%step_factor=1e-3', 'time%end=5e-6'],
@@ -424,7 +426,8 @@ def extremes(program, options):
             continue
         least, largest, contact = run.ledger()
         warnings = sum(len(line) > 0 for line in re.findall('warning', run.said))
-        row(name, f'{run.rows[-1]["step"]:.0f} steps ({steps or 0:.0f} foreseen), peak {run.summary["peak_force"]:.0f} N, '
+        row(name, f'{run.rows[-1]["step"]:.0f} steps ({steps or 0:.0f} foreseen), '
+                  f'peak {run.summary["peak_force"]:.0f} N, '
             f'{run.rows[-1]["fibre_failures"]:.0f} fibre failures, ledger {100*least:.4f} to {100*largest:+.4f} %, '
             f'contact {100*contact:.2f} %, {warnings} warnings, {run.seconds:.0f} s', '1 %',
             least > -.01 and largest < .01)

@@ -1,10 +1,12 @@
 """Runs each row of extremes.toml as a deck: it has to end in the answer of an independent figure or bound, or in one
 sentence with the exit code that the row says.
 
-usage: extremes.py IMPLAM FOLDER [--explicit] [NAME ...]    (rows whose names hold one of the words; with none of them all)
+usage: extremes.py IMPLAM FOLDER [--explicit] [NAME ...]    (rows whose names hold one of the words; with none of them
+all)
 
-With --explicit the rows in time that have no front run by central differences, those of more than 1e6 steps excepted: for
-these the check has to tell the number. Whatever a row asks for, a run that ends well has finite numbers only and a ledger that closes.
+With --explicit the rows in time that have no front run by central differences, those of more than 1e6 steps excepted:
+for these the check has to tell the number. Whatever a row asks for, a run that ends well has finite numbers only and a
+ledger that closes.
 """
 
 import json
@@ -265,8 +267,8 @@ def check_row(entry, row):
 
 
 def explicit(deck):
-    """A deck in time by central differences, without what only implicit steps read; nothing if it is of another kind."""
-    if "&time" not in deck and "&impactor" not in deck or "&static" in deck or "starter" in deck:
+    """A deck in time by central differences, without what only implicit steps read; nothing if of another kind."""
+    if ("&time" not in deck and "&impactor" not in deck) or "&static" in deck or "starter" in deck:
         return None
     deck = re.sub(r"\b(step|rho_inf|integrator)=('\w+'|\S+)", "", deck)
     deck = re.sub(r"^&adapt[^/]*/\n", "", deck, flags=re.MULTILINE)
