@@ -88,6 +88,18 @@ class DamagedFilesTest(unittest.TestCase):
                 with self.subTest(name), self.assertRaisesRegex(FileError, "damaged"):
                     read_fields(path)
 
+    def test_cells_that_are_no_plate(self) -> None:
+        """A point that has moved leaves cells without plies, and a ply too few a hole: panels tell it."""
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "case.h5"
+            for name, place, value in (("coordinates", (0, 0), 0.5), ("cells/last_ply", 0, 1)):
+                write_fields(path, "whole")
+                with self.subTest(name), h5py.File(path, "a") as file:
+                    file["provenance/deck"] = np.bytes_(DECK)
+                    file[f"meshes/00000001/{name}"][place] = value
+                with self.assertRaisesRegex(FileError, "don't make a plate of 3 plies"):
+                    results.read_panel(path)
+
     def test_histories(self) -> None:
         """A row that is cut or spoilt is told by its line, in words of a user's."""
         with tempfile.TemporaryDirectory() as folder:

@@ -40,7 +40,17 @@ def _from_results(path: Path, time: float | None) -> Panel:
     x, y = (_lines(snapshot.mesh.corners[..., axis]) for axis in (0, 1))
     stacks = _stacks(snapshot, x, y)
     x, y, stacks = _completed(x, y, stacks, fields.part)
+    every_cell = {(column, row) for column in range(len(x) - 1) for row in range(len(y) - 1)}
+    if stacks.keys() != every_cell or not all(_is_whole(found, len(plies)) for found in stacks.values()):
+        raise FileError(f"{path} is damaged: its cells don't make a plate of {len(plies)} plies.")
     return _panel(deck, plies, x, y, stacks)
+
+
+def _is_whole(stacks: tuple[Stack, ...], plies: int) -> bool:
+    """Tell whether stacks have every ply once, from the struck face down."""
+    ends = [0, *(stack.last for stack in stacks)]
+    return ends[-1] == plies and all(stack.first == above + 1 and len(stack.failures) == stack.last - above
+                                     for above, stack in zip(ends, stacks, strict=False))
 
 
 def _lines(coordinates: np.ndarray) -> np.ndarray:
