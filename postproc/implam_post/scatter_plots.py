@@ -9,7 +9,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from implam_post.contours import outline
-from implam_post.fields import Fields
 from implam_post.files import replaced
 from implam_post.history import History
 from implam_post.look import Look, settle
@@ -28,7 +27,7 @@ def plot_scatter(groups: Sequence[Group], curves: Sequence[History], look: Look,
     banded = [group for group in groups if group.band() is not None]
     if banded:
         drawn.append(_save(band_figure(banded, curves, look), folder / BAND))
-    mapped = [group for group in groups if _fields(group)]
+    mapped = [group for group in groups if group.plate is not None]
     if mapped:
         drawn.append(_save(share_figure(mapped, look), folder / SHARE))
     return drawn
@@ -63,8 +62,8 @@ def band_figure(groups: Sequence[Group], curves: Sequence[History], look: Look) 
 
 def share_figure(groups: Sequence[Group], look: Look) -> Figure:
     """Draw for each group in which share of its runs a place has delaminated, all interfaces seen through the plate."""
-    regions = [[fields.projected(len(fields.snapshots) - 1) for fields in _fields(group)] for group in groups]
-    like = _fields(groups[0])[0]
+    regions = [[run.region for run in group.ended if run.region is not None] for group in groups]
+    like = groups[0].plate
     reach = np.max([reach_of(cells, like) for cells in itertools.chain(*regions)], axis=0)
     columns = min(len(groups), _COLUMNS)
     rows = -(-len(groups) // columns)
@@ -115,12 +114,6 @@ def inside(cells: np.ndarray, x: np.ndarray, y: np.ndarray) -> np.ndarray:
         windings = np.concatenate([[0], np.cumsum(np.sign(second_y[met] - first_y[met])[order])])
         found[row] = windings[np.searchsorted(crossing[order], x)] != 0
     return found
-
-
-def _fields(group: Group) -> list[Fields]:
-    """Return the fields of the runs of a group that have interfaces."""
-    return [run.results.fields for run in group.ended
-            if run.results.fields is not None and run.results.fields.snapshots[-1].mesh.interfaces]
 
 
 def _save(figure: Figure, path: Path) -> Path:

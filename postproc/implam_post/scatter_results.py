@@ -20,6 +20,7 @@ from implam_post.deck import Deck
 from implam_post.deck_text import deck_value
 from implam_post.errors import FileError, ImplamError
 from implam_post.expectations import Expectation, read_expectations
+from implam_post.fields import Fields
 from implam_post.files import write_text
 from implam_post.history import History, read_history
 from implam_post.quantities import AGAINST_QUANTITIES
@@ -35,21 +36,27 @@ _ROWS = 1000  # of the band of the force history
 
 @dataclass
 class Run:
-    """A run that has a result: its case, what it has left, its figures, and seconds of the processor."""
+    """A run that has a result: its case, summary and history, its figures, seconds of the processor, and what a C-scan
+    sees of it at its end, as polygons of the whole plate; nothing if it has no interface. Fields are not kept."""
 
     case: Case
     results: Results
     figures: dict[str, Measured]
     seconds: float
+    region: np.ndarray | None
 
 
 @dataclass
 class Group:
-    """Runs that differ in random inputs alone: a variant, or a row of what is swept otherwise."""
+    """Runs that differ in random inputs alone: a variant, or a row of what is swept otherwise.
+
+    `plate` are the fields of its first run with an interface.
+    """
 
     name: str
     runs: list[Run | None] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
+    plate: Fields | None = None
 
     @property
     def ended(self) -> list[Run]:
@@ -106,18 +113,22 @@ def groups_of(sweep: Sweep) -> list[Group]:
         name = ", ".join(str(value) if key == VARIANT else f"{key}={deck_value(value)}" for key, value in kept.items())
         group = found.setdefault(name, Group(name))
         try:
-            group.runs.append(None if sweep.failure(case) else _run(sweep, case))
+            group.runs.append(None if sweep.failure(case) else _run(sweep, case, group))
         except ImplamError as error:
             group.runs.append(None)
             group.notes.append(f"case {case.number} is left out of the statistics: {error}")
     return list(found.values())
 
 
-def _run(sweep: Sweep, case: Case) -> Run:
+def _run(sweep: Sweep, case: Case, group: Group) -> Run:
     """Return a run with its figures."""
     folder = sweep.folder(case)
     record, results = read_record(folder), results_in(folder)
-    return Run(case, results, figures(results), record.cpu_time if record else math.nan)
+    fields, region = results.fields, None
+    if fields is not None and fields.snapshots[-1].mesh.interfaces:
+        region = fields.projected(len(fields.snapshots) - 1)
+        group.plate = group.plate or fields
+    return Run(case, results._replace(fields=None), figures(results), record.cpu_time if record else math.nan, region)
 
 
 def held_against(group: Group, measured: Path) -> list[Held]:
