@@ -108,8 +108,9 @@ def groups_of(sweep: Sweep) -> list[Group]:
     """Return the groups of a sweep in their order, with the results of the runs that have ended."""
     plan = sweep.plan
     found: dict[str, Group] = {}
+    told = _telling(plan)
     for case in plan.cases:
-        kept = {name: value for name, value in case.values.items() if name not in (*plan.random, *plan.derived)}
+        kept = {name: case.values[name] for name in told if name in case.values}
         name = ", ".join(str(value) if key == VARIANT else f"{key}={deck_value(value)}" for key, value in kept.items())
         group = found.setdefault(name, Group(name))
         try:
@@ -118,6 +119,16 @@ def groups_of(sweep: Sweep) -> list[Group]:
             group.runs.append(None)
             group.notes.append(f"case {case.number} is left out of the statistics: {error}")
     return list(found.values())
+
+
+def _telling(plan: Plan) -> list[str]:
+    """Return the names that tell groups apart: the variant, and what differs among the cases of one variant."""
+    of_variants: dict[object, list[Case]] = {}
+    for case in plan.cases:
+        of_variants.setdefault(case.values.get(VARIANT), []).append(case)
+    return [name for name in plan.names if name not in (*plan.random, *plan.derived) and (
+        name == VARIANT or any(len({deck_value(case.values.get(name, "")) for case in cases}) > 1
+                               for cases in of_variants.values()))]
 
 
 def _run(sweep: Sweep, case: Case, group: Group) -> Run:

@@ -146,8 +146,9 @@ def _work(sweep: Sweep, options: argparse.Namespace) -> int:
 
 def _command(options: argparse.Namespace) -> int:
     """Read the sweep and work on it, alone in its folder."""
-    plan = read_plan(options.sweep, options.output)
-    sweep = Sweep(only(plan, options.only) if options.only else plan, find_program(options.program))
+    program = find_program(options.program)
+    plan = read_plan(options.sweep, options.output, program)
+    sweep = Sweep(only(plan, options.only) if options.only else plan, program)
     try:
         sweep.plan.output.mkdir(parents=True, exist_ok=True)
     except OSError as error:

@@ -4,9 +4,9 @@ import hashlib
 import itertools
 import math
 import tomllib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cache, cached_property
 from pathlib import Path
 
 from implam_post.deck import Deck
@@ -14,6 +14,7 @@ from implam_post.deck_text import KeyPath, deck_value, drop_group, group_path, k
 from implam_post.errors import DeckError
 from implam_post.expressions import CONSTANTS, FUNCTIONS, evaluate
 from implam_post.files import read_text
+from implam_post.library_values import Library, adopt, asking
 from implam_post.samples import METHODS, draw
 from implam_post.scatter_plan import Scatter, read_scatter
 from implam_post.units import SYSTEMS
@@ -121,8 +122,8 @@ class Plan:
     notes: tuple[str, ...] = field(default=(), kw_only=True)
 
 
-def read_plan(path: Path, output: Path | None = None) -> Plan:
-    """Read the file of a sweep and make the decks of its cases."""
+def read_plan(path: Path, output: Path | None = None, program: Sequence[str] | None = None) -> Plan:
+    """Read the file of a sweep and make the decks of its cases; the program is asked for published materials."""
     text = read_text(path, "the sweep")
     try:
         content = tomllib.loads(text)
@@ -136,7 +137,7 @@ def read_plan(path: Path, output: Path | None = None) -> Plan:
         if not all(isinstance(word, str) for word in (base, folder, units, measured)) or units not in ("", *SYSTEMS):
             raise DeckError(f"deck, output and measured are text, and units one of {', '.join(SYSTEMS)}.")
         check_names(tables)
-        cases = CaseMaker(path.parent, base, tables["derived"], scatter)
+        cases = CaseMaker(path.parent, base, tables["derived"], scatter, cache(asking(program)))
         made = _cases(cases, tables, variants)
         cases.check_use(name for table in ("grid", "list", "samples") for name in tables[table])
     except (tomllib.TOMLDecodeError, DeckError) as error:
@@ -264,9 +265,10 @@ def _samples(table: Mapping[str, object]) -> dict[str, list[float]]:
 class CaseMaker:
     """Makes the cases from the base decks, and keeps in mind which free names a formula uses, and what is drawn."""
 
-    def __init__(self, folder: Path, base: str, derived: dict[str, object], scatter: Scatter | None = None) -> None:
-        """Decks lie in `folder`; `base` is the deck where none is swept."""
-        self._folder, self._base, self._derived, self.scatter = folder, base, derived, scatter
+    def __init__(self, folder: Path, base: str, derived: dict[str, object], scatter: Scatter | None = None,
+                 ask: Callable[[], Library] = dict) -> None:
+        """Decks lie in `folder`; `base` is the deck where none is swept; `ask` tells published materials."""
+        self._folder, self._base, self._derived, self.scatter, self._ask = folder, base, derived, scatter, ask
         self._texts: dict[str, str] = {}
         self._used: set[str] = set()
         self.drawn: frozenset[str] = frozenset()
@@ -274,12 +276,13 @@ class CaseMaker:
 
     def make(self, number: int, swept: dict[str, object], variant: Variant | None = None, run: int = 0) -> Case:
         """Return the case of these swept values, of a variant and a run with its random inputs."""
-        values = ({VARIANT: variant.name} if variant else {}) | swept
         set_too = variant.settings if variant else {}
-        base = values.get("deck", set_too.get("deck", self._base))
+        values = ({VARIANT: variant.name} if variant else {}) | {
+            name: set_too.get(name, value) for name, value in swept.items()}
+        base = set_too.get("deck", values.get("deck", self._base))
         if not isinstance(base, str) or not base:
             raise DeckError("deck, the deck that all cases start from, is needed.")
-        settings = {path: deck_value(value) for name, value in {**set_too, **swept}.items() if (path := key_path(name))}
+        settings = {path: deck_value(value) for name, value in (swept | set_too).items() if (path := key_path(name))}
         name = f"{Path(base).stem}.nml"
         text = self._text(base)
         # A group is counted among those of the deck, so groups are left out first, the last ones before others.
@@ -299,6 +302,7 @@ class CaseMaker:
         """Return the values, the name and the text of a deck with its inputs drawn at random, if they are."""
         if self.scatter is None:
             return values, name, text
+        text = adopt(text, name, self._ask)
         note = self.scatter.note(Deck(text, Path(name)))
         if note and note not in self.notes:
             self.notes.append(note)

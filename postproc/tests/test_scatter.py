@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from implam_post.errors import DeckError
+from implam_post.library_values import adopt, read_library
 from implam_post.namelist import read_namelist
 from implam_post.scatter_plan import KINDS
 from implam_post.scatter_plots import inside
@@ -24,6 +25,17 @@ DECK = """
 &delamination below_ply=3 G_Ic=500 G_IIc=1600 friction=0.3 /
 &support window=0.125, 0.075 /
 &support clamps=0.05, 0.04 /
+"""
+# As `implam explain materials` prints it.
+TABLE = """&material library names one of these; keys that the deck leaves out get its values. In SI:
+  key      unit     im7_8552       as4_3501_6
+  density  kg/m^3   1580 c         1560 h
+  E1       Pa       171.42e9 d     126e9 g
+  YT       Pa       62.3e6 d       48e6 g
+  G_IIc    J/m^2    788 e          -
+  eta      -        1.634 e        -
+
+  c  assumed, as such laminates have it.
 """
 
 
@@ -109,7 +121,7 @@ class ScatterPlanTest(unittest.TestCase):
             only(plan, ["d"])
 
     def test_sweeps_of_the_panels(self) -> None:
-        """Their files can be read, and each variant has decks of its own, but for one that is the deck as it is."""
+        """Their files can be read, and each variant has decks of its own, but for those that set what it has."""
         paths = sorted((Path(__file__).resolve().parents[2] / "tests/bench/scatter").glob("*.toml"))
         self.assertGreaterEqual(len(paths), 3)
         for path in paths:
@@ -119,8 +131,38 @@ class ScatterPlanTest(unittest.TestCase):
                 decks.setdefault(case.values.get("variant", ""), []).append(case.key)
             firsts = [tuple(keys) for keys in decks.values()]
             self.assertEqual({len(keys) for keys in firsts}, {10})
-            self.assertGreaterEqual(len(set(firsts)), len(firsts) - 2)
+            self.assertGreaterEqual(len(set(firsts)), len(firsts) - 3)
             self.assertTrue(all(len(set(keys)) == 10 for keys in firsts))
+
+    def test_variants_win(self) -> None:
+        """A variant sets a key that is swept, and the table has what it sets."""
+        plan = self.plan("""
+            [grid]
+            "impactor.mass" = [3]
+            [variants]
+            "heavy" = {}
+            "light" = { "impactor.mass" = 1 }
+            """)
+        self.assertEqual([read_namelist(case.deck)["impactor"][0]["mass"] for case in plan.cases], [[3], [1]])
+        self.assertEqual([case.values["impactor.mass"] for case in plan.cases], [3, 1])
+
+    def test_published_materials(self) -> None:
+        """What a deck leaves to a published material is written into it, in its units; what it gives stays."""
+        library = read_library(TABLE)
+        self.assertEqual(library["as4_3501_6"]["YT"], (48e6, "Pa"))
+        self.assertNotIn("G_IIc", library["as4_3501_6"])
+        deck = ("&case units='mm-t-s' /\n&material name='a' library='im7_8552' YT=50 /\n&laminate materials='a' /\n"
+                "&delamination below_ply=1 /\n&delamination below_ply=2 G_Ic=0.3 G_IIc=0.9 /\n")
+        groups = read_namelist(adopt(deck, "deck.nml", lambda: library))
+        material, (left_out, given) = groups["material"][0], groups["delamination"]
+        np.testing.assert_allclose([material["e1"][0], material["density"][0], material["yt"][0], left_out["g_iic"][0],
+                                    left_out["eta"][0], given["g_iic"][0]], [171420, 1.58e-9, 50, 0.788, 1.634, 0.9],
+                                   rtol=1e-12)
+        self.assertNotIn("eta", given)
+        plain = "&material name='a' YT=50 /\n"
+        self.assertEqual(adopt(plain, "deck.nml", dict), plain)
+        with self.assertRaisesRegex(DeckError, "'im7_8552' is none of the published materials"):
+            adopt(deck, "deck.nml", lambda: read_library(TABLE.replace("im7_8552", "other   ")))
 
     def test_a_part_of_the_plate(self) -> None:
         """Under symmetry the place of impact stays, and a note says so."""
