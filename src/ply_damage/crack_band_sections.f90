@@ -74,7 +74,7 @@ module crack_band_sections
 contains
 
   !> Plies without damage.
-  pure function new_crack_band_sections(model) result(self)
+  function new_crack_band_sections(model) result(self)
     type(model_t), intent(in) :: model
     !> The plies
     type(crack_band_sections_t) :: self

@@ -4,7 +4,7 @@
 !> shares its state anyway. In a half that a turn makes whole, the element beyond the cut is the image of one on the
 !> other side of the middle.
 module joined_elements
-  use communicators, only: communicator_t
+  use column_exchanges, only: column_exchange_t, new_column_exchange
   use element_batches, only: batch_of
   use kinds, only: wp
   use layered_meshes, only: layered_mesh_t
@@ -31,12 +31,12 @@ module joined_elements
     real(wp), allocatable, private :: area(:)
     !> Moments of the strains of each, a bound of its strains behind them, (moment_values + 1, numbers)
     real(wp), allocatable, private :: moments(:, :)
-    !> The ranks that share the model
-    type(communicator_t), private :: communicator
+    !> Tells the strains of those that are one across ranks
+    type(column_exchange_t), private :: across
   contains
     !> True where an element shares its state with others.
     procedure :: shares
-    !> Takes an element's strains; tells them to all ranks; gives the strains of an element and those that are one with
+    !> Takes an element's strains; tells them to the ranks that need them; gives the strains of an element and those that are one with
     !> it, and their largest bound.
     procedure :: take
     procedure :: exchange
@@ -46,24 +46,24 @@ module joined_elements
 
 contains
 
-  !> Finds the elements that are one with others.
-  pure function find_joined_elements(model) result(self)
+  !> Finds the elements that are one with others. Collective.
+  function find_joined_elements(model) result(self)
     type(model_t), intent(in) :: model
     !> The elements
     type(joined_elements_t) :: self
     integer, allocatable :: numbers(:), parts(:, :)
-    logical, allocatable :: joined(:, :)
+    logical, allocatable :: joined(:, :), mine(:)
     integer :: element
 
-    associate (mesh => model%mesh, mine => model%distribution%elements)
+    associate (mesh => model%mesh, elements => model%distribution%elements)
       allocate (parts(most, mesh%elements()), joined(2, mesh%elements()), numbers(mesh%elements()))
       do element = 1, mesh%elements()
         call find_parts(mesh, element, model%scene%has_impactor, parts(:, element), joined(:, element))
       end do
       numbers = unpack([(element, element=1, size(numbers))], parts(2, :) > 0, 0)
       call number_them(numbers)
-      self%joined = joined(:, mine)
-      self%number = numbers(mine)
+      self%joined = joined(:, elements)
+      self%number = numbers(elements)
       allocate (self%parts(most, maxval(numbers)), self%area(maxval(numbers)))
       do element = 1, size(numbers)
         if (numbers(element) == 0) cycle
@@ -76,7 +76,9 @@ contains
     do element = 1, size(self%number)
       if (self%number(element) > 0) self%concerned(batch_of(element)) = .true.
     end do
-    self%communicator = model%communicator
+    allocate (mine(size(self%area)), source=.false.)
+    mine(pack(self%number, self%number > 0)) = .true.
+    self%across = new_column_exchange(model%communicator, mine, self%parts)
   end function find_joined_elements
 
   !> Numbers those that are not zero one after the other.
@@ -185,20 +187,12 @@ contains
     self%moments(:, self%number(element)) = [values_of(moments), bound]
   end subroutine take
 
-  !> Tells the strains of all that share their state to all ranks. Collective.
+  !> Tells the strains of those that are one across ranks. Collective.
   subroutine exchange(self)
     !> The elements
     class(joined_elements_t), intent(inout) :: self
-    logical :: mine(size(self%area))
-    integer :: i
 
-    if (self%communicator%size == 1 .or. size(mine) == 0) return
-    mine = .false.
-    mine(pack(self%number, self%number > 0)) = .true.
-    do i = 1, size(mine)
-      if (.not. mine(i)) self%moments(:, i) = 0
-    end do
-    call self%communicator%sum(self%moments)
+    call self%across%update(self%moments)
   end subroutine exchange
 
   !> Strains of an element and those that are one with it: means over all their area.

@@ -72,8 +72,8 @@ module ply_failures
 
 contains
 
-  !> No failure.
-  pure function new_ply_failure(model) result(self)
+  !> No failure. Collective.
+  function new_ply_failure(model) result(self)
     type(model_t), intent(in) :: model
     !> The failures
     type(ply_failure_t) :: self

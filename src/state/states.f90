@@ -78,7 +78,7 @@ module states
 contains
 
   !> The plate at rest, the impactor at first touch.
-  pure function new_state(model) result(self)
+  function new_state(model) result(self)
     type(model_t), intent(in) :: model
     !> The state
     type(state_t) :: self

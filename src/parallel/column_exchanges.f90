@@ -1,0 +1,93 @@
+!> Columns of a table, each computed by one rank, that other ranks need as well: neighbours tell them to each other.
+module column_exchanges
+  use mpi_f08, only: MPI_Comm
+  use border_traffic, only: exchange, new_traffic, traffic_t
+  use communicators, only: communicator_t
+  use kinds, only: wp
+  implicit none
+  private
+  public :: column_exchange_t, new_column_exchange
+
+  !> Which columns this rank tells to others, and which it learns from them.
+  type :: column_exchange_t
+    !> All ranks
+    type(MPI_Comm), private :: group
+    !> Columns that others need, and those of others that are needed here
+    type(traffic_t), private :: told, learnt
+    !> True: there are some
+    logical, private :: needed = .false.
+  contains
+    !> Copies the columns of other ranks.
+    procedure :: update
+  end type column_exchange_t
+
+contains
+
+  !> Finds out with whom to exchange what, from lists that are the same on every rank. Collective.
+  function new_column_exchange(communicator, mine, groups) result(self)
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> True for columns that this rank computes, (columns)
+    logical, intent(in) :: mine(:)
+    !> Columns of the group of each, itself among them, zeros behind them, (most, columns). Who computes one of a group
+    !> needs all of it
+    integer, intent(in) :: groups(:, :)
+    !> The exchange
+    type(column_exchange_t) :: self
+    integer :: told(0:communicator%size - 1), learnt(0:communicator%size - 1), rank
+    integer, allocatable :: outward(:), inward(:), owner(:)
+    real(wp) :: ranks(size(mine))
+
+    if (communicator%size == 1) return
+    self%group%mpi_val = communicator%handle()
+    ranks = merge(communicator%rank, 0, mine)
+    call communicator%sum(ranks)
+    owner = nint(ranks)
+    allocate (outward(0), inward(0))
+    do rank = 0, communicator%size - 1
+      associate (out => needed_by(rank, owner == communicator%rank), &
+                 in => needed_by(communicator%rank, owner == rank))
+        told(rank) = size(out)
+        learnt(rank) = size(in)
+        outward = [outward, out]
+        inward = [inward, in]
+      end associate
+    end do
+    self%told = new_traffic(told, outward)
+    self%learnt = new_traffic(learnt, inward)
+    self%needed = size(outward) + size(inward) > 0
+
+  contains
+
+    !> Those of some columns that another rank needs, ascending.
+    pure function needed_by(other, some) result(columns)
+      !> The other rank
+      integer, intent(in) :: other
+      !> True for the columns
+      logical, intent(in) :: some(:)
+      !> Their numbers
+      integer, allocatable :: columns(:)
+      logical :: needs(size(some))
+      integer :: i
+
+      needs = .false.
+      do i = 1, size(some)
+        if (some(i) .and. owner(i) /= other) needs(i) = any(owner(pack(groups(:, i), groups(:, i) > 0)) == other)
+      end do
+      columns = pack([(i, i=1, size(some))], needs)
+    end function needed_by
+  end function new_column_exchange
+
+  !> Copies the columns of other ranks that are needed here. Collective among neighbours.
+  subroutine update(self, field)
+    !> The exchange
+    class(column_exchange_t), intent(in) :: self
+    !> Values, (components, columns)
+    real(wp), intent(inout) :: field(:, :)
+    real(wp), allocatable :: values(:, :)
+
+    if (.not. self%needed) return
+    call exchange(self%group, self%told, self%learnt, field, values)
+    field(:, self%learnt%columns) = values
+  end subroutine update
+end module column_exchanges
