@@ -36,7 +36,7 @@ module joined_elements
   contains
     !> True where an element shares its state with others.
     procedure :: shares
-    !> Takes an element's strains; tells them to the ranks that need them; gives the strains of an element and those that
+    !> Takes the strains of an element; tells them to ranks that need them; gives the strains of an element and those that
     !> are one with it, and their largest bound.
     procedure :: take
     procedure :: exchange
