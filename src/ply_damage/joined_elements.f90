@@ -36,10 +36,10 @@ module joined_elements
   contains
     !> True where an element shares its state with others.
     procedure :: shares
-    !> Takes the strains of an element; tells them to ranks that need them; gives the strains of an element and those that
-    !> are one with it, and their largest bound.
+    !> Takes an element's strains; tells them to the ranks that need them.
     procedure :: take
     procedure :: exchange
+    !> Strains of an element and those that are one with it, and their largest bound.
     procedure :: strains_of
     procedure :: bound_of
   end type joined_elements_t
