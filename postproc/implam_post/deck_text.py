@@ -108,15 +108,6 @@ def drop_group(text: str, group: str, number: int | None, name: str = "deck") ->
     return text
 
 
-def numbers_of(text: str, path: KeyPath, name: str = "deck") -> list[float]:
-    """Return the numbers that a key has in a deck."""
-    groups = read_namelist(text, name).get(path.group, [])
-    values = groups[(path.number or 1) - 1].get(path.key.lower(), []) if len(groups) >= (path.number or 1) else []
-    if not values or any(isinstance(value, (bool, str)) for value in values):
-        raise DeckError(f"{name}: {path} holds no numbers in the deck.")
-    return values
-
-
 def number_of(text: str, path: KeyPath, name: str = "deck") -> float:
     """Return the number that a key has in a deck."""
     groups = read_namelist(text, name).get(path.group, [])

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from implam_post.deck import Deck
-from implam_post.deck_text import KeyPath, deck_value, key_path, numbers_of, set_keys
+from implam_post.deck import Deck, as_number
+from implam_post.deck_text import KeyPath, deck_value, key_path, set_keys
 from implam_post.errors import DeckError
 from implam_post.look import system_of_deck
 from implam_post.samples import METHODS, draw
@@ -109,18 +109,20 @@ class Scatter:
 
     def set(self, text: str, name: str, run: int) -> tuple[str, dict[str, float]]:
         """Return the deck of a run, counted from 0, and what was drawn for it: factors, and distances of the place."""
-        drawn: dict[str, float] = {}
-        for found in self.inputs(Deck(text, Path(name))):
+        deck, drawn, settings = Deck(text, Path(name)), {}, {}
+        for found in self.inputs(deck):
             drawn[found.column] = value = self._values(found)[run]
+            group = deck.groups[found.path.group][(found.path.number or 1) - 1]
+            where = f"{name}: &{found.path.group} {found.path.key}"
+            numbers = [as_number(number, where) for number in group.get(found.path.key.lower(), [0.0, 0.0])]
             if found.kind == PLACE:
-                at = Deck(text, Path(name)).numbers("impactor", "at") or [0.0, 0.0]
-                at[found.column.endswith("y")] += value
-                text = set_keys(text, {found.path: deck_value(at)}, name)
-                continue
-            power = 2 if found.path.key.lower() == "energy" else 1
-            values = [number * value**power for number in numbers_of(text, found.path, name)]
-            text = set_keys(text, {found.path: deck_value(values)}, name)
-        return text, drawn
+                numbers[found.column.endswith("y")] += value
+                group["at"] = numbers
+            else:
+                power = 2 if found.path.key.lower() == "energy" else 1
+                numbers = [number * value**power for number in numbers]
+            settings[found.path] = deck_value(numbers)
+        return set_keys(text, settings, name), drawn
 
     def _values(self, found: Input) -> list[float]:
         """Return what is drawn of an input, run by run: the same whatever else scatters."""

@@ -1,5 +1,5 @@
-"""A sweep of 24 decks that is killed twice, once alone and once with all that it has started, gives the table of the
-same sweep left alone.
+"""A sweep of 24 decks, six of each kind with random inputs, that is killed twice, once alone and once with all that it
+has started, gives the table and the statistics of the same sweep left alone.
 Usage: sweep_killed.py IMPLAM FOLDER"""
 
 import os
@@ -19,8 +19,9 @@ from solver_runs import require, run
 DECK = HERE.parents[1] / "input/small/damage.nml"
 CASES = 24
 SWEEP = """deck = "swept.nml"
+[scatter]
+number = 6
 [grid]
-"impactor.velocity" = [1.6, 1.8, 2.0, 2.2, 2.4, 2.6]
 "delamination.G_c" = [300, 400]
 "laminate.angles" = [[0, 90, 0], [90, 0, 90]]
 "output.checkpoint_every" = [20e-6]
@@ -79,7 +80,9 @@ def main():
     run([*words, "--output", killed])
     rows, expected = table_of(killed), table_of(folder / "alone")
     require(len(rows) == CASES and rows == expected, "The table isn't that of the sweep left alone.")
-    print(f"{CASES} cases: the same table")
+    told = [(output / "statistics.csv").read_text(encoding="utf-8") for output in (killed, folder / "alone")]
+    require(told[0] == told[1], "The statistics aren't those of the sweep left alone.")
+    print(f"{CASES} cases: the same table and statistics")
 
 
 if __name__ == "__main__":
