@@ -45,6 +45,10 @@ def _page(content: Mapping[str, Any], folder: Path) -> str:
                      "processor" for group in content["groups"])
     parts = [f"<h1>{escape(title)}</h1>", f"<p>{escape(told)}; {_READ}.</p>"]
     parts += [f'<p class="warning">{escape(note)}</p>' for note in content["notes"]]
+    if content["variants"]:
+        head, *rows = content["variants"]
+        parts += ["<h2>Side by side</h2>", "<p>Means and standard errors; * differs from the first by more than the "
+                  "scatter of the difference.</p>", table(head, rows)]
     for group in content["groups"]:
         rows = [row for row in content["statistics"] if row["group"] == group["name"]]
         parts += [f"<h2>Means{escape(_of(group['name']))}</h2>", _spreads(rows, look, SHOWN),

@@ -191,8 +191,12 @@ def pairs_of(groups: Sequence[Group]) -> list[tuple[Group, dict[str, Difference]
             if len(group.runs) == len(first.runs)]
 
 
-def write_statistics(sweep: Sweep, groups: Sequence[Group], system: str) -> list[Path]:
-    """Write statistics, differences, what was measured, the band and the figures of all runs."""
+def write_statistics(sweep: Sweep, groups: Sequence[Group], system: str,
+                     variants: Sequence[Sequence[str]] = ()) -> list[Path]:
+    """Write statistics, differences, what was measured, the band and the figures of all runs.
+
+    `variants` is a table that holds the groups side by side, for the page.
+    """
     output, plan = sweep.plan.output, sweep.plan
     told = [(group, spreads(group.numbers)) for group in groups]
     head = ("group", "figure", "dimension", "runs", "mean", "deviation", "error_of_mean", "low_5", "high_95")
@@ -224,7 +228,7 @@ def write_statistics(sweep: Sweep, groups: Sequence[Group], system: str) -> list
     content = {"sweep": plan.text, "title": _title(groups), "system": system, "notes": notes,
                "groups": [{"name": group.name, "runs": len(group.runs), "ended": len(group.ended),
                            "seconds": sum(run.seconds for run in group.ended)} for group in groups],
-               "inputs": inputs_of(plan)}
+               "inputs": inputs_of(plan), "variants": list(variants)}
     content |= {name.removesuffix(".csv"): [dict(zip(columns, map(_plain, row), strict=True)) for row in rows]
                 for name, (columns, rows) in tables.items() if name not in ("figures.csv", "force_band.csv")}
     write_text(output / STATISTICS, json.dumps(content, indent=1) + "\n")

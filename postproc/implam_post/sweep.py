@@ -98,9 +98,9 @@ def _tell_scatter(sweep: Sweep, system: str) -> None:
     from implam_post.look import Look
     from implam_post.scatter_plots import plot_scatter
     from implam_post.scatter_results import curves_of, groups_of, write_statistics
-    from implam_post.scatter_text import statistics_text
+    from implam_post.scatter_text import statistics_text, variants_table
     groups, look = groups_of(sweep), Look(system)
-    files = write_statistics(sweep, groups, system)
+    files = write_statistics(sweep, groups, system, variants_table(groups, look) if len(groups) > 1 else ())
     pictures = plot_scatter(groups, curves_of(sweep.plan.measured), look, sweep.plan.output)
     print(*files, *pictures, sep="\n")
     text = statistics_text(sweep.plan, groups, look)

@@ -96,6 +96,7 @@ class ScatterTest(unittest.TestCase):
         self.assertIn(f"{mean / 1e3:.4g} kN", page.cells)
         self.assertEqual(set(page.pictures), {"Force history", "Share of the runs in which a place has delaminated"})
         self.assertIn("material.YT", page.cells)
+        self.assertIn("Side by side", page.text)
         self.assertIn("CMH-17-1G", page.text)
         (self.output / "statistics.json").write_text("{}")
         code, text = run_quietly(report.main, self.output)
