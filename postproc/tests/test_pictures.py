@@ -18,6 +18,8 @@ from implam_post.fields import Fields, Mesh, Snapshot, area, read_fields
 from implam_post.history import ENERGIES, History
 from implam_post.look import Look, settle
 from implam_post.plan import along_fibres, delamination_figure, failures_figure, projected_figure
+from implam_post.scatter_plots import share_figure
+from implam_post.scatter_results import Group, Run
 from tests.test_fields import write_fields
 
 DECK = """&case units='SI' /
@@ -164,3 +166,19 @@ class PicturesTest(unittest.TestCase):
             settle(figure)
             beyond = figure.axes[0].title.get_window_extent().y1 - figure.bbox.height
             self.assertLess(beyond, 0, (length, width))
+
+    def test_shares_of_runs(self) -> None:
+        """The map of shares has the share of each group's runs at a place, and titles within the picture."""
+        for groups, length, width in ((1, 57, 32), (2, 15, 45), (4, 20, 20)):
+            corners = np.array([[0, 0], [length, 0], [length, width], [0, width]]) - np.array([length, width]) / 2
+            mesh = Mesh(corners[None], *2 * [np.array([2])], np.zeros(1, dtype=bool))
+            plate = Fields("none.h5", "whole", [Snapshot(1.0, mesh, np.ones((1, 9)), {}, np.zeros(1))])
+            runs = [Run(None, None, {}, 0.0, region) for region in (corners[None], corners[None] / 2)]
+            figure = share_figure([Group(f"variant {place}", runs, plate=plate) for place in range(groups)],
+                                  Look("mm-t-s"))
+            settle(figure)
+            shares = figure.axes[0].images[0].get_array()
+            self.assertEqual(set(np.unique(shares)), {0, 0.5, 1})
+            self.assertAlmostEqual(np.sum(shares == 1) / np.sum(shares > 0), 0.25, delta=0.02)
+            for axes in figure.axes[:groups]:
+                self.assertLess(axes.title.get_window_extent().y1, figure.bbox.height, (groups, length, width))
