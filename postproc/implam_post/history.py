@@ -12,12 +12,12 @@ from implam_post.files import read_text
 KEPT_ENERGIES = ("energy_impactor", "energy_kinetic", "energy_strain", "energy_indentation")
 # Those of every history.
 ENERGIES = (*KEPT_ENERGIES, "energy_delamination", "energy_ply_damage", "energy_contact", "energy_algorithmic")
-# What each is called in legends and pages, as in the summary; histories of earlier versions lack the last two.
+# What each is called in legends and pages, as in the summary; histories of earlier versions lack the last three.
 ENERGY_NAMES = {"energy_impactor": "impactor", "energy_kinetic": "kinetic", "energy_strain": "strain",
                 "energy_indentation": "indentation", "energy_delamination": "delamination",
                 "energy_ply_damage": "ply damage", "energy_contact": "contact",
                 "energy_algorithmic": "algorithmic dissipation", "energy_friction": "friction",
-                "energy_layers": "layers"}
+                "energy_layers": "layers", "energy_damping": "damping"}
 UNACCOUNTED = "not accounted for"
 
 

@@ -11,6 +11,7 @@ module computations
   use deck_refinements, only: refined_text
   use errors, only: error_t, exit_done, exit_stopped, exit_usage, fail
   use files, only: is_directory
+  use initial_states, only: fit_initial_state
   use layer_following, only: visit_zones
   use linear_solver_parameters, only: factorization_automatic, factorization_mumps
   use petsc_library, only: start_petsc, finish_petsc
@@ -55,10 +56,15 @@ contains
       call read_deck_everywhere(command%target, communicator, deck, problems)
     end if
     call accept_deck(command, communicator, deck, problems, code)
+    if (code == exit_done .and. checkpoint == '') call fit_initial_state(deck, communicator, error)
     call profile%leave()
-    if (code /= exit_done) return
+    if (code /= exit_done .or. allocated(error)) return
     if (command%verify .and. deck%refine > 0) then
       call fail(error, exit_usage, '--verify refines the scene itself; take refine out of &case.')
+      return
+    end if
+    if (command%verify .and. deck%inherits) then
+      call fail(error, exit_usage, '--verify refines the mesh, which a deck with &initial_state has from another run.')
       return
     end if
     call profile%enter('MPI and PETSc')

@@ -14,6 +14,7 @@ module programs
   use deck_vocabulary, only: vocabulary_t
   use deck_explain, only: explain, explain_table
   use hdf5_file, only: files_left_open
+  use initial_states, only: fit_initial_state
   use build_information, only: version, commit, compiler, petsc_version
   use command_lines, only: command_t, read_command_line, verb_run, verb_check, verb_explain, verb_restart, &
                            verb_version, verb_help, verb_new, verb_completion, verb_man, verb_queue
@@ -70,7 +71,7 @@ contains
       case (verb_queue)
         call queue_deck(command, communicator, error)
       case (verb_check)
-        call check(command, communicator, code)
+        call check(command, communicator, code, error)
       case (verb_run, verb_restart)
         call compute(command, communicator, code, error)
       end select
@@ -186,21 +187,28 @@ contains
   end subroutine explain_topic
 
   !> Reads and checks a deck, lists what is wrong with it.
-  subroutine check(command, communicator, code)
+  subroutine check(command, communicator, code, error)
     !> What is asked
     type(command_t), intent(in) :: command
     !> The ranks
     type(communicator_t), intent(in) :: communicator
     !> Exit code
     integer, intent(out) :: code
+    !> Set if the state that the deck begins from can't be read or is of another plate
+    type(error_t), allocatable, intent(inout) :: error
     type(deck_t) :: deck
     type(problems_t) :: problems
     type(model_size_t) :: model_size
+    logical :: lacks
 
     call read_deck_everywhere(command%target, communicator, deck, problems)
     code = problems%exit_code()
     call print_lines(communicator, problems%lines())
     if (code /= exit_done) return
+    call fit_initial_state(deck, communicator, error, lacks)
+    if (allocated(error)) return
+    if (lacks) call print_lines(communicator, [line_t('The initial state '//deck%initial%from// &
+                                                      ' is not there, so the deck is not held against it.')])
     call print_lines(communicator, [line_t(command%target//': no errors.')])
     if (symmetry_sentence(deck) /= '') call print_lines(communicator, [line_t(symmetry_sentence(deck))])
     call print_lines(communicator, [scale_lines(deck), strength_lines(deck)])

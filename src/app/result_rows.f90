@@ -1,20 +1,19 @@
 !> The columns of the history, joined from the rows that each folder brings, and the values of an accepted step. The
 !> rows behind them come again for each interface that may delaminate and for each line.
 module result_rows
-  use delamination_parameters, only: delamination_t
+  use deck_contents, only: deck_t
   use interface_columns, only: area_rows, area_values, border_rows, border_values, interface_rows, interface_values, &
                                release_rows, release_values, rig_rows, rig_values
-  use force_filters, only: force_filter_t
   use kinds, only: wp
-  use line_columns, only: line_column_rows, line_values
-  use line_loads, only: line_load_t
+  use line_columns, only: end_rows, end_values, has_ends, line_column_rows, line_values
   use models, only: model_t
   use operator_columns, only: operator_rows, operator_values
   use output_clocks, only: shown_time
   use ply_columns, only: ply_rows, ply_values
   use result_tables, only: cell, column_name, column_type, name_with_number, result_name_length, result_row_length
-  use step_columns, only: contact_rows, heat_rows, heat_values, iteration_rows, iteration_values, ledger_rows, &
-                          ledger_values, motion_rows, motion_values, step_rows, step_values
+  use run_records, only: run_record_t
+  use step_columns, only: contact_rows, damping_rows, heat_rows, heat_values, iteration_rows, iteration_values, &
+                          ledger_rows, ledger_values, motion_rows, motion_values, step_rows, step_values
   use states, only: state_t
   use time_stepping, only: time_stepper_t
   implicit none
@@ -31,34 +30,31 @@ module result_rows
   !> Columns that every history has, of which the first seventeen are the public interface.
   character(len=*), parameter :: plate_rows(*) = [character(len=result_row_length) :: &
     motion_rows, area_rows, ledger_rows, step_rows, release_rows, iteration_rows, operator_rows, ply_rows, &
-    border_rows, rig_rows, heat_rows, limit_rows, contact_rows]
+    border_rows, rig_rows, heat_rows, limit_rows, contact_rows, damping_rows]
   !> The table of columns in their order.
   character(len=*), parameter, public :: column_rows(*) = [character(len=result_row_length) :: &
-    plate_rows, interface_rows, line_column_rows, filter_rows]
+    plate_rows, interface_rows, line_column_rows, end_rows, filter_rows]
 
 contains
 
   !> Names of the columns.
-  pure function column_names(delaminations, lines, filtered) result(names)
-    !> Interfaces that may delaminate
-    type(delamination_t), intent(in) :: delaminations(:)
-    !> Lines of the deck; without, their columns are left out
-    type(line_load_t), intent(in) :: lines(:)
-    !> True: the force passes a filter, too
-    logical, intent(in) :: filtered
+  pure function column_names(deck) result(names)
+    !> The deck, which says what there is
+    type(deck_t), intent(in) :: deck
     !> In the order of the table
     character(len=result_name_length), allocatable :: names(:)
     integer :: zone, line
 
     names = names_of(plate_rows)
-    do zone = 1, size(delaminations)
-      names = [names, numbered(interface_rows, delaminations(zone)%below_ply)]
+    do zone = 1, size(deck%delaminations)
+      names = [names, numbered(interface_rows, deck%delaminations(zone)%below_ply)]
     end do
-    if (size(lines) > 0) names = [names, names_of(line_column_rows(:1))]
-    do line = 1, size(lines)
+    if (size(deck%lines) > 0) names = [names, names_of(line_column_rows(:1))]
+    do line = 1, size(deck%lines)
       names = [names, numbered(line_column_rows(2:), line)]
     end do
-    if (filtered) names = [names, names_of(filter_rows)]
+    if (has_ends(deck%plate, deck%lines)) names = [names, names_of(end_rows)]
+    if (deck%output%force_filter > 0) names = [names, names_of(filter_rows)]
   end function column_names
 
   !> Names of some rows.
@@ -103,18 +99,18 @@ contains
   end function are_whole
 
   !> Which columns hold whole numbers.
-  pure function column_whole(interfaces, lines, filtered) result(whole)
-    !> Number of interfaces that may delaminate, and of lines
-    integer, intent(in) :: interfaces, lines
-    !> True: the force passes a filter, too
-    logical, intent(in) :: filtered
+  pure function column_whole(deck) result(whole)
+    !> The deck
+    type(deck_t), intent(in) :: deck
     !> In the order of the table
     logical, allocatable :: whole(:)
     integer :: i
 
-    whole = [are_whole(plate_rows), (are_whole(interface_rows), i=1, interfaces)]
-    if (lines > 0) whole = [whole, are_whole(line_column_rows(:1)), (are_whole(line_column_rows(2:)), i=1, lines)]
-    if (filtered) whole = [whole, are_whole(filter_rows)]
+    whole = [are_whole(plate_rows), (are_whole(interface_rows), i=1, size(deck%delaminations))]
+    if (size(deck%lines) > 0) &
+      whole = [whole, are_whole(line_column_rows(:1)), (are_whole(line_column_rows(2:)), i=1, size(deck%lines))]
+    if (has_ends(deck%plate, deck%lines)) whole = [whole, are_whole(end_rows)]
+    if (deck%output%force_filter > 0) whole = [whole, are_whole(filter_rows)]
   end function column_whole
 
   !> Forces of pressure and lines at the owned points.
@@ -135,17 +131,15 @@ contains
   end function loads_on
 
   !> Row of the state reached. Collective.
-  function row_of(model, stepper, limits, filter) result(row)
+  function row_of(model, stepper, record) result(row)
     type(model_t), intent(in) :: model
     !> The time stepper
     type(time_stepper_t), intent(in) :: stepper
-    !> Limits of the model passed so far
-    integer, intent(in) :: limits
-    !> The low pass of the force
-    type(force_filter_t), intent(in) :: filter
+    !> What the run remembers
+    type(run_record_t), intent(in) :: record
     !> Values in the order of the columns
     real(wp), allocatable :: row(:)
-    real(wp), allocatable :: loads(:, :)
+    real(wp), allocatable :: loads(:, :), lines(:)
 
     associate (now => stepper%now)
       loads = loads_on(model, now)
@@ -154,9 +148,12 @@ contains
              release_values(model, now%interfaces, now%motion%displacement), iteration_values(now, stepper%rejected), &
              operator_values(stepper%operator), ply_values(model, now%plies), border_values(model, now%interfaces), &
              rig_values(model, now%interfaces, now%motion, loads), heat_values(now%ledger), &
-             real(limits, wp), model%pressed_area(), interface_values(model, now%interfaces), line_values(model, now)]
+             real(size(record%warning_kinds), wp), model%pressed_area(), now%ledger%damping, &
+             interface_values(model, now%interfaces)]
+      lines = line_values(model, now)
+      row = [row, lines, end_values(model, lines)]
     end associate
-    if (filter%frequency > 0) row = [row, filter%force]
+    if (record%filter%frequency > 0) row = [row, record%filter%force]
     row(1) = shown_time(row(1))
   end function row_of
 end module result_rows

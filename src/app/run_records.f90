@@ -1,9 +1,11 @@
 !> What a run remembers of its course for the summary at its end: extremes, contacts, onsets and warnings.
 module run_records
   use archives, only: archive_t
+  use compression_records, only: compression_record_t
   use force_filters, only: force_filter_t
   use interface_figures, only: stage_damaged, stage_grown, stage_intact, stages_of
   use kinds, only: wp
+  use line_columns, only: end_values, line_values
   use models, only: model_t
   use output_clocks, only: shown_time
   use states, only: state_t
@@ -39,6 +41,8 @@ module run_records
     integer, allocatable :: stage(:)
     !> Time, contact force and deflection when each was first seen damaged and grown, (3, zones)
     real(wp), allocatable :: onset(:, :), growth(:, :)
+    !> Ends of the plate that lines press together
+    type(compression_record_t) :: compression
     !> Warnings given: their kinds, and the zones that they concern or 0
     integer, allocatable :: warning_kinds(:), warning_zones(:)
     !> Their times
@@ -46,6 +50,8 @@ module run_records
   contains
     !> Looks at an accepted step.
     procedure :: observe
+    !> Looks at a state that is complete.
+    procedure :: look
     !> Notes a warning.
     procedure :: note_warning
     !> True if a warning was given before.
@@ -104,6 +110,21 @@ contains
     end do
     self%stage = max(self%stage, stages)
   end subroutine observe
+
+  !> Looks at a state that is complete: with reactions, which central differences find from time to time. Collective.
+  subroutine look(self, model, now)
+    !> The record
+    class(run_record_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> The state reached
+    type(state_t), intent(in) :: now
+    real(wp), allocatable :: ends(:)
+
+    if (size(model%lines) == 0) return
+    ends = end_values(model, line_values(model, now))
+    if (size(ends) == 0) return
+    call self%compression%observe(now%time, ends(1), ends(2), ends(3))
+  end subroutine look
 
   !> Time, contact force and deflection of a state.
   pure function seen(now)
@@ -184,6 +205,7 @@ contains
     call archive%item('record/time', self%time)
     call archive%item('record/force', self%force)
     call archive%item('record/stage', self%stage)
+    call self%compression%visit(archive)
     call archive%item('record/onset', self%onset)
     call archive%item('record/growth', self%growth)
     call archive%item('record/warning_kinds', self%warning_kinds)

@@ -58,7 +58,7 @@ contains
 
     call find_figures(model, stepper%now, figures)
     if (.not. allocated(error)) errors = errors_by_pilot(deck, record)
-    ended = .not. (allocated(error) .or. deck%has_static)
+    ended = .not. (allocated(error) .or. deck%has_static .or. deck%inherits)
     wanted = ended .and. wants_companion(deck%settings, errors%source /= 'none')
     if (wanted) call run_companion(deck, model%communicator, companion)
     if (companion%done) errors = errors_by_companion(deck, record, stepper%now%impactor%velocity, &

@@ -31,6 +31,7 @@ module simulations
   use queue_signals, only: stop_signal
   use output_clocks, only: clock_t, next_event, shown_time
   use energy_watches, only: energy_watch_t
+  use initial_states, only: take_initial_state
   use layer_following, only: visit_evolving
   use result_rows, only: row_of, column_names, column_whole
   use field_results, only: field_rows, part_of, write_fields, write_mesh
@@ -102,13 +103,13 @@ contains
     character(len=:), allocatable :: retired
 
     call prepare(self, deck, communicator, profile, append=.false., error=error)
+    if (.not. allocated(error) .and. deck%inherits) &
+      call take_initial_state(deck, self%model, self%stepper, self%log, error)
     if (.not. allocated(error)) call retire_checkpoint(communicator, self%base//checkpoint_ending, retired, error)
     if (allocated(error)) return
     if (retired /= '') call self%log%note('The checkpoint of an earlier run is now '//retired//'.')
     call self%history%create(communicator, self%base//'_history.csv', &
-                             column_names(deck%delaminations, deck%lines, deck%output%force_filter > 0), &
-                             column_whole(size(deck%delaminations), size(deck%lines), deck%output%force_filter > 0), &
-                             error)
+                             column_names(deck), column_whole(deck), error)
     if (allocated(error)) return
     call self%fields%create(communicator, self%base, self%provenance, part_of(self%deck), error)
     if (allocated(error)) return
@@ -167,7 +168,7 @@ contains
     call self%timers%stop('model')
     self%model%profile = profile
     if (allocated(error)) return
-    call self%stepper%start(self%model, deck%stepping, deck%linear_solver, append, error)
+    call self%stepper%start(self%model, deck%stepping, deck%linear_solver, append .or. deck%inherits, error)
     if (allocated(error)) return
     self%record = new_run_record(self%model)
     self%record%filter%frequency = deck%output%force_filter
@@ -205,8 +206,7 @@ contains
     if (allocated(error)) return
     last_row = self%history%last_row
     call self%history%resume(communicator, self%base//'_history.csv', &
-                             column_names(deck%delaminations, deck%lines, deck%output%force_filter > 0), &
-                             column_whole(size(deck%delaminations), size(deck%lines), deck%output%force_filter > 0), &
+                             column_names(deck), column_whole(deck), &
                              rows, last_row, error)
     if (allocated(error)) return
     if (self%history%rows /= rows) &
@@ -311,6 +311,7 @@ contains
 
     call self%stepper%look(self%model, error)
     if (allocated(error)) return
+    call self%record%look(self%model, self%stepper%now)
     call give_warnings(self%deck, self%model, self%stepper, self%record, self%energy_watch, self%log, error)
     row_due = row_is_due(self%deck%output, self%stepper%now%step) .or. self%stepper%now%time >= end_of(self)
     fields_due = .false.
@@ -321,30 +322,21 @@ contains
       fields_due = self%fields_clock%strikes_at(self%stepper%now%time, closest)
       ! The last fields are those of the state that the summary is about.
       if (self%fields_clock%interval > 0 .and. self%stepper%now%time >= end_of(self)) fields_due = .true.
-      checkpoint_due = self%checkpoint_clock%strikes_at(self%stepper%now%time, closest)
+      checkpoint_due = self%checkpoint_clock%strikes_at(self%stepper%now%time, closest) .or. &
+                       self%deck%output%checkpoint_at_end .and. self%stepper%now%time >= end_of(self)
     end if
     if (allocated(error)) then
       ! The row that passed the limit ends the history.
-      call self%history%write_row(row_reached(self), row_error)
+      call self%history%write_row(row_of(self%model, self%stepper, self%record), row_error)
       if (.not. allocated(row_error)) call self%history%flush(row_error)
       return
     end if
-    if (row_due) call self%history%write_row(row_reached(self), error)
+    if (row_due) call self%history%write_row(row_of(self%model, self%stepper, self%record), error)
     if (allocated(error)) return
     if (fields_due) call write_fields(self%model, self%stepper, self%deck%output, self%fields, error)
     if (allocated(error)) return
     if (checkpoint_due) call save_checkpoint(self, error)
   end subroutine write_results
-
-  !> Row of the state reached. Collective.
-  function row_reached(self) result(row)
-    !> The run
-    class(simulation_t), intent(in) :: self
-    !> In the order of the columns
-    real(wp), allocatable :: row(:)
-
-    row = row_of(self%model, self%stepper, size(self%record%warning_kinds), self%record%filter)
-  end function row_reached
 
   !> Saves a checkpoint.
   subroutine save_checkpoint(self, error)

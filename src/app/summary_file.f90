@@ -1,5 +1,6 @@
 !> NAME_summary.json: what a run says at its end, in full precision. doc/manual/summary.md describes it.
 module summary_file
+  use compression_summary, only: put_compression
   use deck_contents, only: deck_t
   use delamination_parameters, only: law_cohesive
   use errors, only: error_t, exit_files, fail
@@ -64,6 +65,7 @@ contains
     if (deck%has_impactor .and. .not. deck%has_static) call put_impact(json, stepper%now, record)
     call json%put('largest_deflection', record%deflection)
     call json%put('largest_deflection_at', shown_time(record%deflection_time))
+    if (record%compression%strength > 0) call put_compression(json, record%compression)
     call put_errors(json, errors)
     call put_energies(json, deck, stepper%now)
     if (size(figures%interfaces) > 0) call put_interfaces(json, deck, stepper%now, record, figures)
@@ -162,6 +164,7 @@ contains
       call json%put('energy_contact', ledger%contact)
       call json%put('energy_friction', ledger%friction)
       call json%put('energy_layers', ledger%layers)
+      call json%put('energy_damping', ledger%damping)
       call json%put('energy_algorithmic', ledger%algorithmic)
       call json%put('energy_error', ledger%error())
     end associate

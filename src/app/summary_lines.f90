@@ -1,5 +1,6 @@
 !> What a run says at its end in its log: the summary rounded for reading, in the deck's units.
 module summary_lines
+  use compression_summary, only: compression_text
   use deck_contents, only: deck_t
   use energy_ledgers, only: ledger_t
   use impactors, only: impactor_energy, new_impactor
@@ -43,6 +44,8 @@ contains
     if (deck%has_impactor .and. .not. deck%has_static) call tell_impact(lines, now, record, errors)
     call tell(lines, 'largest deflection', rounded_text(record%deflection)//at// &
               rounded_text(record%deflection_time)//within(errors%deflection, record%deflection))
+    if (record%compression%strength > 0) &
+      call tell(lines, 'residual strength', compression_text(record%compression))
     if (deck%has_impactor .and. .not. deck%has_static) call tell_impact_energy(lines, deck, now)
     call tell_energies(lines, now%ledger)
     if (size(figures%interfaces) > 0) call tell_interfaces(lines, deck, record, figures, errors, at)
@@ -150,13 +153,16 @@ contains
     type(line_t), allocatable, intent(inout) :: lines(:)
     !> The ledger
     type(ledger_t), intent(in) :: ledger
+    character(len=:), allocatable :: damping
 
+    damping = ''
+    if (ledger%damping > 0) damping = ', damping '//rounded_text(ledger%damping)
     if (ledger%external_work /= 0) call tell(lines, 'work of the load', rounded_text(ledger%external_work))
     call tell(lines, 'of it', 'kinetic '//rounded_text(ledger%kinetic)//', strain '//rounded_text(ledger%strain)// &
               ', indentation '//rounded_text(ledger%indentation)//', delamination '// &
               rounded_text(ledger%delamination)//', ply damage '//rounded_text(ledger%ply_damage))
     call tell(lines, '', 'contact '//rounded_text(ledger%contact)//', friction '//rounded_text(ledger%friction)// &
-              ', layers '//rounded_text(ledger%layers)//', algorithmic dissipation '// &
+              ', layers '//rounded_text(ledger%layers)//damping//', algorithmic dissipation '// &
               rounded_text(ledger%algorithmic)//', not accounted for '//rounded_text(ledger%error(), 2))
   end subroutine tell_energies
 

@@ -1,6 +1,7 @@
 !> What a deck says, as plain parameters together with the text they came from.
 module deck_contents
   use deck_settings, only: settings_t
+  use initial_state_parameters, only: initial_state_t
   use kinds, only: wp
   use stepping_parameters, only: stepping_t
   use linear_solver_parameters, only: linear_solver_parameters_t
@@ -31,6 +32,8 @@ module deck_contents
     logical :: strict = .false.
     !> Times that elements and steps are halved
     integer :: refine = 0
+    !> The state that another run has left, if this one begins from it
+    type(initial_state_t) :: initial
     !> What was chosen for the accuracy and why
     type(line_t), allocatable :: reasons(:)
     !> Scales of the scene, and what the run is to show

@@ -71,7 +71,7 @@ contains
              problems%concern(pressure_group) .or. problems%concern(line_group))) then
       call tell(deck%settings, problems, static_group, '', 'there is no load; give &pressure, or a &line with one.')
     else if (.not. (deck%has_static .or. deck%has_impactor .or. deck%has_pressure .or. deck%has_thermal .or. &
-                    loads(deck%lines) .or. problems%concern(line_group) .or. &
+                    deck%inherits .or. loads(deck%lines) .or. problems%concern(line_group) .or. &
                     problems%concern(static_group) .or. problems%concern(impactor_group) .or. &
                     problems%concern(pressure_group))) then
       call problems%error(0, pressure_group, '', 'nothing loads the plate; give &impactor, &pressure or &line.')

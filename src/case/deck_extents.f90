@@ -3,6 +3,7 @@
 module deck_extents
   use cell_grids, only: cell_edges
   use deck_contents, only: deck_t
+  use deck_mesh_lines, only: check_window_lines
   use deck_problems, only: problems_t
   use deck_remarks, only: tell, remark, are_clear
   use delaminated_regions, only: cells_within, extent_of_cells
@@ -19,8 +20,6 @@ module deck_extents
   use mesh_deck, only: mesh_group, key_elements, key_patch, key_core, key_cell, most_elements
   use mesh_parameters, only: is_halved, is_mirrored
   use plate_deck, only: plate_group, key_length, key_symmetry
-  use rigs, only: window_lines
-  use support_deck, only: support_group, key_window
   use text, only: line_t, to_text
   implicit none
   private
@@ -305,29 +304,6 @@ contains
     length = sqrt((x_edges(columns(2) + 1) - x_edges(columns(1)))*(y_edges(rows(2) + 1) - y_edges(rows(1))) &
                   /product([columns(2) - columns(1), rows(2) - rows(1)] + 1))
   end function mean_cell
-
-  !> Windows whose edges the mesh has no lines for, because all are taken by the patch or by other windows.
-  subroutine check_window_lines(deck, problems)
-    !> The deck, filled and checked
-    type(deck_t), intent(in) :: deck
-    !> Faults found are added
-    type(problems_t), intent(inout) :: problems
-    real(wp), allocatable :: edges(:), lines(:)
-    logical :: missed
-    integer :: direction, line
-
-    missed = .false.
-    do direction = 1, 2
-      edges = cell_edges(deck%plate, deck%mesh, direction)
-      lines = window_lines(deck%supports, direction)
-      do line = 1, size(lines)
-        missed = missed .or. lines(line) > edges(1) .and. &
-                 minval(abs(edges - lines(line))) > 1.0e-9_wp*deck%plate%length(direction)
-      end do
-    end do
-    if (missed) call tell(deck%settings, problems, support_group, key_window, 'no line of the mesh can be moved '// &
-                          'to an edge of the window; give more elements, or keep the patch off the edge.')
-  end subroutine check_window_lines
 
   !> What zone and starter of each interface are, for the log.
   pure function extent_lines(deck) result(lines)

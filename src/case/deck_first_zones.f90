@@ -35,7 +35,7 @@ contains
         call want('a front needs it, and layers follow the damage of law = ''cohesive'' only')
       else if (deck%settings%is_given(delamination_group, key_strip, place)) then
         call want(key_strip//' runs across its whole width')
-      else if (size(deck%lines) > 0) then
+      else if (.not. all(beside_layers(deck))) then
         call want('a &line acts on layers that are there from the start')
       end if
     end do
@@ -51,6 +51,19 @@ contains
         call tell(deck%settings, problems, delamination_group, key_zone, 'is missing; '//reason//'.', place)
     end subroutine want
   end subroutine check_left_out_zones
+
+  !> Lines that layers do not come to: those that move an edge of the plate in its plane.
+  pure function beside_layers(deck)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> True for each such line
+    logical :: beside_layers(size(deck%lines))
+    integer :: i
+
+    do i = 1, size(deck%lines)
+      beside_layers(i) = deck%inherits .and. deck%lines(i)%is_end(deck%plate%length)
+    end do
+  end function beside_layers
 
   !> Sets the zones that the deck leaves to the damage.
   subroutine set_first_zones(deck, problems)

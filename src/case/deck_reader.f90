@@ -8,6 +8,7 @@ module deck_reader
   use deck_central_differences, only: choose_for_central_differences, find_stable_step
   use deck_cross_checks, only: check_across_groups
   use deck_integrators, only: choose_integrator
+  use deck_initial_states, only: check_initial_state
   use deck_interface_remarks, only: check_interfaces
   use deck_process_zones, only: check_process_zones, settle_flaws
   use deck_extents, only: check_sizes, check_extents
@@ -31,6 +32,7 @@ module deck_reader
   use files, only: read_whole_file
   use impactor_deck, only: fill_impactor, impactor_group, impactor_key_rise => key_rise
   use indentation_deck, only: fill_indentation, check_indentation, indentation_group
+  use initial_state_deck, only: fill_initial_state, initial_state_group
   use kinds, only: wp
   use laminate_deck, only: fill_laminate
   use line_deck, only: fill_lines, check_lines
@@ -39,6 +41,7 @@ module deck_reader
   use material_deck, only: fill_materials, normal_compliance
   use material_parameters, only: first_alike
   use mesh_deck, only: fill_mesh, check_mesh
+  use mesh_parameters, only: add_lines
   use output_deck, only: fill_output
   use plate_deck, only: fill_plate, check_plate
   use ply_damage_deck, only: fill_ply_damage, ply_damage_group
@@ -112,6 +115,7 @@ contains
     call check_sizes(deck, problems)
     call check_across_groups(deck, problems)
     if (deck%has_time .and. is_explicit(deck%stepping)) call check_central_differences(deck, problems)
+    call check_initial_state(deck, problems)
     call check_left_out_zones(deck, problems)
     call set_first_zones(deck, problems)
     call check_extents(deck, problems)
@@ -137,6 +141,7 @@ contains
     deck%has_pressure = deck%settings%has_group(pressure_group)
     deck%has_thermal = deck%settings%has_group(thermal_group)
     deck%has_static = deck%settings%has_group(static_group)
+    deck%inherits = deck%settings%has_group(initial_state_group)
     deck%has_ply_damage = deck%settings%has_group(ply_damage_group)
     deck%has_time = deck%settings%has_group(time_group) .or. &
                     has_accuracy(deck%settings) .and. .not. deck%has_static
@@ -157,8 +162,8 @@ contains
     call fill_plate(deck%settings, deck%plate)
     call fill_supports(deck%settings, deck%supports)
     call fill_mesh(deck%settings, deck%mesh)
-    deck%mesh%x_lines = window_lines(deck%supports, 1)
-    deck%mesh%y_lines = window_lines(deck%supports, 2)
+    call add_lines(deck%mesh%x_lines, window_lines(deck%supports, 1))
+    call add_lines(deck%mesh%y_lines, window_lines(deck%supports, 2))
     call fill_element(deck%settings, deck%mesh%shear, deck%mesh%mass)
     call fill_materials(deck%settings, deck%materials, problems)
     call fill_laminate(deck%settings, deck%materials, deck%laminate, problems)
@@ -223,7 +228,9 @@ contains
       deck%impactor%rise = usual_rise*deck%stepping%time%end
     call fill_pressure(deck%settings, deck%stepping%time%end, deck%pressure)
     if (deck%has_thermal) call fill_thermal(deck%settings, deck%temperature_change)
-    if (deck%has_time) deck%ramp_time = deck%stepping%time%end
+    call fill_initial_state(deck%settings, deck%initial)
+    if (deck%inherits) deck%load_start = deck%stepping%central%settle
+    if (deck%has_time) deck%ramp_time = deck%stepping%time%end - deck%load_start
     call fill_lines(deck%settings, merge(deck%ramp_time, 0.0_wp, deck%has_time), deck%lines)
     if (deck%has_static) call fill_static(deck%settings, deck%stepping%static_steps, deck%stepping%dissipation)
   end subroutine fill_loads

@@ -10,6 +10,7 @@ module deck_symmetries
   use interface_places, only: delamination_group
   use kinds, only: wp
   use line_deck, only: line_group
+  use line_loads, only: along_x
   use laminate_parameters, only: shear_five_sixths
   use mesh_parameters, only: is_halved, is_mirrored, symmetry_half_x, symmetry_half_y, symmetry_none, symmetry_point, &
                              symmetry_quarter
@@ -53,9 +54,11 @@ contains
                   '; list all of the whole plate, or use ''none''.')
       if (symmetry == symmetry_point .and. any_front(deck)) call tell(s, problems, plate_group, key_symmetry, &
         'fronts are not followed across the line that a turned plate is cut at; use ''none'', or law = ''cohesive''.')
-      if (symmetry == symmetry_point .and. size(deck%lines) > 0 .and. .not. problems%concern(line_group)) &
-        call tell(s, problems, plate_group, key_symmetry, 'a line is no line any more where a turned plate is cut; '// &
-                  'use ''none''.')
+      if (symmetry == symmetry_point .and. .not. problems%concern(line_group)) then
+        if (any(deck%lines%direction == along_x .or. .not. deck%lines%at > 0)) &
+          call tell(s, problems, plate_group, key_symmetry, 'a line is no line any more where a turned plate is '// &
+                    'cut; use ''none'', or lines along y at x > 0, which stand for their images too.')
+      end if
     end associate
   end subroutine check_symmetry
 

@@ -9,6 +9,7 @@ module deck_table
   use equilibrium_deck, only: solver_group_row, equilibrium_rows
   use impactor_deck, only: impactor_group_row, impactor_rows
   use indentation_deck, only: indentation_group_row, indentation_rows
+  use initial_state_deck, only: initial_state_group_row, initial_state_rows
   use laminate_deck, only: laminate_group_row, laminate_rows
   use line_deck, only: line_group_row, line_rows
   use linear_solver_deck, only: linear_solver_rows
@@ -30,13 +31,14 @@ module deck_table
   character(len=*), parameter :: group_rows(*) = [character(len=group_row_length) :: &
     case_group_row, plate_group_row, support_group_row, mesh_group_row, material_group_row, laminate_group_row, &
     impactor_group_row, indentation_group_row, pressure_group_row, line_group_row, thermal_group_row, &
-    static_group_row, ply_damage_group_row, &
+    initial_state_group_row, static_group_row, ply_damage_group_row, &
     delamination_group_row, time_group_row, adapt_group_row, solver_group_row, output_group_row]
 
   !> Keys, those of a group together.
   character(len=*), parameter :: key_rows(*) = [character(len=key_row_length) :: &
     case_rows, kinematics_rows, plate_rows, support_rows, mesh_rows, element_rows, material_rows, laminate_rows, &
-    impactor_rows, indentation_rows, pressure_rows, line_rows, thermal_rows, static_rows, ply_damage_rows, &
+    impactor_rows, indentation_rows, pressure_rows, line_rows, thermal_rows, initial_state_rows, static_rows, &
+    ply_damage_rows, &
     delamination_rows, time_rows, &
     adapt_rows, equilibrium_rows, linear_solver_rows, output_rows]
 

@@ -3,7 +3,8 @@ module delamination_parameters
   use kinds, only: wp
   implicit none
   private
-  public :: delamination_t, interface_objection, toughness_objection, default_starter, default_smoothing, toughnesses
+  public :: delamination_t, interface_objection, toughness_objection, default_starter, default_smoothing, toughnesses, &
+            law_of
 
   !> What holds the faces and lets them part: a cohesive law of tractions against jumps, or ties that a front releases
   !> by its energy release rate.
@@ -85,7 +86,25 @@ module delamination_parameters
   !> with 3 cells by 4 to 13 %; a cross-ply with cells of 1 mm sets free .97 of what it books, with 2.6 cells .84.
   integer, parameter, public :: least_smoothed_cells = 5
 
+  !> What two runs must have in common for one to begin with the damage of the other, by its names in the deck.
+  character(len=*), parameter, public :: law_names(*) = [character(len=16) :: 'law', 'G_c', 'G_Ic', 'G_IIc', 'eta', &
+    'strength_opening', 'strength_shear', 'stiffness', 'friction', 'cracks_as_flaws', 'shear_cracks']
+
 contains
+
+  !> What the damage of an interface depends on.
+  pure function law_of(delamination) result(numbers)
+    !> The interface
+    type(delamination_t), intent(in) :: delamination
+    !> In the order of their names; the law by its number in the list of the deck
+    real(wp) :: numbers(size(law_names))
+
+    associate (d => delamination)
+      numbers = [real(d%law, wp), d%toughness, d%toughness_opening, d%toughness_shear, d%mixing_exponent, &
+                 d%strength_opening, d%strength_shear, d%stiffness, d%friction, &
+                 real([merge(1, 0, d%cracks_as_flaws), merge(1, 0, d%shear_cracks)], wp)]
+    end associate
+  end function law_of
 
   !> Distance over which a front is smoothed unless the deck says it: stresses beside a front change within a thickness,
   !> so nothing is resolved by less.

@@ -4,6 +4,7 @@ module explicit_steps
   use central_difference_energies, only: book_energies
   use central_differences, only: central_difference_t
   use crack_flaws, only: note_flaws
+  use damped_motions, only: damp_motion
   use errors, only: error_t
   use initial_equilibrium, only: find_initial_equilibrium
   use kinds, only: wp
@@ -53,6 +54,8 @@ contains
     !> The state
     type(state_t), intent(inout) :: now
 
+    if (model%scene%inherits .and. now%time < method%parameters%settle) &
+      call damp_motion(method, model, now, method%parameters%settle)
     call method%advance(model, event, now)
     if (model%scene%has_ply_damage .and. .not. allocated(now%plies%bands)) then
       call model%profile%enter('ply criteria')

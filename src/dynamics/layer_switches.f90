@@ -23,7 +23,7 @@ module layer_switches
   use timers, only: timer_set_t
   implicit none
   private
-  public :: advance_with_layers
+  public :: advance_with_layers, move_with_plate
 
   !> Steps of central differences between two looks at the layers that damage asks for.
   integer, parameter :: between_demands = 16

@@ -1,13 +1,15 @@
 !> What the history tells of lines that hold, move or press on the plate.
 module line_columns
   use kinds, only: wp
+  use line_loads, only: line_load_t
+  use mesh_parameters, only: is_halved, plate_t
   use models, only: model_t
   use rank_totals, only: totals_of
   use result_tables, only: result_row_length
   use states, only: state_t
   implicit none
   private
-  public :: line_values
+  public :: line_values, end_values, has_ends
 
   !> Columns that a deck with lines has, the latter two once a line: N is its number in the deck.
   character(len=result_row_length), parameter, public :: line_column_rows(*) = [character(len=result_row_length) :: &
@@ -16,6 +18,13 @@ module line_columns
     'line_force_N | real | force | Force on the plate of the N-th &line, of the whole line, along its component; of a &
       &rotation the moment.', &
     'line_displacement_N | real | length | Mean displacement or rotation of the N-th &line along its component.']
+
+  !> Columns of a plate whose ends are pressed together or drawn apart by lines.
+  character(len=result_row_length), parameter, public :: end_rows(*) = [character(len=result_row_length) :: &
+    'far_field_stress | real | pressure | Load over the width and thickness of the plate, positive in compression, the &
+      &mean of the ends that lines move; only with lines that move ends of the plate in its plane.', &
+    'shortening | real | length | How much closer to each other the ends of the plate are than at the start.', &
+    'nominal_strain | real | - | Shortening over the length of the plate.']
 
 contains
 
@@ -39,4 +48,57 @@ contains
     end if
     values = [now%load_factor, values]
   end function line_values
+
+  !> True: lines move ends of the plate in its plane.
+  pure logical function has_ends(plate, lines)
+    !> The plate
+    type(plate_t), intent(in) :: plate
+    !> Lines of the deck
+    type(line_load_t), intent(in) :: lines(:)
+
+    has_ends = count(on_ends(plate, lines)) > 0
+  end function has_ends
+
+  !> Lines on the ends that are moved: on both of them, also where one stays.
+  pure function on_ends(plate, lines) result(on)
+    !> The plate
+    type(plate_t), intent(in) :: plate
+    !> Lines of the deck
+    type(line_load_t), intent(in) :: lines(:)
+    !> True for each such line
+    logical :: on(size(lines))
+    integer :: i, moved
+
+    on = [(lines(i)%is_end(plate%length), i=1, size(lines))]
+    moved = findloc(on .and. abs(lines%value) > 0, .true., dim=1)
+    if (moved == 0) then
+      on = .false.
+    else
+      on = on .and. lines%component == lines(moved)%component
+    end if
+  end function on_ends
+
+  !> Stress far from the damage and shortening, from the values of the lines.
+  pure function end_values(model, values) result(ends)
+    type(model_t), intent(in) :: model
+    !> Load factor, then force and displacement of every line
+    real(wp), intent(in) :: values(:)
+    !> A value a column; none without such lines
+    real(wp), allocatable :: ends(:)
+    real(wp) :: sides(size(model%lines))
+    logical :: on(size(model%lines)), halved(2)
+    integer :: i, along
+
+    allocate (ends(0))
+    associate (plate => model%scene%plate, lines => model%lines%load)
+      on = on_ends(plate, lines)
+      if (.not. any(on)) return
+      along = lines(findloc(on, .true., dim=1))%component
+      sides = merge(sign(1.0_wp, lines%at), 0.0_wp, on)
+      halved = is_halved(plate%symmetry)
+      ends = [-sum([(sides(i)*values(2*i), i=1, size(on))])/(count(on)*plate%length(3 - along)*model%thickness), &
+              -merge(2, 1, halved(along))*sum([(sides(i)*values(2*i + 1), i=1, size(on))])]
+      ends = [ends, ends(2)/plate%length(along)]
+    end associate
+  end function end_values
 end module line_columns

@@ -36,7 +36,7 @@ module step_columns
     'energy_algorithmic | real | energy | Algorithmic dissipation: energy that time integrators, implicit &
       &interfaces and fading ties took out of the motion, less energy_delamination.', &
     'energy_error | real | energy | What the ledger fails to account for: the sum of the eight energies before, &
-      &energy_friction and energy_layers, less work_external and the energy at the start.']
+      &energy_friction, energy_layers and energy_damping, less work_external and the energy at the start.']
 
   !> The rest of the state and the length of the step.
   character(len=result_row_length), parameter, public :: step_rows(*) = [character(len=result_row_length) :: &
@@ -65,6 +65,10 @@ module step_columns
     'energy_friction | real | energy | Energy that friction between faces has turned into heat.', &
     'energy_layers | real | energy | Strain and kinetic energy that the plate had more than the layers that took its &
       &place where a zone grew; rounding with shear_correction = ''5/6''.']
+
+  !> Damping.
+  character(len=result_row_length), parameter, public :: damping_rows(*) = [character(len=result_row_length) :: &
+    'energy_damping | real | energy | Kinetic energy that &time settle has taken from the plate.']
 
   !> Contact with the impactor.
   character(len=result_row_length), parameter, public :: contact_rows(*) = [character(len=result_row_length) :: &

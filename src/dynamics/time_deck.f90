@@ -16,7 +16,8 @@ module time_deck
 
   !> Names that checks across groups use.
   character(len=*), parameter, public :: time_group = 'time', key_end = 'end', key_step = 'step', &
-                                         key_mass_scaling = 'mass_scaling', key_integrator = 'integrator'
+                                         key_mass_scaling = 'mass_scaling', key_integrator = 'integrator', &
+                                         key_settle = 'settle'
   !> Row of the group.
   character(len=group_row_length), parameter, public :: time_group_row = &
     'time | settings | Time integration of the plate; needed unless the analysis is static.'
@@ -43,7 +44,9 @@ module time_deck
     'time | step_factor | real | 1 | - | 0.9 | > 0, <= 1 | &
       &Part of the stable step that central differences take.', &
     'time | mass_scaling | real | 1 | - | = up to 10, as the waves bear | >= 1, <= 1000 | &
-      &Factor of in-plane and rotary inertia for central differences, never of the inertia of w; 1: none.']
+      &Factor of in-plane and rotary inertia for central differences, never of the inertia of w; 1: none.', &
+    'time | settle | real | 1 | time | 0 | >= 0 | &
+      &Time in which central differences damp a plate from &initial_state to rest before lines begin to load it.']
 
   !> Most steps of a run: more pass the range of default integers.
   real(wp), parameter, public :: most_steps = 1.0e8_wp
@@ -70,6 +73,7 @@ contains
       time%integrator = integrator_of(s)
       central%step_factor = s%real_of(time_group, 'step_factor')
       central%mass_scaling = s%real_of(time_group, key_mass_scaling)
+      central%settle = s%real_of(time_group, key_settle)
       central%longest = time%step
       if (time%integrator == integrator_central_difference) return
       if (.not. s%is_given(time_group, 'step_min')) &
@@ -119,7 +123,7 @@ contains
                        'has no effect with integrator = ''central_difference''.')
       return
     end if
-    call remark_idle(settings, problems, time_group, 'step_factor '//key_mass_scaling, &
+    call remark_idle(settings, problems, time_group, 'step_factor '//key_mass_scaling//' '//key_settle, &
                      'has no effect without integrator = ''central_difference''.')
     if (time%step_min > time%step .and. clear('step step_min')) call tell(settings, problems, time_group, 'step_min', &
       'is larger than the first step; allowed: up to step = '//to_text(time%step)//'.')

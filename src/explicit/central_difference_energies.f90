@@ -10,11 +10,11 @@ module central_difference_energies
   use exact_sums, only: exact_sum_t
   use kinds, only: wp
   use models, only: model_t
-  use rank_totals, only: totals_of
+  use rank_totals, only: total_of, totals_of
   use states, only: state_t
   implicit none
   private
-  public :: book_energies
+  public :: book_energies, kinetic_energy
 
 contains
 
@@ -64,6 +64,19 @@ contains
       ledger%impactor = method%impact%energy(model, method%steps%now, now)
     end associate
   end subroutine book_energies
+
+  !> Kinetic energy of the plate at the end of the last step. Collective.
+  real(wp) function kinetic_energy(method, model, now) result(energy)
+    !> The method
+    type(central_difference_t), intent(in) :: method
+    type(model_t), intent(in) :: model
+    !> The state
+    type(state_t), intent(in) :: now
+    type(exact_sum_t) :: kinetic, scaled
+
+    call add_kinetic(method, model, now, kinetic, scaled)
+    energy = total_of(model%communicator, kinetic)*model%mesh%multiplicity
+  end function kinetic_energy
 
   !> Adds the kinetic energy of this rank's points, and the part of it in motions whose inertia is scaled.
   subroutine add_kinetic(method, model, now, kinetic, scaled)

@@ -13,5 +13,7 @@ module central_difference_parameters
     real(wp) :: mass_scaling = 1
     !> Longest step wanted; 0: the stable one decides
     real(wp) :: longest = 0
+    !> Time in which damping brings the plate to rest before lines load it; 0: nothing is damped
+    real(wp) :: settle = 0
   end type central_difference_parameters_t
 end module central_difference_parameters

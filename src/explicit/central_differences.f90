@@ -187,8 +187,9 @@ contains
     if (.not. (step <= longest .and. step > relaxed*longest)) step = whole_step(model%scene%ramp_time, longest)
     self%steps = step_lengths_t(now=step, last=self%steps%now)
     call prepare(self, model)
-    load_factors = [now%load_factor, (now%time + step)/model%scene%ramp_time]
-    call self%lines%find_rates(model, self%steps, load_factors(2), self%motion)
+    load_factors = [now%load_factor, model%scene%load_factor_at(now%time + step)]
+    call self%lines%find_rates(model, self%steps, load_factors(2), model%scene%offset_left(now%time + step), &
+                               self%motion)
     call self%change_length(model, now%motion%velocity, -1)
     associate (u => now%motion%displacement, v => now%motion%velocity)
       call model%profile%enter('nodes')
@@ -359,6 +360,7 @@ contains
 
     call self%stacks%find_onsets(model, now%interfaces%cohesive)
     call self%stacks%find_damaged(now%interfaces%cohesive)
+    call sort_points(self)
     self%motion = model%motion_of(now%motion%displacement)
     self%prepared = step_lengths_t()
     if (self%steps%now > 0) call prepare(self, model)
@@ -382,7 +384,8 @@ contains
       call archive%field('explicit/forces', owned, points, self%force)
       call self%rigs%visit(archive, owned, points)
       call self%impact%visit(archive)
-      if (size(model%lines) > 0 .or. allocated(model%pressure)) call self%lines%visit(archive, owned, points)
+      if (size(model%lines) > 0 .or. allocated(model%pressure) .or. model%scene%inherits) &
+        call self%lines%visit(archive, owned, points)
       if (.not. model%map%layered) return
       allocate (interfaces(8, size(self%force, 2)))
       interfaces(1:3, :) = self%stacks%forces

@@ -27,8 +27,10 @@ module line_steps
     real(wp) :: height = 0
     !> Velocity that a unit of the component's velocity takes: of the displacement and of the rotation, or of w alone
     real(wp) :: gain(2) = 0
-    !> Value at the end of the step, and rate in it
+    !> Rate in the step
     real(wp) :: rate = 0
+    !> What the component had at the start of the run beyond what is prescribed
+    real(wp) :: offset = 0
     !> Reaction in the last step, and change of the component in it
     real(wp) :: reaction = 0, change = 0
   end type pin_t
@@ -46,6 +48,8 @@ module line_steps
     procedure :: is_pinned
     !> Takes the pinned directions out of the inverse inertia.
     procedure :: project
+    !> Takes a motion for that from which the prescribed one starts.
+    procedure :: start_from
     !> Finds the rates of a step.
     procedure :: find_rates
     !> Gives the layer of a point the velocity that is prescribed.
@@ -88,12 +92,7 @@ contains
         end do
       end associate
     end do
-    allocate (self%pins(0))
-    do p = 1, size(follows)
-      self%first(p) = size(self%pins) + 1
-      if (size(pins) > 0) self%pins = [self%pins, pack(pins, pins%point == p)]
-    end do
-    self%first(p) = size(self%pins) + 1
+    call sort_pins(self, pins)
   end function create_line_steps
 
   !> True: a line prescribes some motion of a point.
@@ -127,15 +126,74 @@ contains
         pin%gain = [m(from)*direction(1) + m(from + 1)*direction(2), &
                     m(from + 1)*direction(1) + m(from + 2)*direction(2)]
         compliance = dot_product(pin%gain, direction)
-        if (.not. compliance > 0) cycle
+        if (.not. compliance > 0) then
+          ! What a support holds moves only as it is prescribed.
+          pin%gain = merge([1.0_wp, 0.0_wp], [0.0_wp, 1.0_wp], pin%component <= 2)
+          cycle
+        end if
         m(from:from + 2) = m(from:from + 2) - [pin%gain(1)**2, product(pin%gain), pin%gain(2)**2]/compliance
         pin%gain = pin%gain/compliance
       end associate
     end do
   end subroutine project
 
+  !> Takes a motion for that from which the prescribed one starts: lines and supports come to their places from there.
+  !> So what supports hold is prescribed too where it is not zero.
+  subroutine start_from(self, model, inertia, motion)
+    !> The lines
+    class(line_steps_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> Lumped inertia, with what is held and which points follow
+    type(nodal_inertia_t), intent(in) :: inertia
+    !> Motion of the layers, (5, points)
+    real(wp), intent(in) :: motion(:, :)
+    type(pin_t), allocatable :: pins(:)
+    logical :: follows(size(motion, 2))
+    integer :: i, p, component
+
+    follows = .false.
+    follows(inertia%followers) = .true.
+    pins = self%pins
+    do p = 1, model%distribution%owned
+      do component = 1, 5
+        if (inertia%held(component, p) .and. .not. follows(p) .and. abs(motion(component, p)) > 0) &
+          pins = [pins, pin_t(point=p, component=component)]
+      end do
+    end do
+    call sort_pins(self, pins)
+    do i = 1, size(self%pins)
+      associate (pin => self%pins(i))
+        pin%offset = component_of(pin, motion(:, pin%point))
+        if (pin%line > 0) pin%offset = pin%offset - model%lines(pin%line)%load%at_factor(0.0_wp)
+      end associate
+    end do
+  end subroutine start_from
+
+  !> Puts those of one point after each other.
+  pure subroutine sort_pins(self, pins)
+    !> The lines
+    class(line_steps_t), intent(inout) :: self
+    !> What is prescribed, in any order
+    type(pin_t), intent(in) :: pins(:)
+    integer :: order(size(pins)), i, p
+
+    self%first = 1
+    do i = 1, size(pins)
+      self%first(pins(i)%point + 1:) = self%first(pins(i)%point + 1:) + 1
+    end do
+    order = 0
+    do i = 1, size(pins)
+      p = self%first(pins(i)%point)
+      do while (order(p) > 0)
+        p = p + 1
+      end do
+      order(p) = i
+    end do
+    self%pins = pins(order)
+  end subroutine sort_pins
+
   !> Finds the rates that bring each pinned component to its value at the end of the step.
-  pure subroutine find_rates(self, model, steps, load_factor, motion)
+  pure subroutine find_rates(self, model, steps, load_factor, left, motion)
     !> The lines
     class(line_steps_t), intent(inout) :: self
     type(model_t), intent(in) :: model
@@ -143,14 +201,18 @@ contains
     type(step_lengths_t), intent(in) :: steps
     !> Ramps over their full values at the end of the step
     real(wp), intent(in) :: load_factor
+    !> Part of the offsets at the start that is left at the end of the step
+    real(wp), intent(in) :: left
     !> Motion of the layers at the start of the step, (5, points)
     real(wp), intent(in) :: motion(:, :)
+    real(wp) :: value
     integer :: i
 
     do i = 1, size(self%pins)
       associate (pin => self%pins(i))
-        pin%rate = (model%lines(pin%line)%load%at_factor(load_factor) - component_of(pin, motion(:, pin%point))) &
-                   /steps%now
+        value = left*pin%offset
+        if (pin%line > 0) value = value + model%lines(pin%line)%load%at_factor(load_factor)
+        pin%rate = (value - component_of(pin, motion(:, pin%point)))/steps%now
       end associate
     end do
   end subroutine find_rates
@@ -267,7 +329,7 @@ contains
 
     do i = 1, size(self%pins)
       associate (pin => self%pins(i))
-        call sums(pin%line)%add(pin%reaction/model%lines(pin%line)%share)
+        if (pin%line > 0) call sums(pin%line)%add(pin%reaction/model%lines(pin%line)%share)
       end associate
     end do
     forces = totals_of(model%communicator, sums)
@@ -281,7 +343,7 @@ contains
     class(archive_t), intent(inout) :: archive
     !> Points of the mesh that this rank owns, and all points
     integer, intent(in) :: owned(:), points
-    real(wp) :: fields(11, size(self%work))
+    real(wp) :: fields(16, size(self%work))
     integer :: i
 
     fields = 0
@@ -290,15 +352,42 @@ contains
       associate (pin => self%pins(i))
         fields(pin%component, pin%point) = pin%reaction
         fields(pin%component + 5, pin%point) = pin%change
+        fields(pin%component + 11, pin%point) = pin%offset
       end associate
     end do
     call archive%field('explicit/lines', owned, points, fields)
     self%work = fields(11, :)
+    if (archive%loading) call add_offset(self, fields(12:, :))
     do i = 1, size(self%pins)
       associate (pin => self%pins(i))
         pin%reaction = fields(pin%component, pin%point)
         pin%change = fields(pin%component + 5, pin%point)
+        pin%offset = fields(pin%component + 11, pin%point)
       end associate
     end do
   end subroutine visit
+
+  !> Adds what supports move to its place, known by its offsets.
+  pure subroutine add_offset(self, offsets)
+    !> The lines
+    type(line_steps_t), intent(inout) :: self
+    !> Offset of each component, (5, points)
+    real(wp), intent(in) :: offsets(:, :)
+    logical :: missing(5, size(offsets, 2))
+    type(pin_t), allocatable :: pins(:)
+    integer :: i, p, component
+
+    missing = abs(offsets) > 0
+    do i = 1, size(self%pins)
+      missing(self%pins(i)%component, self%pins(i)%point) = .false.
+    end do
+    if (.not. any(missing)) return
+    pins = self%pins
+    do p = 1, size(offsets, 2)
+      do component = 1, 5
+        if (missing(component, p)) pins = [pins, pin_t(point=p, component=component)]
+      end do
+    end do
+    call sort_pins(self, pins)
+  end subroutine add_offset
 end module line_steps

@@ -3,7 +3,13 @@ module material_parameters
   use kinds, only: wp
   implicit none
   private
-  public :: material_t, first_alike
+  public :: material_t, first_alike, constants_of
+
+  !> Constants of a material, and their names in the deck in the order of the type.
+  integer, parameter, public :: constants = 22
+  character(len=*), parameter, public :: constant_names(constants) = [character(len=10) :: 'density', 'E1', 'E2', &
+    'G12', 'G13', 'G23', 'nu12', 'nu23', 'XT', 'XC', 'YT', 'YC', 'S12', 'Sf', 'Sm23', 'shear_beta', 'G_ft', 'G_fc', &
+    'G_mt', 'G_mc', 'alpha1', 'alpha2']
 
   !> An orthotropic ply, 1 along the fibres. A strength that the deck does not give is zero or less. It has many
   !> components because the deck gives that many constants.
@@ -48,14 +54,14 @@ contains
   end function first_alike
 
   !> Everything about a material but its name.
-  pure function constants_of(material) result(constants)
+  pure function constants_of(material) result(values)
     !> The material
     type(material_t), intent(in) :: material
     !> In the order of the type
-    real(wp) :: constants(22)
+    real(wp) :: values(constants)
 
     associate (m => material)
-      constants = [m%density, m%e1, m%e2, m%g12, m%g13, m%g23, m%nu12, m%nu23, m%xt, m%xc, m%yt, m%yc, m%s12, m%sf, &
+      values = [m%density, m%e1, m%e2, m%g12, m%g13, m%g23, m%nu12, m%nu23, m%xt, m%xc, m%yt, m%yc, m%s12, m%sf, &
                    m%sm23, m%shear_beta, m%toughness, m%expansion]
     end associate
   end function constants_of

@@ -3,7 +3,7 @@ module ply_damage_parameters
   use kinds, only: wp
   implicit none
   private
-  public :: ply_damage_t
+  public :: ply_damage_t, numbers_of
 
   !> Ways a ply fails (Table 1 of the paper), and their number.
   integer, parameter, public :: fibre_failure = 1, matrix_cracking = 2, matrix_crushing = 3, failure_modes = 3
@@ -18,6 +18,10 @@ module ply_damage_parameters
   !> Where in a ply the stresses are taken: in its mid-plane, or on the worse of its faces.
   integer, parameter, public :: stress_at_middle = 1, stress_at_faces = 2
 
+  !> What two runs must have in common for one to begin with the damage of the other, by its names in the deck.
+  character(len=*), parameter, public :: damage_names(*) = [character(len=8) :: 'd', 'e', 'criteria', 'stress', &
+    'in_situ']
+
   !> When plies fail, and how a failed ply loses its stiffness (Table 2 of the paper).
   type :: ply_damage_t
     !> Divisor of the elastic constants that a mode of failure takes away
@@ -31,4 +35,16 @@ module ply_damage_parameters
     !> True: the strengths of the matrix are those in place
     logical :: in_situ = .false.
   end type ply_damage_t
+
+contains
+
+  !> Numbers of the damage in the order of their names; choices by their number in the list of the deck.
+  pure function numbers_of(damage) result(numbers)
+    !> The damage
+    type(ply_damage_t), intent(in) :: damage
+    !> One a name
+    real(wp) :: numbers(size(damage_names))
+
+    numbers = [damage%d, damage%e, real([damage%criteria, damage%stress, merge(1, 0, damage%in_situ)], wp)]
+  end function numbers_of
 end module ply_damage_parameters

@@ -5,7 +5,7 @@ module mesh_deck
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
   use kinds, only: wp
-  use mesh_parameters, only: mesh_t
+  use mesh_parameters, only: add_lines, mesh_t
   use text, only: to_text
   implicit none
   private
@@ -14,6 +14,7 @@ module mesh_deck
   !> Names that checks across groups use.
   character(len=*), parameter, public :: mesh_group = 'mesh', key_elements = 'elements', key_patch = 'patch', &
                                          key_core = 'core', key_cell = 'cell', key_grading = 'grading'
+  character(len=*), parameter, public :: key_lines(2) = ['lines_x', 'lines_y']
   !> Most elements: more pass the range of default integers.
   real(wp), parameter, public :: most_elements = 1.0e6_wp
   !> Row of the group.
@@ -30,7 +31,11 @@ module mesh_deck
     'mesh | core | real | 2 | length | none | > 0 | &
       &Full extents of a rectangle of equal elements around the struck point; given with `cell`.', &
     'mesh | cell | real | 1 | length | none | > 0 | &
-      &Side of the elements in the core; outside sizes grow smoothly or by `grading`.']
+      &Side of the elements in the core; outside sizes grow smoothly or by `grading`.', &
+    'mesh | lines_x | real | 1 or more | length | none | any | &
+      &Coordinates x from the centre that lines of the mesh are moved to, on both sides: the edges of a later rig.', &
+    'mesh | lines_y | real | 1 or more | length | none | any | &
+      &Coordinates y from the centre that lines of the mesh are moved to, on both sides: the edges of a later rig.']
 
 contains
 
@@ -46,6 +51,22 @@ contains
     mesh%patch = settings%real_of(mesh_group, key_patch)
     if (settings%is_known(mesh_group, key_core)) mesh%core = settings%reals_of(mesh_group, key_core)
     if (settings%is_known(mesh_group, key_cell)) mesh%cell = settings%real_of(mesh_group, key_cell)
+    if (settings%is_known(mesh_group, key_lines(1))) call take_lines(key_lines(1), mesh%x_lines)
+    if (settings%is_known(mesh_group, key_lines(2))) call take_lines(key_lines(2), mesh%y_lines)
+
+  contains
+
+    !> Takes coordinates on both sides of the centre.
+    subroutine take_lines(key, lines)
+      !> The key
+      character(len=*), intent(in) :: key
+      !> Receives them
+      real(wp), allocatable, intent(inout) :: lines(:)
+      real(wp), allocatable :: given(:)
+
+      given = settings%reals_of(mesh_group, key)
+      call add_lines(lines, [-given, given])
+    end subroutine take_lines
   end subroutine fill_mesh
 
   !> Number of elements, grading, and keys that go together.

@@ -4,7 +4,7 @@ module mesh_parameters
   use plate_options, only: shear_assumed, mass_consistent
   implicit none
   private
-  public :: plate_t, mesh_t, parts_of, is_halved, is_mirrored
+  public :: plate_t, mesh_t, parts_of, is_halved, is_mirrored, add_lines
 
   !> Supports of an edge.
   integer, parameter, public :: edge_free = 0, edge_simple = 1, edge_clamped = 2, edge_elastic = 3
@@ -12,6 +12,9 @@ module mesh_parameters
   !> degrees leaves as it is.
   integer, parameter, public :: symmetry_none = 1, symmetry_quarter = 2, symmetry_half_x = 3, symmetry_half_y = 4, &
                                 symmetry_point = 5
+
+  !> Distance of two lines, over that from the centre, that is none.
+  real(wp), parameter :: same_line = 1.0e-9_wp
 
   !> The plate; lengths are of the whole plate, also under symmetry.
   type :: plate_t
@@ -39,7 +42,8 @@ module mesh_parameters
     real(wp) :: patch = 0
     !> The struck point, from the plate's centre; 0 along directions that symmetry halves
     real(wp) :: struck(2) = 0
-    !> Coordinates that must be lines of the mesh besides, as the edges of windows are; unallocated: none
+    !> Coordinates that must be lines of the mesh besides, as the edges of windows are, those next to the centre first;
+    !> unallocated: none
     real(wp), allocatable :: x_lines(:), y_lines(:)
     !> Full extents along x and y of the rectangle of equal elements around the patch, and their side; 0: none
     real(wp) :: core(2) = 0, cell = 0
@@ -49,6 +53,24 @@ module mesh_parameters
     integer :: mass = mass_consistent
   end type mesh_t
 contains
+
+  !> Adds coordinates to lines of the mesh. Their order is that of distance from the centre, so that the mesh does not
+  !> depend on what brings them.
+  pure subroutine add_lines(lines, further)
+    !> The lines
+    real(wp), allocatable, intent(inout) :: lines(:)
+    !> More of them
+    real(wp), intent(in) :: further(:)
+    integer :: i, place
+
+    if (.not. allocated(lines)) allocate (lines(0))
+    do i = 1, size(further)
+      if (any(abs(lines - further(i)) <= same_line*abs(further(i)))) cycle
+      place = count(abs(lines) < abs(further(i)) .or. &
+                    .not. abs(lines) > abs(further(i)) .and. lines < further(i))
+      lines = [lines(:place), further(i), lines(place + 1:)]
+    end do
+  end subroutine add_lines
 
   !> Number of models that make up the whole plate.
   pure integer function parts_of(symmetry) result(parts)

@@ -47,15 +47,23 @@ contains
     type(support_t), intent(in) :: support
     !> True where the frame bears the plate, (nodes)
     logical, allocatable :: borne(:)
-    real(wp) :: beyond, rounding
+    real(wp) :: beyond(2), rounding
     integer :: node
+    logical :: on_end, on_side
 
     allocate (borne(grid%nodes()), source=.false.)
     if (support%shape == window_none .or. has_crossings(support)) return
     rounding = 1.0e-9_wp*maxval([support%window, support%radius])
     do node = 1, size(borne)
-      beyond = support%beyond(grid%node_coordinates(:, node))
-      borne(node) = beyond >= -rounding .and. (support%bearing == bearing_face .or. beyond <= rounding)
+      if (support%shape == window_circle) then
+        borne(node) = support%beyond(grid%node_coordinates(:, node)) >= -rounding
+        cycle
+      end if
+      beyond = abs(grid%node_coordinates(:, node)) - support%window/2
+      on_end = support%bearing == bearing_face .or. all(beyond <= rounding)
+      on_side = support%sides == bearing_face .or. beyond(2) <= rounding
+      borne(node) = beyond(1) >= -rounding .and. on_end .or. &
+                    beyond(2) >= -rounding .and. beyond(1) <= rounding .and. on_side
     end do
   end function nodes_on_frame
 

@@ -17,6 +17,7 @@ module support_deck
 
   !> Names that checks across groups use.
   character(len=*), parameter, public :: support_group = 'support', key_clamps = 'clamps', key_window = 'window', &
+                                         key_unilateral = 'unilateral', &
                                          key_window_radius = 'radius'
   character(len=*), parameter :: group = support_group
   !> Row of the group.
@@ -34,6 +35,8 @@ module support_deck
       &Whether the plate may lift off the frame, which then bears it by pressure only.', &
     'support | bearing | choice | 1 | - | = face if unilateral, else edge | edge face | &
       &What bears the plate: the edge of the window, a simple support, or all of the frame''s face.', &
+    'support | sides | choice | 1 | - | = as bearing | edge face | &
+      &The same for the sides of a rectangular window, those along x, where they differ from its ends.', &
     'support | clamps | real | 1 or more | length | none | any | &
       &Points from the plate''s centre, x and y in turn, at which clamps hold u, v and w, or with in_plane = free w.', &
     'support | clamp_stiffness | real | 1 | force/length | none | > 0 | &
@@ -61,10 +64,13 @@ contains
                           [window_rectangle, window_circle])
         if (.not. settings%is_given(group, trim(merge(key_window, key_window_radius, s%shape == window_rectangle)), &
                                     place)) s%shape = window_none
-        s%unilateral = settings%logical_of(group, 'unilateral', place)
+        s%unilateral = settings%logical_of(group, key_unilateral, place)
         if (.not. settings%is_given(group, 'bearing', place)) &
           call settings%derive(group, 'bearing', trim(merge('face', 'edge', s%unilateral)), .true., place)
         s%bearing = code_of(settings%text_of(group, 'bearing', place), 'edge face', [bearing_edge, bearing_face])
+        if (.not. settings%is_given(group, 'sides', place)) &
+          call settings%derive(group, 'sides', settings%text_of(group, 'bearing', place), .true., place)
+        s%sides = code_of(settings%text_of(group, 'sides', place), 'edge face', [bearing_edge, bearing_face])
         s%clamp_stiffness = settings%real_of(group, 'clamp_stiffness', place)
         s%clamp_force = settings%real_of(group, 'clamp_force', place)
         clamps = settings%reals_of(group, key_clamps, place)
@@ -145,11 +151,11 @@ contains
         are_clear(settings, problems, group, 'shape unilateral bearing', place)) &
       call tell(settings, problems, group, 'bearing', 'the edge of a circle is no line of the mesh that the plate '// &
                 'may lift off; allowed with it and unilateral: ''face''.', place)
-    if (circle) call remark_idle(settings, problems, group, key_window, 'has no effect on a circle.', place)
+    if (circle) call remark_idle(settings, problems, group, key_window//' sides', 'has no effect on a circle.', place)
     if (.not. circle) call remark_idle(settings, problems, group, key_window_radius, 'has no effect on a rectangle.', &
                                        place)
     if (support%shape == window_none) &
-      call remark_idle(settings, problems, group, 'unilateral bearing', 'has no effect without a window.', place)
+      call remark_idle(settings, problems, group, 'unilateral bearing sides', 'has no effect without a window.', place)
     if (.not. allocated(support%clamps)) &
       call remark_idle(settings, problems, group, 'clamp_stiffness clamp_force', 'has no effect without clamps.', &
                        place)

@@ -20,8 +20,8 @@ module support_parameters
     real(wp) :: window(2) = 0
     !> Radius of a circular window, centred on the plate
     real(wp) :: radius = 0
-    !> bearing_edge or bearing_face
-    integer :: bearing = bearing_edge
+    !> bearing_edge or bearing_face, at the ends of the window along x and at its sides along y
+    integer :: bearing = bearing_edge, sides = bearing_edge
     !> True: the plate may lift off the frame
     logical :: unilateral = .false.
     !> Points from the plate's centre at which it is clamped, (2, clamps)

@@ -25,6 +25,8 @@ module layer_transfers
     integer, allocatable :: point_origin(:), element_origin(:)
     !> True for elements of the mesh loaded that have fewer plies than their origin
     logical, allocatable :: is_split(:)
+    !> Signs that the motion of each point takes where its origin is its image, (5, points)
+    real(wp), allocatable, private :: signs(:, :)
     !> The items, the first ones of the list
     type(kept_t), allocatable, private :: kept(:)
     !> Their number
@@ -45,30 +47,70 @@ module layer_transfers
 
 contains
 
-  !> Turns from saving to loading, and finds where points and elements come from. A zone only ever grows, so every point
-  !> of the mesh saved is found again.
+  !> Turns from saving to loading, and finds where points and elements come from. Zones of the new mesh cover those
+  !> of the old one, so every point of the mesh saved is found again. What only the new mesh has of the plate comes from
+  !> its image in the part that the old one models.
   subroutine turn_to(self, old, new)
     !> The archive
     class(layer_transfer_t), intent(inout) :: self
     !> The mesh saved, and the one to load
     type(layered_mesh_t), intent(in) :: old, new
-    integer :: point, element
+    integer :: point, element, place(2)
+    logical :: turned(2)
 
     self%loading = .true.
     allocate (self%point_origin(new%points()), self%element_origin(new%elements()), self%is_split(new%elements()))
+    allocate (self%signs(5, new%points()), source=1.0_wp)
     do point = 1, size(self%point_origin)
-      associate (node => new%point_node(point), zone => new%point_zone(point))
+      place = new%lines_of(new%point_node(point))
+      call find_image(old, new, 0, place, turned)
+      associate (node => old%node_at(place(1), place(2)), zone => new%point_zone(point))
         self%point_origin(point) = old%first_point(node)
         if (zone > 0) self%point_origin(point) = old%lower_point(node, zone)
       end associate
+      if (turned(1)) self%signs([1, 4], point) = -1
+      if (turned(2)) self%signs([2, 5], point) = -1
     end do
     do element = 1, size(self%element_origin)
+      place = new%place_of(new%element_cell(element))
+      call find_image(old, new, 1, place, turned)
       associate (plies => new%element_plies(:, element), origin => self%element_origin(element))
-        origin = old%element_at(new%element_cell(element), plies(1))
+        origin = old%element_at(place(1) + (place(2) - 1)*old%cells(1), plies(1))
         self%is_split(element) = any(old%element_plies(:, origin) /= plies)
       end associate
     end do
   end subroutine turn_to
+
+  !> Finds where a line of nodes or a cell along each direction lies in the part of the plate that another mesh models.
+  pure subroutine find_image(old, new, first, place, turned)
+    !> The other mesh, and the one that the place is of
+    type(layered_mesh_t), intent(in) :: old, new
+    !> Number of the first: 0 for lines of nodes, 1 for cells
+    integer, intent(in) :: first
+    !> The place, then that of its image
+    integer, intent(inout) :: place(2)
+    !> Directions that have the other sign there
+    logical, intent(out) :: turned(2)
+    integer :: middle(2), last(2)
+
+    turned = .false.
+    middle = 0
+    where (old%halved .and. .not. new%halved) middle = old%cells
+    last = old%cells
+    if (first == 0) middle = 2*middle
+    if (first == 0) last = 2*last
+    place = place - middle
+    turned = place < first
+    where (turned) place = 2*first - 1 - place
+    if (first == 0) then
+      where (turned) place = place + 1
+    end if
+    if (turned(1) .and. .not. old%mirrored(1)) then
+      ! Half of a plate that a turn leaves as it is.
+      turned(2) = .true.
+      place(2) = last(2) + first - place(2)
+    end if
+  end subroutine find_image
 
   !> Keeps an item.
   subroutine keep(self, name, values)
@@ -204,15 +246,19 @@ contains
     real(wp), intent(inout) :: value(:, :)
     real(wp), allocatable :: list(:), whole(:, :)
     integer, allocatable :: origins(:)
-    integer :: i, item
+    integer :: i, item, rows
 
     if (self%loading) then
       origins = self%element_origin
       if (global_columns == size(self%point_origin)) origins = self%point_origin
+      rows = 0
+      if (index(name, 'motion/') == 1) rows = 5
+      if (name == 'cohesive/sliding') rows = 2
       item = self%find(name)
       associate (values => self%kept(item)%values)
         do i = 1, size(columns)
           if (origins(columns(i)) > 0) value(:, i) = values(:, origins(columns(i)))
+          if (rows > 0) value(:rows, i) = self%signs(:rows, columns(i))*value(:rows, i)
         end do
       end associate
     else

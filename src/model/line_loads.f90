@@ -13,6 +13,9 @@ module line_loads
   !> Layer of a line that acts on all layers.
   integer, parameter, public :: all_layers = 0
 
+  !> Distance from the plate's edge, over its length, up to which a line lies on it.
+  real(wp), parameter :: at_end = 1.0e-6_wp
+
   !> One line.
   type :: line_load_t
     !> Coordinate of the line: x if it runs along y, y if it runs along x; the struck point is at 0
@@ -40,6 +43,8 @@ module line_loads
     procedure :: at_factor
     !> Change of the value with the load factor.
     procedure :: slope
+    !> True: it holds or moves an end of the plate in its plane, in tension or compression.
+    procedure :: is_end
   end type line_load_t
 
 contains
@@ -95,4 +100,17 @@ contains
     slope = 0
     if (self%history == line_ramp) slope = self%value
   end function slope
+
+  !> True: it holds or moves an end of the plate in its plane, in tension or compression.
+  pure logical function is_end(self, length)
+    !> The line
+    class(line_load_t), intent(in) :: self
+    !> Lengths of the plate along x and y
+    real(wp), intent(in) :: length(2)
+    integer :: normal
+
+    normal = merge(1, 2, self%direction == along_y)
+    is_end = self%prescribed .and. self%layer == all_layers .and. self%component == normal .and. &
+             abs(abs(self%at) - length(normal)/2) <= at_end*length(normal)
+  end function is_end
 end module line_loads

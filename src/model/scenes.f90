@@ -10,6 +10,7 @@ module scenes
   use delamination_parameters, only: delamination_t
   use impact_parameters, only: impactor_parameters_t, indentation_law_t
   use line_loads, only: line_load_t
+  use smooth_starts, only: smooth_step
   use pressure_loads, only: pressure_t
   implicit none
   private
@@ -42,8 +43,11 @@ module scenes
     real(wp) :: temperature_change = 0
     !> Lines across the plate; unallocated: none
     type(line_load_t), allocatable :: lines(:)
-    !> Time in which the ramps of lines reach their full value; a static analysis does not use it
-    real(wp) :: ramp_time = 1
+    !> True: the plate begins in the state that another run has left
+    logical :: inherits = .false.
+    !> Time at which lines begin to load, and in which their ramps then reach their full value; a static analysis does
+    !> not use them
+    real(wp) :: load_start = 0, ramp_time = 1
     !> Damage of the plies
     type(ply_damage_t) :: ply_damage
     !> Interfaces that may delaminate, from the struck face downwards; unallocated: none
@@ -51,6 +55,10 @@ module scenes
   contains
     !> True: plies soften by their fracture energies.
     procedure :: has_crack_bands
+    !> Ramps of lines over their full values at a time.
+    procedure :: load_factor_at
+    !> Part that is left of what the plate has beyond its supports and lines at the start.
+    procedure :: offset_left
   end type scene_t
 
 contains
@@ -66,4 +74,26 @@ contains
     has_crack_bands = all([(all(self%materials(self%laminate%material(i))%toughness > 0), &
                             i=1, size(self%laminate%material))])
   end function has_crack_bands
+
+  !> Ramps of lines over their full values at a time of a run by central differences.
+  pure real(wp) function load_factor_at(self, time) result(load_factor)
+    !> The scene
+    class(scene_t), intent(in) :: self
+    !> The time
+    real(wp), intent(in) :: time
+
+    load_factor = max(0.0_wp, time - self%load_start)/self%ramp_time
+  end function load_factor_at
+
+  !> Part that is left at a time of what the motion had beyond supports and lines as the run began: smoothly it goes to
+  !> zero until these begin to load. Without time for that it stays.
+  pure real(wp) function offset_left(self, time) result(left)
+    !> The scene
+    class(scene_t), intent(in) :: self
+    !> The time
+    real(wp), intent(in) :: time
+
+    left = 1
+    if (self%load_start > 0) left = 1 - smooth_step(time/self%load_start, 0)
+  end function offset_left
 end module scenes

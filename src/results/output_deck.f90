@@ -28,7 +28,9 @@ module output_deck
     'output | fields_every | real | 1 | time | 0 | >= 0 | &
       &Time between fields written; 0: only the last.', &
     'output | checkpoint_every | real | 1 | time | 0 | >= 0 | &
-      &Time between checkpoints; 0: only when a queue stops the run.', &
+      &Time between checkpoints; 0: only at the end, or when a queue stops the run.', &
+    'output | checkpoint_at_end | logical | 1 | - | .true. | .true. .false. | &
+      &Whether a run leaves its end as a checkpoint, from which &initial_state of another deck may begin.', &
     'output | force_filter | real | 1 | 1/time | none | > 0 | &
       &Corner frequency of a low pass, Butterworth of 4th order, that the column force_filtered has passed.', &
     'output | fields | choice | 1 or more | - | = all but stresses and onset | displacement rotation velocity gap &
@@ -57,6 +59,7 @@ contains
     output%history_every = settings%real_of(group, key_history_every)
     output%fields_every = settings%real_of(group, key_fields_every)
     output%checkpoint_every = settings%real_of(group, 'checkpoint_every')
+    output%checkpoint_at_end = settings%logical_of(group, 'checkpoint_at_end')
     output%force_filter = settings%real_of(group, key_force_filter)
     if (.not. settings%is_given(group, 'fields')) call settings%derive(group, 'fields', usual_fields, .true.)
     output%fields = lower_case(joined(words_of(joined(settings%texts_of(group, 'fields'), ','), ','), ','))

@@ -24,6 +24,8 @@ module output_parameters
     real(wp) :: fields_every = 0
     !> Time between checkpoints; 0: none but at a queue's signal
     real(wp) :: checkpoint_every = 0
+    !> True: the end of the run is kept as a checkpoint, from which another deck may begin
+    logical :: checkpoint_at_end = .true.
     !> Corner frequency of the low pass for the contact force; 0: none
     real(wp) :: force_filter = 0
     !> Names of the fields wanted, in lower case, separated by commas without blanks

@@ -20,6 +20,8 @@ module energy_ledgers
     real(wp) :: contact = 0, friction = 0
     !> Energy that the time integrators have taken out of the motion
     real(wp) :: algorithmic = 0
+    !> Kinetic energy that damping has taken from the plate
+    real(wp) :: damping = 0
     !> Strain and kinetic energy that the plate had and its layers, where they have appeared, have not
     real(wp) :: layers = 0
     !> Work of pressure and lines, and of what moves the impactor of a static analysis
@@ -41,7 +43,7 @@ contains
     class(ledger_t), intent(in) :: self
 
     error = self%impactor + self%kinetic + self%strain + self%indentation + self%delamination &
-            + self%ply_damage + self%contact + self%friction + self%algorithmic + self%layers &
+            + self%ply_damage + self%contact + self%friction + self%algorithmic + self%layers + self%damping &
             - self%external_work - self%initial
   end function error
 
@@ -62,6 +64,7 @@ contains
     call archive%item('ledger/friction', self%friction)
     call archive%item('ledger/algorithmic', self%algorithmic)
     call archive%item('ledger/layers', self%layers)
+    call archive%item('ledger/damping', self%damping)
     call archive%item('ledger/external_work', self%external_work)
     call archive%item('ledger/initial', self%initial)
   end subroutine visit

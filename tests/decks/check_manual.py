@@ -24,6 +24,8 @@ EXAMPLE = re.compile(r"^```fortran\n(.*?)^```", re.DOTALL | re.MULTILINE)
 GROUP = re.compile(r"^&(\w+).*?/[ ]*$", re.DOTALL | re.MULTILINE)
 # Groups that a static example puts in place of these of the deck that fills in the rest.
 TRANSIENT = ("impactor", "indentation", "time")
+# The same for one that begins from another run's end.
+STRIKING = ("impactor", "indentation")
 
 
 def ask(program, *words):
@@ -39,7 +41,8 @@ def completed(example):
     own = [match.group(1) for match in GROUP.finditer(example)]
     for match in GROUP.finditer(rest):
         name = match.group(1)
-        if name not in own and not ("static" in own and name in TRANSIENT):
+        if name not in own and not (("static" in own and name in TRANSIENT) or
+                                    ("initial_state" in own and name in STRIKING)):
             example += match.group(0) + "\n"
     if "static" in own and "pressure" not in own:
         example += "&pressure value=1 /\n"

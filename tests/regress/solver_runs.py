@@ -9,7 +9,7 @@ from pathlib import Path
 
 DECKS = Path(__file__).resolve().parents[2] / "input" / "verify"
 LONGEST_RUN = 240  # seconds
-EXIT_DONE, EXIT_CONVERGENCE, EXIT_FILES, EXIT_STOPPED = 0, 3, 4, 75
+EXIT_DONE, EXIT_DECK, EXIT_CONVERGENCE, EXIT_FILES, EXIT_STOPPED = 0, 2, 3, 4, 75
 ENERGIES = ("energy_impactor", "energy_kinetic", "energy_strain", "energy_indentation", "energy_delamination",
             "energy_ply_damage", "energy_contact", "energy_algorithmic")
 
@@ -57,6 +57,9 @@ def write_deck(folder, deck, settings=()):
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     path = folder / "deck.nml"
+    # Trials go on from a checkpoint within the run, which that of its end would replace.
+    if any(setting.startswith("output%checkpoint_every") for setting in settings):
+        settings = [*settings, "output%checkpoint_at_end=.false."]
     path.write_text(change_deck((DECKS / deck).read_text(encoding="utf-8"), settings), encoding="utf-8")
     return path
 

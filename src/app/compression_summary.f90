@@ -1,0 +1,42 @@
+!> What the summary says of a plate whose ends were pressed together.
+module compression_summary
+  use compression_records, only: compression_record_t
+  use json_text, only: json_t
+  use text, only: rounded_text
+  implicit none
+  private
+  public :: put_compression, compression_text
+
+contains
+
+  !> Strength and modulus for the file.
+  subroutine put_compression(json, record)
+    !> The summary
+    type(json_t), intent(inout) :: json
+    !> What the run remembers
+    type(compression_record_t), intent(in) :: record
+
+    call json%put('residual_strength', record%strength)
+    call json%put('residual_strength_at', record%at)
+    call json%put('shortening_at_strength', record%shortening)
+    call json%put('has_failed', record%failed)
+    if (record%modulus() > 0) then
+      call json%put('effective_modulus', record%modulus())
+    else
+      call json%put_null('effective_modulus')
+    end if
+  end subroutine put_compression
+
+  !> The same for the log.
+  pure function compression_text(record) result(text)
+    !> What the run remembers
+    type(compression_record_t), intent(in) :: record
+    !> Figures after a label
+    character(len=:), allocatable :: text
+
+    text = rounded_text(record%strength)//' at a shortening of '//rounded_text(record%shortening)//', time '// &
+           rounded_text(record%at)
+    if (record%modulus() > 0) text = text//', effective modulus '//rounded_text(record%modulus())
+    if (.not. record%failed) text = text//'; the plate has not failed, so it is borne at least'
+  end function compression_text
+end module compression_summary

@@ -1,0 +1,129 @@
+!> The end of another run as the beginning of this one: it is read from that run's checkpoint, held against the deck,
+!> and carried over to this run's model.
+module initial_states
+  use checkpoints, only: checkpoint_archive_t
+  use communicators, only: communicator_t
+  use deck_contents, only: deck_t
+  use deck_initial_states, only: inheritance_objection
+  use deck_problems, only: problems_t
+  use deck_reader, only: read_deck_text
+  use errors, only: error_t, exit_deck, exit_files, fail
+  use files, only: file_exists
+  use inherited_starts, only: begin_inherited
+  use inherited_states, only: visit_inheritance
+  use initial_state_deck, only: initial_state_group
+  use layer_following, only: visit_zones
+  use layer_transfers, only: layer_transfer_t
+  use logger, only: log_t
+  use model_building, only: create_model
+  use models, only: model_t
+  use states, only: new_state, state_t
+  use text, only: rounded_text, to_text
+  use time_stepping, only: time_stepper_t
+  implicit none
+  private
+  public :: fit_initial_state, take_initial_state
+
+contains
+
+  !> Holds a deck against the run that it begins from, and gives its interfaces layers as far as that has. Collective.
+  subroutine fit_initial_state(deck, communicator, error, lacks)
+    !> The deck, without faults
+    type(deck_t), intent(inout) :: deck
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> Set (files) if the checkpoint can't be read, (deck) if it is of another plate
+    type(error_t), allocatable, intent(inout) :: error
+    !> Returns true instead of an error if there is no such file, as the other run may be still to come
+    logical, intent(out), optional :: lacks
+    type(checkpoint_archive_t) :: archive
+    type(deck_t) :: old
+    character(len=:), allocatable :: objection
+    integer :: i
+
+    if (present(lacks)) lacks = .false.
+    if (.not. deck%inherits) return
+    if (present(lacks)) then
+      if (communicator%is_root()) lacks = .not. file_exists(deck%initial%from)
+      call communicator%broadcast(lacks)
+      if (lacks) return
+    end if
+    call open_checkpoint(deck%initial%from, communicator, archive, old, error)
+    if (.not. allocated(error)) call archive%close(error)
+    if (allocated(error)) return
+    objection = inheritance_objection(deck, old)
+    if (objection /= '') then
+      call fail(error, exit_deck, deck%source//':'// &
+                to_text(deck%settings%line_of_group(initial_state_group))//': &'//initial_state_group//' from='''// &
+                deck%initial%from//''': the plate there is another one, '//objection//'.')
+      return
+    end if
+    do i = 1, size(deck%delaminations)
+      if (deck%delaminations(i)%follows) &
+        deck%delaminations(i)%zone = max(deck%delaminations(i)%zone, old%delaminations(i)%zone)
+    end do
+  end subroutine fit_initial_state
+
+  !> Opens a checkpoint and reads the deck that it holds, with the zones that its layers have come to. Collective.
+  subroutine open_checkpoint(path, communicator, archive, old, error)
+    !> The checkpoint
+    character(len=*), intent(in) :: path
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> Receives it, open
+    type(checkpoint_archive_t), intent(inout) :: archive
+    !> Receives its deck
+    type(deck_t), intent(out) :: old
+    !> Set if it can't be read
+    type(error_t), allocatable, intent(inout) :: error
+    type(problems_t) :: problems
+
+    call archive%open_for_loading(communicator, path, error)
+    if (allocated(error)) return
+    call read_deck_text(archive%provenance%deck, path, old, problems)
+    if (problems%errors() > 0) then
+      call fail(error, exit_files, 'The deck in the checkpoint '//path//' has faults by this version of Implam; '// &
+                'run it again.')
+    else
+      call visit_zones(old%delaminations, archive)
+    end if
+  end subroutine open_checkpoint
+
+  !> Carries the end of the other run over to this one. Collective.
+  subroutine take_initial_state(deck, model, stepper, log, error)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> The model
+    type(model_t), intent(inout) :: model
+    !> What evolves, at its start
+    type(time_stepper_t), intent(inout) :: stepper
+    !> Receives a note
+    type(log_t), intent(inout) :: log
+    !> Set if the checkpoint can't be read
+    type(error_t), allocatable, intent(inout) :: error
+    type(checkpoint_archive_t) :: archive
+    type(layer_transfer_t) :: transfer
+    type(deck_t) :: old
+    type(model_t), allocatable :: old_model
+    type(state_t), allocatable :: state
+
+    call open_checkpoint(deck%initial%from, model%communicator, archive, old, error)
+    if (allocated(error)) return
+    allocate (old_model)
+    call create_model(old%scene_t, model%communicator, old_model, error)
+    if (allocated(error)) return
+    allocate (state, source=new_state(old_model))
+    call visit_inheritance(state, archive, old_model)
+    call archive%close(error)
+    if (allocated(error)) return
+    transfer%communicator = model%communicator
+    call visit_inheritance(state, transfer, old_model)
+    call transfer%turn_to(old_model%mesh, model%mesh)
+    call visit_inheritance(stepper%now, transfer, model)
+    call log%note('The plate begins as '//deck%initial%from//' has left it.')
+    deallocate (state, old_model)
+    call begin_inherited(model, transfer, deck%initial%motion, stepper, error)
+    if (.not. allocated(error)) call log%note('It holds '//rounded_text(stepper%now%ledger%initial)// &
+                                              ' of energy, most of it dissipated: the ledger begins with that.')
+  end subroutine take_initial_state
+end module initial_states

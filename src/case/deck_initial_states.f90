@@ -1,0 +1,272 @@
+!> A deck that begins from the end of another run: whether it can, and whether it is about the same plate.
+module deck_initial_states
+  use cell_grids, only: cell_edges
+  use deck_contents, only: deck_t
+  use deck_problems, only: problems_t
+  use deck_remarks, only: are_clear, remark_idle, tell
+  use delamination_deck, only: key_zone
+  use delamination_parameters, only: law_names, law_of
+  use impactor_deck, only: impactor_group
+  use initial_state_deck, only: initial_state_group
+  use interface_places, only: delamination_group
+  use kinds, only: wp
+  use line_deck, only: line_group, key_rise
+  use material_parameters, only: constant_names, constants_of, constants
+  use mesh_parameters, only: is_halved, symmetry_none, symmetry_point
+  use plate_deck, only: key_symmetry
+  use ply_damage_parameters, only: damage_names, numbers_of
+  use static_deck, only: static_group
+  use stepping_parameters, only: is_explicit
+  use support_deck, only: support_group, key_unilateral
+  use text, only: rounded_text, to_text
+  use time_deck, only: key_settle, time_group
+  implicit none
+  private
+  public :: check_initial_state, inheritance_objection
+
+  !> Digits of numbers in a list.
+  integer, parameter :: digits = 6
+
+contains
+
+  !> What a run from another's end cannot have.
+  subroutine check_initial_state(deck, problems)
+    !> The deck, filled
+    type(deck_t), intent(in) :: deck
+    !> Faults and remarks are added
+    type(problems_t), intent(inout) :: problems
+    integer :: place
+
+    associate (s => deck%settings)
+      if (.not. deck%inherits) then
+        if (is_explicit(deck%stepping)) &
+          call remark_idle(s, problems, time_group, key_settle, 'has no effect without &initial_state.')
+        return
+      end if
+      if (deck%has_static) then
+        call tell(s, problems, static_group, '', 'load steps do not begin from a state of another run; give &time '// &
+                  'with integrator = ''central_difference'', or leave &initial_state out.')
+      else if (deck%has_time .and. .not. is_explicit(deck%stepping)) then
+        call tell(s, problems, initial_state_group, '', 'goes with &time integrator = ''central_difference''.')
+      end if
+      if (deck%has_impactor) call tell(s, problems, impactor_group, '', 'does not go with &initial_state; load the '// &
+                                       'plate by &line or &pressure.')
+      do place = 1, size(deck%lines)
+        if (deck%lines(place)%precedes()) call tell(s, problems, line_group, key_rise, 'a line that has moved the '// &
+          'plate before the run does not go with &initial_state; give it a rise > 0.', place)
+      end do
+      do place = 1, size(deck%supports)
+        if (deck%supports(place)%unilateral) &
+          call tell(s, problems, support_group, key_unilateral, 'a frame closes on both faces of a plate from '// &
+                    '&initial_state; allowed: .false.', place)
+      end do
+      if (deck%load_start > 0 .and. .not. deck%load_start < deck%stepping%time%end .and. &
+          are_clear(s, problems, time_group, key_settle//' end')) &
+        call tell(s, problems, time_group, key_settle, 'leaves no time for the load; allowed: less than end = '// &
+                  to_text(deck%stepping%time%end)//'.')
+    end associate
+  end subroutine check_initial_state
+
+  !> What in a deck contradicts the one whose run has left its initial state: one sentence with both values, or an empty
+  !> text.
+  function inheritance_objection(deck, old) result(objection)
+    !> The deck, and that of the other run with the zones that it has come to
+    type(deck_t), intent(in) :: deck, old
+    !> The sentence
+    character(len=:), allocatable :: objection
+
+    objection = ''
+    if (any(differ(deck%plate%length, old%plate%length))) then
+      objection = both('the plate''s length', short_list(deck%plate%length), short_list(old%plate%length))
+    else if (deck%plate%symmetry /= old%plate%symmetry .and. deck%plate%symmetry /= symmetry_none) then
+      objection = both(key_symmetry, part_name(deck%plate%symmetry), part_name(old%plate%symmetry))// &
+                  '; allowed: the same, or ''none'''
+    else if (differ(deck%temperature_change, old%temperature_change)) then
+      objection = both('&thermal delta_T', to_text(deck%temperature_change), to_text(old%temperature_change))
+    end if
+    if (objection == '') objection = laminate_objection(deck, old)
+    if (objection == '') objection = damage_objection(deck, old)
+    if (objection == '') objection = interface_objection(deck, old)
+    if (objection == '') objection = mesh_objection(deck, old, 1)
+    if (objection == '') objection = mesh_objection(deck, old, 2)
+  end function inheritance_objection
+
+  !> What differs in plies and materials.
+  function laminate_objection(deck, old) result(objection)
+    !> The deck, and that of the other run
+    type(deck_t), intent(in) :: deck, old
+    !> One clause; empty: nothing
+    character(len=:), allocatable :: objection
+    real(wp) :: here(constants), there(constants)
+    integer :: ply, i
+
+    objection = ''
+    associate (mine => deck%laminate, its => old%laminate)
+      if (size(mine%angle) /= size(its%angle)) then
+        objection = both('&laminate angles', short_list(mine%angle), short_list(its%angle))
+      else if (any(differ(mine%angle, its%angle))) then
+        objection = both('&laminate angles', short_list(mine%angle), short_list(its%angle))
+      else if (any(differ(mine%thickness, its%thickness))) then
+        objection = both('&laminate thicknesses', short_list(mine%thickness), short_list(its%thickness))
+      end if
+      if (objection /= '') return
+      do ply = 1, size(mine%angle)
+        here = constants_of(deck%materials(mine%material(ply)))
+        there = constants_of(old%materials(its%material(ply)))
+        i = findloc(differ(here, there), .true., dim=1)
+        if (i == 0) cycle
+        objection = both('&material '//trim(constant_names(i))//' of ply '//to_text(ply), to_text(here(i)), &
+                         to_text(there(i)))
+        return
+      end do
+    end associate
+  end function laminate_objection
+
+  !> What differs in the damage of plies.
+  function damage_objection(deck, old) result(objection)
+    !> The deck, and that of the other run
+    type(deck_t), intent(in) :: deck, old
+    !> One clause; empty: nothing
+    character(len=:), allocatable :: objection
+    real(wp) :: here(size(damage_names)), there(size(damage_names))
+    integer :: i
+
+    objection = ''
+    if (deck%has_ply_damage .neqv. old%has_ply_damage) then
+      objection = both('&ply_damage', given(deck%has_ply_damage), given(old%has_ply_damage))
+      return
+    end if
+    if (.not. deck%has_ply_damage) return
+    here = numbers_of(deck%ply_damage)
+    there = numbers_of(old%ply_damage)
+    i = findloc(differ(here, there), .true., dim=1)
+    if (i > 0) objection = both('&ply_damage '//trim(damage_names(i)), to_text(here(i)), to_text(there(i)))
+
+  contains
+
+    !> Whether a group is there, in words.
+    pure function given(is_given) result(word)
+      !> True if it is
+      logical, intent(in) :: is_given
+      !> The words
+      character(len=:), allocatable :: word
+
+      word = trim(merge('given   ', 'left out', is_given))
+    end function given
+  end function damage_objection
+
+  !> What differs in the interfaces.
+  function interface_objection(deck, old) result(objection)
+    !> The deck, and that of the other run
+    type(deck_t), intent(in) :: deck, old
+    !> One clause; empty: nothing
+    character(len=:), allocatable :: objection
+    real(wp) :: here(size(law_names)), there(size(law_names))
+    integer :: i, k
+
+    objection = ''
+    associate (mine => deck%delaminations, its => old%delaminations)
+      if (size(mine) /= size(its)) then
+        objection = both('interfaces below plies', integer_list(mine%below_ply), integer_list(its%below_ply))
+      else if (any(mine%below_ply /= its%below_ply)) then
+        objection = both('interfaces below plies', integer_list(mine%below_ply), integer_list(its%below_ply))
+      end if
+      if (objection /= '') return
+      do i = 1, size(mine)
+        here = law_of(mine(i))
+        there = law_of(its(i))
+        k = findloc(differ(here, there), .true., dim=1)
+        if (k > 0) then
+          objection = both('&delamination '//trim(law_names(k))//' below ply '//to_text(mine(i)%below_ply), &
+                           to_text(here(k)), to_text(there(k)))
+        else if (.not. mine(i)%follows .and. any(mine(i)%zone < its(i)%zone*(1 - 1.0e-9_wp))) then
+          objection = both('&delamination '//key_zone//' below ply '//to_text(mine(i)%below_ply), &
+                           short_list(mine(i)%zone), short_list(its(i)%zone))//'; allowed: as large or larger'
+        end if
+        if (objection /= '') return
+      end do
+    end associate
+  end function interface_objection
+
+  !> What differs in the lines of the mesh along one direction.
+  function mesh_objection(deck, old, direction) result(objection)
+    !> The deck, and that of the other run
+    type(deck_t), intent(in) :: deck, old
+    !> 1: along x, 2: along y
+    integer, intent(in) :: direction
+    !> One clause; empty: nothing
+    character(len=:), allocatable :: objection
+    real(wp), allocatable :: here(:), there(:)
+    logical :: halved(2), halved_before(2), same
+
+    objection = ''
+    here = cell_edges(deck%plate, deck%mesh, direction)
+    there = cell_edges(old%plate, old%mesh, direction)
+    halved = is_halved(deck%plate%symmetry)
+    halved_before = is_halved(old%plate%symmetry)
+    if (halved_before(direction) .and. .not. halved(direction)) there = [-there(size(there):2:-1), there]
+    same = size(here) == size(there)
+    if (same) same = all(abs(here - there) <= 1.0e-9_wp*deck%plate%length(direction))
+    if (.not. same) objection = both('lines of the mesh along '//merge('x', 'y', direction == 1), short_list(here), &
+                                     short_list(there))//'; give the same &mesh in both decks, and the lines of '// &
+                                'rigs that only one of them has in the other''s lines_x and lines_y'
+  end function mesh_objection
+
+  !> Name of a part of the plate.
+  pure function part_name(symmetry) result(name)
+    !> The part
+    integer, intent(in) :: symmetry
+    !> As the deck has it
+    character(len=:), allocatable :: name
+    character(len=*), parameter :: names(symmetry_none:symmetry_point) = &
+      [character(len=7) :: 'none', 'quarter', 'half_x', 'half_y', 'point']
+
+    name = ''''//trim(names(symmetry))//''''
+  end function part_name
+
+  !> A clause with both values.
+  pure function both(what, here, there) result(clause)
+    !> What it is of
+    character(len=*), intent(in) :: what
+    !> Value in the deck, and in that of the other run
+    character(len=*), intent(in) :: here, there
+    !> The clause
+    character(len=:), allocatable :: clause
+
+    clause = what//': '//here//' here and '//there//' there'
+  end function both
+
+  !> True where two numbers differ by more than rounding.
+  elemental logical function differ(here, there)
+    !> The numbers
+    real(wp), intent(in) :: here, there
+
+    differ = abs(here - there) > 1.0e-9_wp*max(abs(here), abs(there))
+  end function differ
+
+  !> Numbers for the reader.
+  pure function short_list(numbers) result(list)
+    !> The numbers
+    real(wp), intent(in) :: numbers(:)
+    !> Parted by blanks
+    character(len=:), allocatable :: list
+    integer :: i
+
+    list = ''
+    do i = 1, size(numbers)
+      list = list//' '//rounded_text(numbers(i), digits)
+    end do
+    list = list(min(2, len(list) + 1):)
+  end function short_list
+
+  !> Whole numbers for the reader.
+  pure function integer_list(numbers) result(list)
+    !> The numbers
+    integer, intent(in) :: numbers(:)
+    !> Parted by blanks
+    character(len=:), allocatable :: list
+
+    list = short_list(real(numbers, wp))
+    if (size(numbers) == 0) list = 'none'
+  end function integer_list
+end module deck_initial_states

@@ -1,0 +1,57 @@
+!> Lines that rigs, and decks to come, need in the mesh.
+module deck_mesh_lines
+  use cell_grids, only: cell_edges
+  use deck_contents, only: deck_t
+  use deck_problems, only: problems_t
+  use deck_remarks, only: tell
+  use kinds, only: wp
+  use mesh_deck, only: key_lines, mesh_group
+  use rigs, only: window_lines
+  use support_deck, only: key_window, support_group
+  implicit none
+  private
+  public :: check_window_lines
+
+contains
+
+  !> Windows, and lines that the mesh is to have, that it has no lines for, because all are taken by the patch or by
+  !> other windows.
+  subroutine check_window_lines(deck, problems)
+    !> The deck, filled and checked
+    type(deck_t), intent(in) :: deck
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    integer :: direction
+
+    if (misses(window_lines(deck%supports, 1), 1) .or. misses(window_lines(deck%supports, 2), 2)) then
+      call tell(deck%settings, problems, support_group, key_window, 'no line of the mesh can be moved to an edge '// &
+                'of the window; give more elements, or keep the patch off the edge.')
+      return
+    end if
+    do direction = 1, 2
+      if (.not. deck%settings%is_given(mesh_group, key_lines(direction))) cycle
+      if (misses(deck%settings%reals_of(mesh_group, key_lines(direction)), direction)) &
+        call tell(deck%settings, problems, mesh_group, key_lines(direction), 'no line of the mesh can be moved '// &
+                  'there; allowed: on the plate, off the patch, with more elements between lines.')
+    end do
+
+  contains
+
+    !> True if the mesh has no line at a coordinate.
+    pure logical function misses(lines, direction)
+      !> The coordinates
+      real(wp), intent(in) :: lines(:)
+      !> 1 for x, 2 for y
+      integer, intent(in) :: direction
+      integer :: line
+
+      misses = .false.
+      associate (edges => cell_edges(deck%plate, deck%mesh, direction))
+        do line = 1, size(lines)
+          misses = misses .or. lines(line) > edges(1) .and. &
+                   minval(abs(edges - lines(line))) > 1.0e-9_wp*deck%plate%length(direction)
+        end do
+      end associate
+    end function misses
+  end subroutine check_window_lines
+end module deck_mesh_lines

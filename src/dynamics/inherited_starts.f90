@@ -1,0 +1,45 @@
+!> The start of a run from the end of another, by central differences: what was taken over finds its forces, supports
+!> and lines begin from where the plate is, and the ledger from the energies that it has.
+module inherited_starts
+  use central_difference_energies, only: book_energies
+  use errors, only: error_t
+  use initial_state_parameters, only: motion_rest
+  use layer_switches, only: move_with_plate
+  use layer_transfers, only: layer_transfer_t
+  use models, only: model_t
+  use time_stepping, only: time_stepper_t
+  implicit none
+  private
+  public :: begin_inherited
+
+contains
+
+  !> Begins from a state that was taken over. Collective.
+  subroutine begin_inherited(model, transfer, motion, stepper, error)
+    !> The model; receives how an impactor's force would be spread
+    type(model_t), intent(inout) :: model
+    !> Where points and elements come from
+    type(layer_transfer_t), intent(in) :: transfer
+    !> motion_rest or motion_kept
+    integer, intent(in) :: motion
+    !> What evolves, the state loaded
+    type(time_stepper_t), intent(inout) :: stepper
+    !> Set if the motion is unstable
+    type(error_t), allocatable, intent(out) :: error
+
+    associate (now => stepper%now, explicit => stepper%explicit)
+      call move_with_plate(model, transfer, now%motion%displacement)
+      call move_with_plate(model, transfer, now%motion%velocity)
+      if (motion == motion_rest) now%motion%velocity = 0
+      call now%plies%restack(model, transfer%is_split(model%distribution%elements))
+      call explicit%lines%start_from(model, explicit%inertia, model%motion_of(now%motion%displacement))
+      call explicit%resume(model, now)
+      call explicit%renew_forces(model, now)
+      now%deflection = model%deflection(now%motion%displacement)
+      now%patch_mean = model%contact_deflection(now%motion%displacement)
+      call book_energies(explicit, model, now)
+      now%ledger%initial = now%ledger%initial + now%ledger%error()
+      call stepper%look(model, error)
+    end associate
+  end subroutine begin_inherited
+end module inherited_starts

@@ -1,0 +1,37 @@
+!> What a run takes over from the end of another: the shape of the plate, its motion, and all that plies and interfaces
+!> remember. Loads, impactor and steps begin anew.
+module inherited_states
+  use archives, only: archive_t
+  use cohesive_sliding, only: visit_friction
+  use interface_flaws, only: visit_flaws
+  use models, only: model_t
+  use states, only: state_t
+  implicit none
+  private
+  public :: visit_inheritance
+
+contains
+
+  !> Saves or loads what is taken over, under the names that it has in a checkpoint.
+  subroutine visit_inheritance(state, archive, model)
+    !> The state
+    type(state_t), intent(inout) :: state
+    !> Where to or where from
+    class(archive_t), intent(inout) :: archive
+    type(model_t), intent(in) :: model
+    integer :: points
+
+    points = model%mesh%points()
+    associate (owned => model%distribution%points(:model%distribution%owned), motion => state%motion)
+      call archive%field('motion/displacement', owned, points, motion%displacement)
+      call archive%field('motion/velocity', owned, points, motion%velocity)
+      if (archive%loading) call model%halo%update(motion%displacement)
+      if (archive%loading) call model%halo%update(motion%velocity)
+    end associate
+    call state%plies%visit(archive, model)
+    call state%interfaces%cohesive%visit(archive, model)
+    call visit_friction(state%interfaces%cohesive, archive, model)
+    call visit_flaws(state%interfaces%cohesive, archive, model)
+    call archive%item('ledger/ply_damage', state%ledger%ply_damage)
+  end subroutine visit_inheritance
+end module inherited_states

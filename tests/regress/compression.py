@@ -1,0 +1,169 @@
+"""An impact and the compression of what it has left.
+Usage: compression.py TRIAL IMPLAM FOLDER [LAUNCHER...]     (LAUNCHER takes the number of ranks as its last word)
+
+chain    what the impact has left is there at the start, comes to rest, is pressed and fails; the ledger closes
+again    from a checkpoint in the midst, without the impact's: bitwise
+ranks    on two ranks: bitwise
+whole    the whole plate from the half that was struck: to rounding until it fails
+refused  another plate, a deck that cannot begin so, a checkpoint that is none: one sentence with both values each"""
+
+import filecmp
+import json
+import re
+import shutil
+import sys
+from pathlib import Path
+
+from solver_runs import (
+    DECKS,
+    EXIT_DECK,
+    EXIT_FILES,
+    change_deck,
+    read_history,
+    require,
+    run,
+)
+
+IMPACT, COMPRESSION = "cai_impact", "cai_compression"
+CHECKPOINT = f"{IMPACT}_restart.h5"
+AREA = 40e-3 * 2.4e-3
+SETTLE, LENGTH = 80e-6, 60e-3
+# Of all energy. Measured: 2e-10 before plies and interfaces break again, 3.6e-3 in the collapse on these coarse cells.
+CLOSED, CLOSED_IN_COLLAPSE = 1e-8, 1e-2
+# Of the largest value up to half of the run. Measured: 4e-15.
+ROUNDED = 1e-11
+ENERGIES = ("kinetic", "strain", "delamination", "ply_damage", "contact", "friction", "algorithmic", "layers",
+            "damping")
+
+
+def deck_of(folder, name, settings=()):
+    """Put a changed deck into a folder; return its name there."""
+    folder.mkdir(parents=True, exist_ok=True)
+    text = (DECKS.parent / "small" / f"{name}.nml").read_text(encoding="utf-8")
+    (folder / f"{name}.nml").write_text(change_deck(text, settings), encoding="utf-8")
+    return f"{name}.nml"
+
+
+def strike(implam, folder):
+    """Run the impact in a new folder."""
+    shutil.rmtree(folder, ignore_errors=True)
+    run([implam, deck_of(folder, IMPACT)], folder=folder)
+    return read_history(folder / f"{IMPACT}_history.csv")
+
+
+def press(implam, folder, settings=(), launcher=()):
+    """Run the compression of a struck plate; return the path of its history."""
+    run([*launcher, implam, deck_of(folder, COMPRESSION, settings)], folder=folder)
+    return folder / f"{COMPRESSION}_history.csv"
+
+
+def check_chain(implam, folder, _):
+    """From the impact to the failure."""
+    impact = strike(implam, folder)
+    rows = read_history(press(implam, folder))
+    for name in ("energy_delamination", "energy_ply_damage", "energy_friction"):
+        require(rows[name][0] >= impact[name][-1] > 0 and rows[name][0] < 1.01 * impact[name][-1],
+                f"{name} is {rows[name][0]} at the start after {impact[name][-1]}.")
+    start = max(i for i, time in enumerate(rows["time"]) if time <= SETTLE)
+    strongest = max(range(len(rows["time"])), key=lambda i: rows["far_field_stress"][i])
+    total = max(sum(rows[f"energy_{name}"][i] for name in ENERGIES) for i in range(len(rows["time"])))
+    before = max(abs(value) for value, time in zip(rows["energy_error"], rows["time"], strict=True)
+                 if time < 0.5 * rows["time"][-1]) / total
+    after = max(map(abs, rows["energy_error"])) / total
+    print(f"energy error {before:.1e}, in the collapse {after:.1e}; kinetic energy when the load begins "
+          f"{rows['energy_kinetic'][start]:.2e} of {impact['energy_kinetic'][-1]:.2e}, damped "
+          f"{rows['energy_damping'][-1]:.2e}")
+    require(before < CLOSED and after < CLOSED_IN_COLLAPSE, "The ledger does not close.")
+    require(rows["energy_damping"][-1] == rows["energy_damping"][start + 1] > 0, "Damping goes on under the load.")
+    for i in (start, strongest):
+        stress = -rows["line_force_1"][i] / AREA
+        require(abs(rows["far_field_stress"][i] - stress) < 1e-6 * abs(stress), "The stress is not load over area.")
+        require(abs(rows["shortening"][i] + 2 * rows["line_displacement_1"][i]) < 1e-15, "Ends do not come closer.")
+    summary = json.loads((folder / f"{COMPRESSION}_summary.json").read_text(encoding="utf-8"))
+    require(summary["has_failed"] and summary["residual_strength"] >= rows["far_field_stress"][strongest] > 100e6,
+            "It does not fail, or not at its largest stress.")
+    # Half of the plies run along x: with E1, E2 and nu21 small, (E1 + E2)/2 within a few per cent undamaged and flat.
+    print(f"strength {summary['residual_strength']:.4g}, modulus {summary['effective_modulus']:.4g}")
+    require(0.85 < summary["effective_modulus"] / ((130e9 + 7.7e9) / 2) < 1, "The modulus is not that of the plies.")
+
+
+def check_again(implam, folder, _):
+    """From a checkpoint while layers buckle and break, after the impact's has been removed."""
+    strike(implam, folder)
+    path = press(implam, folder, ["output%checkpoint_every=0.27e-3", "output%checkpoint_at_end=.false."])
+    reference = folder / "reference.csv"
+    shutil.copy(path, reference)
+    (folder / CHECKPOINT).unlink()
+    run([implam, "restart", f"{COMPRESSION}_restart.h5"], folder=folder)
+    require(filecmp.cmp(path, reference, shallow=False), "The history differs from the uninterrupted one.")
+
+
+def check_ranks(implam, folder, launcher):
+    """Two ranks, from a checkpoint that one has left."""
+    strike(implam, folder)
+    reference = folder / "reference.csv"
+    shutil.copy(press(implam, folder), reference)
+    path = press(implam, folder, launcher=[*launcher, "2"])
+    require(filecmp.cmp(path, reference, shallow=False), "The history differs from that of one rank.")
+
+
+def check_whole(implam, folder, _):
+    """The whole plate, pressed from both ends, begins from the half."""
+    strike(implam, folder)
+    half = read_history(press(implam, folder))
+    text = (folder / f"{COMPRESSION}.nml").read_text(encoding="utf-8")
+    line = re.search(r"&line .*/", text).group()
+    other = line.replace("at=30e-3", "at=-30e-3").replace("-0.35e-3", "0.35e-3")
+    text = text.replace("symmetry='point'", "symmetry='none'").replace("elements=10", "elements=20")
+    (folder / f"{COMPRESSION}.nml").write_text(text.replace(line, f"{line}\n{other}"), encoding="utf-8")
+    run([implam, f"{COMPRESSION}.nml"], folder=folder)
+    whole = read_history(folder / f"{COMPRESSION}_history.csv")
+    for name in ("far_field_stress", "shortening", "deflection", "energy_strain", "energy_delamination",
+                 "energy_ply_damage", "energy_damping", "work_external"):
+        rows = len(half["time"]) // 2
+        difference = max(abs(a - b) for a, b in zip(half[name][:rows], whole[name][:rows], strict=True))
+        scale = max(map(abs, half[name]))
+        print(f"{name}: {difference / scale:.1e}")
+        require(difference < ROUNDED * scale, f"{name} differs from that of the half.")
+
+
+def check_refused(implam, folder, _):
+    """Nothing is written then."""
+    strike(implam, folder)
+    strange = folder / "strange.h5"
+    strange.write_bytes(b"no checkpoint")
+    damaged = bytearray((folder / CHECKPOINT).read_bytes())
+    damaged[len(damaged) // 2] ^= 1
+    (folder / "damaged.h5").write_bytes(damaged)
+    cases = [
+        (["laminate%ply_thickness=0.7e-3"], ["0.0006", "0.0007"], EXIT_DECK),
+        (["laminate%stacking='[0/90/0]'"], ["0 90 90 0", "0 90 0"], EXIT_DECK),
+        (["material%G_fc=11e3"], ["G_fc", "11000", "10000"], EXIT_DECK),
+        (["delamination%G_Ic=250"], ["G_Ic", "250", "200"], EXIT_DECK),
+        (["delamination%below_ply=1"], ["below plies", "1 here", "1 3 there"], EXIT_DECK),
+        (["delamination%zone=20e-3,15e-3"], ["zone", "0.02 0.015", "larger"], EXIT_DECK),
+        (["plate%length=60e-3, 41e-3"], ["0.06 0.041", "0.06 0.04 there"], EXIT_DECK),
+        (["plate%symmetry='none'", "mesh%elements=22,16"], ["lines of the mesh along x", "lines_x"], EXIT_DECK),
+        (["mesh%lines_y=14e-3"], ["lines of the mesh along y"], EXIT_DECK),
+        (["support%unilateral=.true."], ["both faces"], EXIT_DECK),
+        (["time%settle=1e-3"], ["leaves no time"], EXIT_DECK),
+        (["time%integrator='newmark'", "time%step=1e-6"], ["central_difference"], EXIT_DECK),
+        (["initial_state%from='nowhere_restart.h5'"], ["nowhere_restart.h5"], EXIT_FILES),
+        (["initial_state%from='strange.h5'"], ["not a checkpoint"], EXIT_FILES),
+        (["initial_state%from='damaged.h5'"], ["damaged"], EXIT_FILES),
+    ]
+    for settings, words, code in cases:
+        said = run([implam, deck_of(folder, COMPRESSION, settings)], code, folder)
+        lines = [line for line in said.splitlines() if "warning:" not in line]
+        require(len(lines) == 1 and all(word in lines[0] for word in words), f"{settings}: {said}")
+        require(not list(folder.glob(f"{COMPRESSION}_*")), f"{settings}: something was written.")
+
+
+def main(trial, implam, folder, launcher):
+    """Run one trial."""
+    {"chain": check_chain, "again": check_again, "ranks": check_ranks, "whole": check_whole,
+     "refused": check_refused}[trial](implam, Path(folder).resolve(), launcher)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1], str(Path(sys.argv[2]).resolve()), sys.argv[3], sys.argv[4:])
