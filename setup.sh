@@ -12,7 +12,7 @@ if [[ $task != test ]] && { [[ $task != run ]] || (($#)); }; then
 fi
 
 packages=(gfortran cmake ninja-build pkg-config git openmpi-bin libopenmpi-dev libpetsc-real-dev libmumps-dev
-  libsuitesparse-dev libmetis-dev libhdf5-openmpi-dev libopenblas0-pthread hdf5-tools python3-venv)
+  libmetis-dev libhdf5-openmpi-dev libopenblas0-pthread hdf5-tools python3-venv)
 # Without these some tests are skipped.
 test_packages=(calculix-ccx slurm-wlm munge zsh)
 

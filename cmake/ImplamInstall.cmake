@@ -13,9 +13,7 @@ add_custom_command(OUTPUT ${pages}/implam.1 ${pages}/implam ${pages}/_implam
 add_custom_target(implam_pages ALL DEPENDS ${pages}/implam.1 ${pages}/implam ${pages}/_implam)
 
 install(TARGETS implam EXPORT ImplamTargets RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-install(TARGETS implam_petsc_library LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/implam)
-set_target_properties(implam implam_petsc_library PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON
-  INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}/implam")
+set_target_properties(implam PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON)
 install(FILES ${pages}/implam.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 install(FILES ${pages}/implam DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
 install(FILES ${pages}/_implam DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)

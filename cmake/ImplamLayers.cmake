@@ -37,9 +37,7 @@ function(implam_add_layers)
   set_property(SOURCE src/model/models.f90 APPEND PROPERTY COMPILE_OPTIONS
     $<$<CONFIG:Sanitize>:-fno-sanitize=signed-integer-overflow>)
   implam_give_library(parallel MPI::MPI_Fortran)
-  target_include_directories(implam_linalg PRIVATE ${CHOLMOD_INCLUDE_DIR})
-  implam_give_library(petsc PkgConfig::PETSC MPI::MPI_Fortran)
-  set_property(TARGET implam_petsc PROPERTY POSITION_INDEPENDENT_CODE ON)
+  implam_give_library(linalg PkgConfig::PETSC MPI::MPI_Fortran)
   implam_give_library(results hdf5::hdf5_fortran MPI::MPI_Fortran)
   target_include_directories(implam_results PRIVATE ${HDF5_Fortran_INCLUDE_DIRS})
 endfunction()
@@ -49,18 +47,8 @@ function(implam_give_library layer)
   target_link_libraries(implam_${layer} PRIVATE ${ARGN})
 endfunction()
 
-# implam_add_petsc_library(<program>): the layer that uses PETSC as a library that the program loads when it needs it.
-# PETSc brings a hundred libraries with it, which take longer to load than a small run.
-function(implam_add_petsc_library program)
-  add_library(implam_petsc_library MODULE $<TARGET_OBJECTS:implam_petsc>)
-  set_target_properties(implam_petsc_library PROPERTIES OUTPUT_NAME implam_petsc LINKER_LANGUAGE Fortran)
-  target_link_libraries(implam_petsc_library PRIVATE implam_flags PkgConfig::PETSC MPI::MPI_Fortran)
-  add_dependencies(${program} implam_petsc_library)
-  set_property(TARGET ${program} PROPERTY BUILD_RPATH ${CMAKE_BINARY_DIR})
-endfunction()
-
 # implam_link_layers(<target> <layer>...): links the objects of these layers and their libraries; an
-# interface library hands them on. The library of PETSc finds what it needs in the program.
+# interface library hands them on.
 function(implam_link_layers target)
   get_target_property(type ${target} TYPE)
   set(scope PRIVATE)
@@ -73,10 +61,9 @@ function(implam_link_layers target)
       target_include_directories(${target} ${scope} ${CMAKE_BINARY_DIR}/modules/${layer})
     endif()
   endforeach()
-  if("petsc" IN_LIST ARGN)
-    target_link_libraries(${target} ${scope} PkgConfig::PETSC)
+  if("linalg" IN_LIST ARGN)
+    target_link_libraries(${target} ${scope} PkgConfig::PETSC ${OpenMP_Fortran_LIBRARIES})
   endif()
-  target_link_options(${target} ${scope} -rdynamic)
   target_link_libraries(${target} ${scope} implam_flags MPI::MPI_Fortran ${HDF5_Fortran_LIBRARIES} ${METIS_LIBRARY}
-    ${CHOLMOD_LIBRARY} LAPACK::LAPACK ${CMAKE_DL_LIBS})
+    LAPACK::LAPACK)
 endfunction()

@@ -26,7 +26,7 @@ function(implam_share_cores)
 endfunction()
 
 # implam_add_unit_tests(<layer>...): one test program a layer from tests/unit/<layer>/*.pf and the helpers
-# beside them (*.f90); it sees this layer and those left of it. From petsc on, PETSc is started first.
+# beside them (*.f90); it sees this layer and those left of it. From linalg on, PETSc is started first.
 function(implam_add_unit_tests)
   set(lower "")
   foreach(layer IN LISTS ARGN)
@@ -44,10 +44,7 @@ function(implam_add_unit_tests)
       list(APPEND arguments MAX_PES 4)
     endif()
     if("linalg" IN_LIST lower)
-      list(APPEND helpers support/dense_solvers.f90 support/rows_of_elements.f90)
-    endif()
-    if("petsc" IN_LIST lower)
-      list(APPEND helpers support/petsc_fixture.f90)
+      list(APPEND helpers support/rows_of_elements.f90 support/petsc_fixture.f90)
       list(APPEND arguments EXTRA_USE petsc_fixture EXTRA_INITIALIZE start_petsc_for_tests)
     endif()
     if("deck" IN_LIST lower)

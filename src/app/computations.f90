@@ -4,7 +4,7 @@ module computations
   use case_deck, only: case_group, key_name
   use checkpoints, only: checkpoint_archive_t, checkpoint_ending, newest_checkpoint
   use command_lines, only: command_t, verb_restart
-  use communicators, only: communicator_t
+  use communicators, only: communicator_t, start_mpi
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
   use deck_reader, only: read_deck, read_deck_text
@@ -13,8 +13,7 @@ module computations
   use files, only: is_directory
   use initial_states, only: fit_initial_state
   use layer_following, only: visit_zones
-  use linear_solver_parameters, only: factorization_automatic, factorization_mumps
-  use petsc_library, only: start_petsc, finish_petsc
+  use petsc_session, only: start_petsc, finish_petsc
   use queue_signals, only: announce_stop_signals
   use root_output, only: print_lines
   use simulations, only: simulation_t
@@ -68,7 +67,8 @@ contains
       return
     end if
     call profile%enter('MPI and PETSc')
-    call start_solver(communicator, command%petsc_options, deck, error)
+    call start_mpi(communicator)
+    call start_petsc(communicator, deck%linear_solver%petsc_options//command%petsc_options, error)
     call profile%leave()
     if (allocated(error)) return
     if (communicator%is_root()) call announce_stop_signals()
@@ -80,24 +80,6 @@ contains
     call finish_petsc()
     call profile%release()
   end subroutine compute
-
-  !> Starts PETSc where options ask for it. Otherwise it is started, and MPI before it, by what cannot do without: a run
-  !> on one rank mostly can, and starts in a fifth of the time.
-  subroutine start_solver(communicator, further_options, deck, error)
-    !> The ranks
-    type(communicator_t), intent(in) :: communicator
-    !> Options for PETSc from the command line
-    character(len=*), intent(in) :: further_options
-    !> The deck; options for PETSc make it choose MUMPS
-    type(deck_t), intent(inout) :: deck
-    !> Set if PETSc does not start
-    type(error_t), allocatable, intent(inout) :: error
-
-    if (deck%linear_solver%petsc_options//further_options == '') return
-    if (deck%linear_solver%factorization == factorization_automatic) &
-      deck%linear_solver%factorization = factorization_mumps
-    call start_petsc(communicator, deck%linear_solver%petsc_options//further_options, error)
-  end subroutine start_solver
 
   !> Tells what is wrong with a deck, and sets what the command line overrides.
   subroutine accept_deck(command, communicator, deck, problems, code)

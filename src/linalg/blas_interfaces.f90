@@ -3,7 +3,7 @@ module blas_interfaces
   use kinds, only: wp
   implicit none
   private
-  public :: dgemv, dgemm, dtrsv, dtrsm, dgetrf, dgetrs, dpotrf, dpotrs, dpotri, dsyevd
+  public :: dgemv, dgemm, dgetrf, dgetrs, dpotrf, dpotrs, dpotri, dsyevd
 
   interface
     !> BLAS: y = alpha A x + beta y, or with the transpose of A.
@@ -35,34 +35,6 @@ module blas_interfaces
       !> Result
       real(wp), intent(inout) :: c(ldc, *)
     end subroutine dgemm
-
-    !> BLAS: solves with a triangle.
-    subroutine dtrsv(uplo, trans, diag, n, a, lda, x, incx)
-      import :: wp
-      !> 'L': the lower triangle; 'N': itself, 'T': its transpose; 'N': its diagonal is given
-      character, intent(in) :: uplo, trans, diag
-      !> Order, leading dimension, stride
-      integer, intent(in) :: n, lda, incx
-      !> The triangle
-      real(wp), intent(in) :: a(lda, *)
-      !> Right-hand side, overwritten by the solution
-      real(wp), intent(inout) :: x(*)
-    end subroutine dtrsv
-
-    !> BLAS: solves X L' = B and the like.
-    subroutine dtrsm(side, uplo, trans, diag, m, n, alpha, a, lda, b, ldb)
-      import :: wp
-      !> 'R': L stands on the right; 'L': the lower triangle; 'T': its transpose; 'N': its diagonal is given
-      character, intent(in) :: side, uplo, trans, diag
-      !> Rows and columns of B, leading dimensions
-      integer, intent(in) :: m, n, lda, ldb
-      !> Factor of B
-      real(wp), intent(in) :: alpha
-      !> The triangle
-      real(wp), intent(in) :: a(lda, *)
-      !> B, overwritten by X
-      real(wp), intent(inout) :: b(ldb, *)
-    end subroutine dtrsm
 
     !> LAPACK: factors a general matrix by elimination with pivoting.
     subroutine dgetrf(m, n, a, lda, pivots, info)

@@ -1,7 +1,6 @@
 !> Small dense systems.
 module dense_systems
-  use, intrinsic :: iso_c_binding, only: c_double, c_int
-  use blas_interfaces, only: dgetrf, dgetrs, dpotrf, dpotri, dsyevd
+  use blas_interfaces, only: dgetrf, dgetrs, dpotrf, dpotrs, dpotri, dsyevd
   use kinds, only: wp
   implicit none
   private
@@ -39,19 +38,6 @@ module dense_systems
     !> The inverse of the matrix.
     procedure :: inverse
   end type positive_factor_t
-
-  interface
-    !> Solves with the factor of dpotrf for one right-hand side, which LAPACK takes longer for.
-    subroutine dense_solve(rows, lower, x) bind(c, name='implam_dense_solve')
-      import :: c_double, c_int
-      !> Order
-      integer(c_int), value :: rows
-      !> Lower factor
-      real(c_double), intent(in) :: lower(*)
-      !> Right-hand side, overwritten by the solution
-      real(c_double), intent(inout) :: x(*)
-    end subroutine dense_solve
-  end interface
 
 contains
 
@@ -103,8 +89,9 @@ contains
     class(positive_factor_t), intent(in) :: self
     !> Right-hand side on entry, solution on return, (n)
     real(wp), intent(inout) :: x(:)
+    integer :: info
 
-    if (size(x) > 0) call dense_solve(int(size(x), c_int), self%factors, x)
+    if (size(x) > 0) call dpotrs('L', size(x), 1, self%factors, size(x), x, size(x), info)
   end subroutine solve_positive
 
   !> The inverse of a positive definite matrix.

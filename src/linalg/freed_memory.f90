@@ -2,8 +2,7 @@
 !> soon as the program is loaded. That is quick where the same blocks are asked for again and again, as in the steps,
 !> but the lists that build the pattern and the ordering of the matrix would add to the peak.
 module freed_memory
-  use, intrinsic :: iso_c_binding, only: c_int, c_funptr, c_associated, c_f_procpointer
-  use found_procedures, only: address_of
+  use, intrinsic :: iso_c_binding, only: c_int
   implicit none
   private
   public :: give_back_freed, keep_freed
@@ -16,15 +15,15 @@ module freed_memory
   !> Mappings that glibc allows by default
   integer(c_int), parameter :: usual_mappings = 65536
 
-  abstract interface
-    !> Changes a setting.
-    integer(c_int) function set_option(option, value) bind(c)
+  interface
+    !> C library: changes a setting.
+    integer(c_int) function mallopt(option, value) bind(c)
       import :: c_int
       !> Which
       integer(c_int), value :: option
       !> Its value
       integer(c_int), value :: value
-    end function set_option
+    end function mallopt
   end interface
 
 contains
@@ -39,22 +38,17 @@ contains
     call set([trim_threshold, most_mappings], [-1_c_int, 0_c_int])
   end subroutine keep_freed
 
-  !> Changes settings where the C library has them.
+  !> Changes settings.
   subroutine set(options, values)
     !> Which
     integer(c_int), intent(in) :: options(:)
     !> Their values
     integer(c_int), intent(in) :: values(:)
-    procedure(set_option), pointer :: change
-    type(c_funptr) :: address
     integer(c_int) :: done
     integer :: i
 
-    address = address_of('mallopt')
-    if (.not. c_associated(address)) return
-    call c_f_procpointer(address, change)
     do i = 1, size(options)
-      done = change(options(i), values(i))
+      done = mallopt(options(i), values(i))
     end do
   end subroutine set
 end module freed_memory

@@ -1,130 +1,328 @@
-!> What a solver of large symmetric linear equations offers. Rows are shared out among the ranks in
-!> contiguous blocks; equations are numbered from 0 over all ranks.
+!> Direct solution of large symmetric linear equations by PETSc. Rows are shared out among the ranks in contiguous
+!> blocks; equations are numbered from 0 over all ranks.
 module linear_solvers
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_quiet_nan, ieee_value
+  use petscksp, only: tMat, PETSC_DECIDE, PETSC_NULL_SCALAR, MatDenseGetArrayF90, MatDenseRestoreArrayF90
   use communicators, only: communicator_t
-  use errors, only: error_t
+  use errors, only: error_t, fail, exit_convergence, exit_internal, exit_usage
+  use factor_packages, only: packages_for, why_not_factored, factor_made, factor_not_positive, factor_singular
+  use free_mechanisms, only: mechanism_t
+  use freed_memory, only: give_back_freed, keep_freed
   use kinds, only: wp
+  use linear_solver_parameters, only: factorization_automatic, factorization_cholmod
+  use petsc_factors, only: petsc_factor_t
+  use petsc_matrices, only: petsc_matrix_t, put, take
+  use petsc_session, only: report_petsc
+  use text, only: to_text
   implicit none
   private
   public :: linear_solver_t
 
+  !> What is wrong with a solve that comes too early
+  character(len=*), parameter :: no_factor = 'The linear equations were to be solved before they were factored.'
+  !> The two factors that a solver may have, and what options for each begin with
+  integer, parameter :: usual = 1, indefinite = 2
+  character(len=11), parameter :: prefixes(2) = [character(len=11) :: '', 'indefinite_']
+
   !> A symmetric matrix and its factor. The factor stays what it was until `factorize` is called again,
   !> whatever values are assembled meanwhile.
-  type, abstract :: linear_solver_t
+  type :: linear_solver_t
+    !> One of the factorization_* choices; to be set before `define`
+    integer :: factorization = factorization_automatic
     !> Number of factorizations so far
     integer :: factorizations = 0
     !> Number of right-hand sides solved so far
     integer :: solves = 0
+    !> Factorizations of a matrix that was promised to be positive definite and was not
+    integer, private :: promises_broken = 0
+    !> All ranks
+    type(communicator_t), private :: communicator
+    !> Number of rows that this rank owns
+    integer, private :: rows = 0
+    !> The matrix
+    type(petsc_matrix_t), private :: matrix
+    !> Its factor as a rule, and that of a matrix that broke its promise, set up when that happens
+    type(petsc_factor_t), private :: factors(2)
+    !> Which of them is in force
+    integer, private :: current = usual
+    !> True while there is a factor
+    logical, private :: factored = .false.
+    !> True: the matrix is promised to be positive definite
+    logical, private :: promised = .false.
+    !> Finds parts of the structure that can move freely
+    type(mechanism_t), private :: mechanism
   contains
     !> Sets the pattern of the matrix, anew if there was one; called by all ranks together.
-    procedure(define), deferred :: define
+    procedure :: define
     !> Zeroes the values of the matrix.
-    procedure(act), deferred :: clear
+    procedure :: clear
     !> Adds an element's matrix; each element is added by one rank only.
-    procedure(add), deferred :: add
+    procedure :: add
     !> Brings the matrix together; called by all ranks after the last `add`.
-    procedure(attempt), deferred :: finish_assembly
+    procedure :: finish_assembly
     !> Factors the matrix as it was assembled last; called by all ranks together. If it fails there is no factor.
-    procedure(attempt), deferred :: factorize
+    procedure :: factorize
     !> Solves for one right-hand side with the factor; called by all ranks together.
-    procedure(solve), deferred :: solve
+    procedure :: solve
     !> Solves for several right-hand sides with the factor; called by all ranks together.
-    procedure(solve_many), deferred :: solve_many
+    procedure :: solve_many
     !> Size of the factor, the same on every rank.
-    procedure(statistics), deferred :: statistics
+    procedure :: statistics
     !> Name of what factors the matrix, and how often something else had to.
-    procedure(name_package), deferred :: package_used
+    procedure :: package_used
     !> Frees matrix and factor.
-    procedure(act), deferred :: release
+    procedure :: release
+    procedure, private :: set_up_factor
+    procedure, private :: make_factor
+    procedure, private :: find_mechanism
+    procedure, private :: finish_solve
   end type linear_solver_t
 
-  abstract interface
-    !> Sets the pattern of the matrix, anew if there was one; called by all ranks together.
-    subroutine define(self, communicator, first_row, total_rows, row_start, columns, positive_definite, error, seen)
-      import :: linear_solver_t, communicator_t, error_t
-      class(linear_solver_t), intent(inout) :: self
-      !> All ranks
-      type(communicator_t), intent(in) :: communicator
-      !> Number of the first row that this rank owns, from 0
-      integer, intent(in) :: first_row
-      !> Number of rows of all ranks
-      integer, intent(in) :: total_rows
-      !> Where the columns of each owned row begin, from 1, shape (owned rows + 1)
-      integer, intent(in) :: row_start(:)
-      !> Columns of the owned rows in both triangles, from 0, ascending within a row, diagonal included
-      integer, intent(in) :: columns(:)
-      !> A promise that saves work; a solver may refuse to factor a matrix that breaks it
-      logical, intent(in) :: positive_definite
-      !> Raised when the solver cannot be set up
-      type(error_t), allocatable, intent(inout) :: error
-      !> Rows of other ranks to which this rank adds, from 0; left out: none
-      integer, intent(in), optional :: seen(:)
-    end subroutine define
+contains
 
-    !> Changes the matrix as a whole.
-    subroutine act(self)
-      import :: linear_solver_t
-      class(linear_solver_t), intent(inout) :: self
-    end subroutine act
+  !> Sets the pattern of the matrix, anew if there was one; called by all ranks together.
+  subroutine define(self, communicator, first_row, total_rows, row_start, columns, positive_definite, error)
+    class(linear_solver_t), intent(inout) :: self
+    !> All ranks
+    type(communicator_t), intent(in) :: communicator
+    !> Number of the first row that this rank owns, from 0
+    integer, intent(in) :: first_row
+    !> Number of rows of all ranks
+    integer, intent(in) :: total_rows
+    !> Where the columns of each owned row begin, from 1, shape (owned rows + 1)
+    integer, intent(in) :: row_start(:)
+    !> Columns of the owned rows in both triangles, from 0, ascending within a row, diagonal included
+    integer, intent(in) :: columns(:)
+    !> A promise that saves work
+    logical, intent(in) :: positive_definite
+    !> Raised when the solver cannot be set up
+    type(error_t), allocatable, intent(inout) :: error
 
-    !> Adds an element's matrix; each element is added by one rank only.
-    subroutine add(self, equations, values)
-      import :: linear_solver_t, wp
-      class(linear_solver_t), intent(inout) :: self
-      !> Equation of each row of the element's matrix, owned by any rank; -1 for a row left out
-      integer, intent(in) :: equations(:)
-      !> The symmetric matrix, shape (equations, equations)
-      real(wp), intent(in) :: values(:, :)
-    end subroutine add
+    call self%release()
+    call give_back_freed()
+    self%communicator = communicator
+    self%rows = size(row_start) - 1
+    self%promised = positive_definite
+    if (self%factorization == factorization_cholmod .and. .not. (positive_definite .and. communicator%size == 1)) &
+      call fail(error, exit_usage, 'CHOLMOD factors what stays positive definite, and on one rank: choose '// &
+                "'automatic' or 'mumps' for factorization of &solver.")
+    if (allocated(error)) return
+    call self%matrix%define(communicator, first_row, total_rows, row_start, columns, error)
+    if (.not. allocated(error)) call self%set_up_factor(usual, positive_definite, error)
+    call communicator%agree(error)
+  end subroutine define
 
-    !> Does a step that may fail.
-    subroutine attempt(self, error)
-      import :: linear_solver_t, error_t
-      class(linear_solver_t), intent(inout) :: self
-      !> Raised on all ranks when it fails
-      type(error_t), allocatable, intent(inout) :: error
-    end subroutine attempt
+  !> Zeroes the values of the matrix.
+  subroutine clear(self)
+    class(linear_solver_t), intent(inout) :: self
 
-    !> Solves for one right-hand side with the factor; called by all ranks together.
-    subroutine solve(self, right_hand_side, solution, error)
-      import :: linear_solver_t, error_t, wp
-      class(linear_solver_t), intent(inout) :: self
-      !> Owned part of the right-hand side
-      real(wp), intent(in) :: right_hand_side(:)
-      !> Owned part of the solution
-      real(wp), intent(out) :: solution(:)
-      !> Raised on all ranks when there is no finite solution
-      type(error_t), allocatable, intent(inout) :: error
-    end subroutine solve
+    call self%matrix%clear()
+  end subroutine clear
 
-    !> Solves for several right-hand sides with the factor; called by all ranks together.
-    subroutine solve_many(self, right_hand_sides, solutions, error)
-      import :: linear_solver_t, error_t, wp
-      class(linear_solver_t), intent(inout) :: self
-      !> Owned parts of the right-hand sides, shape (owned rows, right-hand sides)
-      real(wp), intent(in) :: right_hand_sides(:, :)
-      !> Owned parts of the solutions, shape (owned rows, right-hand sides)
-      real(wp), intent(out) :: solutions(:, :)
-      !> Raised on all ranks when there is no finite solution
-      type(error_t), allocatable, intent(inout) :: error
-    end subroutine solve_many
+  !> Adds an element's matrix; each element is added by one rank only.
+  subroutine add(self, equations, values)
+    class(linear_solver_t), intent(inout) :: self
+    !> Equation of each row of the element's matrix, owned by any rank; -1 for a row left out
+    integer, intent(in) :: equations(:)
+    !> The symmetric matrix, shape (equations, equations)
+    real(wp), intent(in) :: values(:, :)
 
-    !> Size of the factor, the same on every rank.
-    subroutine statistics(self, factor_entries, megabytes)
-      import :: linear_solver_t, wp
-      class(linear_solver_t), intent(in) :: self
-      !> Numbers stored in the factor
-      real(wp), intent(out) :: factor_entries
-      !> Memory of the factorization on all ranks, in MB
-      real(wp), intent(out) :: megabytes
-    end subroutine statistics
+    call self%matrix%add(equations, values)
+  end subroutine add
 
-    !> Name of what factors the matrix.
-    function name_package(self) result(name)
-      import :: linear_solver_t
-      class(linear_solver_t), intent(in) :: self
-      !> The name
-      character(len=:), allocatable :: name
-    end function name_package
-  end interface
+  !> Brings the matrix together; called by all ranks after the last `add`.
+  subroutine finish_assembly(self, error)
+    class(linear_solver_t), intent(inout) :: self
+    !> Raised on all ranks when an entry falls outside the pattern
+    type(error_t), allocatable, intent(inout) :: error
+
+    call self%matrix%finish_assembly(error)
+  end subroutine finish_assembly
+
+  !> Chooses the package of a factor.
+  subroutine set_up_factor(self, number, positive_definite, error)
+    class(linear_solver_t), intent(inout) :: self
+    !> Which of the two factors
+    integer, intent(in) :: number
+    !> Whether the matrix is promised to be positive definite
+    logical, intent(in) :: positive_definite
+    !> Raised when PETSc fails or has no package
+    type(error_t), allocatable, intent(inout) :: error
+
+    call self%factors(number)%define(self%communicator, self%matrix%object, &
+                                     packages_for(self%factorization, positive_definite, self%communicator%size), &
+                                     positive_definite, trim(prefixes(number)), error)
+  end subroutine set_up_factor
+
+  !> Factors the matrix as it was assembled last; called by all ranks together. Which package does it follows from the
+  !> matrix alone, so that a run taken up again has the same factor.
+  subroutine factorize(self, error)
+    class(linear_solver_t), intent(inout) :: self
+    !> Raised on all ranks when the matrix is singular or memory is short
+    type(error_t), allocatable, intent(inout) :: error
+    integer :: outcome
+
+    self%factorizations = self%factorizations + 1
+    self%current = usual
+    call self%make_factor(outcome, error)
+    if (outcome == factor_not_positive .and. self%promised .and. self%factorization /= factorization_cholmod .and. &
+        .not. allocated(error)) then
+      self%promises_broken = self%promises_broken + 1
+      self%current = indefinite
+      if (.not. self%factors(indefinite)%defined) call self%set_up_factor(indefinite, .false., error)
+      if (.not. allocated(error)) call self%make_factor(outcome, error)
+    end if
+    if (.not. allocated(error) .and. outcome /= factor_made) &
+      call fail(error, exit_convergence, why_not_factored(self%factors(self%current)%title(), outcome))
+    self%factored = .not. allocated(error)
+    ! Ordering and pattern are done: the same blocks are needed from now on.
+    if (self%factored) call keep_freed()
+  end subroutine factorize
+
+  !> Makes the factor in force and looks whether a part of the structure can move freely.
+  subroutine make_factor(self, outcome, error)
+    class(linear_solver_t), intent(inout) :: self
+    !> One of the factor_* outcomes
+    integer, intent(out) :: outcome
+    !> Raised when PETSc fails for another reason than the numbers
+    type(error_t), allocatable, intent(inout) :: error
+
+    call self%factors(self%current)%factorize(self%matrix%object, outcome, error)
+    if (outcome == factor_made .and. .not. allocated(error)) call self%find_mechanism(outcome)
+  end subroutine make_factor
+
+  !> Finds out whether a part of the structure can move freely.
+  subroutine find_mechanism(self, outcome)
+    class(linear_solver_t), intent(inout) :: self
+    !> Becomes factor_singular if it can
+    integer, intent(inout) :: outcome
+    real(wp), allocatable :: values(:)
+    logical :: found
+    integer :: ierr(3), pass
+
+    allocate (values(self%rows))
+    call self%matrix%diagonal(values, ierr(1))
+    call self%mechanism%begin(values)
+    do pass = 1, self%mechanism%passes
+      call put(self%matrix%right, self%mechanism%right_hand_side(), ierr(1))
+      call KSPSolve(self%factors(self%current)%solver, self%matrix%right, self%matrix%left, ierr(2))
+      call take(self%matrix%left, values, ierr(3))
+      if (any(ierr /= 0)) values = ieee_value(1.0_wp, ieee_quiet_nan)
+      call self%mechanism%judge(self%communicator, values, found)
+      if (found) outcome = factor_singular
+      if (found) return
+    end do
+  end subroutine find_mechanism
+
+  !> Solves for one right-hand side with the factor; called by all ranks together.
+  subroutine solve(self, right_hand_side, solution, error)
+    class(linear_solver_t), intent(inout) :: self
+    !> Owned part of the right-hand side
+    real(wp), intent(in) :: right_hand_side(:)
+    !> Owned part of the solution
+    real(wp), intent(out) :: solution(:)
+    !> Raised on all ranks when there is no finite solution
+    type(error_t), allocatable, intent(inout) :: error
+
+    integer :: ierr(3)
+
+    solution = 0
+    if (.not. self%factored) call fail(error, exit_internal, no_factor)
+    if (allocated(error)) return
+    call put(self%matrix%right, right_hand_side, ierr(1))
+    call KSPSolve(self%factors(self%current)%solver, self%matrix%right, self%matrix%left, ierr(2))
+    call take(self%matrix%left, solution, ierr(3))
+    call self%finish_solve(all(ieee_is_finite(solution)), 1, ierr, error)
+  end subroutine solve
+
+  !> Solves for several right-hand sides with the factor; called by all ranks together.
+  subroutine solve_many(self, right_hand_sides, solutions, error)
+    class(linear_solver_t), intent(inout) :: self
+    !> Owned parts of the right-hand sides, shape (owned rows, right-hand sides)
+    real(wp), intent(in) :: right_hand_sides(:, :)
+    !> Owned parts of the solutions, shape (owned rows, right-hand sides)
+    real(wp), intent(out) :: solutions(:, :)
+    !> Raised on all ranks when there is no finite solution
+    type(error_t), allocatable, intent(inout) :: error
+    type(tMat) :: right, left
+    real(wp), pointer :: values(:, :)
+    integer :: ierr(9)
+
+    solutions = 0
+    if (.not. self%factored) call fail(error, exit_internal, no_factor)
+    if (allocated(error)) return
+    associate (rows => size(solutions, 1), count => size(solutions, 2))
+      call MatCreateDense(self%communicator%handle(), rows, PETSC_DECIDE, PETSC_DECIDE, count, PETSC_NULL_SCALAR, &
+                          right, ierr(1))
+      call MatCreateDense(self%communicator%handle(), rows, PETSC_DECIDE, PETSC_DECIDE, count, PETSC_NULL_SCALAR, &
+                          left, ierr(2))
+    end associate
+    call MatDenseGetArrayF90(right, values, ierr(3))
+    values(:, :) = right_hand_sides
+    call MatDenseRestoreArrayF90(right, values, ierr(4))
+    call KSPMatSolve(self%factors(self%current)%solver, right, left, ierr(5))
+    call MatDenseGetArrayF90(left, values, ierr(6))
+    solutions = values
+    call MatDenseRestoreArrayF90(left, values, ierr(7))
+    call MatDestroy(right, ierr(8))
+    call MatDestroy(left, ierr(9))
+    call self%finish_solve(all(ieee_is_finite(solutions)), size(solutions, 2), ierr, error)
+  end subroutine solve_many
+
+  !> Counts solves and finds out whether they gave a solution, which PETSc does not always say.
+  subroutine finish_solve(self, finite, count, codes, error)
+    class(linear_solver_t), intent(inout) :: self
+    !> Whether this rank's part of the solution is finite
+    logical, intent(in) :: finite
+    !> Number of right-hand sides
+    integer, intent(in) :: count
+    !> Codes that PETSc returned
+    integer, intent(in) :: codes(:)
+    !> Raised on all ranks when there is no finite solution
+    type(error_t), allocatable, intent(inout) :: error
+    integer :: reason, ierr
+
+    self%solves = self%solves + count
+    call KSPGetConvergedReason(self%factors(self%current)%solver, reason, ierr)
+    if (self%communicator%all(finite .and. reason > 0 .and. all(codes == 0))) return
+    call report_petsc(codes, error)
+    call fail(error, exit_convergence, 'The linear equations have no finite solution.')
+    call self%communicator%agree(error)
+  end subroutine finish_solve
+
+  !> Size of the factor, the same on every rank.
+  subroutine statistics(self, factor_entries, megabytes)
+    class(linear_solver_t), intent(in) :: self
+    !> Numbers stored in the factor
+    real(wp), intent(out) :: factor_entries
+    !> Memory of the factorization on all ranks, in MB
+    real(wp), intent(out) :: megabytes
+
+    call self%factors(self%current)%statistics(factor_entries, megabytes)
+  end subroutine statistics
+
+  !> Name of what factors the matrix, and how often something else had to.
+  function package_used(self) result(name)
+    class(linear_solver_t), intent(in) :: self
+    !> The name
+    character(len=:), allocatable :: name
+
+    name = self%factors(usual)%title()
+    if (self%promises_broken == 0) return
+    name = name//' ('//to_text(self%promises_broken)//' of '//to_text(self%factorizations)//' factorizations by '// &
+           self%factors(indefinite)%title()//', as the matrix was not positive definite)'
+  end function package_used
+
+  !> Frees matrix and factor.
+  subroutine release(self)
+    class(linear_solver_t), intent(inout) :: self
+    integer :: i
+
+    do i = 1, size(self%factors)
+      call self%factors(i)%release()
+    end do
+    call self%matrix%release()
+    call self%mechanism%forget()
+    self%factored = .false.
+  end subroutine release
 end module linear_solvers

@@ -35,8 +35,6 @@ module numberings
   contains
     !> True if this rank has an equation.
     procedure :: owns
-    !> Equations of other ranks that this rank's points have.
-    procedure :: seen
     !> Point and component of an equation of this rank.
     procedure :: place_of
     !> Copies between fields over points and vectors of this rank's rows.
@@ -125,21 +123,6 @@ contains
 
     owns = equation >= self%first_row .and. equation < self%first_row + self%rows
   end function owns
-
-  !> Equations of other ranks that this rank's points have.
-  pure function seen(self) result(equations)
-    !> The numbering
-    class(numbering_t), intent(in) :: self
-    !> The equations, from 0, ascending
-    integer, allocatable :: equations(:)
-    logical :: found(0:self%total - 1)
-    integer :: i
-
-    found = .false.
-    found(pack(self%equation, self%equation >= 0)) = .true.
-    found(self%first_row:self%first_row + self%rows - 1) = .false.
-    equations = pack([(i, i=0, self%total - 1)], found)
-  end function seen
 
   !> Point and component of an equation of this rank.
   pure subroutine place_of(self, equation, point, component)

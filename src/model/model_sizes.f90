@@ -13,8 +13,8 @@ module model_sizes
 
   !> Unknowns that one rank takes in a script; a choice, since what is best depends on the machine.
   integer, parameter :: unknowns_a_rank = 25000
-  !> Megabytes of the libraries a process, without and with MPI, PETSc and MUMPS.
-  real(wp), parameter :: megabytes_alone = 27, megabytes_with_petsc = 55
+  !> Megabytes of the libraries a process: MPI, PETSc and those behind it.
+  real(wp), parameter :: megabytes_of_libraries = 55
   !> Bytes for each pair of unknowns of a node times the doublings of the number of nodes: nested dissection of a plane
   !> grid fills its factor so. Measured, doc/manual/queue.md.
   real(wp), parameter :: bytes_whole = 56, bytes_layered = 93
@@ -119,8 +119,7 @@ contains
     !> Number of ranks
     integer, intent(in) :: ranks
 
-    megabytes = merge(megabytes_alone, megabytes_with_petsc, ranks == 1) + &
-                self%megabytes*merge(1.0_wp, more_on_ranks/ranks, ranks == 1)
+    megabytes = megabytes_of_libraries + self%megabytes*merge(1.0_wp, more_on_ranks/ranks, ranks == 1)
   end function megabytes_a_rank
 
   !> What `implam check` says.

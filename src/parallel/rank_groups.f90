@@ -2,7 +2,7 @@
 !> returns at once.
 module rank_groups
   use mpi_f08, only: MPI_Comm, MPI_COMM_SELF, MPI_IN_PLACE, MPI_DOUBLE_PRECISION, MPI_INTEGER, MPI_INTEGER8, &
-                     MPI_LOGICAL, MPI_SUM, MPI_MAX, MPI_MIN, MPI_LOR, MPI_Allreduce, MPI_Reduce, MPI_Exscan, &
+                     MPI_LOGICAL, MPI_SUM, MPI_MAX, MPI_MIN, MPI_LOR, MPI_Allreduce, MPI_Exscan, &
                      MPI_Barrier
   use kinds, only: wp, long
   implicit none
@@ -24,8 +24,6 @@ module rank_groups
     procedure :: is_root
     !> Replaces a value by its sum over the ranks, the same on every rank.
     generic :: sum => sum_real, sum_reals, sum_table, sum_integer, sum_long, sum_longs
-    !> Replaces a list by its sum over the ranks, on one of them.
-    procedure :: sum_at
     !> Replaces a value by its greatest over the ranks.
     generic :: maximum => maximum_real, maximum_reals, maximum_integer
     !> Replaces a value by its least over the ranks.
@@ -88,22 +86,6 @@ contains
     if (self%size == 1) return
     call MPI_Allreduce(MPI_IN_PLACE, values, size(values), MPI_DOUBLE_PRECISION, MPI_SUM, self%group)
   end subroutine sum_table
-
-  !> Sum of a list of reals over the ranks, item by item, on one of them.
-  subroutine sum_at(self, rank, values)
-    class(rank_group_t), intent(in) :: self
-    !> The rank that wants it
-    integer, intent(in) :: rank
-    !> This rank's shares; the sums on return there
-    real(wp), contiguous, intent(inout) :: values(:)
-
-    if (self%size == 1) return
-    if (self%rank == rank) then
-      call MPI_Reduce(MPI_IN_PLACE, values, size(values), MPI_DOUBLE_PRECISION, MPI_SUM, rank, self%group)
-    else
-      call MPI_Reduce(values, values, size(values), MPI_DOUBLE_PRECISION, MPI_SUM, rank, self%group)
-    end if
-  end subroutine sum_at
 
   !> Sum of an integer over the ranks.
   subroutine sum_integer(self, value)

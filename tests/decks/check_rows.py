@@ -28,7 +28,7 @@ OTHERS = (
     ("deck/deck_values.f90", "name", "a kind of value"),
     ("state/states.f90", "time step iterations stress force", "an item of a checkpoint"),
     ("interfaces/interface_ties.f90", "zone", "an item of a checkpoint"),
-    ("petsc/petsc_session.f90", "petsc_options", "PETSc's own variable of the environment"),
+    ("linalg/petsc_session.f90", "petsc_options", "PETSc's own variable of the environment"),
     ("model/motion_fields.f90", "velocity", "a field in NAME.h5, which users read"),
     ("results/fields_file_xdmf.f90", "cell", "XDMF's word for a field on elements"),
     ("results/output_parameters.f90", "displacement rotation velocity delamination energy_release ply_damage stress",

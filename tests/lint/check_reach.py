@@ -21,9 +21,6 @@ EXCEPTIONS = {
     "result_tables: is_unit_kind": CLOSED_LIST,
 }
 
-# Modules of a library that the program loads and asks for procedures by their names in C.
-LOADED = {"petsc_entries"}
-
 NAME = re.compile(r"(?<![\w%])([a-z]\w*)")
 UNKNOWN = None
 INTRINSIC = ""
@@ -70,9 +67,6 @@ class Walk:
         self.bindings = set()
         self.waiting = [module.program for module in modules.values() if module.program]
         self.reach_unnamed()
-        for module in LOADED & modules.keys():
-            for name in modules[module].public:
-                self.reach(modules[module].procedures[name])
         while self.waiting:
             self.follow(self.waiting.pop())
 

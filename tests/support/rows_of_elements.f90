@@ -1,17 +1,33 @@
-!> Matrices of elements in a row, for tests of linear solvers, and their solutions by the dense one.
+!> Matrices of elements in a row, for tests of the linear solver, and their solutions by LAPACK.
 module rows_of_elements
   use communicators, only: communicator_t
-  use dense_solvers, only: dense_solver_t
   use errors, only: error_t
   use kinds, only: wp
   use linear_solvers, only: linear_solver_t
   implicit none
   private
   public :: order_of, equations_of, element_matrix, define, first_row, assemble, right_hand_side, dense_solution, &
-            spring, rank_of
+            spring
 
   !> Each element has this many equations and shares this many with the next
   integer, parameter :: width = 7, shared = 3
+
+  interface
+    !> LAPACK: solves symmetric equations by Bunch and Kaufman's pivoting.
+    subroutine dsysv(uplo, n, columns, a, lda, pivots, b, ldb, work, lwork, info)
+      import :: wp
+      !> 'L': the lower triangle is given
+      character, intent(in) :: uplo
+      !> Order, right-hand sides, leading dimensions, room to work in
+      integer, intent(in) :: n, columns, lda, ldb, lwork
+      !> Matrix, overwritten by its factor; right-hand side, by the solution; room to work in
+      real(wp), intent(inout) :: a(lda, *), b(ldb, *), work(*)
+      !> Row exchanges
+      integer, intent(out) :: pivots(*)
+      !> 0 for success
+      integer, intent(out) :: info
+    end subroutine dsysv
+  end interface
 
 contains
 
@@ -46,44 +62,26 @@ contains
     end do
   end function element_matrix
 
-  !> Rank that adds an element: dealt like cards, or the one that owns its first row.
-  pure integer function rank_of(element, elements, ranks, in_blocks) result(rank)
-    integer, intent(in) :: element, elements, ranks
-    logical, intent(in), optional :: in_blocks
-
-    rank = mod(element - 1, ranks)
-    if (.not. present(in_blocks)) return
-    if (.not. in_blocks) return
-    do rank = ranks - 1, 1, -1
-      if (first_row(rank, ranks, elements) <= minval(equations_of(element))) exit
-    end do
-  end function rank_of
-
   !> Defines a solver for the rows of one rank.
-  subroutine define(solver, communicator, elements, positive_definite, error, in_blocks)
-    class(linear_solver_t), intent(inout) :: solver
+  subroutine define(solver, communicator, elements, positive_definite, error)
+    type(linear_solver_t), intent(inout) :: solver
     type(communicator_t), intent(in) :: communicator
     integer, intent(in) :: elements
     logical, intent(in) :: positive_definite
     type(error_t), allocatable, intent(inout) :: error
-    logical, intent(in), optional :: in_blocks
-    logical :: coupled(0:order_of(elements) - 1, 0:order_of(elements) - 1), seen(0:order_of(elements) - 1)
+    logical :: coupled(0:order_of(elements) - 1, 0:order_of(elements) - 1)
     integer, allocatable :: row_start(:), columns(:)
     integer :: first, last, row, e, i
 
     coupled = .false.
-    seen = .false.
     do e = 1, elements
       coupled(equations_of(e), equations_of(e)) = .true.
-      if (rank_of(e, elements, communicator%size, in_blocks) == communicator%rank) seen(equations_of(e)) = .true.
     end do
     first = first_row(communicator%rank, communicator%size, elements)
     last = first_row(communicator%rank + 1, communicator%size, elements) - 1
     row_start = [1, (1 + count(coupled(:, first:row)), row=first, last)]
     columns = [(pack([(i, i=0, order_of(elements) - 1)], coupled(:, row)), row=first, last)]
-    seen(first:last) = .false.
-    call solver%define(communicator, first, order_of(elements), row_start, columns, positive_definite, error, &
-                       pack([(i, i=0, order_of(elements) - 1)], seen))
+    call solver%define(communicator, first, order_of(elements), row_start, columns, positive_definite, error)
   end subroutine define
 
   !> First row of a rank.
@@ -93,19 +91,17 @@ contains
     first_row = rank*order_of(elements)/ranks
   end function first_row
 
-  !> Assembles the elements.
-  subroutine assemble(solver, communicator, elements, shift, scale, error, in_blocks)
-    class(linear_solver_t), intent(inout) :: solver
+  !> Assembles the elements, dealt out to the ranks like cards.
+  subroutine assemble(solver, communicator, elements, shift, scale, error)
+    type(linear_solver_t), intent(inout) :: solver
     type(communicator_t), intent(in) :: communicator
     integer, intent(in) :: elements
     real(wp), intent(in) :: shift, scale
     type(error_t), allocatable, intent(inout) :: error
-    logical, intent(in), optional :: in_blocks
     integer :: e
 
     call solver%clear()
-    do e = 1, elements
-      if (rank_of(e, elements, communicator%size, in_blocks) /= communicator%rank) cycle
+    do e = 1 + communicator%rank, elements, communicator%size
       call solver%add(equations_of(e), scale*element_matrix(e, shift))
     end do
     call solver%finish_assembly(error)
@@ -122,21 +118,22 @@ contains
              first_row(communicator%rank + 1, communicator%size, elements))]
   end function right_hand_side
 
-  !> Solution of the dense solver, for all rows.
+  !> Solution by LAPACK, for all rows.
   subroutine dense_solution(elements, shift, number, solution)
     integer, intent(in) :: elements, number
     real(wp), intent(in) :: shift
     real(wp), allocatable, intent(out) :: solution(:)
     type(communicator_t) :: alone
-    type(dense_solver_t) :: solver
-    type(error_t), allocatable :: error
+    real(wp) :: matrix(0:order_of(elements) - 1, 0:order_of(elements) - 1), work(64*order_of(elements))
+    integer :: pivots(order_of(elements)), e, info
 
-    call define(solver, alone, elements, .false., error)
-    call assemble(solver, alone, elements, shift, 1.0_wp, error)
-    call solver%factorize(error)
-    allocate (solution(order_of(elements)))
-    call solver%solve(right_hand_side(alone, elements, number), solution, error)
-    if (allocated(error)) error stop 'The dense solver failed.'
+    matrix = 0
+    do e = 1, elements
+      matrix(equations_of(e), equations_of(e)) = matrix(equations_of(e), equations_of(e)) + element_matrix(e, shift)
+    end do
+    solution = right_hand_side(alone, elements, number)
+    call dsysv('L', size(solution), 1, matrix, size(solution), pivots, solution, size(solution), work, size(work), info)
+    if (info /= 0) error stop 'LAPACK found no solution.'
   end subroutine dense_solution
 
   !> Matrix of a spring.

@@ -1,28 +1,27 @@
-!> A symmetric sparse matrix that PETSc knows, with vectors to go with it. On one rank PETSc works on our
-!> own rows in place, which are quicker to assemble.
+!> A symmetric sparse matrix of PETSc, with vectors to go with it.
 module petsc_matrices
-  use petscksp, only: tMat, tVec, PETSC_TRUE, PETSC_FALSE, ADD_VALUES, INSERT_VALUES, MAT_FINAL_ASSEMBLY, &
-                      MAT_IGNORE_LOWER_TRIANGULAR, MAT_NEW_NONZERO_LOCATION_ERR, MAT_SPD, MatSetValues, &
-                      VecGetArrayF90, VecRestoreArrayF90, VecGetArrayReadF90, VecRestoreArrayReadF90
+  use petscksp, only: tMat, tVec, PETSC_TRUE, ADD_VALUES, INSERT_VALUES, MAT_FINAL_ASSEMBLY, &
+                      MAT_IGNORE_LOWER_TRIANGULAR, MAT_NEW_NONZERO_LOCATION_ERR, MatSetValues, VecGetArrayF90, &
+                      VecRestoreArrayF90, VecGetArrayReadF90, VecRestoreArrayReadF90
   use communicators, only: communicator_t
   use errors, only: error_t, fail, exit_internal
   use kinds, only: wp
   use petsc_session, only: report_petsc
-  use symmetric_rows, only: symmetric_rows_t
   implicit none
   private
   public :: petsc_matrix_t, put, take
 
-  !> The matrix; its rows are shared out among the ranks in contiguous blocks.
+  !> The matrix, of which PETSc keeps the upper triangle (SBAIJ); its rows are shared out among the ranks in contiguous
+  !> blocks.
   type :: petsc_matrix_t
-    !> The matrix as PETSc knows it
+    !> The matrix
     type(tMat) :: object
     !> Vectors of its rows: right-hand side and solution
     type(tVec) :: right, left
     !> All ranks
     type(communicator_t), private :: communicator
-    !> Rows of the matrix on one rank
-    type(symmetric_rows_t), private :: rows
+    !> True between `define` and `release`
+    logical, private :: defined = .false.
     !> First code that PETSc returned for an added matrix, 0 for success
     integer, private :: trouble = 0
   contains
@@ -34,6 +33,8 @@ module petsc_matrices
     procedure :: add
     !> Brings the matrix together.
     procedure :: finish_assembly
+    !> The diagonal.
+    procedure :: diagonal
     !> Frees the matrix and its vectors.
     procedure :: release
   end type petsc_matrix_t
@@ -41,7 +42,7 @@ module petsc_matrices
 contains
 
   !> Makes the matrix, with a place for every entry of the pattern.
-  subroutine define(self, communicator, first_row, total_rows, row_start, columns, positive_definite, error)
+  subroutine define(self, communicator, first_row, total_rows, row_start, columns, error)
     class(petsc_matrix_t), intent(inout) :: self
     !> All ranks
     type(communicator_t), intent(in) :: communicator
@@ -51,34 +52,25 @@ contains
     integer, intent(in) :: row_start(:)
     !> Columns of the owned rows in both triangles, from 0, ascending within a row, diagonal included
     integer, intent(in) :: columns(:)
-    !> A promise on which packages rely
-    logical, intent(in) :: positive_definite
     !> Raised when PETSc fails
     type(error_t), allocatable, intent(inout) :: error
-    integer :: rows, row, ierr(6), inner(size(row_start) - 1), outer(size(row_start) - 1)
+    integer :: rows, row, ierr(5), inner(size(row_start) - 1), outer(size(row_start) - 1)
 
-    ierr = 0
     self%communicator = communicator
+    self%defined = .true.
     rows = size(row_start) - 1
-    if (communicator%size == 1) then
-      call self%rows%define(row_start, columns)
-      call MatCreateSeqSBAIJWithArrays(communicator%handle(), 1, rows, rows, self%rows%start, &
-                                       self%rows%columns, self%rows%values, self%object, ierr(1))
-    else
-      do row = 1, rows
-        associate (mine => columns(row_start(row):row_start(row + 1) - 1))
-          inner(row) = count(mine >= first_row + row - 1 .and. mine < first_row + rows)
-          outer(row) = count(mine >= first_row + rows)
-        end associate
-      end do
-      call MatCreateSBAIJ(communicator%handle(), 1, rows, rows, total_rows, total_rows, 0, inner, 0, outer, &
-                          self%object, ierr(1))
-      call MatSetOption(self%object, MAT_IGNORE_LOWER_TRIANGULAR, PETSC_TRUE, ierr(2))
-      call fill_pattern(self%object, first_row, row_start, columns, ierr(3))
-      call MatSetOption(self%object, MAT_NEW_NONZERO_LOCATION_ERR, PETSC_TRUE, ierr(4))
-    end if
-    call MatSetOption(self%object, MAT_SPD, merge(PETSC_TRUE, PETSC_FALSE, positive_definite), ierr(5))
-    call MatCreateVecs(self%object, self%left, self%right, ierr(6))
+    do row = 1, rows
+      associate (mine => columns(row_start(row):row_start(row + 1) - 1))
+        inner(row) = count(mine >= first_row + row - 1 .and. mine < first_row + rows)
+        outer(row) = count(mine >= first_row + rows)
+      end associate
+    end do
+    call MatCreateSBAIJ(communicator%handle(), 1, rows, rows, total_rows, total_rows, 0, inner, 0, outer, &
+                        self%object, ierr(1))
+    call MatSetOption(self%object, MAT_IGNORE_LOWER_TRIANGULAR, PETSC_TRUE, ierr(2))
+    call fill_pattern(self%object, first_row, row_start, columns, ierr(3))
+    call MatSetOption(self%object, MAT_NEW_NONZERO_LOCATION_ERR, PETSC_TRUE, ierr(4))
+    call MatCreateVecs(self%object, self%left, self%right, ierr(5))
     call report_petsc(ierr, error)
   end subroutine define
 
@@ -110,13 +102,7 @@ contains
   subroutine clear(self)
     class(petsc_matrix_t), intent(inout) :: self
 
-    self%trouble = 0
-    if (self%communicator%size == 1) then
-      self%rows%values = 0
-      self%rows%complete = .true.
-    else
-      call MatZeroEntries(self%object, self%trouble)
-    end if
+    call MatZeroEntries(self%object, self%trouble)
   end subroutine clear
 
   !> Adds an element's matrix; each element is added by one rank only.
@@ -128,12 +114,8 @@ contains
     real(wp), intent(in) :: values(:, :)
     integer :: ierr
 
-    if (self%communicator%size == 1) then
-      call self%rows%add(equations, values)
-    else
-      call MatSetValues(self%object, size(equations), equations, size(equations), equations, values, ADD_VALUES, ierr)
-      if (self%trouble == 0) self%trouble = ierr
-    end if
+    call MatSetValues(self%object, size(equations), equations, size(equations), equations, values, ADD_VALUES, ierr)
+    if (self%trouble == 0) self%trouble = ierr
   end subroutine add
 
   !> Brings the matrix together.
@@ -146,21 +128,33 @@ contains
     ierr(1) = self%trouble
     call MatAssemblyBegin(self%object, MAT_FINAL_ASSEMBLY, ierr(2))
     call MatAssemblyEnd(self%object, MAT_FINAL_ASSEMBLY, ierr(3))
-    if (any(ierr /= 0) .or. .not. self%rows%complete) then
+    if (any(ierr /= 0)) &
       call fail(error, exit_internal, 'An element couples unknowns that the pattern of the matrix does not couple.')
-    end if
     call self%communicator%agree(error)
   end subroutine finish_assembly
+
+  !> The diagonal.
+  subroutine diagonal(self, values, ierr)
+    class(petsc_matrix_t), intent(inout) :: self
+    !> Its owned part
+    real(wp), intent(out) :: values(:)
+    !> First code of PETSc that is not zero
+    integer, intent(out) :: ierr
+
+    call MatGetDiagonal(self%object, self%left, ierr)
+    if (ierr == 0) call take(self%left, values, ierr)
+  end subroutine diagonal
 
   !> Frees the matrix and its vectors.
   subroutine release(self)
     class(petsc_matrix_t), intent(inout) :: self
     integer :: ierr
 
+    if (.not. self%defined) return
+    self%defined = .false.
     call VecDestroy(self%right, ierr)
     call VecDestroy(self%left, ierr)
     call MatDestroy(self%object, ierr)
-    call self%rows%release()
   end subroutine release
 
   !> Copies values into a vector.

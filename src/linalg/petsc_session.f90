@@ -2,12 +2,15 @@
 module petsc_session
   use, intrinsic :: iso_c_binding, only: c_int, c_ptr, c_null_ptr, c_char, c_null_char, c_funptr, c_funloc, &
                                          c_associated, c_f_pointer
-  use blas_settings, only: settle_blas
   use communicators, only: communicator_t
   use errors, only: error_t, fail, exit_usage, exit_internal
   implicit none
   private
   public :: start_petsc, finish_petsc, report_petsc
+
+  !> Ours, which the user's override: signals are for the run to see; and CHOLMOD factors all matrices as it does large
+  !> ones, with square roots, so that it refuses what is not positive definite.
+  character(len=*), parameter :: own_options = '-no_signal_handler true -mat_cholmod_factor supernodal '
 
   interface
     !> Starts PETSc. This is the C entry, as the Fortran one reads the command line in any case.
@@ -46,6 +49,13 @@ module petsc_session
       integer(c_int), value :: overwrite
     end function set_environment_variable
 
+    !> OpenMP: how deep parallel regions may be nested; 0: none are parallel.
+    subroutine limit_parallel_regions(levels) bind(c, name='omp_set_max_active_levels')
+      import :: c_int
+      !> The limit
+      integer(c_int), value :: levels
+    end subroutine limit_parallel_regions
+
     !> Meaning of an error code, in general and for the latest error.
     integer(c_int) function error_message(code, general, particular) bind(c, name='PetscErrorMessage')
       import :: c_int, c_ptr
@@ -72,12 +82,12 @@ contains
 
     call PetscInitialized(running, ierr)
     if (running) return
-    call settle_blas()
+    call settle_threads()
     ! Options such as -log_view must be there when PETSc starts, and it looks for them in the environment.
     call get_environment_variable('PETSC_OPTIONS', length=length)
     allocate (character(len=length) :: all_options)
     if (length > 0) call get_environment_variable('PETSC_OPTIONS', all_options)
-    all_options = all_options//' -no_signal_handler true '//trim(options)
+    all_options = own_options//all_options//' '//trim(options)
     ierr = set_environment_variable('PETSC_OPTIONS'//c_null_char, all_options//c_null_char, 1_c_int)
     ierr = push_error_handler(c_funloc(quiet_handler), c_null_ptr)
     if (ierr == 0) ierr = initialize()
@@ -85,6 +95,16 @@ contains
     if (ierr /= 0) call fail(error, exit_usage, 'PETSc does not start with the options "'//trim(options)//'".')
     call communicator%agree(error)
   end subroutine start_petsc
+
+  !> Keeps OpenMP to one thread a rank, as the ranks share the work, unless the environment asks for more. CHOLMOD before
+  !> SuiteSparse 6 else takes four, whatever the environment says, for loops that are over before these have begun.
+  subroutine settle_threads()
+    character(len=8) :: threads
+    integer :: length
+
+    call get_environment_variable('OMP_NUM_THREADS', threads, length=length)
+    if (length == 0 .or. threads == '1') call limit_parallel_regions(0_c_int)
+  end subroutine settle_threads
 
   !> Ends PETSc; its objects must have been freed before.
   subroutine finish_petsc()

@@ -1,0 +1,266 @@
+!> The factor of a matrix, as PETSc keeps it: a PC, and a KSP that applies it.
+module petsc_factors
+  use petscksp, only: tMat, tKSP, tPC, PETSC_TRUE, PETSC_FALSE, MAT_GLOBAL_SUM, MAT_INFO_SIZE, MAT_INFO_NZ_USED, &
+                      MAT_INFO_MEMORY, MAT_SPD, KSPSetOperators
+  use communicators, only: communicator_t
+  use errors, only: error_t, fail, exit_usage
+  use factor_packages, only: package_title, prepare_mumps, mumps_report, mumps_outcome, mumps_memory, mumps_entries, &
+                             mumps_negative_pivots, mumps_singular, mumps_short_of_room, factor_made, &
+                             factor_not_positive, factor_singular, factor_lacks_memory
+  use kinds, only: wp
+  use petsc_session, only: report_petsc
+  implicit none
+  private
+  public :: petsc_factor_t
+
+  !> PETSC_ERR_MAT_CH_ZRPVT, which CHOLMOD returns for a pivot that is zero or negative; and PETSC_ERR_MEM and
+  !> PETSC_ERR_LIB, for lack of memory
+  integer, parameter :: bad_pivot = 81, no_memory(*) = [55, 76]
+
+  !> A factor and what makes it.
+  type :: petsc_factor_t
+    !> True between `define` and `release`
+    logical :: defined = .false.
+    !> PETSc's name of the package; empty: none, by options of the user
+    character(len=:), allocatable :: package
+    !> Applies the factor once
+    type(tKSP) :: solver
+    !> Makes and keeps the factor
+    type(tPC), private :: preconditioner
+    !> All ranks
+    type(communicator_t), private :: communicator
+    !> Whether the matrix is promised to be positive definite
+    logical, private :: positive_definite = .true.
+    !> Room beyond MUMPS' estimate at first, in %, negative for its own choice
+    integer, private :: usual_room = -1
+  contains
+    !> Chooses the package.
+    procedure :: define
+    !> Factors a matrix.
+    procedure :: factorize
+    !> Name of the package as people call it.
+    procedure :: title
+    !> Size of the factor.
+    procedure :: statistics
+    !> Frees the factor.
+    procedure :: release
+    procedure, private :: choose_package
+    procedure, private :: renew
+    procedure, private :: factorize_once
+    procedure, private :: look_at_mumps
+  end type petsc_factor_t
+
+contains
+
+  !> Chooses the package: the first that PETSc has, or what options of the user say.
+  subroutine define(self, communicator, matrix, packages, positive_definite, prefix, error)
+    class(petsc_factor_t), intent(inout) :: self
+    !> All ranks
+    type(communicator_t), intent(in) :: communicator
+    !> The matrix to be factored
+    type(tMat), intent(in) :: matrix
+    !> PETSc's names of packages, the best first
+    character(len=*), intent(in) :: packages(:)
+    !> A promise that lets packages do without pivoting
+    logical, intent(in) :: positive_definite
+    !> What options for this solver begin with, behind their dash
+    character(len=*), intent(in) :: prefix
+    !> Set when PETSc fails, or (usage) has none of the packages
+    type(error_t), allocatable, intent(inout) :: error
+    integer :: ierr(7)
+
+    self%communicator = communicator
+    self%positive_definite = positive_definite
+    ! Without pivoting, and with nothing to share out, the factor is as large as MUMPS says beforehand.
+    self%usual_room = merge(0, -1, positive_definite .and. communicator%size == 1)
+    call KSPCreate(communicator%handle(), self%solver, ierr(1))
+    self%defined = ierr(1) == 0
+    call KSPSetOptionsPrefix(self%solver, prefix, ierr(2))
+    call KSPSetOperators(self%solver, matrix, matrix, ierr(3))
+    call KSPSetType(self%solver, 'preonly', ierr(4))
+    call KSPGetPC(self%solver, self%preconditioner, ierr(5))
+    call PCSetType(self%preconditioner, 'cholesky', ierr(6))
+    call KSPSetFromOptions(self%solver, ierr(7))
+    call report_petsc(ierr, error)
+    if (.not. allocated(error)) call self%choose_package(matrix, packages, error)
+    if (.not. allocated(error)) call self%renew(matrix, self%usual_room, error)
+  end subroutine define
+
+  !> Chooses the package, unless the user has.
+  subroutine choose_package(self, matrix, packages, error)
+    class(petsc_factor_t), intent(inout) :: self
+    !> The matrix to be factored
+    type(tMat), intent(in) :: matrix
+    !> PETSc's names of packages, the best first
+    character(len=*), intent(in) :: packages(:)
+    !> Set (usage) if PETSc has none of them
+    type(error_t), allocatable, intent(inout) :: error
+    character(len=64) :: name
+    integer :: i, ierr, unset
+
+    self%package = ''
+    name = ''
+    call PCGetType(self%preconditioner, name, ierr)
+    if (name /= 'cholesky') return
+    name = ''
+    call PCFactorGetMatSolverType(self%preconditioner, name, unset)
+    if (unset == 0 .and. name /= '') then
+      self%package = trim(name)
+      return
+    end if
+    call MatSetOption(matrix, MAT_SPD, merge(PETSC_TRUE, PETSC_FALSE, self%positive_definite), ierr)
+    do i = 1, size(packages)
+      call PCFactorSetMatSolverType(self%preconditioner, trim(packages(i)), ierr)
+      if (ierr == 0) call PCFactorSetUpMatSolverType(self%preconditioner, ierr)
+      if (.not. self%communicator%all(ierr == 0)) cycle
+      self%package = trim(packages(i))
+      return
+    end do
+    call fail(error, exit_usage, 'This PETSc was built without '//package_title(packages(1))// &
+              ', which is to factor the stiffness matrix.')
+  end subroutine choose_package
+
+  !> Gives the package a new factor to fill and sets its controls.
+  subroutine renew(self, matrix, room, error)
+    class(petsc_factor_t), intent(inout) :: self
+    !> The matrix to be factored
+    type(tMat), intent(in) :: matrix
+    !> Room beyond MUMPS' estimate in %, negative for its own choice
+    integer, intent(in) :: room
+    !> Raised when PETSc fails
+    type(error_t), allocatable, intent(inout) :: error
+    integer :: ierr(5)
+
+    ierr = 0
+    call PCReset(self%preconditioner, ierr(1))
+    call KSPSetOperators(self%solver, matrix, matrix, ierr(2))
+    ! MUMPS asks the matrix whether it is positive definite when the factor is made.
+    call MatSetOption(matrix, MAT_SPD, merge(PETSC_TRUE, PETSC_FALSE, self%positive_definite), ierr(3))
+    if (self%package /= '') call PCFactorSetUpMatSolverType(self%preconditioner, ierr(4))
+    if (self%package == 'mumps' .and. ierr(4) == 0) call prepare_mumps(self%preconditioner, room, ierr(5))
+    call report_petsc(ierr, error)
+  end subroutine renew
+
+  !> Factors a matrix, with ever more room if that is what lacks; called by all ranks together.
+  subroutine factorize(self, matrix, outcome, error)
+    class(petsc_factor_t), intent(inout) :: self
+    !> The matrix
+    type(tMat), intent(in) :: matrix
+    !> One of the factor_* outcomes, the same on every rank
+    integer, intent(out) :: outcome
+    !> Raised when PETSc fails for another reason than the numbers
+    type(error_t), allocatable, intent(inout) :: error
+    integer :: ierr, attempt
+    logical :: short
+    integer, parameter :: rooms(*) = [100, 400]
+
+    call self%factorize_once(matrix, outcome, short, error)
+    do attempt = 1, size(rooms)
+      if (allocated(error) .or. .not. short) exit
+      call self%renew(matrix, rooms(attempt), error)
+      if (.not. allocated(error)) call self%factorize_once(matrix, outcome, short, error)
+    end do
+    call self%communicator%maximum(outcome)
+    call self%communicator%agree(error)
+    if (allocated(error)) return
+    if (outcome == factor_made) then
+      ! The factor stays, whatever is assembled, until the next call of this procedure.
+      call KSPSetReusePreconditioner(self%solver, PETSC_TRUE, ierr)
+    else
+      ! After a failure the packages refuse to go on with the factor that they have.
+      call self%renew(matrix, self%usual_room, error)
+    end if
+  end subroutine factorize
+
+  !> Factors a matrix once.
+  subroutine factorize_once(self, matrix, outcome, short, error)
+    class(petsc_factor_t), intent(inout) :: self
+    !> The matrix
+    type(tMat), intent(in) :: matrix
+    !> One of the factor_* outcomes
+    integer, intent(out) :: outcome
+    !> Whether MUMPS needs more room
+    logical, intent(out) :: short
+    !> Raised when PETSc fails for another reason than the numbers
+    type(error_t), allocatable, intent(inout) :: error
+    integer :: ierr(3), failure
+
+    short = .false.
+    outcome = factor_made
+    call KSPSetReusePreconditioner(self%solver, PETSC_FALSE, ierr(1))
+    ! Setting the same matrix again is what makes the solver look whether its values changed.
+    call KSPSetOperators(self%solver, matrix, matrix, ierr(2))
+    call KSPSetUp(self%solver, ierr(3))
+    if (ierr(3) == bad_pivot) outcome = factor_not_positive
+    if (any(ierr(3) == no_memory)) outcome = factor_lacks_memory
+    if (outcome /= factor_made) return
+    call report_petsc(ierr, error)
+    if (allocated(error)) return
+    failure = 0
+    call PCGetFailedReason(self%preconditioner, failure, ierr(3))
+    if (failure /= 0) outcome = factor_singular
+    if (self%package == 'mumps') call self%look_at_mumps(outcome, short)
+  end subroutine factorize_once
+
+  !> What MUMPS reports.
+  subroutine look_at_mumps(self, outcome, short)
+    class(petsc_factor_t), intent(in) :: self
+    !> One of the factor_* outcomes
+    integer, intent(inout) :: outcome
+    !> Whether it needs more room
+    logical, intent(out) :: short
+
+    associate (code => mumps_report(self%preconditioner, mumps_outcome))
+      short = any(code == mumps_short_of_room)
+      if (code < 0) outcome = merge(factor_singular, factor_lacks_memory, code == mumps_singular)
+    end associate
+    ! It does not mind negative pivots of a matrix that was promised to have none.
+    if (outcome == factor_made .and. self%positive_definite) then
+      if (mumps_report(self%preconditioner, mumps_negative_pivots) > 0) outcome = factor_not_positive
+    end if
+  end subroutine look_at_mumps
+
+  !> Name of the package as people call it.
+  pure function title(self)
+    class(petsc_factor_t), intent(in) :: self
+    !> The name
+    character(len=:), allocatable :: title
+
+    title = package_title(self%package)
+  end function title
+
+  !> Size of the factor, the same on every rank.
+  subroutine statistics(self, entries, megabytes)
+    class(petsc_factor_t), intent(in) :: self
+    !> Numbers stored in the factor
+    real(wp), intent(out) :: entries
+    !> Memory of the factorization on all ranks, in MB
+    real(wp), intent(out) :: megabytes
+    type(tMat) :: factor
+    double precision :: info(MAT_INFO_SIZE)
+    integer :: counted, ierr
+
+    if (self%package == 'mumps') then
+      counted = mumps_report(self%preconditioner, mumps_entries)
+      ! MUMPS counts in millions, with a negative sign, what an integer can't hold.
+      entries = merge(-1e6_wp, 1.0_wp, counted < 0)*counted
+      megabytes = mumps_report(self%preconditioner, mumps_memory)
+    else
+      info = 0
+      ierr = 1
+      if (self%package /= '') call PCFactorGetMatrix(self%preconditioner, factor, ierr)
+      if (ierr == 0) call MatGetInfo(factor, MAT_GLOBAL_SUM, info, ierr)
+      entries = info(MAT_INFO_NZ_USED)
+      megabytes = info(MAT_INFO_MEMORY)/1e6_wp
+    end if
+  end subroutine statistics
+
+  !> Frees the factor.
+  subroutine release(self)
+    class(petsc_factor_t), intent(inout) :: self
+    integer :: ierr
+
+    if (self%defined) call KSPDestroy(self%solver, ierr)
+    self%defined = .false.
+  end subroutine release
+end module petsc_factors
