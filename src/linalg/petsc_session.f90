@@ -96,8 +96,8 @@ contains
     call communicator%agree(error)
   end subroutine start_petsc
 
-  !> Keeps OpenMP to one thread a rank, as the ranks share the work, unless the environment asks for more. CHOLMOD before
-  !> SuiteSparse 6 else takes four, whatever the environment says, for loops that are over before these have begun.
+  !> Keeps OpenMP to one thread a rank, as the ranks share the work, unless the environment asks for more. CHOLMOD
+  !> before SuiteSparse 6 else takes four, whatever the environment says, for loops that are over before these have begun.
   subroutine settle_threads()
     character(len=8) :: threads
     integer :: length
