@@ -97,7 +97,7 @@ contains
   end subroutine start_petsc
 
   !> Keeps OpenMP to one thread a rank, as the ranks share the work, unless the environment asks for more. CHOLMOD
-  !> before SuiteSparse 6 else takes four, whatever the environment says, for loops that are over before these have begun.
+  !> before SuiteSparse 6 else takes four, whatever the environment says, for loops over before these have begun.
   subroutine settle_threads()
     character(len=8) :: threads
     integer :: length
