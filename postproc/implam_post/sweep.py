@@ -1,6 +1,7 @@
 """Run a deck over lists, grids or samples of its keys (`implam-sweep SWEEP.toml`)."""
 
 import argparse
+import itertools
 import os
 import re
 import shlex
@@ -37,13 +38,14 @@ def check_decks(sweep: Sweep, cases: Sequence[Case], jobs: int) -> None:
     if faulty:
         more = f" (the first {_SHOWN} are told)" if len(faulty) > _SHOWN else ""
         raise DeckError(f"{len(faulty)} of {len(sweep.plan.cases)} decks are faulty{more}; nothing was run.")
-    told = [{found[1] for line in said if (found := re.match(r".*?: warning: (.*)", line))} for _, said in verdicts]
-    # Decks that differ in numbers alone are warned alike: the first one's words stand for all.
-    words = [{_NUMBER.sub("#", warning): warning for warning in warnings} for warnings in told]
-    numbers = Counter(alike for warnings in words for alike in warnings)
-    first = {alike: warning for warnings in reversed(words) for alike, warning in warnings.items()}
-    for alike, number in numbers.items():
-        print(f"warning, {number} of {len(cases)} decks: {first[alike]}", file=sys.stderr)
+    told = [[found[1] for line in said if (found := re.match(r".*?: warning: (.*)", line))] for _, said in verdicts]
+    # Warnings that differ in numbers alone are alike: the first one's words stand for all.
+    first: dict[str, str] = {}
+    for warning in itertools.chain(*told):
+        first.setdefault(_NUMBER.sub("#", warning), warning)
+    numbers = Counter(alike for warnings in told for alike in {_NUMBER.sub("#", warning) for warning in warnings})
+    for alike, warning in first.items():
+        print(f"warning, {numbers[alike]} of {len(cases)} decks: {warning}", file=sys.stderr)
 
 
 class _Tables:
