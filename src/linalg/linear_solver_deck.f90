@@ -17,13 +17,14 @@ module linear_solver_deck
   !> Rows of the keys.
   character(len=key_row_length), parameter, public :: linear_solver_rows(*) = [character(len=key_row_length) :: &
     'solver | factorization | choice | 1 | - | ''automatic'' | automatic mumps cholmod | &
-      &Direct solver; automatic takes cholmod on one rank where no load step buckles or softens, else mumps.', &
+      &Direct solver; automatic takes cholmod where no load step buckles or softens and ranks share no large model.', &
     'solver | petsc_options | text | 1 | - | '''' | any text | &
       &Options handed to PETSc as they are.']
 
   !> What options for PETSc begin with in a deck.
   character(len=*), parameter :: beginnings(*) = [character(len=16) :: '-ksp_', '-pc_', '-mat_', '-indefinite_ksp_', &
-                                                  '-indefinite_pc_', '-indefinite_mat_']
+                                                  '-indefinite_pc_', '-indefinite_mat_', &
+                                                  '-telescope_ksp_', '-telescope_pc_', '-telescope_mat_']
 
 contains
 

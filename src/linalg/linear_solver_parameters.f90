@@ -10,7 +10,7 @@ module linear_solver_parameters
 
   !> Factorization and options of the linear solver.
   type :: linear_solver_parameters_t
-    !> factorization_mumps, factorization_cholmod (one rank only), or the quickest that suits ranks and operator
+    !> factorization_mumps, factorization_cholmod, or the quickest that suits ranks and operator
     integer :: factorization = factorization_automatic
     !> Handed to PETSc as they are
     character(len=:), allocatable :: petsc_options

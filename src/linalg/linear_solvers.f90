@@ -37,8 +37,8 @@ module linear_solvers
     integer, private :: promises_broken = 0
     !> All ranks
     type(communicator_t), private :: communicator
-    !> Number of rows that this rank owns
-    integer, private :: rows = 0
+    !> Number of rows that this rank owns, and of all
+    integer, private :: rows = 0, total_rows = 0
     !> The matrix
     type(petsc_matrix_t), private :: matrix
     !> Its factor as a rule, and that of a matrix that broke its promise, set up when that happens
@@ -102,9 +102,10 @@ contains
     call give_back_freed()
     self%communicator = communicator
     self%rows = size(row_start) - 1
+    self%total_rows = total_rows
     self%promised = positive_definite
-    if (self%factorization == factorization_cholmod .and. .not. (positive_definite .and. communicator%size == 1)) &
-      call fail(error, exit_usage, 'CHOLMOD factors what stays positive definite, and on one rank: choose '// &
+    if (self%factorization == factorization_cholmod .and. .not. positive_definite) &
+      call fail(error, exit_usage, 'CHOLMOD factors what stays positive definite only: choose '// &
                 "'automatic' or 'mumps' for factorization of &solver.")
     if (allocated(error)) return
     call self%matrix%define(communicator, first_row, total_rows, row_start, columns, error)
@@ -150,7 +151,8 @@ contains
     type(error_t), allocatable, intent(inout) :: error
 
     call self%factors(number)%define(self%communicator, self%matrix%object, &
-                                     packages_for(self%factorization, positive_definite, self%communicator%size), &
+                                     packages_for(self%factorization, positive_definite, self%communicator%size, &
+                                                  self%total_rows), &
                                      positive_definite, trim(prefixes(number)), error)
   end subroutine set_up_factor
 

@@ -1,7 +1,7 @@
 !> The factor of a matrix, as PETSc keeps it: a PC, and a KSP that applies it.
 module petsc_factors
-  use petscksp, only: tMat, tKSP, tPC, PETSC_TRUE, PETSC_FALSE, MAT_GLOBAL_SUM, MAT_INFO_SIZE, MAT_INFO_NZ_USED, &
-                      MAT_INFO_MEMORY, MAT_SPD, KSPSetOperators
+  use petscksp, only: tMat, tKSP, tPC, PETSC_COMM_SELF, PETSC_TRUE, PETSC_FALSE, MAT_FACTOR_CHOLESKY, MAT_LOCAL, &
+                      MAT_INFO_SIZE, MAT_INFO_NZ_USED, MAT_INFO_MEMORY, MAT_SPD, KSPSetOperators
   use communicators, only: communicator_t
   use errors, only: error_t, fail, exit_usage
   use factor_packages, only: package_title, prepare_mumps, mumps_report, mumps_outcome, mumps_memory, mumps_entries, &
@@ -23,6 +23,8 @@ module petsc_factors
     logical :: defined = .false.
     !> PETSc's name of the package; empty: none, by options of the user
     character(len=:), allocatable :: package
+    !> True: one rank factors and solves for all of them
+    logical, private :: gathered = .false.
     !> Applies the factor once
     type(tKSP) :: solver
     !> Makes and keeps the factor
@@ -45,6 +47,9 @@ module petsc_factors
     !> Frees the factor.
     procedure :: release
     procedure, private :: choose_package
+    procedure, private :: gather_on_one_rank
+    procedure, private :: factorize_gathered
+    procedure, private :: factor_matrix
     procedure, private :: renew
     procedure, private :: factorize_once
     procedure, private :: look_at_mumps
@@ -110,6 +115,13 @@ contains
     end if
     call MatSetOption(matrix, MAT_SPD, merge(PETSC_TRUE, PETSC_FALSE, self%positive_definite), ierr)
     do i = 1, size(packages)
+      if (packages(i) == 'cholmod' .and. self%communicator%size > 1) then
+        call self%gather_on_one_rank(ierr)
+        if (ierr /= 0) cycle
+        self%package = 'cholmod'
+        self%gathered = .true.
+        return
+      end if
       call PCFactorSetMatSolverType(self%preconditioner, trim(packages(i)), ierr)
       if (ierr == 0) call PCFactorSetUpMatSolverType(self%preconditioner, ierr)
       if (.not. self%communicator%all(ierr == 0)) cycle
@@ -119,6 +131,41 @@ contains
     call fail(error, exit_usage, 'This PETSc was built without '//package_title(packages(1))// &
               ', which is to factor the stiffness matrix.')
   end subroutine choose_package
+
+  !> Lets one rank factor and solve for all of them by CHOLMOD, which knows no ranks.
+  subroutine gather_on_one_rank(self, ierr)
+    class(petsc_factor_t), intent(inout) :: self
+    !> First code of PETSc that isn't zero, so where it was built without CHOLMOD
+    integer, intent(out) :: ierr
+    type(tMat) :: small, factor
+    integer :: codes(7)
+
+    call MatCreateSeqSBAIJ(PETSC_COMM_SELF, 1, 1, 1, 1, [1], small, codes(1))
+    call MatGetFactor(small, 'cholmod', MAT_FACTOR_CHOLESKY, factor, codes(2))
+    codes(3) = 0
+    if (codes(2) == 0) call MatDestroy(factor, codes(3))
+    call MatDestroy(small, codes(4))
+    ierr = maxval(codes(:4))
+    if (ierr /= 0) return
+    call PCSetType(self%preconditioner, 'telescope', codes(5))
+    call PCTelescopeSetReductionFactor(self%preconditioner, self%communicator%size, codes(6))
+    call PCSetFromOptions(self%preconditioner, codes(7))
+    ierr = maxval(codes)
+  end subroutine gather_on_one_rank
+
+  !> Factors on the rank that does it for all, before a solve would: if that failed there, the others would wait for the
+  !> solution in vain.
+  subroutine factorize_gathered(self, ierr)
+    class(petsc_factor_t), intent(in) :: self
+    !> PETSc's code
+    integer, intent(out) :: ierr
+    type(tKSP) :: inner
+
+    ierr = 0
+    if (self%communicator%rank > 0) return
+    call PCTelescopeGetKSP(self%preconditioner, inner, ierr)
+    if (ierr == 0) call KSPSetUp(inner, ierr)
+  end subroutine factorize_gathered
 
   !> Gives the package a new factor to fill and sets its controls.
   subroutine renew(self, matrix, room, error)
@@ -136,7 +183,7 @@ contains
     call KSPSetOperators(self%solver, matrix, matrix, ierr(2))
     ! MUMPS asks the matrix whether it is positive definite when the factor is made.
     call MatSetOption(matrix, MAT_SPD, merge(PETSC_TRUE, PETSC_FALSE, self%positive_definite), ierr(3))
-    if (self%package /= '') call PCFactorSetUpMatSolverType(self%preconditioner, ierr(4))
+    if (self%package /= '' .and. .not. self%gathered) call PCFactorSetUpMatSolverType(self%preconditioner, ierr(4))
     if (self%package == 'mumps' .and. ierr(4) == 0) call prepare_mumps(self%preconditioner, room, ierr(5))
     call report_petsc(ierr, error)
   end subroutine renew
@@ -191,6 +238,7 @@ contains
     ! Setting the same matrix again is what makes the solver look whether its values changed.
     call KSPSetOperators(self%solver, matrix, matrix, ierr(2))
     call KSPSetUp(self%solver, ierr(3))
+    if (self%gathered .and. ierr(3) == 0) call self%factorize_gathered(ierr(3))
     if (ierr(3) == bad_pivot) outcome = factor_not_positive
     if (any(ierr(3) == no_memory)) outcome = factor_lacks_memory
     if (outcome /= factor_made) return
@@ -239,6 +287,7 @@ contains
     type(tMat) :: factor
     double precision :: info(MAT_INFO_SIZE)
     integer :: counted, ierr
+    logical :: found
 
     if (self%package == 'mumps') then
       counted = mumps_report(self%preconditioner, mumps_entries)
@@ -247,13 +296,35 @@ contains
       megabytes = mumps_report(self%preconditioner, mumps_memory)
     else
       info = 0
-      ierr = 1
-      if (self%package /= '') call PCFactorGetMatrix(self%preconditioner, factor, ierr)
-      if (ierr == 0) call MatGetInfo(factor, MAT_GLOBAL_SUM, info, ierr)
+      call self%factor_matrix(factor, found)
+      if (found) call MatGetInfo(factor, MAT_LOCAL, info, ierr)
       entries = info(MAT_INFO_NZ_USED)
       megabytes = info(MAT_INFO_MEMORY)/1e6_wp
+      call self%communicator%sum(entries)
+      call self%communicator%sum(megabytes)
     end if
   end subroutine statistics
+
+  !> The factor of a package other than MUMPS.
+  subroutine factor_matrix(self, factor, found)
+    class(petsc_factor_t), intent(in) :: self
+    !> The factor
+    type(tMat), intent(out) :: factor
+    !> False: this rank has none
+    logical, intent(out) :: found
+    type(tKSP) :: inner
+    type(tPC) :: preconditioner
+    integer :: ierr(3)
+
+    found = self%package /= '' .and. .not. (self%gathered .and. self%communicator%rank > 0)
+    if (.not. found) return
+    ierr = 0
+    preconditioner = self%preconditioner
+    if (self%gathered) call PCTelescopeGetKSP(self%preconditioner, inner, ierr(1))
+    if (self%gathered .and. ierr(1) == 0) call KSPGetPC(inner, preconditioner, ierr(2))
+    if (all(ierr == 0)) call PCFactorGetMatrix(preconditioner, factor, ierr(3))
+    found = all(ierr == 0)
+  end subroutine factor_matrix
 
   !> Frees the factor.
   subroutine release(self)
@@ -262,5 +333,6 @@ contains
 
     if (self%defined) call KSPDestroy(self%solver, ierr)
     self%defined = .false.
+    self%gathered = .false.
   end subroutine release
 end module petsc_factors

@@ -10,7 +10,10 @@ module petsc_session
 
   !> Ours, which the user's override: signals are for the run to see; and CHOLMOD factors all matrices as it does large
   !> ones, with square roots, so that it refuses what is not positive definite.
-  character(len=*), parameter :: own_options = '-no_signal_handler true -mat_cholmod_factor supernodal '
+  !> "telescope" is the solver on one rank for all of them.
+  character(len=*), parameter :: own_options = '-no_signal_handler true -mat_cholmod_factor supernodal '// &
+    '-telescope_pc_type cholesky -telescope_pc_factor_mat_solver_type cholmod '// &
+    '-telescope_mat_cholmod_factor supernodal '
 
   interface
     !> Starts PETSc. This is the C entry, as the Fortran one reads the command line in any case.
