@@ -18,6 +18,8 @@ module compression_records
   type :: compression_record_t
     !> Largest stress, its time, and the shortening then
     real(wp) :: strength = 0, at = 0, shortening = 0
+    !> Percent bending then, by two gauges back to back
+    real(wp) :: bending = 0
     !> True once the stress has fallen far below that
     logical :: failed = .false.
     !> Stress at the strains; 0: not reached
@@ -36,11 +38,13 @@ module compression_records
 contains
 
   !> Looks at a state.
-  pure subroutine observe(self, time, stress, shortening, strain)
+  pure subroutine observe(self, time, stress, shortening, strain, bending)
     !> The record
     class(compression_record_t), intent(inout) :: self
     !> Time, far-field stress, shortening, and that over the length of the plate
     real(wp), intent(in) :: time, stress, shortening, strain
+    !> Percent bending
+    real(wp), intent(in) :: bending
     integer :: i
 
     do i = 1, size(strains)
@@ -53,6 +57,7 @@ contains
       self%strength = stress
       self%at = shown_time(time)
       self%shortening = shortening
+      self%bending = bending
       self%failed = .false.
     else if (stress < fallen*self%strength) then
       self%failed = .true.
@@ -78,6 +83,7 @@ contains
     call archive%item('compression/strength', self%strength)
     call archive%item('compression/at', self%at)
     call archive%item('compression/shortening', self%shortening)
+    call archive%item('compression/bending', self%bending)
     call archive%item('compression/failed', self%failed)
     call archive%item('compression/stresses_1', self%stresses(1))
     call archive%item('compression/stresses_2', self%stresses(2))

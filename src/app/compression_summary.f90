@@ -1,7 +1,9 @@
 !> What the summary says of a plate whose ends were pressed together.
 module compression_summary
   use compression_records, only: compression_record_t
+  use gauges, only: gauge_t
   use json_text, only: json_t
+  use placed_gauges, only: back_to_back
   use text, only: rounded_text
   implicit none
   private
@@ -10,11 +12,13 @@ module compression_summary
 contains
 
   !> Strength and modulus for the file.
-  subroutine put_compression(json, record)
+  subroutine put_compression(json, record, gauges)
     !> The summary
     type(json_t), intent(inout) :: json
     !> What the run remembers
     type(compression_record_t), intent(in) :: record
+    !> Strain gauges of the deck
+    type(gauge_t), intent(in) :: gauges(:)
 
     call json%put('residual_strength', record%strength)
     call json%put('residual_strength_at', record%at)
@@ -25,6 +29,7 @@ contains
     else
       call json%put_null('effective_modulus')
     end if
+    if (all(back_to_back(gauges) > 0)) call json%put('percent_bending', record%bending)
   end subroutine put_compression
 
   !> The same for the log.

@@ -9,6 +9,7 @@ module result_rows
   use models, only: model_t
   use operator_columns, only: operator_rows, operator_values
   use output_clocks, only: shown_time
+  use placed_gauges, only: gauge_column_rows, gauge_strains
   use ply_columns, only: ply_rows, ply_values
   use result_tables, only: cell, column_name, column_type, name_with_number, result_name_length, result_row_length
   use run_records, only: run_record_t
@@ -33,7 +34,7 @@ module result_rows
     border_rows, rig_rows, heat_rows, limit_rows, contact_rows, damping_rows]
   !> The table of columns in their order.
   character(len=*), parameter, public :: column_rows(*) = [character(len=result_row_length) :: &
-    plate_rows, interface_rows, line_column_rows, end_rows, filter_rows]
+    plate_rows, interface_rows, line_column_rows, end_rows, gauge_column_rows, filter_rows]
 
 contains
 
@@ -43,7 +44,7 @@ contains
     type(deck_t), intent(in) :: deck
     !> In the order of the table
     character(len=result_name_length), allocatable :: names(:)
-    integer :: zone, line
+    integer :: zone, line, gauge
 
     names = names_of(plate_rows)
     do zone = 1, size(deck%delaminations)
@@ -54,6 +55,9 @@ contains
       names = [names, numbered(line_column_rows(2:), line)]
     end do
     if (has_ends(deck%plate, deck%lines)) names = [names, names_of(end_rows)]
+    do gauge = 1, size(deck%gauges)
+      names = [names, numbered(gauge_column_rows, gauge)]
+    end do
     if (deck%output%force_filter > 0) names = [names, names_of(filter_rows)]
   end function column_names
 
@@ -110,6 +114,7 @@ contains
     if (size(deck%lines) > 0) &
       whole = [whole, are_whole(line_column_rows(:1)), (are_whole(line_column_rows(2:)), i=1, size(deck%lines))]
     if (has_ends(deck%plate, deck%lines)) whole = [whole, are_whole(end_rows)]
+    whole = [whole, (are_whole(gauge_column_rows), i=1, size(deck%gauges))]
     if (deck%output%force_filter > 0) whole = [whole, are_whole(filter_rows)]
   end function column_whole
 
@@ -151,7 +156,7 @@ contains
              real(size(record%warning_kinds), wp), model%pressed_area(), now%ledger%damping, &
              interface_values(model, now%interfaces)]
       lines = line_values(model, now)
-      row = [row, lines, end_values(model, lines)]
+      row = [row, lines, end_values(model, lines), gauge_strains(model, now%motion%displacement)]
     end associate
     if (record%filter%frequency > 0) row = [row, record%filter%force]
     row(1) = shown_time(row(1))

@@ -8,6 +8,7 @@ module run_records
   use line_columns, only: end_values, line_values
   use models, only: model_t
   use output_clocks, only: shown_time
+  use placed_gauges, only: back_to_back, gauge_strains, percent_bending
   use states, only: state_t
   implicit none
   private
@@ -118,12 +119,16 @@ contains
     type(model_t), intent(in) :: model
     !> The state reached
     type(state_t), intent(in) :: now
-    real(wp), allocatable :: ends(:)
+    real(wp), allocatable :: ends(:), strains(:)
+    real(wp) :: bending
 
     if (size(model%lines) == 0) return
     ends = end_values(model, line_values(model, now))
     if (size(ends) == 0) return
-    call self%compression%observe(now%time, ends(1), ends(2), ends(3))
+    strains = gauge_strains(model, now%motion%displacement)
+    bending = 0
+    if (all(back_to_back(model%scene%gauges) > 0)) bending = percent_bending(strains(back_to_back(model%scene%gauges)))
+    call self%compression%observe(now%time, ends(1), ends(2), ends(3), bending)
   end subroutine look
 
   !> Time, contact force and deflection of a state.

@@ -65,7 +65,7 @@ contains
     if (deck%has_impactor .and. .not. deck%has_static) call put_impact(json, stepper%now, record)
     call json%put('largest_deflection', record%deflection)
     call json%put('largest_deflection_at', shown_time(record%deflection_time))
-    if (record%compression%strength > 0) call put_compression(json, record%compression)
+    if (record%compression%strength > 0) call put_compression(json, record%compression, deck%gauges)
     call put_errors(json, errors)
     call put_energies(json, deck, stepper%now)
     if (size(figures%interfaces) > 0) call put_interfaces(json, deck, stepper%now, record, figures)

@@ -38,11 +38,13 @@ contains
     integer :: place
 
     associate (s => deck%settings)
-      if (.not. deck%inherits) then
-        if (is_explicit(deck%stepping)) &
-          call remark_idle(s, problems, time_group, key_settle, 'has no effect without &initial_state.')
-        return
-      end if
+      if (deck%has_impactor .and. is_explicit(deck%stepping)) &
+        call remark_idle(s, problems, time_group, key_settle, 'has no effect with &impactor.')
+      if (deck%load_start > 0 .and. .not. deck%load_start < deck%stepping%time%end .and. &
+          are_clear(s, problems, time_group, key_settle//' end')) &
+        call tell(s, problems, time_group, key_settle, 'leaves no time for the load; allowed: less than end = '// &
+                  to_text(deck%stepping%time%end)//'.')
+      if (.not. deck%inherits) return
       if (deck%has_static) then
         call tell(s, problems, static_group, '', 'load steps do not begin from a state of another run; give &time '// &
                   'with integrator = ''central_difference'', or leave &initial_state out.')
@@ -60,10 +62,6 @@ contains
           call tell(s, problems, support_group, key_unilateral, 'a frame closes on both faces of a plate from '// &
                     '&initial_state; allowed: .false.', place)
       end do
-      if (deck%load_start > 0 .and. .not. deck%load_start < deck%stepping%time%end .and. &
-          are_clear(s, problems, time_group, key_settle//' end')) &
-        call tell(s, problems, time_group, key_settle, 'leaves no time for the load; allowed: less than end = '// &
-                  to_text(deck%stepping%time%end)//'.')
     end associate
   end subroutine check_initial_state
 

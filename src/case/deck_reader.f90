@@ -30,6 +30,7 @@ module deck_reader
   use equilibrium_deck, only: fill_equilibrium
   use errors, only: error_t
   use files, only: read_whole_file
+  use gauge_deck, only: check_gauges, fill_gauges
   use impactor_deck, only: fill_impactor, impactor_group, impactor_key_rise => key_rise
   use indentation_deck, only: fill_indentation, check_indentation, indentation_group
   use initial_state_deck, only: fill_initial_state, initial_state_group
@@ -229,7 +230,7 @@ contains
     call fill_pressure(deck%settings, deck%stepping%time%end, deck%pressure)
     if (deck%has_thermal) call fill_thermal(deck%settings, deck%temperature_change)
     call fill_initial_state(deck%settings, deck%initial)
-    if (deck%inherits) deck%load_start = deck%stepping%central%settle
+    if (.not. deck%has_impactor) deck%load_start = deck%stepping%central%settle
     if (deck%has_time) deck%ramp_time = deck%stepping%time%end - deck%load_start
     call fill_lines(deck%settings, merge(deck%ramp_time, 0.0_wp, deck%has_time), deck%lines)
     if (deck%has_static) call fill_static(deck%settings, deck%stepping%static_steps, deck%stepping%dissipation)
@@ -254,6 +255,7 @@ contains
     call fill_equilibrium(deck%settings, deck%stepping%equilibrium)
     call fill_linear_solver(deck%settings, deck%linear_solver)
     call fill_output(deck%settings, deck%output)
+    call fill_gauges(deck%settings, deck%gauges)
   end subroutine fill_steps
 
   !> Checks of each group by itself.
@@ -273,6 +275,7 @@ contains
     if (deck%has_pressure) call check_pressure(deck%settings, deck%pressure, problems)
     if (deck%has_thermal) call check_thermal(deck%settings, deck%materials, problems)
     call check_lines(deck%settings, deck%lines, problems)
+    call check_gauges(deck%settings, deck%plate%length, deck%gauges, problems)
     if (deck%has_time) call check_time(deck%settings, deck%stepping%time, problems)
     call check_petsc_options(deck%settings, deck%linear_solver, problems)
   end subroutine check_groups

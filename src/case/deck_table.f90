@@ -7,6 +7,7 @@ module deck_table
   use delamination_deck, only: delamination_group_row, delamination_rows
   use element_deck, only: element_rows, kinematics_rows
   use equilibrium_deck, only: solver_group_row, equilibrium_rows
+  use gauge_deck, only: gauge_group_row, gauge_rows
   use impactor_deck, only: impactor_group_row, impactor_rows
   use indentation_deck, only: indentation_group_row, indentation_rows
   use initial_state_deck, only: initial_state_group_row, initial_state_rows
@@ -32,7 +33,7 @@ module deck_table
     case_group_row, plate_group_row, support_group_row, mesh_group_row, material_group_row, laminate_group_row, &
     impactor_group_row, indentation_group_row, pressure_group_row, line_group_row, thermal_group_row, &
     initial_state_group_row, static_group_row, ply_damage_group_row, &
-    delamination_group_row, time_group_row, adapt_group_row, solver_group_row, output_group_row]
+    delamination_group_row, time_group_row, adapt_group_row, solver_group_row, gauge_group_row, output_group_row]
 
   !> Keys, those of a group together.
   character(len=*), parameter :: key_rows(*) = [character(len=key_row_length) :: &
@@ -40,7 +41,7 @@ module deck_table
     impactor_rows, indentation_rows, pressure_rows, line_rows, thermal_rows, initial_state_rows, static_rows, &
     ply_damage_rows, &
     delamination_rows, time_rows, &
-    adapt_rows, equilibrium_rows, linear_solver_rows, output_rows]
+    adapt_rows, equilibrium_rows, linear_solver_rows, gauge_rows, output_rows]
 
 contains
 

@@ -54,8 +54,7 @@ contains
     !> The state
     type(state_t), intent(inout) :: now
 
-    if (model%scene%inherits .and. now%time < method%parameters%settle) &
-      call damp_motion(method, model, now, method%parameters%settle)
+    if (now%time < model%scene%load_start) call damp_motion(method, model, now, model%scene%load_start)
     call method%advance(model, event, now)
     if (model%scene%has_ply_damage .and. .not. allocated(now%plies%bands)) then
       call model%profile%enter('ply criteria')

@@ -3,6 +3,7 @@ module scenes
   use plate_options, only: kinematics_von_karman
   use mesh_parameters, only: plate_t, mesh_t
   use support_parameters, only: support_t
+  use gauges, only: gauge_t
   use kinds, only: wp
   use material_parameters, only: material_t
   use laminate_parameters, only: laminate_t
@@ -43,6 +44,8 @@ module scenes
     real(wp) :: temperature_change = 0
     !> Lines across the plate; unallocated: none
     type(line_load_t), allocatable :: lines(:)
+    !> Strain gauges; unallocated: none
+    type(gauge_t), allocatable :: gauges(:)
     !> True: the plate begins in the state that another run has left
     logical :: inherits = .false.
     !> Time at which lines begin to load, and in which their ramps then reach their full value; a static analysis does

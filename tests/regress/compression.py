@@ -5,6 +5,8 @@ chain    what the impact has left is there at the start, comes to rest, is press
 again    from a checkpoint in the midst, without the impact's: bitwise
 ranks    on two ranks: bitwise
 whole    the whole plate from the half that was struck: to rounding until it fails
+buckling the elastic panel in the frame against the eigenvalue and the path beyond it of another program
+coupon   [0]8 fails at XC
 refused  another plate, a deck that cannot begin so, a checkpoint that is none: one sentence with both values each"""
 
 import filecmp
@@ -22,6 +24,8 @@ from solver_runs import (
     read_history,
     require,
     run,
+    run_deck,
+    write_deck,
 )
 
 IMPACT, COMPRESSION = "cai_impact", "cai_compression"
@@ -32,6 +36,8 @@ SETTLE, LENGTH = 80e-6, 60e-3
 CLOSED, CLOSED_IN_COLLAPSE = 1e-8, 1e-2
 # Of the largest value up to half of the run. Measured: 4e-15.
 ROUNDED = 1e-11
+# By CalculiX 2.20: see input/verify/framed_panel.nml.
+EIGENVALUE, BEYOND = 438.4e6, 451.9e6
 ENERGIES = ("kinetic", "strain", "delamination", "ply_damage", "contact", "friction", "algorithmic", "layers",
             "damping")
 
@@ -159,10 +165,46 @@ def check_refused(implam, folder, _):
         require(not list(folder.glob(f"{COMPRESSION}_*")), f"{settings}: something was written.")
 
 
+def check_buckling(implam, folder, _):
+    """Southwell's plot, the path beyond, and gauges back to back."""
+    rows = read_history(run_deck(implam, write_deck(folder, "framed_panel.nml")))
+    # With a lateral load in proportion to the compression, load factor over deflection falls to zero in a line.
+    first, last = (next(i for i, load in enumerate(rows["load_factor"]) if load > part) for part in (0.59, 0.79))
+    loads = [rows["load_factor"][i] for i in (first, last)]
+    ratios = [rows["load_factor"][i] / rows["deflection"][i] for i in (first, last)]
+    critical = loads[1] + ratios[1] * (loads[1] - loads[0]) / (ratios[0] - ratios[1])
+    stress = critical * rows["far_field_stress"][first] / loads[0]
+    end = rows["far_field_stress"][-1]
+    print(f"buckles at {stress / 1e6:.1f} MPa, {100 * (stress / EIGENVALUE - 1):+.2f} %; bears {end / 1e6:.1f} MPa at "
+          f"1.4 mm, {100 * (end / BEYOND - 1):+.2f} %")
+    require(abs(stress / EIGENVALUE - 1) < 0.02, "It buckles at another stress.")
+    require(abs(end / BEYOND - 1) < 0.02, "It bears another stress beyond.")
+    summary = json.loads(next(folder.glob("*_summary.json")).read_text(encoding="utf-8"))
+    front, back = (rows[f"gauge_strain_{number}"][-1] for number in (1, 2))
+    bending = 100 * (front - back) / (front + back)
+    print(f"percent bending {summary['percent_bending']:.2f}")
+    require(not summary["has_failed"] and abs(summary["percent_bending"] / bending - 1) < 1e-9 and bending > 30,
+            "It does not bend, or it fails.")
+    # Before it bends both gauges have the strain of the ends, shorter by the strips that the frame holds no tighter.
+    front, back, nominal = (rows[name][4] for name in ("gauge_strain_1", "gauge_strain_2", "nominal_strain"))
+    print(f"gauges {front:.4e} and {back:.4e} under {nominal:.4e}")
+    require(abs((front + back) / 2 + nominal) < 0.005 * nominal, "Gauges have another strain than the plate.")
+
+
+def check_coupon(implam, folder, _):
+    """The strength of the fibres."""
+    run_deck(implam, write_deck(folder, "coupon.nml"))
+    summary = json.loads(next(folder.glob("*_summary.json")).read_text(encoding="utf-8"))
+    print(f"strength {summary['residual_strength'] / 1e6:.2f} MPa, modulus {summary['effective_modulus'] / 1e9:.3f}")
+    require(summary["has_failed"] and abs(summary["residual_strength"] / 1250e6 - 1) < 0.01, "It does not fail at XC.")
+    require(abs(summary["effective_modulus"] / 130e9 - 1) < 0.005, "Its modulus is not E1.")
+
+
 def main(trial, implam, folder, launcher):
     """Run one trial."""
-    {"chain": check_chain, "again": check_again, "ranks": check_ranks, "whole": check_whole,
-     "refused": check_refused}[trial](implam, Path(folder).resolve(), launcher)
+    trials = {"chain": check_chain, "again": check_again, "ranks": check_ranks, "whole": check_whole,
+              "buckling": check_buckling, "coupon": check_coupon, "refused": check_refused}
+    trials[trial](implam, Path(folder).resolve(), launcher)
 
 
 if __name__ == "__main__":

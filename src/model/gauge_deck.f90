@@ -1,0 +1,66 @@
+!> Strain gauges of the deck: rows of its table, filling and checks.
+module gauge_deck
+  use deck_choices, only: code_of
+  use deck_problems, only: problems_t
+  use deck_remarks, only: are_clear, tell
+  use deck_settings, only: settings_t
+  use deck_vocabulary, only: group_row_length, key_row_length
+  use gauges, only: face_back, face_front, gauge_t
+  use kinds, only: wp
+  use text, only: to_text
+  implicit none
+  private
+  public :: fill_gauges, check_gauges
+
+  !> Name of the group.
+  character(len=*), parameter :: group = 'gauge'
+  !> Row of the group.
+  character(len=group_row_length), parameter, public :: gauge_group_row = &
+    'gauge | several | A strain gauge on a surface of the plate, a column of the history; one group a gauge.'
+  !> Rows of the keys.
+  character(len=key_row_length), parameter, public :: gauge_rows(*) = [character(len=key_row_length) :: &
+    'gauge | at | real | 2 | length | required | any | &
+      &Point from the plate''s centre, x and y.', &
+    'gauge | face | choice | 1 | - | ''front'' | front back | &
+      &Surface that it is on: the struck one or the one opposite to it.', &
+    'gauge | angle | real | 1 | degree | 0 | >= -360, <= 360 | &
+      &Direction of the strain from x.']
+
+contains
+
+  !> All gauges, in the order of the deck.
+  subroutine fill_gauges(settings, all)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+    !> Receives them
+    type(gauge_t), allocatable, intent(out) :: all(:)
+    integer :: place
+
+    allocate (all(settings%groups_named(group)))
+    do place = 1, size(all)
+      if (settings%is_known(group, 'at', place)) all(place)%at = settings%reals_of(group, 'at', place)
+      all(place)%face = code_of(settings%text_of(group, 'face', place), 'front back', [face_front, face_back])
+      all(place)%angle = settings%real_of(group, 'angle', place)
+    end do
+  end subroutine fill_gauges
+
+  !> Gauges that lie on the plate.
+  subroutine check_gauges(settings, length, all, problems)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+    !> Lengths of the plate along x and y
+    real(wp), intent(in) :: length(2)
+    !> The gauges
+    type(gauge_t), intent(in) :: all(:)
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    integer :: place
+
+    do place = 1, size(all)
+      if (.not. are_clear(settings, problems, group, 'at', place)) cycle
+      if (any(abs(all(place)%at) > length/2)) &
+        call tell(settings, problems, group, 'at', 'the gauge lies off the plate; allowed: up to '// &
+                  to_text(length(1)/2)//', '//to_text(length(2)/2)//' either way from its centre.', place)
+    end do
+  end subroutine check_gauges
+end module gauge_deck

@@ -1,0 +1,144 @@
+!> Strains at gauges: those of the outermost layer at its surface, bilinear through the points of the element where they
+!> are most accurate.
+module placed_gauges
+  use element_batches, only: batch_of, lane_of, lanes
+  use exact_sums, only: exact_sum_t
+  use gauges, only: face_back, face_front, gauge_t
+  use kinds, only: wp
+  use models, only: model_t
+  use rank_totals, only: totals_of
+  use result_tables, only: result_row_length
+  use strain_recovery, only: nodal_strains
+  implicit none
+  private
+  public :: back_to_back, gauge_strains, percent_bending
+
+  !> Column of the history, once a gauge: N is its number in the deck.
+  character(len=result_row_length), parameter, public :: gauge_column_rows(*) = [character(len=result_row_length) :: &
+    'gauge_strain_N | real | - | Strain of the surface under the N-th &gauge along its angle, positive in tension.']
+  !> Corners of an element among its nodes, in the order of their shape functions.
+  integer, parameter :: corners(4) = [1, 3, 7, 9]
+  real(wp), parameter :: degree = acos(-1.0_wp)/180
+
+contains
+
+  !> Strains of all gauges, the same on every rank. Collective.
+  function gauge_strains(model, displacement) result(strains)
+    type(model_t), intent(in) :: model
+    !> Unknowns, ghosts up to date, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> One a gauge
+    real(wp), allocatable :: strains(:)
+    type(exact_sum_t), allocatable :: sums(:)
+    real(wp), allocatable :: motion(:, :)
+    integer :: i
+
+    allocate (strains(0))
+    if (.not. allocated(model%scene%gauges)) return
+    if (size(model%scene%gauges) == 0) return
+    allocate (sums(size(model%scene%gauges)))
+    motion = model%motion_of(displacement)
+    do i = 1, size(sums)
+      call add_strain(model, model%scene%gauges(i), motion, sums(i))
+    end do
+    strains = totals_of(model%communicator, sums)
+  end function gauge_strains
+
+  !> The first two gauges back to back: at one point and angle on the front and on the back; 0: there are none.
+  pure function back_to_back(gauges) result(pair)
+    !> The gauges
+    type(gauge_t), intent(in) :: gauges(:)
+    !> That on the front, and that on the back
+    integer :: pair(2)
+    integer :: i, j
+
+    do i = 1, size(gauges)
+      do j = 1, size(gauges)
+        if (gauges(i)%face /= face_front .or. gauges(j)%face /= face_back) cycle
+        if (any(abs(gauges(i)%at - gauges(j)%at) > 0) .or. abs(gauges(i)%angle - gauges(j)%angle) > 0) cycle
+        pair = [i, j]
+        return
+      end do
+    end do
+    pair = 0
+  end function back_to_back
+
+  !> Percent bending of two strains back to back: half their difference over their mean (ASTM D7137).
+  pure real(wp) function percent_bending(strains) result(bending)
+    !> On the front and on the back
+    real(wp), intent(in) :: strains(2)
+
+    bending = 0
+    if (abs(sum(strains)) > 0) bending = 100*(strains(1) - strains(2))/sum(strains)
+  end function percent_bending
+
+  !> Adds the strain of a gauge if its element is one of this rank's.
+  subroutine add_strain(model, gauge, motion, total)
+    type(model_t), intent(in) :: model
+    !> The gauge
+    type(gauge_t), intent(in) :: gauge
+    !> Motion of the layers, (5, points)
+    real(wp), intent(in) :: motion(:, :)
+    !> Receives the strain
+    type(exact_sum_t), intent(inout) :: total
+    real(wp) :: at(2), angle, place(2), all(lanes, 9, 8), strain(6), shape(4), direction(3), z
+    integer :: cell(2), element, ply
+
+    call find_place(model, gauge, at, angle)
+    cell = [cell_at(model%mesh%x_edges, at(1)), cell_at(model%mesh%y_edges, at(2))]
+    ply = merge(size(model%plies), 1, gauge%face == face_back)
+    element = model%mesh%element_at(cell(1) + (cell(2) - 1)*model%mesh%cells(1), ply)
+    element = findloc(model%distribution%elements, element, dim=1)
+    if (element == 0) return
+    call nodal_strains(model%elements, batch_of(element), model%scene%kinematics, motion, all)
+    place = [part_of(model%mesh%x_edges, cell(1), at(1)), part_of(model%mesh%y_edges, cell(2), at(2))]
+    shape = [(1 - place(1))*(1 - place(2)), place(1)*(1 - place(2)), (1 - place(1))*place(2), product(place)]
+    strain = matmul(shape, all(lane_of(element), corners, :6))
+    z = merge(model%plies(ply)%z_bottom, model%plies(ply)%z_top, gauge%face == face_back)
+    direction = [cos(angle*degree)**2, sin(angle*degree)**2, sin(angle*degree)*cos(angle*degree)]
+    call total%add(dot_product(direction, strain(1:3) + z*strain(4:6)))
+  end subroutine add_strain
+
+  !> Where a gauge lies in the modelled part, itself or by its image, and its direction there.
+  pure subroutine find_place(model, gauge, at, angle)
+    type(model_t), intent(in) :: model
+    !> The gauge
+    type(gauge_t), intent(in) :: gauge
+    !> The point
+    real(wp), intent(out) :: at(2)
+    !> The direction, degrees
+    real(wp), intent(out) :: angle
+    integer :: k
+
+    at = gauge%at
+    angle = gauge%angle
+    if (model%mesh%halved(1) .and. .not. model%mesh%mirrored(1) .and. at(1) < 0) at = -at
+    do k = 1, 2
+      if (.not. (model%mesh%mirrored(k) .and. at(k) < 0)) cycle
+      at(k) = -at(k)
+      angle = -angle
+    end do
+  end subroutine find_place
+
+  !> Cell that a coordinate lies in, the first of two at an edge.
+  pure integer function cell_at(edges, at) result(cell)
+    !> Edges of the cells, ascending
+    real(wp), intent(in) :: edges(:)
+    !> The coordinate, on the plate
+    real(wp), intent(in) :: at
+
+    cell = max(1, min(size(edges) - 1, count(edges < at)))
+  end function cell_at
+
+  !> Part of a cell that lies before a coordinate.
+  pure real(wp) function part_of(edges, cell, at) result(part)
+    !> Edges of the cells
+    real(wp), intent(in) :: edges(:)
+    !> The cell
+    integer, intent(in) :: cell
+    !> The coordinate
+    real(wp), intent(in) :: at
+
+    part = (at - edges(cell))/(edges(cell + 1) - edges(cell))
+  end function part_of
+end module placed_gauges
