@@ -1,4 +1,4 @@
-!> What a run by central differences costs, for `implam check`: its steps and the time that one processor takes.
+!> What a run by central differences costs: its steps and the time that one processor takes.
 module explicit_costs
   use deck_contents, only: deck_t
   use kinds, only: wp
@@ -6,11 +6,10 @@ module explicit_costs
   use delamination_parameters, only: law_cohesive
   use plate_options, only: kinematics_von_karman
   use scene_scales, only: free_span
-  use stepping_parameters, only: is_explicit
-  use text, only: line_t, append, rounded_text, to_text
+  use text, only: rounded_text, to_text
   implicit none
   private
-  public :: cost_lines
+  public :: explicit_sentence, spoken
 
   !> Seconds of one processor for an element of one layer in a step, what its interfaces add where they are cohesive,
   !> and what plies add that soften, in the mean over an impact that breaks many of them: Sun and Chen's plate,
@@ -20,27 +19,25 @@ module explicit_costs
 
 contains
 
-  !> One sentence; none for a deck whose steps are implicit, whose costs go by how they converge.
-  function cost_lines(deck, model_size) result(lines)
+  !> Steps of one length, whatever breaks.
+  function explicit_sentence(deck, model_size) result(sentence)
     !> The deck, checked
     type(deck_t), intent(in) :: deck
     !> Size of its model
     type(model_size_t), intent(in) :: model_size
-    !> The sentence
-    type(line_t), allocatable :: lines(:)
+    !> One sentence
+    character(len=:), allocatable :: sentence
     real(wp) :: steps, step
     character(len=:), allocatable :: bound
 
-    allocate (lines(0))
-    if (.not. is_explicit(deck%stepping) .or. deck%has_static .or. .not. deck%stepping%time%step > 0) return
     steps = deck%stepping%time%end/deck%stepping%time%step*shortened(deck)
     step = deck%stepping%time%end/steps
     bound = ''
     if (any(deck%delaminations%follows)) bound = 'at most '
-    call append(lines, 'About '//rounded_text(steps)//' steps of '//rounded_text(step)//' for '// &
-                bound//rounded_text(model_size%elements)//' elements of all layers: '// &
-                spoken(seconds_of_element(deck)*steps*model_size%elements)//' of one processor.')
-  end function cost_lines
+    sentence = 'About '//rounded_text(steps)//' steps of '//rounded_text(step)//' for '// &
+               bound//rounded_text(model_size%elements)//' elements of all layers: '// &
+               spoken(seconds_of_element(deck)*steps*model_size%elements)//' of one processor.'
+  end function explicit_sentence
 
   !> Ratio of the stable step of the flat plate to that of the deflected one: slopes theta and the strain theta**2/4 of
   !> a plate that deflects by half a sine add to an element's frequency as in `stable_steps`.
@@ -73,7 +70,7 @@ contains
     character(len=:), allocatable :: words
 
     if (seconds < 100) then
-      words = rounded_text(max(1.0_wp, seconds))//' s'
+      words = rounded_text(max(1.0_wp, seconds), 2)//' s'
     else if (seconds < 6000) then
       words = to_text(nint(seconds/60))//' min'
     else

@@ -9,8 +9,9 @@ module layer_following
   use layer_switches, only: advance_with_layers
   use logger, only: log_t
   use models, only: model_t
+  use run_moments, only: moment
   use short_numbers, only: short_text
-  use text, only: rounded_text, to_text
+  use text, only: to_text
   use time_stepping, only: time_stepper_t
   implicit none
   private
@@ -41,7 +42,7 @@ contains
       associate (interface => model%scene%delaminations(zone))
         if (interface%follows) call log%note('Layers below ply '//to_text(interface%below_ply)//': '// &
                                              short_text(interface%zone(1))//' x '//short_text(interface%zone(2))// &
-                                             ' from time '//rounded_text(stepper%now%time)//' on.')
+                                             ' from '//moment(deck, stepper%now%time)//' on.')
       end associate
     end do
   end subroutine advance

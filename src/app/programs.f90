@@ -7,9 +7,8 @@ module programs
   use launchers, only: launched
   use deck_symmetries, only: symmetry_sentence
   use deck_contents, only: deck_t
-  use deck_crack_bands, only: strength_lines
   use deck_problems, only: problems_t
-  use deck_scales, only: scale_lines
+  use scale_tables, only: scale_lines, strength_lines
   use deck_table, only: load_deck_table
   use deck_vocabulary, only: vocabulary_t
   use deck_explain, only: explain, explain_table
@@ -21,8 +20,8 @@ module programs
   use computations, only: compute, read_deck_everywhere
   use root_output, only: print_lines
   use queue_signals, only: release_stop_signals
-  use result_explain, only: explain_results, is_result_topic, result_topics_sentence
-  use explicit_costs, only: cost_lines
+  use result_explain, only: explain_column, explain_results, is_result_topic, result_topics_sentence
+  use run_costs, only: cost_lines
   use model_sizes, only: model_size_t, size_of_model
   use stepping_parameters, only: is_explicit
   use queue_scripts, only: queue_job_t, write_queue_script
@@ -167,9 +166,15 @@ contains
     !> Set (usage) if there is no such group or key
     type(error_t), allocatable, intent(out) :: error
     type(vocabulary_t) :: vocabulary
-    type(line_t), allocatable :: lines(:)
+    type(line_t), allocatable :: lines(:), columns(:)
 
     call load_deck_table(vocabulary)
+    call explain_column(command%target, columns)
+    if (size(columns) > 0 .and. vocabulary%group_index(command%target) == 0 .and. &
+        size(vocabulary%groups_with(command%target)) == 0) then
+      call print_lines(communicator, columns)
+      return
+    end if
     if (is_result_topic(command%target)) then
       call explain_results(command%target, command%markdown, lines)
       call print_lines(communicator, lines)
@@ -183,6 +188,8 @@ contains
     end if
     if (allocated(error)) return
     call print_lines(communicator, lines)
+    if (size(columns) > 0 .and. .not. command%markdown) &
+      call print_lines(communicator, [line_t('Results have this name too:'), columns])
     if (command%target == '') call print_lines(communicator, [line_t(result_topics_sentence)])
   end subroutine explain_topic
 

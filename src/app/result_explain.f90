@@ -2,11 +2,12 @@
 module result_explain
   use field_results, only: field_rows
   use result_rows, only: column_rows
-  use result_tables, only: column_heading, field_heading, markdown_table, plain_table
+  use result_tables, only: cell, column_heading, column_meaning, column_name, column_unit, field_heading, field_meaning, &
+                           field_name, field_row, field_unit, markdown_table, plain_table
   use text, only: append, line_t, lower_case
   implicit none
   private
-  public :: explain_results, is_result_topic
+  public :: explain_column, explain_results, is_result_topic
 
   !> Their names.
   character(len=*), parameter, public :: result_topics = 'history fields'
@@ -23,6 +24,28 @@ contains
 
     is_result_topic = lower_case(topic) == 'history' .or. lower_case(topic) == 'fields'
   end function is_result_topic
+
+  !> A column of the history or a field of a name, with a number in place of its N too; none: no lines.
+  subroutine explain_column(name, lines)
+    !> Such as work_external or area_below_3
+    character(len=*), intent(in) :: name
+    !> The explanation
+    type(line_t), allocatable, intent(out) :: lines(:)
+    integer :: row
+
+    allocate (lines(0))
+    row = field_row(column_rows, lower_case(trim(name)))
+    if (row > 0) then
+      call append(lines, 'NAME_history.csv')
+      call append(lines, '  '//cell(column_rows(row), column_name)//': '//cell(column_rows(row), column_meaning))
+      if (cell(column_rows(row), column_unit) /= '-') call append(lines, '  unit: '//cell(column_rows(row), column_unit))
+    end if
+    row = field_row(field_rows, lower_case(trim(name)))
+    if (row == 0) return
+    call append(lines, 'NAME.h5')
+    call append(lines, '  '//cell(field_rows(row), field_name)//': '//cell(field_rows(row), field_meaning))
+    if (cell(field_rows(row), field_unit) /= '-') call append(lines, '  unit: '//cell(field_rows(row), field_unit))
+  end subroutine explain_column
 
   !> The columns of the history or the fields over the plate.
   subroutine explain_results(topic, markdown, lines)

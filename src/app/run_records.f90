@@ -17,10 +17,11 @@ module run_records
   !> Kinds of warnings that a run gives: a delamination has reached the border of its zone; integrators have created or
   !> taken energy; an indentation over the thickness; slopes beyond small rotations; a clamped plate with broken fibres,
   !> stretched far; a hole; layers that follow their damage out of the core; steps that err too much and get no shorter;
-  !> energy that the ledger does not account for; kinetic energy in slow motion.
+  !> energy that the ledger does not account for; kinetic energy in slow motion, and of motions with scaled inertia.
   integer, parameter, public :: warning_border = 1, warning_energy = 2, warning_loss = 3, warning_indentation = 4, &
                                 warning_slopes = 5, warning_torn = 6, warning_hole = 7, warning_core = 8, &
-                                warning_steps = 9, warning_ledger = 10, warning_kinetic = 11
+                                warning_steps = 9, warning_ledger = 10, warning_kinetic = 11, &
+                                warning_scaled = 12
 
   !> Record of a run. It has many components because it is nothing but what the summary asks for.
   type :: run_record_t
@@ -44,6 +45,8 @@ module run_records
     real(wp), allocatable :: onset(:, :), growth(:, :)
     !> Ends of the plate that lines press together
     type(compression_record_t) :: compression
+    !> Largest kinetic energy in motions whose inertia is scaled, and largest energy of the run
+    real(wp) :: scaled_energy = 0, energy = 0
     !> Warnings given: their kinds, and the zones that they concern or 0
     integer, allocatable :: warning_kinds(:), warning_zones(:)
     !> Their times
@@ -53,6 +56,10 @@ module run_records
     procedure :: observe
     !> Looks at a state that is complete.
     procedure :: look
+    !> Notes the energy in motions whose inertia is scaled.
+    procedure :: note_scaled
+    !> Their largest share of the energy.
+    procedure :: scaled_share
     !> Notes a warning.
     procedure :: note_warning
     !> True if a warning was given before.
@@ -162,6 +169,26 @@ contains
     self%contact_end = to
   end subroutine follow_contact
 
+  !> Notes the energy in motions whose inertia is scaled.
+  pure subroutine note_scaled(self, scaled, energy)
+    !> The record
+    class(run_record_t), intent(inout) :: self
+    !> Their kinetic energy, and the largest energy so far
+    real(wp), intent(in) :: scaled, energy
+
+    self%scaled_energy = max(self%scaled_energy, scaled)
+    self%energy = energy
+  end subroutine note_scaled
+
+  !> Largest share of the energy in motions whose inertia is scaled.
+  pure real(wp) function scaled_share(self) result(share)
+    !> The record
+    class(run_record_t), intent(in) :: self
+
+    share = 0
+    if (self%energy > 0) share = self%scaled_energy/self%energy
+  end function scaled_share
+
   !> Notes a warning.
   pure subroutine note_warning(self, kind, zone, time)
     !> The record
@@ -213,6 +240,8 @@ contains
     call self%compression%visit(archive)
     call archive%item('record/onset', self%onset)
     call archive%item('record/growth', self%growth)
+    call archive%item('record/scaled_energy', self%scaled_energy)
+    call archive%item('record/energy', self%energy)
     call archive%item('record/warning_kinds', self%warning_kinds)
     call archive%item('record/warning_zones', self%warning_zones)
     call archive%item('record/warning_times', self%warning_times)

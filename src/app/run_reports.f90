@@ -6,10 +6,9 @@ module run_reports
   use profiles, only: part_length, profile_row_t
   use timers, only: timer_set_t
   use deck_contents, only: deck_t
-  use deck_crack_bands, only: strength_lines
   use deck_echo, only: echo
   use deck_extents, only: extent_lines
-  use deck_scales, only: scale_lines
+  use scale_tables, only: scale_lines, strength_lines
   use deck_table, only: load_deck_table
   use deck_vocabulary, only: vocabulary_t
   use indentation_deck, only: echo_without_group

@@ -1,7 +1,8 @@
 !> Steps between two looks of a run at its results: one if steps are implicit, many by central differences.
 module run_steps
   use deck_contents, only: deck_t
-  use errors, only: error_t
+  use deck_slow_motion, only: slow_motion_advice
+  use errors, only: error_t, exit_convergence
   use kinds, only: wp
   use layer_following, only: advance
   use logger, only: log_t
@@ -37,7 +38,10 @@ contains
     steps = steps_between_looks(deck%stepping, model%mesh%elements())
     do
       call advance(deck, model, stepper, event, log, error)
-      if (allocated(error)) return
+      if (allocated(error)) then
+        if (error%code == exit_convergence) error%message = error%message//slow_motion_advice(deck)
+        return
+      end if
       call record%observe(model, stepper%now, steps_between_stages(deck%stepping))
       if (modulo(stepper%now%step, steps) == 0 .or. stepper%now%time >= event) return
       if (row_is_due(deck%output, stepper%now%step)) return

@@ -7,13 +7,17 @@ module run_warnings
   use errors, only: error_t, exit_convergence, fail
   use kinds, only: wp
   use layer_extents, only: cells_ahead, cells_at_once, thicknesses_ahead
+  use line_loads, only: line_ramp
   use logger, only: log_t
   use mesh_parameters, only: edge_clamped
   use models, only: model_t
   use ply_damage_parameters, only: failure_modes, fibre_failure
   use run_records, only: run_record_t, warning_border, warning_core, warning_energy, warning_hole, &
-                         warning_indentation, warning_kinetic, warning_ledger, warning_loss, warning_slopes, &
+                         warning_indentation, warning_kinetic, warning_ledger, warning_loss, warning_scaled, &
+                         warning_slopes, &
                          warning_steps, warning_torn
+  use run_moments, only: moment
+  use scene_scales, only: has_blow
   use short_numbers, only: short_text
   use states, only: state_t
   use stepping_parameters, only: is_explicit
@@ -33,6 +37,8 @@ module run_warnings
   !> Share of the work that the kinetic energy of a slow motion may be, a few per cent, and part of the run from
   !> which on it is looked at: by then the velocity is constant, and the work no longer that of the start alone.
   real(wp), parameter :: most_kinetic = 0.05_wp, slow_start = 0.25_wp
+  !> Share of the energy that may be kinetic energy of motions whose inertia is scaled.
+  real(wp), parameter :: most_scaled = 0.02_wp
 
 contains
 
@@ -108,6 +114,10 @@ contains
       amplitude = deck%pressure%amplitude(now%time)
     end if
     alarms = watch%look(now%ledger, now%interfaces%unreleased(model), amplitude, deck%has_static)
+    call record%note_scaled(now%ledger%scaled, watch%largest)
+    if (has_blow(deck%scene_t) .or. now%time > slow_start*deck%stepping%time%end) then
+      if (record%scaled_energy > most_scaled*watch%largest) call tell(warning_scaled, 0)
+    end if
     if (is_slow_motion(deck) .and. now%time > slow_start*deck%stepping%time%end) then
       if (now%ledger%kinetic > most_kinetic*abs(now%ledger%external_work)) call tell(warning_kinetic, 0)
     end if
@@ -124,17 +134,20 @@ contains
 
       if (record%has_warned(kind, zone)) return
       call record%note_warning(kind, zone, now%time)
-      call append(told, warning_text(kind, zone, now%time, deck%delaminations, deck%has_static, &
-                                      is_explicit(deck%stepping)))
+      call append(told, warning_text(kind, zone, moment(deck, now%time), deck))
     end subroutine tell
   end subroutine find_warnings
 
-  !> True: a prescribed motion in time stands for a quasi-static test.
+  !> True: only prescribed motions in time load the plate, as in a quasi-static test.
   pure logical function is_slow_motion(deck)
     !> The deck
     type(deck_t), intent(in) :: deck
 
-    is_slow_motion = .not. deck%has_static .and. is_explicit(deck%stepping) .and. deck%impactor%travel > 0
+    is_slow_motion = .false.
+    if (deck%has_static .or. deck%has_pressure .or. has_blow(deck%scene_t)) return
+    is_slow_motion = deck%impactor%travel > 0
+    if (allocated(deck%lines)) is_slow_motion = is_slow_motion .or. &
+      any(deck%lines%prescribed .and. deck%lines%history == line_ramp .and. abs(deck%lines%value) > 0)
   end function is_slow_motion
 
   !> True: layers that follow their damage reach so far beyond the core that what they follow does too.
@@ -190,29 +203,27 @@ contains
   end function is_torn
 
   !> What a warning says.
-  pure function warning_text(kind, zone, time, delaminations, static, explicit) result(text)
+  pure function warning_text(kind, zone, at, deck) result(text)
     !> One of the kinds of warnings
     integer, intent(in) :: kind
     !> Zone that it concerns; 0: none
     integer, intent(in) :: zone
-    !> When it was given
-    real(wp), intent(in) :: time
-    !> The interfaces
-    type(delamination_t), intent(in) :: delaminations(:)
-    !> True: of load steps; of central differences
-    logical, intent(in) :: static, explicit
+    !> When it was given, such as time 0.001
+    character(len=*), intent(in) :: at
+    !> The deck
+    type(deck_t), intent(in) :: deck
     !> One sentence
     character(len=:), allocatable :: text
 
     text = ''
     select case (kind)
     case (warning_border)
-      text = 'The delamination below ply '//to_text(delaminations(zone)%below_ply)// &
-             ' has reached the border of its zone at time '//rounded_text(time)// &
+      text = 'The delamination below ply '//to_text(deck%delaminations(zone)%below_ply)// &
+             ' has reached the border of its zone at '//at// &
              ' and cannot grow on there: if it would, make the zone larger.'
     case (warning_core)
-      text = 'The layers below ply '//to_text(delaminations(zone)%below_ply)// &
-             ' follow their damage beyond the core of the mesh since time '//rounded_text(time)// &
+      text = 'The layers below ply '//to_text(deck%delaminations(zone)%below_ply)// &
+             ' follow their damage beyond the core of the mesh since '//at// &
              ', where its cells grow: make the core larger.'
     case (warning_energy)
       text = energy_text('created', 'take smaller steps, &impactor integrator=''conserving'', or more damping '// &
@@ -220,28 +231,32 @@ contains
     case (warning_loss)
       text = energy_text('taken', 'take smaller steps, or less damping (rho_inf).', 'take a smaller step_factor.')
     case (warning_ledger)
-      text = 'More than '//short_text(100*much)//' % of the energy is not accounted for since '//at()// &
-             ' (energy_error): take a smaller '//trim(merge('step_factor.         ', 'tolerance of &solver.', explicit))
+      text = 'More than '//short_text(100*much)//' % of the energy is not accounted for since '//at// &
+             ' (energy_error): take a smaller '//trim(merge('step_factor.         ', 'tolerance of &solver.', &
+                                                                          is_explicit(deck%stepping)))
     case (warning_kinetic)
       text = 'The plate''s kinetic energy is more than '//short_text(100*most_kinetic)//' % of the work since '// &
-             at()//': the motion is too fast to stand for a quasi-static test; take a longer end, or a longer rise.'
+             at//': the motion is too fast to stand for a quasi-static test; take a longer end, or a longer rise.'
+    case (warning_scaled)
+      text = 'Motions whose inertia mass_scaling raises have held more than '//short_text(100*most_scaled)// &
+             ' % of the energy since '//at//': take a smaller mass_scaling, or compare with 1.'
     case (warning_indentation)
-      text = 'The indentation is deeper than the laminate is thick since time '//rounded_text(time)// &
+      text = 'The indentation is deeper than the laminate is thick since '//at// &
              ': no contact law holds there; give a lighter blow or a blunter nose.'
     case (warning_slopes)
-      text = 'The plate is steeper than '//to_text(steepest)//' since time '//rounded_text(time)// &
+      text = 'The plate is steeper than '//to_text(steepest)//' since '//at// &
              ': its strains are those of small rotations, so distrust what follows.'
     case (warning_steps)
-      text = 'Steps err by more than the tolerance of &adapt since time '//rounded_text(time)// &
+      text = 'Steps err by more than the tolerance of &adapt since '//at// &
              ' and get no shorter, as no step follows all waves of what breaks: an eighth of that tolerance halves '// &
              'them and shows what that changes.'
     case (warning_torn)
       text = 'The clamped plate deflects by more than '//to_text(deepest)// &
-             ' thicknesses with broken fibres since time '//rounded_text(time)// &
+             ' thicknesses with broken fibres since '//at// &
              ': membrane forces carry it, and the model tears no plies; distrust what follows.'
     case (warning_hole)
-      text = 'The fibres of every ply are broken over an area as large as the contact since time '// &
-             rounded_text(time)//': the impactor goes through, and the model has no hole; distrust what follows.'
+      text = 'The fibres of every ply are broken over an area as large as the contact since '//at// &
+             ': the impactor perforates the plate, and the model has no hole; distrust what follows.'
     end select
 
   contains
@@ -255,25 +270,17 @@ contains
       !> The sentence
       character(len=:), allocatable :: words
 
-      if (static) then
-        words = 'Load steps have '//what//' more than '//short_text(100*much)//' % of the energy by '//at()// &
+      if (deck%has_static) then
+        words = 'Load steps have '//what//' more than '//short_text(100*much)//' % of the energy by '//at// &
                 ' (energy_algorithmic): take more steps, unless failures or snaps set it free, as motion takes that.'
-      else if (explicit) then
-        words = 'Central differences have '//what//' more than '//short_text(100*much)//' % of the energy by '//at() &
+      else if (is_explicit(deck%stepping)) then
+        words = 'Central differences have '//what//' more than '//short_text(100*much)//' % of the energy by '//at &
                 //' (energy_algorithmic): '//explicit_cure
       else
-        words = 'The time integrators have '//what//' more than '//short_text(100*much)//' % of the energy by '//at() &
+        words = 'The time integrators have '//what//' more than '//short_text(100*much)//' % of the energy by '//at &
                 //': '//cure
       end if
     end function energy_text
-
-    !> When.
-    pure function at() result(words)
-      !> Such as time 0.001
-      character(len=:), allocatable :: words
-
-      words = 'time '//rounded_text(time)
-    end function at
   end function warning_text
 
   !> All warnings given in a run, those of its part before a restart too.
@@ -288,8 +295,8 @@ contains
 
     allocate (lines(0))
     do i = 1, size(record%warning_kinds)
-      call append(lines, warning_text(record%warning_kinds(i), record%warning_zones(i), record%warning_times(i), &
-                                      deck%delaminations, deck%has_static, is_explicit(deck%stepping)))
+      call append(lines, warning_text(record%warning_kinds(i), record%warning_zones(i), &
+                                      moment(deck, record%warning_times(i)), deck))
     end do
   end function warnings_given
 end module run_warnings

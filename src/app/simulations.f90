@@ -2,7 +2,6 @@
 module simulations
   use kinds, only: wp
   use errors, only: error_t, fail, exit_stopped
-  use text, only: rounded_text, to_text
   use files, only: make_directory, remove_file
   use logger, only: log_t
   use profiles, only: profile_t, wall_time
@@ -16,6 +15,8 @@ module simulations
   use build_information, only: this_build
   use result_paths, only: refuse_pipes
   use run_provenance, only: provenance_t, this_run
+  use run_advances, only: show_progress, start_progress
+  use run_moments, only: moment
   use run_progress, only: progress_t
   use run_records, only: run_record_t, new_run_record
   use run_reports, only: log_echo, log_model, log_costs, summary
@@ -173,7 +174,7 @@ contains
     self%record = new_run_record(self%model)
     self%record%filter%frequency = deck%output%force_filter
     call log_model(self%model, self%stepper, self%log)
-    call self%progress%start(0.0_wp)
+    call start_progress(self%progress, self%stepper, end_of(self))
   end subroutine prepare
 
   !> Sets a run up from a checkpoint that has been opened for loading.
@@ -215,7 +216,7 @@ contains
                             shown_time(self%stepper%now%time), error)
     if (allocated(error)) return
     call write_mesh(self%model, self%fields, error)
-    call self%progress%start(self%stepper%now%time/end_of(self))
+    call start_progress(self%progress, self%stepper, end_of(self))
     if (.not. allocated(error)) call make_ready(self)
   end subroutine resume
 
@@ -270,9 +271,7 @@ contains
       call write_results(self, self%stepper%now%time >= event, error)
       call self%timers%stop('results')
       if (allocated(error)) return
-      if (self%progress%is_due(self%log, self%stepper%now%time/end_of(self))) &
-        call self%progress%update(self%log, self%stepper%now%time/end_of(self), 'step '// &
-                                  to_text(self%stepper%now%step)//', time '//rounded_text(self%stepper%now%time))
+      call show_progress(self%progress, self%deck, self%stepper, end_of(self), self%log)
       call self%wall_limit%learn(wall_time() - begun)
       call stop_if_due(self, error)
       if (allocated(error)) return
@@ -292,8 +291,8 @@ contains
     late = self%communicator%any(self%wall_limit%is_up(wall_time())) .and. self%stepper%now%time < end_of(self)
     if (.not. (signalled .or. late)) return
     call save_checkpoint(self, error)
-    call fail(error, exit_stopped, 'Stopped '//trim(causes(merge(2, 1, signalled)))//' at time '// &
-              rounded_text(self%stepper%now%time)//'; go on with: implam restart '//self%base//checkpoint_ending)
+    call fail(error, exit_stopped, 'Stopped '//trim(causes(merge(2, 1, signalled)))//' at '// &
+              moment(self%deck, self%stepper%now%time)//'; go on with: implam restart '//self%base//checkpoint_ending)
   end subroutine stop_if_due
 
   !> Writes what is due after a step that is looked at. The clocks move before the checkpoint is saved, so that

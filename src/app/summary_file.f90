@@ -66,6 +66,8 @@ contains
     call json%put('largest_deflection', record%deflection)
     call json%put('largest_deflection_at', shown_time(record%deflection_time))
     if (record%compression%strength > 0) call put_compression(json, record%compression, deck%gauges)
+    if (deck%has_impactor .and. deck%has_static) call json%put('peak_force', record%peak_force)
+    if (record%scaled_energy > 0) call json%put('scaled_kinetic_share', record%scaled_share())
     call put_errors(json, errors)
     call put_energies(json, deck, stepper%now)
     if (size(figures%interfaces) > 0) call put_interfaces(json, deck, stepper%now, record, figures)

@@ -7,6 +7,7 @@ module summary_lines
   use kinds, only: wp
   use run_errors, only: run_errors_t
   use run_figures, only: run_figures_t
+  use run_moments, only: moment
   use run_records, only: run_record_t
   use run_warnings, only: warnings_given
   use states, only: state_t
@@ -36,19 +37,25 @@ contains
     character(len=*), intent(in) :: untold
     !> The lines
     type(line_t), allocatable :: lines(:)
-    character(len=:), allocatable :: at
+    logical :: struck
 
-    at = ' at time '
-    if (deck%has_static) at = ' at load factor '
-    call append(lines, 'Summary, in the units of the deck:')
-    if (deck%has_impactor .and. .not. deck%has_static) call tell_impact(lines, now, record, errors)
-    call tell(lines, 'largest deflection', rounded_text(record%deflection)//at// &
-              rounded_text(record%deflection_time)//within(errors%deflection, record%deflection))
+    struck = deck%has_impactor .and. .not. (deck%has_static .or. deck%impactor%travel > 0)
+    if (deck%units == '') call append(lines, 'Summary, in the units of the deck:')
+    if (deck%units /= '') call append(lines, 'Summary, in the units of the deck, '//deck%units//':')
+    if (struck) then
+      call tell_impact(lines, now, record, errors)
+    else if (deck%has_impactor) then
+      call tell(lines, 'peak force', rounded_text(record%peak_force)//' at '//moment(deck, record%peak_time))
+    end if
+    call tell(lines, 'largest deflection', rounded_text(record%deflection)//' at '// &
+              moment(deck, record%deflection_time)//within(errors%deflection, record%deflection))
     if (record%compression%strength > 0) &
       call tell(lines, 'residual strength', compression_text(record%compression))
-    if (deck%has_impactor .and. .not. deck%has_static) call tell_impact_energy(lines, deck, now)
+    if (struck) call tell_impact_energy(lines, deck, now)
     call tell_energies(lines, now%ledger)
-    if (size(figures%interfaces) > 0) call tell_interfaces(lines, deck, record, figures, errors, at)
+    if (record%scaled_energy > 0) call tell(lines, 'scaled inertia', 'motions with it held at most '// &
+                                            rounded_text(100*record%scaled_share(), 2)//' % of the energy')
+    if (size(figures%interfaces) > 0) call tell_interfaces(lines, deck, record, figures, errors)
     if (deck%has_ply_damage) call tell(lines, 'failed plies', 'fibres '//to_text(figures%failures(1))// &
       ', matrix cracked '//to_text(figures%failures(2))//', crushed '//to_text(figures%failures(3))// &
       ' (counted in each element)')
@@ -167,7 +174,7 @@ contains
   end subroutine tell_energies
 
   !> What has delaminated.
-  subroutine tell_interfaces(lines, deck, record, figures, errors, at)
+  subroutine tell_interfaces(lines, deck, record, figures, errors)
     !> The lines
     type(line_t), allocatable, intent(inout) :: lines(:)
     !> The deck
@@ -178,8 +185,6 @@ contains
     type(run_figures_t), intent(in) :: figures
     !> How far they may be off
     type(run_errors_t), intent(in) :: errors
-    !> Words before a time
-    character(len=*), intent(in) :: at
     integer :: zone
 
     call tell(lines, 'delaminated area', rounded_text(sum(figures%interfaces%area))// &
@@ -208,9 +213,9 @@ contains
       if (.not. event(1) > 0) then
         call tell(lines, '', 'no '//name)
       else if (deck%has_impactor) then
-        call tell(lines, '', name//' under '//rounded_text(event(2))//at//rounded_text(event(1)))
+        call tell(lines, '', name//' under '//rounded_text(event(2))//' at '//moment(deck, event(1)))
       else
-        call tell(lines, '', name//at//rounded_text(event(1)))
+        call tell(lines, '', name//' at '//moment(deck, event(1)))
       end if
     end subroutine tell_event
   end subroutine tell_interfaces

@@ -1,5 +1,5 @@
 !> Plies that soften by their fracture energies. Are all energies there, what has no effect beside them, does the mesh
-!> bear them? And the strengths in place of all blocks of plies.
+!> bear them?
 module deck_crack_bands
   use cell_grids, only: cell_edges
   use crack_bands, only: create_crack_band, longest_element
@@ -16,10 +16,13 @@ module deck_crack_bands
   use ply_damage_deck, only: ply_damage_group, key_in_situ, keys_of_sudden_failure
   use short_numbers, only: short_text
   use stacking, only: stacked_plies
-  use text, only: line_t, append, joined, to_text
+  use text, only: line_t, append, joined, rounded_text
   implicit none
   private
-  public :: check_crack_bands, strength_lines
+  public :: check_crack_bands
+
+  !> Energy that failure takes over the fracture energy from which it is told.
+  real(wp), parameter :: noted = 1.1_wp
 
 contains
 
@@ -119,19 +122,29 @@ contains
     integer, intent(in) :: place
     !> Remarks are added
     type(problems_t), intent(inout) :: problems
-    type(line_t), allocatable :: limits(:)
-    real(wp) :: longest(size(toughness_keys)), present(2)
+    type(line_t), allocatable :: limits(:), excesses(:)
+    character(len=:), allocatable :: price
+    real(wp) :: longest(size(toughness_keys)), present(2), usual
     integer :: mode
 
+    if (.not. any(deck%laminate%material == place)) return
     present = element_lengths(deck)
     longest = longest_elements(deck, place)
-    allocate (limits(0))
+    usual = present(2)
+    if (deck%mesh%cell > 0) usual = deck%mesh%cell
+    allocate (limits(0), excesses(0))
     do mode = 1, size(toughness_keys)
       if (longest(mode) < present(2)) call append(limits, toughness_keys(mode)//' from '//short_text(longest(mode)))
+      if (usual > noted*longest(mode)) call append(excesses, rounded_text(usual/longest(mode), 2)//' times '// &
+                                             toughness_keys(mode))
     end do
-    if (size(limits) > 0) call remark(deck%settings, problems, material_group, '', 'in long elements failure takes '// &
-      'more than its fracture energy, '//joined(limits, ', ')//' on; they are '//short_text(present(1))//' to '// &
-      short_text(present(2))//' long, so keep them shorter where plies fail.', place)
+    if (size(limits) == 0) return
+    price = ''
+    if (size(excesses) > 0) price = ' Where it is '//short_text(usual)//' long, failure takes '// &
+                                    joined(excesses, ', ')//'.'
+    call remark(deck%settings, problems, material_group, '', 'in long elements failure takes more than its '// &
+      'fracture energy, '//joined(limits, ', ')//' on; they are '//short_text(present(1))//' to '// &
+      short_text(present(2))//' long, so keep them shorter where plies fail.'//price, place)
   end subroutine check_lengths
 
   !> Longest elements that take no more than the fracture energies, in every block of a material. Strengths in place are
@@ -153,31 +166,6 @@ contains
         material_in_place(plies, ply, deck%materials, deck%ply_damage), deck%ply_damage)))
     end do
   end function longest_elements
-
-  !> The strengths in place of all blocks of plies, from the struck face.
-  function strength_lines(deck) result(lines)
-    !> The deck, checked
-    type(deck_t), intent(in) :: deck
-    !> One line a block; none unless the deck asks for these strengths
-    type(line_t), allocatable :: lines(:)
-    type(ply_t), allocatable :: plies(:)
-    type(material_t) :: material
-    character(len=:), allocatable :: name
-    integer :: range(2)
-
-    allocate (lines(0))
-    if (.not. deck%ply_damage%in_situ) return
-    plies = stacked_plies(deck%laminate, deck%materials)
-    range = 0
-    do while (range(2) < size(plies))
-      range = block_of(plies, range(2) + 1)
-      material = material_in_place(plies, range(1), deck%materials, deck%ply_damage)
-      name = 'YT and S12 in place, ply '//to_text(range(1))
-      if (range(2) > range(1)) name = 'YT and S12 in place, plies '//to_text(range(1))//' to '//to_text(range(2))
-      call append(lines, '  '//name//repeat(' ', max(1, 44 - len(name)))//short_text(material%yt)//', '// &
-                  short_text(material%s12))
-    end do
-  end function strength_lines
 
   !> Shortest and longest side of the cells, or of the two together that are one beside the struck point's lines.
   pure function element_lengths(deck) result(lengths)

@@ -9,7 +9,9 @@ module deck_first_zones
   use delamination_parameters, only: law_front
   use interface_places, only: delamination_group
   use kinds, only: wp
-  use layer_extents, only: cells_at_once, thicknesses_ahead, widened_extent
+  use laminate_parameters, only: shear_energy
+  use layer_extents, only: cells_at_once, largest_extents, thicknesses_ahead, widened_extent
+  use text, only: append
   implicit none
   private
   public :: check_left_out_zones, set_first_zones
@@ -75,6 +77,7 @@ contains
     integer :: i, direction
 
     if (problems%errors() > 0) return
+    if (deck%laminate%shear_correction == shear_energy) call set_lasting_zones(deck)
     thickness = thicknesses_ahead*sum(deck%laminate%thickness)
     do direction = 1, 2
       associate (edges => cell_edges(deck%plate, deck%mesh, direction) - deck%mesh%struck(direction))
@@ -92,4 +95,24 @@ contains
       end associate
     end do
   end subroutine set_first_zones
+
+  !> Gives interfaces that would follow their damage the layers that they may come to from the start. By equilibrium
+  !> through the thickness the plate is softer in transverse shear than its layers together, a sandwich many times: its
+  !> strain energy would jump where layers appear.
+  subroutine set_lasting_zones(deck)
+    !> The deck; its interfaces receive the zones
+    type(deck_t), intent(inout) :: deck
+    integer :: i
+
+    if (.not. any(deck%delaminations%follows)) return
+    do i = 1, size(deck%delaminations)
+      associate (d => deck%delaminations(i))
+        if (.not. d%follows) cycle
+        d%follows = .false.
+        d%zone = largest_extents(d%zone, deck%mesh%core, deck%mesh%cell, deck%plate%length)
+      end associate
+    end do
+    call append(deck%reasons, 'The plate has layers from the start, '//trim(merge('in the core', 'everywhere ', &
+                deck%mesh%cell > 0))//', as with shear_correction = ''energy'' it is softer in shear than they are.')
+  end subroutine set_lasting_zones
 end module deck_first_zones

@@ -14,11 +14,13 @@ module deck_reader
   use deck_extents, only: check_sizes, check_extents
   use deck_explicit_checks, only: check_central_differences
   use deck_first_zones, only: check_left_out_zones, set_first_zones
+  use deck_idle_keys, only: check_idle_keys
   use deck_problems, only: problems_t
   use deck_refinements, only: refine
   use deck_rules, only: settle
   use deck_scales, only: check_scales
   use deck_shear_remarks, only: check_correction
+  use deck_slow_motion, only: check_softening_steps
   use deck_scanner, only: scan_t, scan_deck, most_bytes
   use deck_symmetries, only: note_symmetry
   use deck_table, only: load_deck_table
@@ -117,6 +119,7 @@ contains
     call check_across_groups(deck, problems)
     if (deck%has_time .and. is_explicit(deck%stepping)) call check_central_differences(deck, problems)
     call check_initial_state(deck, problems)
+    call check_idle_keys(deck, problems)
     call check_left_out_zones(deck, problems)
     call set_first_zones(deck, problems)
     call check_extents(deck, problems)
@@ -127,6 +130,7 @@ contains
     call check_process_zones(deck, problems)
     call settle_flaws(deck, problems)
     call check_scales(deck, problems)
+    call check_softening_steps(deck, problems)
     call check_units(deck, problems)
     if (problems%errors() == 0) call note_symmetry(deck)
     deck%remarks = problems%remarks()
@@ -224,6 +228,8 @@ contains
     call fill_adapt(deck%settings, deck%stepping%adapt)
     if (deck%has_time) call fill_time(deck%settings, natural_rho_infinity(deck), follows_error(deck%stepping%adapt), &
                                       deck%stepping%time, deck%stepping%central)
+    ! Without &adapt every step has the same length.
+    if (.not. deck%stepping%adapt%on) deck%stepping%time%step_max = deck%stepping%time%step
     if (deck%impactor%travel > 0 .and. deck%has_time .and. &
         .not. deck%settings%is_given(impactor_group, impactor_key_rise)) &
       deck%impactor%rise = usual_rise*deck%stepping%time%end

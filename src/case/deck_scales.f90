@@ -1,4 +1,4 @@
-!> What the deck's scene has to resolve, as a table and as warnings where mesh or step don't.
+!> What the deck's scene has to resolve: found by pilot calculations, with warnings where mesh or step don't.
 module deck_scales
   use case_deck, only: case_group, key_accuracy
   use cell_grids, only: cell_edges
@@ -11,11 +11,10 @@ module deck_scales
   use scene_scales, only: scene_scales_t, scales_of, has_blow
   use short_numbers, only: short_text
   use stepping_parameters, only: is_explicit, outlook_t
-  use text, only: line_t, append
   use time_deck, only: time_group, key_step
   implicit none
   private
-  public :: check_scales, scale_lines
+  public :: check_scales
 
   !> Errors of peak and history, by pilot calculations, that a user is warned of.
   real(wp), parameter :: noticeable(2) = [0.05_wp, 0.2_wp]
@@ -98,51 +97,6 @@ contains
       end if
     end associate
   end subroutine check_accuracy
-
-  !> The table of scales.
-  function scale_lines(deck) result(lines)
-    !> The deck, checked
-    type(deck_t), intent(in) :: deck
-    !> One line each
-    type(line_t), allocatable :: lines(:)
-
-    allocate (lines(0))
-    associate (o => deck%outlook, scales => deck%outlook%scales)
-      call put('thickness of the laminate', scales%thickness)
-      call put('mass of the plate', scales%plate_mass)
-      call put('period of the plate''s first bending', scales%first_period)
-      call put('force at which delaminations grow', scales%threshold)
-      call put('force at which they begin beside the patch', scales%onset)
-      if (.not. o%of_impact) return
-      call put('energy of the impactor', scales%energy)
-      call put('force per indentation**1.5, k', deck%indentation%k)
-      call put('rise of the first contact', scales%contact_time)
-      call put('steps in that rise', scales%contact_time/deck%stepping%time%step)
-      call put('length of the waves', scales%wave_length)
-      call put('elements in a wave', scales%wave_length/o%edge)
-      call put('expected force', o%force)
-      call put('expected indentation', o%indentation)
-      call put('expected deflection over thickness', o%deflection/scales%thickness)
-      call put('contacts', real(o%contacts, wp))
-      call put('end of the last contact', o%last_contact)
-      call put('error of the peak force by the step, %', 100*o%step_error(1))
-      call put('error of the force history by the step, %', 100*o%step_error(2))
-      call put('error of the peak force by the mesh, %', 100*o%mesh_error(1))
-      call put('error of the force history by the mesh, %', 100*o%mesh_error(2))
-    end associate
-
-  contains
-
-    !> Adds a line; what isn't known, or nil, has none.
-    subroutine put(name, value)
-      !> What it is
-      character(len=*), intent(in) :: name
-      !> Its size
-      real(wp), intent(in) :: value
-
-      if (value > 0) call append(lines, '  '//name//repeat(' ', max(1, 44 - len(name)))//short_text(value))
-    end subroutine put
-  end function scale_lines
 
   !> Mean edge of the elements within a distance of the struck point, along the direction where it is longer.
   pure real(wp) function edge_near(deck, distance) result(edge)

@@ -19,10 +19,10 @@ module deck_units
   use material_deck, only: material_group, key_isotropic, key_along, key_density, key_tension
   use plate_deck, only: plate_group, key_length
   use short_numbers, only: short_text
-  use text, only: lower_case
   use time_deck, only: time_group, key_end
-  use unit_systems, only: is_odd, unit_that_fits, unit_name, systems, quantities, of_pressure, of_density, of_length, &
-                          of_thickness, of_radius, of_mass, of_velocity, of_toughness, of_time, of_strength
+  use unit_systems, only: is_odd, system_named, unit_that_fits, unit_name, systems, quantities, of_pressure, &
+                          of_density, of_length, of_thickness, of_radius, of_mass, of_velocity, of_toughness, of_time, &
+                          of_strength
   implicit none
   private
   public :: check_units
@@ -162,9 +162,8 @@ contains
     type(quantity_t), intent(in) :: list(:)
     integer :: odd(size(systems)), present_kinds, i
 
-    do system = 1, size(systems)
-      if (lower_case(deck%units) == lower_case(trim(systems(system)))) return
-    end do
+    system = system_named(deck%units)
+    if (system > 0) return
     present_kinds = count([(any(list%quantity == i), i=1, quantities)])
     do i = 1, size(systems)
       odd(i) = odd_kinds(list, i)

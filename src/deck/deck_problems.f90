@@ -1,6 +1,7 @@
 !> The faults of a deck: collected, so that all are told at once, and each in one line.
 module deck_problems
   use errors, only: exit_done, exit_deck
+  use grouped_messages, only: merged, skeleton
   use text, only: line_t, append, to_text, lower_case
   implicit none
   private
@@ -50,6 +51,7 @@ module deck_problems
     procedure :: remarks
     procedure, private :: add
     procedure, private :: line_of
+    procedure, private :: grouped
   end type problems_t
 
 contains
@@ -119,14 +121,15 @@ contains
     integer, intent(in), optional :: place
     type(problem_t) :: problem
 
-    if (size(self%list) > most_problems) return
+    if (.not. is_warning .and. self%is_full()) return
     problem%is_warning = is_warning
     problem%line = line
     if (present(place)) problem%place = place
     problem%group = lower_case(group)
     problem%key = lower_case(key)
     problem%message = message
-    if (size(self%list) == most_problems) problem%message = 'there are more faults; mend those above first.'
+    if (.not. is_warning .and. self%errors() == most_problems) &
+      problem%message = 'there are more faults; mend those above first.'
     self%list = [self%list, problem]
   end subroutine add
 
@@ -134,7 +137,7 @@ contains
   pure logical function is_full(self)
     class(problems_t), intent(in) :: self
 
-    is_full = size(self%list) > most_problems
+    is_full = self%errors() > most_problems
   end function is_full
 
   !> True: an error belongs to this group, or to this key of it, so checks that build on it would mislead.
@@ -181,16 +184,18 @@ contains
     class(problems_t), intent(in) :: self
     !> Lines such as `deck.nml:7: &plate edges = 'soft': is not a choice; allowed: ...`
     type(line_t), allocatable :: list(:)
-    logical :: told(size(self%list))
+    type(problem_t), allocatable :: problems(:)
+    logical, allocatable :: told(:)
     integer :: next(1), i, pass
 
     allocate (list(0))
-    told = .false.
+    problems = self%grouped()
+    allocate (told(size(problems)), source=.false.)
     do pass = 1, 2
-      do i = 1, count(self%list%is_warning .eqv. pass == 2)
-        next = minloc(self%list%line, mask=.not. told .and. (self%list%is_warning .eqv. pass == 2))
+      do i = 1, count(problems%is_warning .eqv. pass == 2)
+        next = minloc(problems%line, mask=.not. told .and. (problems%is_warning .eqv. pass == 2))
         told(next(1)) = .true.
-        call append(list, self%line_of(self%list(next(1))))
+        call append(list, self%line_of(problems(next(1))))
       end do
     end do
   end function lines
@@ -200,11 +205,13 @@ contains
     class(problems_t), intent(in) :: self
     !> Lines such as `line 7: &time step = 1e-6: ...`
     type(line_t), allocatable :: list(:)
+    type(problem_t), allocatable :: problems(:)
     integer :: i
 
     allocate (list(0))
-    do i = 1, size(self%list)
-      associate (problem => self%list(i))
+    problems = self%grouped()
+    do i = 1, size(problems)
+      associate (problem => problems(i))
         if (.not. problem%is_warning) cycle
         if (problem%line > 0) then
           call append(list, 'line '//to_text(problem%line)//': '//problem%message)
@@ -214,6 +221,32 @@ contains
       end associate
     end do
   end function remarks
+
+  !> The faults, warnings of one line of the deck that differ in numbers alone as one, in the order they were found.
+  function grouped(self) result(list)
+    class(problems_t), intent(in) :: self
+    !> The faults
+    type(problem_t), allocatable :: list(:)
+    type(line_t), allocatable :: alike(:)
+    logical :: told(size(self%list))
+    integer :: i, k
+
+    allocate (list(0))
+    told = .false.
+    do i = 1, size(self%list)
+      if (told(i)) cycle
+      list = [list, self%list(i)]
+      if (.not. self%list(i)%is_warning) cycle
+      if (allocated(alike)) deallocate (alike)
+      do k = i, size(self%list)
+        if (.not. self%list(k)%is_warning .or. self%list(k)%line /= self%list(i)%line) cycle
+        if (skeleton(self%list(k)%message) /= skeleton(self%list(i)%message)) cycle
+        call append(alike, self%list(k)%message)
+        told(k) = .true.
+      end do
+      list(size(list))%message = merged(alike)
+    end do
+  end function grouped
 
   !> One fault as the user reads it.
   function line_of(self, problem) result(line)

@@ -42,6 +42,7 @@ contains
       if (allocated(error)) return
       energy = state%ledger%strain + state%ledger%ply_damage
       state%ledger%initial = state%ledger%initial + energy
+      state%ledger%residual = energy
     end if
     if (model%scene%has_static .or. .not. lines_precede(model)) return
     call settle(model, operator, .true., state, error)

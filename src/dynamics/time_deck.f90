@@ -17,7 +17,8 @@ module time_deck
   !> Names that checks across groups use.
   character(len=*), parameter, public :: time_group = 'time', key_end = 'end', key_step = 'step', &
                                          key_mass_scaling = 'mass_scaling', key_integrator = 'integrator', &
-                                         key_settle = 'settle'
+                                         key_settle = 'settle', &
+                                         key_longest_step = 'step_max'
   !> Row of the group.
   character(len=group_row_length), parameter, public :: time_group_row = &
     'time | settings | Time integration of the plate; needed unless the analysis is static.'
@@ -30,7 +31,7 @@ module time_deck
     'time | step_min | real | 1 | time | = step/1024 | > 0 | &
       &Smallest step tried before giving up.', &
     'time | step_max | real | 1 | time | = step, end with &adapt rule=''local_error'' | > 0 | &
-      &Largest step taken.', &
+      &Largest step taken with &adapt.', &
     'time | wall_limit | real | 1 | s | none | > 0 | &
       &Seconds on the wall by which the run ends with a checkpoint; --wall-limit overrides it.', &
     'time | integrator | choice | 1 | - | = by the scene | newmark generalized_alpha central_difference | &

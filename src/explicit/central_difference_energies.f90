@@ -48,6 +48,8 @@ contains
     totals = totals_of(model%communicator, sums)*model%mesh%multiplicity
     associate (ledger => now%ledger)
       ledger%kinetic = totals(1)
+      ledger%scaled = 0
+      if (method%parameters%mass_scaling > 1) ledger%scaled = totals(2)
       ledger%strain = totals(3)
       ledger%delamination = totals(4)
       ledger%friction = totals(5)

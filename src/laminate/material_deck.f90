@@ -16,7 +16,8 @@ module material_deck
   !> Name that checks across groups use.
   character(len=*), parameter, public :: material_group = 'material', key_isotropic = 'E ', key_along = 'E1', &
                                          key_density = 'density', key_tension = 'XT', &
-                                         key_shear_strain = 'shear_failure_strain'
+                                         key_shear_strain = 'shear_failure_strain', &
+                                         key_expansion = 'alpha1 alpha2'
   !> Row of the group.
   character(len=group_row_length), parameter, public :: material_group_row = &
     'material | repeatable | One ply material, orthotropic or isotropic; may be given several times.'

@@ -38,17 +38,19 @@ module run_progress
 contains
 
   !> Starts the clock.
-  subroutine start(self, fraction)
+  subroutine start(self, fraction, done)
     !> The progress
     class(progress_t), intent(inout) :: self
     !> Part of the run done already: 0, or more after a restart
     real(wp), intent(in) :: fraction
+    !> What that is, in the unit that the run is counted in: steps, or time
+    real(wp), intent(in) :: done
     integer(long) :: rate
 
     self%shown = fraction
     call system_clock(self%started, rate)
     self%shown_at = self%started
-    call self%pace%start(0.0_wp, fraction)
+    call self%pace%start(0.0_wp, done)
   end subroutine start
 
   !> True: it is time to show how far the run is.
@@ -72,13 +74,15 @@ contains
   end function is_due
 
   !> Shows how far the run is.
-  subroutine update(self, log, fraction, text)
+  subroutine update(self, log, fraction, done, left, text)
     !> The progress
     class(progress_t), intent(inout) :: self
     !> Where it is shown
     type(log_t), intent(inout) :: log
     !> Part of the run done
     real(wp), intent(in) :: fraction
+    !> What has been done and what is left, in one unit: steps, or time
+    real(wp), intent(in) :: done, left
     !> What else is worth a glance, such as the time in the scene
     character(len=*), intent(in) :: text
     character(len=:), allocatable :: line
@@ -87,8 +91,8 @@ contains
 
     call system_clock(now, rate)
     elapsed = real(now - self%started, wp)/rate
-    line = to_text(int(100*fraction))//' %, '//time_left(self%pace%left(elapsed, fraction))//' left'
-    call self%pace%note(elapsed, fraction)
+    line = to_text(int(100*fraction))//' %, '//time_left(self%pace%left(elapsed, done, left))//' left'
+    call self%pace%note(elapsed, done)
     if (len(text) > 0) line = line//', '//text
     if (log%interactive) then
       call log%status(bar(fraction)//' '//line)

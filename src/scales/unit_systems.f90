@@ -1,9 +1,10 @@
 !> Systems of units that decks are written in, and values whose size does not fit the system.
 module unit_systems
   use kinds, only: wp
+  use text, only: lower_case
   implicit none
   private
-  public :: is_odd, unit_that_fits, unit_name
+  public :: is_odd, unit_that_fits, unit_name, system_named, base_units
 
   !> Kinds of quantities.
   integer, parameter, public :: of_pressure = 1, of_density = 2, of_length = 3, of_thickness = 4, of_radius = 5, &
@@ -13,6 +14,11 @@ module unit_systems
   !> The systems: metre, kilogram, second; millimetre, tonne, second; millimetre, kilogram, millisecond; millimetre,
   !> millinewton, kilogram, second.
   character(len=*), parameter, public :: systems(4) = [character(len=10) :: 'SI', 'mm-t-s', 'mm-kg-ms', 'mm-mN-kg-s']
+  !> Length, mass and time of each system, in metres, kilograms and seconds.
+  real(wp), parameter :: bases(3, 4) = reshape([1.0_wp, 1.0_wp, 1.0_wp, &
+                                                1.0e-3_wp, 1.0e3_wp, 1.0_wp, &
+                                                1.0e-3_wp, 1.0_wp, 1.0e-3_wp, &
+                                                1.0e-3_wp, 1.0_wp, 1.0_wp], [3, 4])
 
   !> A unit that people write.
   type :: unit_t
@@ -53,6 +59,26 @@ module unit_systems
     [7.0e10_wp, 1.6e3_wp, 0.2_wp, 2.0e-3_wp, 1.0e-2_wp, 0.3_wp, 3.0_wp, 6.0e2_wp, 1.0e-3_wp, 5.0e8_wp]
 
 contains
+
+  !> Index of the system of a name; 0: none has it.
+  pure integer function system_named(name) result(system)
+    !> The name, in any case
+    character(len=*), intent(in) :: name
+
+    do system = size(systems), 1, -1
+      if (lower_case(name) == lower_case(trim(systems(system)))) return
+    end do
+  end function system_named
+
+  !> Length, mass and time of a system, in metres, kilograms and seconds.
+  pure function base_units(system) result(base)
+    !> Index of the system
+    integer, intent(in) :: system
+    !> The three
+    real(wp) :: base(3)
+
+    base = bases(:, system)
+  end function base_units
 
   !> True: a value in the units of a system is of no size that its kind of quantity has.
   pure logical function is_odd(quantity, value, system)

@@ -26,8 +26,10 @@ module energy_ledgers
     real(wp) :: layers = 0
     !> Work of pressure and lines, and of what moves the impactor of a static analysis
     real(wp) :: external_work = 0
-    !> Energy at the start
-    real(wp) :: initial = 0
+    !> Energy at the start, and of it that of residual stresses
+    real(wp) :: initial = 0, residual = 0
+    !> Part of the kinetic energy in motions whose inertia is scaled
+    real(wp) :: scaled = 0
   contains
     !> Energy that no entry accounts for.
     procedure :: error
@@ -67,5 +69,7 @@ contains
     call archive%item('ledger/damping', self%damping)
     call archive%item('ledger/external_work', self%external_work)
     call archive%item('ledger/initial', self%initial)
+    call archive%item('ledger/residual', self%residual)
+    call archive%item('ledger/scaled', self%scaled)
   end subroutine visit
 end module energy_ledgers

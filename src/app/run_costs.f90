@@ -1,0 +1,81 @@
+!> What a run costs, for `implam check`: its steps and the processor time to expect.
+module run_costs
+  use deck_contents, only: deck_t
+  use explicit_costs, only: explicit_sentence, spoken
+  use kinds, only: wp
+  use model_sizes, only: model_size_t
+  use plate_options, only: kinematics_linear
+  use stepping_parameters, only: follows_error, is_explicit
+  use text, only: line_t, append, rounded_text, to_text
+  implicit none
+  private
+  public :: cost_lines
+
+  !> Seconds of one processor for an implicit step of an undamaged plate with one solve: of each unknown for forces,
+  !> ledger and columns, and of each megabyte of the factor. Measured, doc/manual/queue.md.
+  real(wp), parameter :: seconds_per_unknown = 2.5e-8_wp, seconds_per_megabyte = 1.5e-5_wp
+  !> Solves of such a step with von Karman's strains, and tangents of a load step.
+  real(wp), parameter :: solves_if_curved = 3, tangents_of_load_step = 4
+  !> Seconds to factor a matrix over those to solve with it.
+  real(wp), parameter :: factor_over_solve = 40
+
+contains
+
+  !> Sentences on steps and time.
+  function cost_lines(deck, model_size) result(lines)
+    !> The deck, checked
+    type(deck_t), intent(in) :: deck
+    !> Size of its model
+    type(model_size_t), intent(in) :: model_size
+    !> The sentences
+    type(line_t), allocatable :: lines(:)
+
+    allocate (lines(0))
+    if (deck%has_static) then
+      call append(lines, to_text(deck%stepping%static_steps)//' load steps'//least_time(deck, model_size, &
+        deck%stepping%static_steps*tangents_of_load_step*factor_over_solve, &
+        deck%stepping%static_steps*tangents_of_load_step))
+    else if (.not. deck%stepping%time%step > 0) then
+      return
+    else if (is_explicit(deck%stepping)) then
+      call append(lines, explicit_sentence(deck, model_size))
+    else
+      call append(lines, implicit_sentence(deck, model_size))
+    end if
+  end function cost_lines
+
+  !> Implicit steps: what an undamaged plate takes is the least.
+  function implicit_sentence(deck, model_size) result(sentence)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Size of its model
+    type(model_size_t), intent(in) :: model_size
+    !> One sentence
+    character(len=:), allocatable :: sentence
+    real(wp) :: steps, solves
+
+    steps = deck%stepping%time%end/deck%stepping%time%step
+    solves = merge(1.0_wp, solves_if_curved, deck%kinematics == kinematics_linear)
+    sentence = 'About '//rounded_text(steps)//' steps of '//rounded_text(deck%stepping%time%step)
+    if (follows_error(deck%stepping%adapt)) sentence = sentence//', fewer as they grow'
+    sentence = sentence//least_time(deck, model_size, steps*solves + factor_over_solve, steps*solves)
+  end function implicit_sentence
+
+  !> The time that an undamaged plate takes.
+  function least_time(deck, model_size, solves, residuals) result(clause)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Size of its model
+    type(model_size_t), intent(in) :: model_size
+    !> Solves, factorizations counted as so many, and residuals
+    real(wp), intent(in) :: solves, residuals
+    !> The end of a sentence
+    character(len=:), allocatable :: clause
+
+    clause = ': about '//spoken(seconds_per_unknown*model_size%unknowns*residuals + &
+                                seconds_per_megabyte*model_size%megabytes*solves)//' of one processor'
+    if (deck%has_ply_damage .or. size(deck%delaminations) > 0) clause = clause// &
+      ' while nothing breaks, many times that where it does'
+    clause = clause//'.'
+  end function least_time
+end module run_costs

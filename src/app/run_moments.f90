@@ -1,0 +1,26 @@
+!> When something happened in a run, in words: at a time, or under a load.
+module run_moments
+  use deck_contents, only: deck_t
+  use kinds, only: wp
+  use text, only: rounded_text
+  implicit none
+  private
+  public :: moment
+
+contains
+
+  !> Time, load factor, or part of a static analysis whose load factor may fall.
+  pure function moment(deck, time) result(words)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Time at the end of a step; in a static analysis what grows from 0 to 1
+    real(wp), intent(in) :: time
+    !> Such as time 0.001, load factor 0.5, or 0.5 of the run
+    character(len=:), allocatable :: words
+
+    words = 'time '//rounded_text(time)
+    if (.not. deck%has_static) return
+    words = 'load factor '//rounded_text(time)
+    if (deck%stepping%dissipation > 0) words = rounded_text(time)//' of the run'
+  end function moment
+end module run_moments

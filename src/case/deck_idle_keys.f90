@@ -1,0 +1,77 @@
+!> Remarks on what a deck gives without effect, as a group that would use it is missing: a user who gave it expects
+!> that it counts.
+module deck_idle_keys
+  use adapt_deck, only: adapt_group
+  use deck_contents, only: deck_t
+  use deck_problems, only: problems_t
+  use deck_remarks, only: remark, remark_idle
+  use impactor_deck, only: impactor_group, key_rise, key_travel
+  use material_deck, only: material_group, key_expansion, key_shear_strain, toughness_keys
+  use output_deck, only: output_group, key_force_filter
+  use ply_damage_deck, only: ply_damage_group
+  use stepping_parameters, only: is_explicit
+  use thermal_deck, only: thermal_group
+  use time_deck, only: time_group, key_longest_step
+  implicit none
+  private
+  public :: check_idle_keys
+
+contains
+
+  !> Adds the remarks.
+  subroutine check_idle_keys(deck, problems)
+    !> The deck, filled
+    type(deck_t), intent(in) :: deck
+    !> Receives them
+    type(problems_t), intent(inout) :: problems
+    integer :: place
+
+    do place = 1, size(deck%materials)
+      call check_material(deck, place, problems)
+    end do
+    associate (s => deck%settings)
+      if (.not. (deck%stepping%adapt%on .or. deck%has_static .or. is_explicit(deck%stepping)) .and. deck%has_time) &
+        call remark_idle(s, problems, time_group, key_longest_step, 'has no effect without &'//adapt_group// &
+                         ', as every step has the length of step.')
+      if (deck%has_static) then
+        call remark_idle(s, problems, impactor_group, key_rise, 'has no effect on a static analysis.')
+        call remark_idle(s, problems, output_group, key_force_filter, 'has no effect on a static analysis.')
+      else if (.not. s%is_given(impactor_group, key_travel)) then
+        call remark_idle(s, problems, impactor_group, key_rise, 'has no effect without travel.')
+      end if
+      if (.not. deck%has_impactor) &
+        call remark_idle(s, problems, output_group, key_force_filter, 'has no effect without &'//impactor_group//'.')
+    end associate
+  end subroutine check_idle_keys
+
+  !> A material that no ply has, and constants that nothing uses.
+  subroutine check_material(deck, place, problems)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Index of the material
+    integer, intent(in) :: place
+    !> Receives the remarks
+    type(problems_t), intent(inout) :: problems
+    integer :: mode
+
+    if (allocated(deck%laminate%material)) then
+      if (.not. any(deck%laminate%material == place) .and. problems%errors() == 0) then
+        call remark(deck%settings, problems, material_group, '', ''''//deck%materials(place)%name// &
+                    ''' has no effect: no ply of the laminate has it.', place)
+        return
+      end if
+    end if
+    if (.not. deck%has_thermal) call remark_idle(deck%settings, problems, material_group, key_expansion, &
+                                                 'has no effect without &'//thermal_group//'.', place)
+    if (deck%has_ply_damage) return
+    call remark_idle(deck%settings, problems, material_group, key_shear_strain, &
+                     'has no effect without &'//ply_damage_group//': shear is linear.', place)
+    do mode = 1, size(toughness_keys)
+      if (.not. deck%settings%is_given(material_group, toughness_keys(mode), place)) cycle
+      call remark_idle(deck%settings, problems, material_group, toughness_keys(mode), &
+                       'fracture energies have no effect without &'//ply_damage_group//': the plies do not fail.', &
+                       place)
+      exit
+    end do
+  end subroutine check_material
+end module deck_idle_keys

@@ -1,0 +1,67 @@
+!> Load steps of what softens may find no equilibrium: beyond a limit the load can only fall. Moved slowly in time, the
+!> same plate goes through it. This says when that is to be expected, and what to write.
+module deck_slow_motion
+  use deck_contents, only: deck_t
+  use deck_problems, only: problems_t
+  use deck_remarks, only: remark
+  use delamination_parameters, only: law_cohesive
+  use kinds, only: wp
+  use short_numbers, only: short_text
+  use static_deck, only: static_group
+  implicit none
+  private
+  public :: check_softening_steps, slow_motion_advice
+
+  !> Periods of the first bending mode in which a travel is quasi-static: its kinetic energy stays below some per cent of
+  !> the work, doc/manual/slow_motion.md.
+  integer, parameter :: periods = 20
+
+contains
+
+  !> Remarks on an impactor that presses by load steps where plies or several interfaces soften.
+  subroutine check_softening_steps(deck, problems)
+    !> The deck, checked, with its scales
+    type(deck_t), intent(in) :: deck
+    !> The remark is added
+    type(problems_t), intent(inout) :: problems
+
+    if (problems%errors() > 0 .or. .not. is_pressed(deck)) return
+    if (.not. (deck%has_crack_bands() .or. count(deck%delaminations%law == law_cohesive) > 1)) return
+    call remark(deck%settings, problems, static_group, '', 'load steps may find no equilibrium where plies or '// &
+                'several interfaces soften'//slow_motion(deck)//'.')
+  end subroutine check_softening_steps
+
+  !> What a load step that finds no equilibrium may be replaced by.
+  function slow_motion_advice(deck) result(clause)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Goes on with a sentence that ends with a full stop; empty where it does not help
+    character(len=:), allocatable :: clause
+
+    clause = ''
+    if (is_pressed(deck)) clause = ' Softening may leave none'//slow_motion(deck)//'.'
+  end function slow_motion_advice
+
+  !> True: load steps of an impactor's travel, on plies whose density is known.
+  pure logical function is_pressed(deck)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+
+    is_pressed = deck%has_static .and. deck%impactor%travel > 0
+  end function is_pressed
+
+  !> What to write.
+  function slow_motion(deck) result(clause)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Goes on with a sentence
+    character(len=:), allocatable :: clause
+    real(wp) :: period
+
+    clause = ': press in slow motion, with &time integrator=''central_difference'''
+    period = deck%outlook%scales%first_period
+    if (period > 0) clause = clause//' end='//short_text(periods*period)//' in place of &static ('//short_text(period)// &
+                             ' is the period of the first bending mode)'
+    if (.not. period > 0) clause = clause//' and an end of some periods of the plate in place of &static, and the density'
+  end function slow_motion
+end module deck_slow_motion

@@ -1,0 +1,185 @@
+!> The table of `implam check`, which the log of a run repeats: scales of the scene, expected figures, and strengths in
+!> place. Where &case names its units, values are in those that engineers read: mm, ms, N, J, kg, MPa; else they are in
+!> the deck's own and have the dimension beside them.
+module scale_tables
+  use deck_contents, only: deck_t
+  use in_situ_strengths, only: material_in_place
+  use kinds, only: wp
+  use material_parameters, only: material_t
+  use plies, only: ply_t
+  use ply_blocks, only: block_of
+  use short_numbers, only: short_text
+  use stacking, only: stacked_plies
+  use text, only: line_t, append, to_text
+  use unit_systems, only: base_units, system_named
+  implicit none
+  private
+  public :: scale_lines, strength_lines
+
+  !> Characters before the values, and of a value.
+  integer, parameter :: name_width = 56, value_width = 12
+
+  !> A physical dimension.
+  type :: dimension_t
+    !> What it is called, and the unit that it is read in
+    character(len=16) :: name, unit
+    !> Exponents of length, mass and time
+    real(wp) :: exponents(3)
+    !> SI units in the unit
+    real(wp) :: size
+  end type dimension_t
+
+  !> The dimensions of the table; the first is for bare numbers.
+  type(dimension_t), parameter :: &
+    bare = dimension_t('', '', [0.0_wp, 0.0_wp, 0.0_wp], 1.0_wp), &
+    percent = dimension_t('%', '%', [0.0_wp, 0.0_wp, 0.0_wp], 1.0_wp), &
+    length = dimension_t('length', 'mm', [1.0_wp, 0.0_wp, 0.0_wp], 1.0e-3_wp), &
+    mass = dimension_t('mass', 'kg', [0.0_wp, 1.0_wp, 0.0_wp], 1.0_wp), &
+    time = dimension_t('time', 'ms', [0.0_wp, 0.0_wp, 1.0_wp], 1.0e-3_wp), &
+    force = dimension_t('force', 'N', [1.0_wp, 1.0_wp, -2.0_wp], 1.0_wp), &
+    energy = dimension_t('energy', 'J', [2.0_wp, 1.0_wp, -2.0_wp], 1.0_wp), &
+    pressure = dimension_t('pressure', 'MPa', [-1.0_wp, 1.0_wp, -2.0_wp], 1.0e6_wp), &
+    contact = dimension_t('force/length^1.5', 'N/mm^1.5', [-0.5_wp, 1.0_wp, -2.0_wp], 1.0e3_wp*sqrt(1.0e3_wp))
+
+contains
+
+  !> The scales of the scene and what a run is expected to show.
+  function scale_lines(deck) result(lines)
+    !> The deck, checked
+    type(deck_t), intent(in) :: deck
+    !> One line each
+    type(line_t), allocatable :: lines(:)
+
+    allocate (lines(0))
+    if (system_named(deck%units) == 0) then
+      call append(lines, 'Scales of the case, in the units of the deck (mm, ms and N if &case has units):')
+    else
+      call append(lines, 'Scales of the case:')
+    end if
+    associate (o => deck%outlook, scales => deck%outlook%scales)
+      call put('thickness of the laminate', scales%thickness, length)
+      call put('mass of the plate', scales%plate_mass, mass)
+      call put('period of the first bending mode', scales%first_period, time)
+      call put('delamination threshold force (closed form)', scales%threshold, force)
+      call put('force at interlaminar shear failure beside the contact', scales%onset, force)
+      if (.not. o%of_impact) return
+      call put('impact energy', scales%energy, energy)
+      call put('contact stiffness k', deck%indentation%k, contact)
+      call put('rise time of the contact force', scales%contact_time, time)
+      call put('time steps in the rise time', scales%contact_time/deck%stepping%time%step, bare)
+      call put('bending wavelength at first contact', scales%wave_length, length)
+      call put('elements in a wavelength', scales%wave_length/o%edge, bare)
+      call put('expected peak force (undamaged plate)', o%force, force)
+      call put('expected indentation', o%indentation, length)
+      call put('expected deflection over thickness', o%deflection/scales%thickness, bare)
+      call put('expected number of contacts', real(o%contacts, wp), bare)
+      call put('expected end of the last contact', o%last_contact, time)
+      call put('error of the peak force due to the time step', 100*o%step_error(1), percent)
+      call put('error of the force history due to the time step', 100*o%step_error(2), percent)
+      call put('error of the peak force due to the mesh', 100*o%mesh_error(1), percent)
+      call put('error of the force history due to the mesh', 100*o%mesh_error(2), percent)
+    end associate
+
+  contains
+
+    !> Adds a line; what isn't known, or nil, has none.
+    subroutine put(name, value, dimension)
+      !> What it is
+      character(len=*), intent(in) :: name
+      !> Its size, in the deck's units
+      real(wp), intent(in) :: value
+      !> Its dimension
+      type(dimension_t), intent(in) :: dimension
+
+      if (value > 0) call append(lines, table_line(name, read_as(deck, value, dimension), unit_of(deck, dimension)))
+    end subroutine put
+  end function scale_lines
+
+  !> The strengths in place of all blocks of plies, from the struck face; blocks in a row that have the same are one
+  !> line.
+  function strength_lines(deck) result(lines)
+    !> The deck, checked
+    type(deck_t), intent(in) :: deck
+    !> The lines; none unless the deck asks for these strengths
+    type(line_t), allocatable :: lines(:)
+    type(ply_t), allocatable :: plies(:)
+    type(material_t) :: material
+    character(len=:), allocatable :: values, last
+    integer :: range(2), first
+
+    allocate (lines(0))
+    if (.not. deck%ply_damage%in_situ) return
+    plies = stacked_plies(deck%laminate, deck%materials)
+    range = 0
+    first = 1
+    last = ''
+    do while (range(2) < size(plies))
+      range = block_of(plies, range(2) + 1)
+      material = material_in_place(plies, range(1), deck%materials, deck%ply_damage)
+      values = read_as(deck, material%yt, pressure)//', '//read_as(deck, material%s12, pressure)
+      if (values /= last .and. last /= '') then
+        call append(lines, strength_line(first, range(1) - 1, last))
+        first = range(1)
+      end if
+      last = values
+    end do
+    call append(lines, strength_line(first, size(plies), last))
+
+  contains
+
+    !> The line of some plies.
+    function strength_line(from, to, strengths) result(line)
+      !> First and last ply
+      integer, intent(in) :: from, to
+      !> Their strengths
+      character(len=*), intent(in) :: strengths
+      !> The line
+      character(len=:), allocatable :: line
+
+      line = 'in-situ YT and S12, ply '//to_text(from)
+      if (to > from) line = 'in-situ YT and S12, plies '//to_text(from)//' to '//to_text(to)
+      line = table_line(line, strengths, unit_of(deck, pressure))
+    end function strength_line
+  end function strength_lines
+
+  !> A line of the table.
+  pure function table_line(name, value, unit) result(line)
+    !> What it is, its value, and its unit or dimension
+    character(len=*), intent(in) :: name, value, unit
+    !> The line
+    character(len=:), allocatable :: line
+
+    line = '  '//name//repeat(' ', max(1, name_width - len(name)))//value
+    if (unit /= '') line = line//repeat(' ', max(1, value_width - len(value)))//unit
+  end function table_line
+
+  !> A value to three digits, in the unit that it is read in.
+  pure function read_as(deck, value, dimension) result(digits)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> The value, in its units
+    real(wp), intent(in) :: value
+    !> Its dimension
+    type(dimension_t), intent(in) :: dimension
+    !> The digits
+    character(len=:), allocatable :: digits
+    integer :: system
+
+    system = system_named(deck%units)
+    digits = short_text(value)
+    if (system > 0) digits = short_text(value*product(base_units(system)**dimension%exponents)/dimension%size)
+  end function read_as
+
+  !> Unit of a value, or its dimension where the deck does not name its units.
+  pure function unit_of(deck, dimension) result(unit)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> The dimension
+    type(dimension_t), intent(in) :: dimension
+    !> Such as mm, or length
+    character(len=:), allocatable :: unit
+
+    unit = trim(dimension%name)
+    if (system_named(deck%units) > 0) unit = trim(dimension%unit)
+  end function unit_of
+end module scale_tables
