@@ -2,8 +2,8 @@
 module result_explain
   use field_results, only: field_rows
   use result_rows, only: column_rows
-  use result_tables, only: cell, column_heading, column_meaning, column_name, column_unit, field_heading, field_meaning, &
-                           field_name, field_row, field_unit, markdown_table, plain_table
+  use result_tables, only: cell, column_heading, column_meaning, column_name, column_unit, field_heading, &
+                           field_meaning, field_name, field_row, field_unit, markdown_table, plain_table
   use text, only: append, line_t, lower_case
   implicit none
   private
@@ -38,7 +38,8 @@ contains
     if (row > 0) then
       call append(lines, 'NAME_history.csv')
       call append(lines, '  '//cell(column_rows(row), column_name)//': '//cell(column_rows(row), column_meaning))
-      if (cell(column_rows(row), column_unit) /= '-') call append(lines, '  unit: '//cell(column_rows(row), column_unit))
+      if (cell(column_rows(row), column_unit) /= '-') &
+        call append(lines, '  unit: '//cell(column_rows(row), column_unit))
     end if
     row = field_row(field_rows, lower_case(trim(name)))
     if (row == 0) return

@@ -12,8 +12,8 @@ module deck_slow_motion
   private
   public :: check_softening_steps, slow_motion_advice
 
-  !> Periods of the first bending mode in which a travel is quasi-static: its kinetic energy stays below some per cent of
-  !> the work, doc/manual/slow_motion.md.
+  !> Periods of the first bending mode in which a travel is quasi-static: its kinetic energy stays below some per cent
+  !> of the work, doc/manual/slow_motion.md.
   integer, parameter :: periods = 20
 
 contains
@@ -60,8 +60,9 @@ contains
 
     clause = ': press in slow motion, with &time integrator=''central_difference'''
     period = deck%outlook%scales%first_period
-    if (period > 0) clause = clause//' end='//short_text(periods*period)//' in place of &static ('//short_text(period)// &
-                             ' is the period of the first bending mode)'
-    if (.not. period > 0) clause = clause//' and an end of some periods of the plate in place of &static, and the density'
+    if (period > 0) clause = clause//' end='//short_text(periods*period)//' in place of &static ('// &
+                             short_text(period)//' is the period of the first bending mode)'
+    if (.not. period > 0) &
+      clause = clause//', an end of some periods of the plate and densities in place of &static'
   end function slow_motion
 end module deck_slow_motion

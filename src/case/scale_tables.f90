@@ -64,7 +64,7 @@ contains
       call put('force at interlaminar shear failure beside the contact', scales%onset, force)
       if (.not. o%of_impact) return
       call put('impact energy', scales%energy, energy)
-      call put('contact stiffness k', deck%indentation%k, contact)
+      call put('stiffness k of the contact law', deck%indentation%k, contact)
       call put('rise time of the contact force', scales%contact_time, time)
       call put('time steps in the rise time', scales%contact_time/deck%stepping%time%step, bare)
       call put('bending wavelength at first contact', scales%wave_length, length)

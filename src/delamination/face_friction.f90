@@ -38,7 +38,7 @@ contains
 
     new = old
     traction = stiffness*(jumps - old%slip)
-    size = sqrt(traction(1)**2 + traction(2)**2)
+    size = hypot(traction(1), traction(2))
     if (.not. size > old%limit) return
     traction = old%limit*(traction/size)
     new%slip = jumps - traction/stiffness
@@ -59,7 +59,7 @@ contains
 
     slopes = reshape([stiffness, 0.0_wp, 0.0_wp, stiffness], [2, 2])
     trial = stiffness*(jumps - old%slip)
-    size = sqrt(trial(1)**2 + trial(2)**2)
+    size = hypot(trial(1), trial(2))
     if (.not. size > old%limit) return
     part = stiffness*(old%limit/size)
     trial = trial/size

@@ -11,7 +11,7 @@ module static_deck
   character(len=*), parameter, public :: static_group = 'static', key_dissipation = 'dissipation'
   !> Row of the group.
   character(len=group_row_length), parameter, public :: static_group_row = &
-    'static | optional | Load steps in equilibrium instead of time; loads are pressure and lines, or an impactor''s travel.'
+    'static | optional | Load steps in equilibrium instead of time, by pressure and lines or by an impactor''s travel.'
   !> Rows of the keys.
   character(len=key_row_length), parameter, public :: static_rows(*) = [character(len=key_row_length) :: &
     'static | steps | integer | 1 | - | 1 | >= 1, <= 100000 | &

@@ -64,7 +64,7 @@ module step_columns
   character(len=result_row_length), parameter, public :: heat_rows(*) = [character(len=result_row_length) :: &
     'energy_friction | real | energy | Energy that friction between faces has turned into heat.', &
     'energy_layers | real | energy | Strain and kinetic energy that the plate had more than the layers that took its &
-      &place where a zone grew; rounding with shear_correction = ''5/6''.']
+      &place where a zone grew: rounding.']
 
   !> Damping.
   character(len=result_row_length), parameter, public :: damping_rows(*) = [character(len=result_row_length) :: &

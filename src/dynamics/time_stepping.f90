@@ -167,7 +167,8 @@ contains
       if (self%stepping%dissipation > 0) self%now%path%by_dissipation = self%now%path%dissipated > 0
       if (step <= self%smallest_step(model)*self%step_scale()*(1 + 1.0e-9_wp)) then
         call fail(error, exit_convergence, 'No equilibrium from '// &
-                  trim(merge('load factor', 'time       ', model%scene%has_static))//' '//rounded_text(self%now%time)// &
+                  trim(merge('load factor', 'time       ', model%scene%has_static))//' '// &
+                  rounded_text(self%now%time)// &
                   ' on with the smallest step, '//rounded_text(step)//'.')
         return
       end if

@@ -24,6 +24,7 @@ OTHERS = (
     ("app/summary_file.f90", "title", "a name in NAME_summary.json"),
     ("app/summary_file.f90", "energy", "a name in NAME_summary.json"),
     ("base/text.f90", "e", "the exponent of a number"),
+    ("case/scale_tables.f90", "length mass time force energy pressure", "dimensions"),
     ("deck/deck_scanner.f90", "end", "&end, which closes a group in old decks"),
     ("deck/deck_values.f90", "name", "a kind of value"),
     ("state/states.f90", "time step iterations stress force", "an item of a checkpoint"),

@@ -45,7 +45,7 @@ SCENES = {
 
 def time_of(warning):
     """The time that a warning tells."""
-    return float(re.search(r"time ([-\d.e]+\d)", warning)[1])
+    return float(re.search(r"(?:time|load factor) ([-\d.e]+\d)", warning)[1])
 
 
 def main(implam, folder):
