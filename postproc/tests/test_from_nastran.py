@@ -7,6 +7,7 @@ import re
 import tempfile
 import unittest
 from pathlib import Path
+from typing import ClassVar
 from unittest import mock
 
 import numpy as np
@@ -291,6 +292,27 @@ class WithoutPyNastranTest(unittest.TestCase):
         self.assertIn("pip install 'implam-post[nastran]'", told.getvalue())
 
 
+class ShellTest(ImportTest):
+    """A PSHELL of one material is a laminate of one ply."""
+
+    METAL: ClassVar = [("MAT1", 2, 70e9, None, 0.33, 2700.0)]
+
+    def test_one_ply(self) -> None:
+        """Material, thickness and the mass that doesn't bear."""
+        texts = []
+        for laminate in (("PSHELL", 1, 2, 2e-3, 2, None, 2, None, 0.4),
+                         ("PCOMP", 1, None, 0.4, None, None, None, None, None, 2, 2e-3, 0.0)):
+            self.deck(Bulk(laminate=[laminate], materials=self.METAL))
+            texts.append((self.folder / "panel.nml").read_text())
+        self.assertEqual(*texts)
+        self.assertIn("density=2900", texts[0])
+
+    def test_refused(self) -> None:
+        """Sections that are no homogeneous plate."""
+        for fields in ((2, 2e-3), (2, 2e-3, 2, 3.0, 2), (2, 2e-3, 3, None, 2), (2, None, 2, None, 2)):
+            self.refused(Bulk(laminate=[("PSHELL", 1, *fields)], materials=self.METAL), "PSHELL")
+
+
 class RefusedTest(ImportTest):
     """Contradictions are one sentence and exit code 2."""
 
@@ -306,6 +328,10 @@ class RefusedTest(ImportTest):
         self.refused(Bulk(place=lambda x, y: (x, y, x * y), write=large), "its normal isn't that of the element")
         self.refused(Bulk(place=lambda x, y: (x, 0.8 * y, 0.6 * y), write=large), "isn't parallel to a plane")
         self.assertIn("there is no CQUAD4", self.run_command(re.sub(r"CQUAD4.*\n", "", Bulk().text()))[1])
+        told = self.run_command(Bulk().text().replace("CQUAD4", "CQUADR"))[1]
+        self.assertIn("CQUADR, lines", told)
+        self.assertIn("mesh the panel with CQUAD4 or CQUAD8 alone", told)
+        self.assertIn("=(3): replicated cards", self.run_command("GRID,1\n=(3)\n")[1])
         self.assertIn("grid 3 isn't there", self.run_command(re.sub(r"GRID +3 .*\n", "", Bulk().text()))[1])
         bulk = Bulk(more=[("GRID", 99, None, 0.1, 0.1, 0.0)])
         cut = bulk.text().replace(small("CQUAD4", 11, 1, 41, 43, 61, 59)[0], small("CQUAD4", 11, 1, 99, 43, 61, 59)[0])

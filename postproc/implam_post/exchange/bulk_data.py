@@ -16,8 +16,8 @@ _READING_ERRORS = (SyntaxError, RuntimeError, AssertionError, ValueError, TypeEr
 
 
 # Cards that a deck is made from. A line that begins with blanks and one of these names is a card and no continuation.
-KNOWN = ("GRID", "GRDSET", "CORD2R", "CQUAD4", "CQUAD8", "PCOMP", "PCOMPG", "MAT1", "MAT8", "SPC1", "SPC", "SPCADD",
-         "TEMPD")
+KNOWN = ("GRID", "GRDSET", "CORD2R", "CQUAD4", "CQUAD8", "PCOMP", "PCOMPG", "PSHELL", "MAT1", "MAT8", "SPC1", "SPC",
+         "SPCADD", "TEMPD")
 # Columns of a small field.
 _FIELD = 8
 
@@ -142,6 +142,9 @@ class BulkData:
             name = re.split(r"[,*\s]", line.expandtabs()[:8 if "," not in line else None], maxsplit=1)[0].upper()
             if name == "ENDDATA":
                 break
+            if name.startswith("="):
+                raise DeckError(f"{self.path.name}:{number}: {name}: replicated cards aren't read: write each card "
+                                "out, as ECHO = SORT prints them.")
             if line[0] in "+*" or not name:
                 if not self.cards:
                     raise DeckError(f"{self.path.name}:{number}: a continuation without a card.")

@@ -25,11 +25,12 @@ def read_laminate(bulk: BulkData, properties: Iterable[int], remarks: Remarks, s
 
     `shear_23` stands in for G2Z where that is blank.
     """
-    cards = _unique(bulk, "PCOMP", "PCOMPG")
+    cards = _unique(bulk, "PCOMP", "PCOMPG", "PSHELL")
     found: list[tuple[BulkCard, list[Ply]]] = []
     for number in sorted(set(properties)):
         if number not in cards:
-            raise bulk.missing(f"the elements have property {number}, but there is no PCOMP or PCOMPG of that number.")
+            raise bulk.missing(f"the elements have property {number}, but there is no PCOMP, PCOMPG or PSHELL of "
+                               "that number.")
         found.append((cards[number], _plies(bulk, cards[number], remarks, shear_23)))
     for card, plies in found[1:]:
         if any(ply != other or _rest(ply.material) != _rest(other.material)
@@ -54,6 +55,8 @@ def _unique(bulk: BulkData, *names: str) -> dict[int, BulkCard]:
 
 def _plies(bulk: BulkData, card: BulkCard, remarks: Remarks, shear_23: float | None) -> list[Ply]:
     """Return the plies of a property, both halves of a symmetric one."""
+    if card.name == "PSHELL":
+        return [_only_ply(bulk, card, remarks, shear_23)]
     from pyNastran.bdf.cards.properties.shell import PCOMP, PCOMPG
     laminate = bulk.read(card, PCOMP if card.name == "PCOMP" else PCOMPG)
     symmetric = (laminate.lam or "") == "SYM" and card.name == "PCOMP"
@@ -75,10 +78,30 @@ def _plies(bulk: BulkData, card: BulkCard, remarks: Remarks, shear_23: float | N
     return plies
 
 
-def _with_nonstructural_mass(bulk: BulkData, card: BulkCard, plies: list[Ply], thickness: float, remarks: Remarks
-                             ) -> list[Ply]:
+def _only_ply(bulk: BulkData, card: BulkCard, remarks: Remarks, shear_23: float | None) -> Ply:
+    """Return the ply that a PSHELL of one material stands for."""
+    from pyNastran.bdf.cards.properties.shell import PSHELL
+    shell = bulk.read(card, PSHELL)
+    first = shell.mid1
+    if first is None or shell.mid2 != first or shell.mid3 not in (None, first) or shell.mid4 is not None:
+        raise bulk.error(card, "MID1, MID2 and MID3 need to be one material and MID4 blank: give other sections as a "
+                               "PCOMP.")
+    if abs(shell.twelveIt3 - 1) > 1e-6:
+        raise bulk.error(card, "12I/T**3 isn't 1: give the plies that make the section up as a PCOMP.")
+    if shell.t is None or shell.t <= 0:
+        raise bulk.error(card, "T needs to be greater than zero.")
+    if shell.mid3 is None:
+        remarks.add(card, "MID3 is blank: Implam takes transverse shear of the material")
+    elif abs(shell.tst - 5 / 6) > _NEAR:
+        remarks.add(card, "TS/T isn't taken: Implam has 5/6")
+    ply = Ply(_materials(bulk, {first}, card, remarks, shear_23)[first], 0.0, float(shell.t))
+    return _with_nonstructural_mass(bulk, card, [ply], ply.thickness, remarks, 8)[0]
+
+
+def _with_nonstructural_mass(bulk: BulkData, card: BulkCard, plies: list[Ply], thickness: float, remarks: Remarks,
+                             field: int = 3) -> list[Ply]:
     """Return plies whose densities have NSM, the mass per area of what doesn't bear, spread over the thickness."""
-    extra = (bulk.real(card, 3) or 0.0) * bulk.mass_factor / thickness
+    extra = (bulk.real(card, field) or 0.0) * bulk.mass_factor / thickness
     if extra == 0:
         return plies
     if extra < 0:

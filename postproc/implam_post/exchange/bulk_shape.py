@@ -6,12 +6,15 @@ from typing import Any
 
 import numpy as np
 
-from implam_post.exchange.bulk_data import BulkCard, BulkData
+from implam_post.exchange.bulk_data import BulkCard, BulkData, ranges
 from implam_post.exchange.remarks import Remarks
 
 _NEAR = 1e-6
 _UNTAKEN = {"CQUAD4": {8: "ZOFFS", 11: "T1", 12: "T2", 13: "T3", 14: "T4"},
             "CQUAD8": {16: "ZOFFS", 11: "T1", 12: "T2", 13: "T3", 14: "T4"}}
+
+# Elements of surfaces and solids that may stand for a part of a panel.
+_OTHERS = ("CTRIA3", "CTRIA6", "CTRIAR", "CQUADR", "CQUAD", "CSHEAR", "CHEXA", "CPENTA", "CTETRA")
 
 
 @dataclass(frozen=True)
@@ -63,13 +66,23 @@ def read_shape(bulk: BulkData, grids: Mapping[int, tuple[BulkCard, Any]], struck
                for quad in quads)
     if abs(area - lengths[0] * lengths[1]) > _NEAR * area:
         raise bulk.missing(f"the CQUAD4 and CQUAD8 don't make up a rectangle: they cover {area:.6g} of the "
-                           f"{lengths[0]:.6g} by {lengths[1]:.6g} around them.")
+                           f"{lengths[0]:.6g} by {lengths[1]:.6g} around them.{_other_elements(bulk)}")
     _refuse_cuts(bulk, local, max(lengths))
     middle = (low + high) / 2
     return Shape((_plain(lengths[0]), _plain(lengths[1])), axes.T @ middle, axes,
                  {number: (place - middle)[:2] for number, place in local.items()}, _elements(quads, axes, lengths),
                  _material_angle(bulk, quads, axes, systems), -1 if struck_last else 1,
                  {quad.read.pid for quad in quads})
+
+
+def _other_elements(bulk: BulkData) -> str:
+    """Return a sentence on elements that a panel can't be made of; empty if there are none."""
+    cards = list(bulk.named(*_OTHERS))
+    if not cards:
+        return ""
+    names = " and ".join(dict.fromkeys(card.name for card in cards))
+    lines = ranges((card.line for card in cards), [card.line for card in bulk.cards])
+    return f" {names}, {lines}, can't be taken: mesh the panel with CQUAD4 or CQUAD8 alone."
 
 
 def _refuse_cuts(bulk: BulkData, places: Mapping[int, np.ndarray], size: float) -> None:
@@ -151,7 +164,7 @@ def _quadrilaterals(bulk: BulkData, points: Mapping[int, np.ndarray], remarks: R
         remarks.untaken(card, _UNTAKEN[card.name])
         quads.append(_Quadrilateral(card, read, corners, normal / np.linalg.norm(normal)))
     if not quads:
-        raise bulk.missing("there is no CQUAD4 and no CQUAD8.")
+        raise bulk.missing(f"there is no CQUAD4 and no CQUAD8.{_other_elements(bulk)}")
     return quads
 
 
