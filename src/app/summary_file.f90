@@ -138,11 +138,8 @@ contains
       !> The error; negative: not known
       real(wp), intent(in) :: error
 
-      if (error >= 0) then
-        call json%put(name, error)
-      else
-        call json%put_null(name)
-      end if
+      if (error >= 0) call json%put(name, error)
+      if (.not. error >= 0) call json%put_null(name)
     end subroutine put_known
   end subroutine put_errors
 
