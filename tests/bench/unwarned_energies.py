@@ -1,0 +1,48 @@
+"""Runs whose ledger leaves more than 1 % of the energy open although nothing was warned of.
+Usage: unwarned_energies.py FOLDER...
+
+Reads every NAME_summary.json below the folders, such as build/tests/regress after ctest, or the results of a sweep.
+What integrators or load steps created or took, and what no entry accounts for, is held against the largest energy at
+the end. Fronts book fracture before the motion has lost it: what they book is left out of what counts as created."""
+
+import json
+import sys
+from pathlib import Path
+
+MUCH = 0.01
+
+
+def open_share(summary):
+    """Return the share of the energy that is created, taken or not accounted for; 0 without energy."""
+    def of(name):
+        return summary.get(name) or 0.0
+
+    most = max(of("energy_impact"), of("work_external"), of("energy_kinetic") + of("energy_strain"))
+    if most <= 0:
+        return 0.0
+    fronts = sum(entry["energy"] for entry in summary.get("interfaces", []) if not entry["is_cohesive"])
+    created = max(0.0, -of("energy_algorithmic") - fronts)
+    return max(created, of("energy_algorithmic"), abs(of("energy_error"))) / most
+
+
+def warned(summary):
+    """Tell whether the run, not the deck, was warned of."""
+    return any(entry["at"] is not None for entry in summary["warnings"])
+
+
+def main(folders):
+    """List them; fail if there are any."""
+    paths = sorted(path for folder in folders for path in Path(folder).rglob("*_summary.json"))
+    found = 0
+    for path in paths:
+        summary = json.loads(path.read_text(encoding="utf-8"))
+        share = open_share(summary)
+        if summary["exit"]["kind"] == "done" and share > MUCH and not warned(summary):
+            found += 1
+            print(f"{path}: {100 * share:.2g} %")
+    print(f"{len(paths)} runs, {found} without a warning")
+    return 1 if found or not paths else 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main(sys.argv[1:]))
