@@ -13,9 +13,9 @@ module simulations
   use model_building, only: create_model
   use time_stepping, only: time_stepper_t
   use deck_contents, only: deck_t
-  use build_information, only: this_build
+  use deck_provenance, only: provenance_of
   use result_paths, only: refuse_pipes
-  use run_provenance, only: provenance_t, this_run
+  use run_provenance, only: provenance_t
   use run_progress, only: progress_t
   use run_records, only: run_record_t, new_run_record
   use run_reports, only: log_echo, log_model, log_costs, summary
@@ -158,9 +158,7 @@ contains
     if (allocated(error)) return
     ! A launcher hands its ranks a terminal of its own, whose output may go to a file.
     if (launched()) self%log%interactive = .false.
-    self%provenance = this_run(this_build(), deck%text, communicator%size)
-    self%provenance%units = deck%units
-    self%provenance%case_name = deck%name
+    self%provenance = provenance_of(deck, communicator%size)
     call self%provenance%report(self%log)
     call log_echo(deck, self%log)
     call self%timers%start('model')

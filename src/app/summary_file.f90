@@ -373,6 +373,7 @@ contains
     call json%put('ranks', provenance%ranks)
     call json%put('started', provenance%started)
     call json%put('deck', provenance%deck)
+    if (provenance%library /= '') call json%put('library', provenance%library)
     call json%close()
   end subroutine put_provenance
 
