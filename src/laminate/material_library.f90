@@ -9,8 +9,9 @@ module material_library
   type :: library_value_t
     !> Group and key that it belongs to
     character(len=:), allocatable :: group, key
-    !> Its figures and the power of ten behind them, SI
+    !> Its figures, SI
     character(len=:), allocatable :: figures
+    !> The power of ten behind them
     integer :: exponent = 0
     !> Letter of its source
     character(len=1) :: source = ' '

@@ -23,6 +23,7 @@ OTHERS = (
     ("app/summary_file.f90", "at force", "a name in NAME_summary.json"),
     ("app/summary_file.f90", "case", "a name in NAME_summary.json"),
     ("app/summary_file.f90", "title", "a name in NAME_summary.json"),
+    ("app/summary_file.f90", "library", "a name in NAME_summary.json"),
     ("app/summary_file.f90", "energy", "a name in NAME_summary.json"),
     ("base/text.f90", "e", "the exponent of a number"),
     ("case/deck_library.f90", "e", "the exponent of a number"),
