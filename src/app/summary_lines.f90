@@ -47,6 +47,8 @@ contains
     if (record%compression%strength > 0) &
       call tell(lines, 'residual strength', compression_text(record%compression))
     if (deck%has_impactor .and. .not. deck%has_static) call tell_impact_energy(lines, deck, now)
+    if (deck%has_impactor .and. .not. deck%has_static .and. .not. now%force > 0) &
+      call tell_dent(lines, figures)
     call tell_energies(lines, now%ledger)
     if (size(figures%interfaces) > 0) call tell_interfaces(lines, deck, record, figures, errors, at)
     if (deck%has_ply_damage) call tell(lines, 'failed plies', 'fibres '//to_text(figures%failures(1))// &
@@ -98,6 +100,21 @@ contains
       call tell(lines, 'rebound velocity', rounded_text(-now%impactor%velocity)//within(errors%velocity))
     end if
   end subroutine tell_impact
+
+  !> Depth of the dent.
+  subroutine tell_dent(lines, figures)
+    !> The lines
+    type(line_t), allocatable, intent(inout) :: lines(:)
+    !> Figures of the state
+    type(run_figures_t), intent(in) :: figures
+
+    if (figures%dent(1) > figures%dent(2)) then
+      call tell(lines, 'dent', rounded_text(figures%dent(1))//' below the surface around it, of that indentation '// &
+                rounded_text(figures%dent(2)))
+    else
+      call tell(lines, 'dent', rounded_text(figures%dent(2))//', the indentation''s')
+    end if
+  end subroutine tell_dent
 
   !> How far a figure may be off.
   pure function within(error, figure) result(clause)

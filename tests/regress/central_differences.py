@@ -39,6 +39,8 @@ EXPLICIT = "time%integrator='central_difference'"
 SCENES = {"breaking": ("../small/breaking_rounds.nml", [EXPLICIT]), "layers": ("../small/layers.nml", [EXPLICIT]),
           "turned": ("../small/turned.nml", [EXPLICIT, "time%end=150e-6"]),
           "softening": ("../small/crack_bands.nml", [EXPLICIT, "time%end=150e-6"]),
+          "permanent": ("../small/crack_bands.nml", [EXPLICIT, "time%end=150e-6", "ply_damage%permanent_shear=.true.",
+                                                     "material%shear_failure_strain=0.05"]),
           "lines": ("three_point.nml", ["time%end=1e-4", EXPLICIT])}
 
 
