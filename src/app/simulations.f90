@@ -244,7 +244,7 @@ contains
     class(simulation_t), intent(in) :: self
 
     end_of = 1
-    if (.not. self%deck%has_static) end_of = end_of_run(self%deck%stepping%time, self%record%contact_end)
+    if (.not. self%deck%has_static) end_of = end_of_run(self%deck%stepping, self%record%contact_end)
   end function end_of
 
   !> Steps until the end, or until a queue's signal or the time on the wall ends the run.

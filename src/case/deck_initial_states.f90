@@ -39,8 +39,8 @@ contains
 
     associate (s => deck%settings)
       if (.not. deck%inherits) then
-        if (is_explicit(deck%stepping)) &
-          call remark_idle(s, problems, time_group, key_settle, 'has no effect without &initial_state.')
+        if (is_explicit(deck%stepping) .and. .not. deck%has_impactor) &
+          call remark_idle(s, problems, time_group, key_settle, 'has no effect without &initial_state or &impactor.')
         return
       end if
       if (deck%has_static) then
