@@ -233,7 +233,7 @@ def check_dent(implam, folder, _):
         require(last["energy_kinetic"] < 1e-6*impact, "The plate is not at rest.")
         require(last["energy_damping"] > 1e-4*impact, "Nothing was damped.")
         require(abs(last["energy_error"]) < 1e-3*impact, "The ledger is not closed.")
-        require((last["energy_permanent_shear"] > 1e-3*impact) == (name == "stays"), "Wrong energy of permanent strains.")
+        require((last["energy_permanent_shear"] > 1e-3*impact) == (name == "stays"), "Permanent strains took that?")
     require(depths["stays"] > 5*abs(depths["goes"]), "Permanent strains leave no dent.")
 
 
