@@ -228,7 +228,8 @@ def check_dent(implam, folder, _):
         depths[name] = last["dent_depth"] - last["dent_indentation"]
         print(f"{name}: dent {1e6*depths[name]:.2f} um and {1e6*last['dent_indentation']:.2f} um of the indentation, "
               f"energy {last['energy_permanent_shear']:.4g} J, kinetic {last['energy_kinetic']:.3g} J, "
-              f"damped {last['energy_damping']:.4g} J, error {last['energy_error']:.3g} J of {impact:.3g} J", flush=True)
+              f"damped {last['energy_damping']:.4g} J, error {last['energy_error']:.3g} J of {impact:.3g} J",
+              flush=True)
         require(last["force"] == 0 and last["impactor_velocity"] < 0, "The impactor has not left.")
         require(last["energy_kinetic"] < 1e-6*impact, "The plate is not at rest.")
         require(last["energy_damping"] > 1e-4*impact, "Nothing was damped.")
