@@ -7,16 +7,15 @@ module dynamic_steps
   use tan_sun_indentation, only: commit_indentation
   use stepping_parameters, only: equilibrium_t
   use newmark_integrators, only: plate_integrator_t
-  use plate_options, only: kinematics_linear
+  use plate_options, only: kinematics_linear, kinematics_von_karman
   use models, only: model_t
   use states, only: state_t
   use step_problems, only: step_problem_t
   use impact_coupling, only: impact_coupling_t, begin_coupling
   use tangent_operators, only: tangent_operator_t
   use residual_norms, only: relative_residual
-  use ply_rounds, only: ply_rounds_t
-  use softening_corrections, only: softening_memory_t
-  use condensed_steps, only: condense
+  use krylov_corrections, only: find_krylov_correction
+  use tangent_products, only: tangent_product_t
   use energy_balance, only: book_step
   use line_motions, only: has_moved_lines, keep_lines, move_lines, line_displacement
   use motion_forces, only: weigh, weigh_start, weigh_rest
@@ -35,10 +34,10 @@ module dynamic_steps
   type, extends(step_problem_t) :: dynamic_step_t
     !> Time step
     real(wp) :: step = 0
-    !> Iterations after which the operator is renewed
+    !> Changed ties and contacts with which the operator is renewed
     integer :: renewal = huge(1)
-    !> How plies that soften follow
-    type(ply_rounds_t) :: rounds
+    !> True: the last correction took as many solves as a factorization costs
+    logical :: dear = .false.
     !> Integrator of the plate
     type(plate_integrator_t) :: integrator
     !> Displacement to start from, (5, points); unallocated: the motion goes on as it was
@@ -48,24 +47,20 @@ module dynamic_steps
     logical :: stays = .false., coasts = .false.
     !> True: internal forces follow from the motion, as one correction solves the step
     logical :: spares = .false.
-    !> True: the operator was renewed on the way to an equilibrium, so how plies break next would hang on that way
-    logical :: renewed = .false.
     !> Square of the patch's shares, of this rank's points
     real(wp) :: patch_square = 0
     !> The impactor's side of the step
     type(impact_coupling_t) :: coupling
-    !> What corrections have found about softening points
-    type(softening_memory_t) :: memory
   contains
     !> True: one correction finds equilibrium.
     procedure, private :: is_solved_at_once
     procedure :: begin
     procedure :: find_residual
     procedure :: residual_norm
-    procedure :: soften
     procedure :: may_stop
-    procedure :: prepare_operator
-    procedure :: improve
+    procedure :: find_correction
+    procedure :: find_force
+    procedure, private :: set_tangent_up
     procedure :: complete
     procedure :: finish
   end type dynamic_step_t
@@ -78,7 +73,7 @@ contains
     type(plate_integrator_t), intent(in) :: integrator
     !> Time step
     real(wp), intent(in) :: step
-    !> Iterations after which the operator is renewed
+    !> Changed ties and contacts with which the operator is renewed
     integer, intent(in) :: renewal
     !> The problem
     type(dynamic_step_t) :: self
@@ -124,15 +119,12 @@ contains
         call keep_lines(model, new%interfaces, new%time, line_displacement, new%motion%displacement)
     end if
     if (.not. self%coasts) call self%complete(old, new)
-    new%plies%lagging = model%scene%has_crack_bands()
-    self%rounds = ply_rounds_t()
     new%iterations = 0
     new%force_iterations = 0
     new%contact_iterations = 0
-    call operator%anderson%forget()
-    operator%switches = 0
-    self%renewed = .false.
-    call self%memory%forget()
+    self%dear = .false.
+    self%searches = allocated(new%interfaces%cohesive%cohesive) .or. &
+                    model%scene%kinematics == kinematics_von_karman .and. model%map%layered
   end subroutine begin
 
   !> True: forces are linear in the motion but for the impactor's, and the operator knows all of them.
@@ -252,31 +244,6 @@ contains
                                       new%largest_forces)
   end function residual_norm
 
-  !> Lets plies that soften follow. In a burst what comes then begins from the equilibrium reached alone: with answers
-  !> of the way there, rounding on that way would choose among several ends.
-  subroutine soften(self, model, equilibrium, norm, energy, old, new, softened)
-    !> The problem
-    class(dynamic_step_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
-    !> Convergence asked for
-    type(equilibrium_t), intent(in) :: equilibrium
-    !> Size of the residual
-    real(wp), intent(in) :: norm
-    !> Strain energy of this rank's elements
-    real(wp), intent(in) :: energy
-    !> State at the start
-    type(state_t), intent(in) :: old
-    !> State at the end
-    type(state_t), intent(inout) :: new
-    !> True: plies have changed
-    logical, intent(out) :: softened
-
-    call self%rounds%go_on(model, equilibrium, norm, energy, old, new, softened)
-    self%gives_up = self%shortens .and. self%rounds%hopeless
-    self%bursts = self%bursts .or. self%rounds%breaks .and. allocated(new%interfaces%cohesive%cohesive)
-    if (softened .and. self%bursts) call self%memory%forget()
-  end subroutine soften
-
   !> The force answers to the motion only within an iteration, so an impact needs one.
   pure logical function may_stop(self, model, new, pressures_new)
     !> The problem
@@ -290,66 +257,124 @@ contains
     may_stop = new%iterations > 0 .or. .not. model%scene%has_impactor
   end function may_stop
 
-  !> Makes the operator follow ties and contacts, or renews it where that or its age asks for it.
-  subroutine prepare_operator(self, model, operator, new, error)
+  !> Finds a correction by the tangent, and with it the impactor's force. The operator is renewed where ties and
+  !> contacts have left it, or where the last correction was as dear.
+  subroutine find_correction(self, model, operator, old, new, residual, tolerance, correction, falls, error)
     !> The problem
     class(dynamic_step_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    type(model_t), target, intent(in) :: model
     !> The factored operator
-    type(tangent_operator_t), intent(inout) :: operator
-    !> State at the end
-    type(state_t), intent(in) :: new
-    !> Set if the solver fails
-    type(error_t), allocatable, intent(inout) :: error
-    logical :: follows, first
-
-    first = new%iterations == self%begun
-    follows = modulo(new%iterations - self%begun + 1, self%renewal) > 0 .and. .not. self%memory%is_full(operator)
-    if (first) follows = follows .and. .not. (self%bursts .and. self%renewed)
-    if (operator%condenses) follows = follows .and. .not. self%stalls
-    if (follows) call operator%follow(model, new%interfaces, follows, error)
-    if (follows .or. allocated(error)) return
-    self%renewed = .not. first .and. operator%condenses .and. model%scene%has_crack_bands()
-    call operator%renew(model, new%plies%stiffness, new%interfaces, new%motion%displacement, &
-                        self%integrator%stiffness_factor(), self%integrator%mass_factor(self%step), error)
-  end subroutine prepare_operator
-
-  !> Turns the correction for the force assumed into one for the force that goes with it, and betters it by
-  !> what earlier iterations showed.
-  subroutine improve(self, model, operator, old, new, residual, correction, error)
-    !> The problem
-    class(dynamic_step_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
-    !> The factored operator, with its memory of iterations
-    type(tangent_operator_t), intent(inout) :: operator
+    type(tangent_operator_t), target, intent(inout) :: operator
     !> State at the start
     type(state_t), intent(in) :: old
     !> State at the end, before the correction
-    type(state_t), intent(inout) :: new
+    type(state_t), target, intent(inout) :: new
     !> The residual at the owned points, (5, points)
     real(wp), intent(in) :: residual(:, :)
+    !> Part of the residual that may be left
+    real(wp), intent(in) :: tolerance
     !> Correction of the displacement, (5, points)
     real(wp), intent(inout) :: correction(:, :)
-    !> Set if numbers are not finite
+    !> True: it goes along negative curvature of the tangent
+    logical, intent(out) :: falls
+    !> Set if a solve fails or numbers are not finite
     type(error_t), allocatable, intent(inout) :: error
+    type(tangent_product_t) :: tangent
+    real(wp), allocatable :: diagonal(:, :)
+    logical :: satisfied
 
-    if (operator%condenses) then
-      call condense(self%memory, self%begins_fresh, self%coupling, model, operator, old, new, residual, &
-                    correction, error)
-      self%bursts = self%bursts .or. self%memory%bursts
-    else if (model%scene%has_impactor) then
+    call self%set_tangent_up(model, operator, old, new, tangent, diagonal, error)
+    if (allocated(error)) return
+    call find_krylov_correction(operator, model, tangent, diagonal, residual, tolerance, correction, error, falls, &
+                                satisfied)
+    if (allocated(error)) return
+    self%dear = .not. satisfied
+    if (model%scene%has_impactor) then
+      ! The correction holds the linear part of the force's change; the law asks for the rest.
+      self%coupling%unknown = self%coupling%unknown &
+                              - tangent%force_slope*model%patch_mean(correction)/self%coupling%share
       call self%coupling%solve(model, operator, old, new, correction, error)
     end if
     call new%interfaces%faces%hold(model, correction)
-    if (allocated(error)) return
-    call operator%anderson%accelerate(model%communicator, operator%diagonal(:, :model%distribution%owned), &
-                                      correction, self%coupling%unknown)
-    ! The law of the force is not linear: the force must be found for the displacement that it has become.
-    if (model%scene%has_impactor .and. operator%anderson%kept > 0) then
-      call self%coupling%solve(model, operator, old, new, correction, error)
-      call new%interfaces%faces%hold(model, correction)
+  end subroutine find_correction
+
+  !> The tangent where the iteration has come to, after the operator was renewed if that is due.
+  subroutine set_tangent_up(self, model, operator, old, new, tangent, diagonal, error)
+    !> The problem
+    class(dynamic_step_t), intent(in) :: self
+    type(model_t), target, intent(in) :: model
+    !> The factored operator
+    type(tangent_operator_t), target, intent(inout) :: operator
+    !> State at the start
+    type(state_t), intent(in) :: old
+    !> State at the end
+    type(state_t), target, intent(in) :: new
+    !> The tangent
+    type(tangent_product_t), intent(out) :: tangent
+    !> Its diagonal, (5, points)
+    real(wp), allocatable, intent(out) :: diagonal(:, :)
+    !> Set if the operator is singular
+    type(error_t), allocatable, intent(inout) :: error
+    real(wp), allocatable :: wanted(:, :)
+    logical :: due
+
+    allocate (wanted, source=operator%added)
+    due = self%dear
+    if (model%has_bonds) then
+      call new%interfaces%added_stiffness(model, operator%diagonal, self%integrator%stiffness_factor(), wanted)
+      if (.not. due) due = operator%has_left(model, wanted, self%renewal)
     end if
-  end subroutine improve
+    if (due) call operator%renew(model, new%plies%stiffness, new%interfaces, new%motion%displacement, &
+                                 self%integrator%stiffness_factor(), self%integrator%mass_factor(self%step), error)
+    if (allocated(error)) return
+    tangent%model => model
+    tangent%numbering => operator%numbering
+    tangent%displacement => new%motion%displacement
+    tangent%stiffness => new%plies%stiffness
+    if (allocated(new%plies%free)) tangent%free => new%plies%free
+    tangent%stiffness_factor = self%integrator%stiffness_factor()
+    tangent%mass_factor = self%integrator%mass_factor(self%step)
+    tangent%mass_change = tangent%mass_factor - operator%mass_factor
+    tangent%elements = .not. due .and. (model%scene%kinematics == kinematics_von_karman .or. model%scene%has_ply_damage)
+    if (model%has_bonds) &
+      call tangent%take_jumps(operator%added, wanted, new%interfaces%cohesive%cohesive, tangent%stiffness_factor* &
+        new%interfaces%cohesive%tangents_at(model, old%interfaces%cohesive, new%motion%displacement))
+    diagonal = operator%diagonal
+    diagonal(:3, :) = diagonal(:3, :) + wanted
+    if (.not. model%scene%has_impactor .or. tangent%is_factored()) return
+    allocate (tangent%pattern(operator%numbering%rows))
+    call operator%numbering%gather(unit_push(model), tangent%pattern)
+    tangent%force_slope = self%coupling%slope(model%scene%indentation, old%indentation, &
+                                              model%contact_deflection(new%motion%displacement))
+  end subroutine set_tangent_up
+
+  !> Forces on the modelled part of the plate of a unit force of the impactor.
+  pure function unit_push(model) result(forces)
+    type(model_t), intent(in) :: model
+    !> (5, points)
+    real(wp), allocatable :: forces(:, :)
+
+    allocate (forces(5, size(model%patch)), source=0.0_wp)
+    forces(3, :) = model%patch/model%mesh%multiplicity
+  end function unit_push
+
+  !> Finds the impactor's force for a displacement.
+  subroutine find_force(self, model, old, new)
+    !> The problem
+    class(dynamic_step_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> State at the start
+    type(state_t), intent(in) :: old
+    !> State at the end, its displacement known
+    type(state_t), intent(inout) :: new
+    type(error_t), allocatable :: error
+    integer :: iterations
+
+    if (.not. model%scene%has_impactor) return
+    new%patch_mean = model%contact_deflection(new%motion%displacement)
+    call self%coupling%find_force(model%scene%indentation, old%indentation, new%patch_mean, 0.0_wp, iterations, error)
+    new%force_iterations = new%force_iterations + iterations
+  end subroutine find_force
 
   !> Velocity and acceleration at the end of the step.
   subroutine complete(self, old, new)
