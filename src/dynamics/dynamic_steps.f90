@@ -123,6 +123,7 @@ contains
     new%force_iterations = 0
     new%contact_iterations = 0
     self%dear = .false.
+    self%asks_elements = .false.
     self%searches = allocated(new%interfaces%cohesive%cohesive) .or. &
                     model%scene%kinematics == kinematics_von_karman .and. model%map%layered
   end subroutine begin
@@ -335,7 +336,8 @@ contains
     tangent%stiffness_factor = self%integrator%stiffness_factor()
     tangent%mass_factor = self%integrator%mass_factor(self%step)
     tangent%mass_change = tangent%mass_factor - operator%mass_factor
-    tangent%elements = .not. due .and. (model%scene%kinematics == kinematics_von_karman .or. model%scene%has_ply_damage)
+    tangent%elements = self%asks_elements .and. .not. due .and. &
+                       (model%scene%kinematics == kinematics_von_karman .or. model%scene%has_ply_damage)
     if (model%has_bonds) &
       call tangent%take_jumps(operator%added, wanted, new%interfaces%cohesive%cohesive, tangent%stiffness_factor* &
         new%interfaces%cohesive%tangents_at(model, old%interfaces%cohesive, new%motion%displacement))

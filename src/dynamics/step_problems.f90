@@ -17,7 +17,10 @@ module step_problems
 
   !> What is left of the forces by a correction at most, and part of the square of the last ratio of residuals that the
   !> next may leave (S. C. Eisenstat, H. F. Walker, SIAM J. Sci. Comput. 17 (1996) 16-32, choice 2).
-  real(wp), parameter :: most_left = 0.1_wp, left_of_square = 0.9_wp
+  real(wp), parameter :: most_left = 1.0e-3_wp, left_of_square = 0.9_wp
+  !> What a correction by the factored operator may leave before the elements are asked for their tangents, which costs a
+  !> fifth of a solve each time.
+  real(wp), parameter :: well_left = 1.0e-2_wp
   !> Part of the tolerance to which the last correction goes: beyond it solves gain nothing.
   real(wp), parameter :: spare = 0.3_wp
 
@@ -27,6 +30,8 @@ module step_problems
     real(wp) :: contact_tolerance = 0
     !> True: a solver that fails may be cured by a shorter step
     logical :: curable = .true.
+    !> True: corrections by the factored operator have left too much, so the elements are asked for their tangents
+    logical :: asks_elements = .false.
     !> True: a correction is searched for the part of it to take
     logical :: searches = .false.
   contains
@@ -221,6 +226,7 @@ contains
         if (new%contact_iterations < equilibrium%max_iterations) cycle
       end if
       if (.not. norm <= huge(norm) .or. new%iterations >= equilibrium%max_iterations) exit
+      problem%asks_elements = problem%asks_elements .or. before > 0 .and. norm > well_left*before
       call correct(problem, model, operator, old, new, residual, smooth, forcing_term(equilibrium, norm, before), &
                    correction, search, error)
       if (allocated(error)) then

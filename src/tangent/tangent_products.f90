@@ -20,9 +20,9 @@ module tangent_products
     !> True: the elements are not those of the factored operator
     logical :: elements = .false.
     !> Displacement at which it is taken, ghosts up to date, (5, points), where elements are asked
-    real(wp), pointer :: displacement(:, :) => null()
+    real(wp), pointer, contiguous :: displacement(:, :) => null()
     !> Section stiffness of the elements, (lanes, 21, batches), and resultants of strains that go without stress
-    real(wp), pointer :: stiffness(:, :, :) => null(), free(:, :, :) => null()
+    real(wp), pointer, contiguous :: stiffness(:, :, :) => null(), free(:, :, :) => null()
     !> Stiffness of the jumps of each point, all of it where elements are asked, else what it has more than in the
     !> factored operator, (3, 3, points); unallocated: none
     real(wp), allocatable :: jumps(:, :, :)
@@ -185,9 +185,13 @@ contains
 
     associate (model => self%model)
       allocate (columns(5, max(size(force, 2), model%borders%columns)), source=0.0_wp)
-      ! A null pointer counts as absent.
-      call add_tangent_force(model%elements, self%stiffness, model%scene%kinematics, &
-                             model%motion_of(self%displacement), model%motion_of(motion), columns, self%free)
+      if (associated(self%free)) then
+        call add_tangent_force(model%elements, self%stiffness, model%scene%kinematics, &
+                               model%motion_of(self%displacement), model%motion_of(motion), columns, self%free)
+      else
+        call add_tangent_force(model%elements, self%stiffness, model%scene%kinematics, &
+                               model%motion_of(self%displacement), model%motion_of(motion), columns)
+      end if
       call model%borders%add(columns)
       force = columns(:, :size(force, 2))
       if (model%map%layered) call model%map%to_unknowns(force)
