@@ -2,7 +2,7 @@
 !> equilibrium, from the compliance of impactor and plate.
 module dynamic_steps
   use kinds, only: wp
-  use errors, only: error_t
+  use errors, only: error_t, exit_convergence
   use impactor_integrators, only: advance
   use tan_sun_indentation, only: commit_indentation
   use stepping_parameters, only: equilibrium_t
@@ -295,6 +295,7 @@ contains
       self%coupling%unknown = self%coupling%unknown &
                               - tangent%force_slope*model%patch_mean(correction)/self%coupling%share
       call self%coupling%solve(model, operator, old, new, correction, error)
+      if (allocated(error)) error%code = exit_convergence
     end if
     call new%interfaces%faces%hold(model, correction)
   end subroutine find_correction
@@ -336,8 +337,8 @@ contains
     tangent%stiffness_factor = self%integrator%stiffness_factor()
     tangent%mass_factor = self%integrator%mass_factor(self%step)
     tangent%mass_change = tangent%mass_factor - operator%mass_factor
-    tangent%elements = self%asks_elements .and. .not. due .and. &
-                       (model%scene%kinematics == kinematics_von_karman .or. model%scene%has_ply_damage)
+    tangent%elements = .not. due .and. (model%scene%has_ply_damage .or. model%scene%kinematics == kinematics_von_karman &
+                                        .and. (self%asks_elements .or. model%has_bonds))
     if (model%has_bonds) &
       call tangent%take_jumps(operator%added, wanted, new%interfaces%cohesive%cohesive, tangent%stiffness_factor* &
         new%interfaces%cohesive%tangents_at(model, old%interfaces%cohesive, new%motion%displacement))

@@ -2,7 +2,7 @@
 !> pressures.
 module static_steps
   use kinds, only: wp
-  use errors, only: error_t
+  use errors, only: error_t, exit_convergence
   use plate_options, only: kinematics_linear
   use delamination_parameters, only: contact_none, law_cohesive
   use stepping_parameters, only: equilibrium_t
@@ -182,6 +182,7 @@ contains
     type(error_t), allocatable, intent(inout) :: error
 
     if (model%scene%has_impactor) call find_push(model, operator, part_taken(new%iterations), new, correction, error)
+    if (allocated(error)) error%code = exit_convergence
     correction = part_taken(new%iterations)*correction
   end subroutine complete_correction
 

@@ -231,7 +231,7 @@ contains
                    correction, search, error)
       if (allocated(error)) then
         ! Numbers have run away, or the operator is not positive: a shorter step may cure it.
-        if (problem%curable .and. error%code == exit_convergence) deallocate (error)
+        if ((problem%curable .or. model%scene%has_impactor) .and. error%code == exit_convergence) deallocate (error)
         return
       end if
       before = norm
