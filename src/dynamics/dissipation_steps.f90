@@ -125,6 +125,7 @@ contains
   subroutine complete_correction(self, model, operator, old, new, correction, error)
     !> The problem
     class(dissipation_step_t), intent(inout) :: self
+    !> Mesh, numbering and interfaces of the plate
     type(model_t), target, intent(in) :: model
     !> The factored operator
     type(tangent_operator_t), target, intent(inout) :: operator

@@ -7,13 +7,15 @@ module dynamic_steps
   use tan_sun_indentation, only: commit_indentation
   use stepping_parameters, only: equilibrium_t
   use newmark_integrators, only: plate_integrator_t
-  use plate_options, only: kinematics_linear, kinematics_von_karman
+  use plate_options, only: kinematics_linear
   use models, only: model_t
   use states, only: state_t
   use step_problems, only: step_problem_t
   use impact_coupling, only: impact_coupling_t, begin_coupling
   use tangent_operators, only: tangent_operator_t
   use residual_norms, only: relative_residual
+  use static_steps, only: part_taken
+  use dynamic_tangents, only: find_tangent, add_force_slope
   use krylov_corrections, only: find_krylov_correction
   use tangent_products, only: tangent_product_t
   use energy_balance, only: book_step
@@ -42,8 +44,8 @@ module dynamic_steps
     type(plate_integrator_t) :: integrator
     !> Displacement to start from, (5, points); unallocated: the motion goes on as it was
     real(wp), allocatable :: guess(:, :)
-    !> True: the first guess is the displacement of the start, so all of its forces are known; or it goes on with the
-    !> velocity of the start, so its inertia forces are
+    !> True: the first guess is the displacement of the start, whose forces are known; or it goes on with the velocity
+    !> of the start, so its inertia forces are
     logical :: stays = .false., coasts = .false.
     !> True: internal forces follow from the motion, as one correction solves the step
     logical :: spares = .false.
@@ -60,7 +62,7 @@ module dynamic_steps
     procedure :: may_stop
     procedure :: find_correction
     procedure :: find_force
-    procedure, private :: set_tangent_up
+    procedure, private :: take_part
     procedure :: complete
     procedure :: finish
   end type dynamic_step_t
@@ -124,8 +126,7 @@ contains
     new%contact_iterations = 0
     self%dear = .false.
     self%asks_elements = .false.
-    self%searches = allocated(new%interfaces%cohesive%cohesive) .or. &
-                    model%scene%kinematics == kinematics_von_karman .and. model%map%layered
+    self%searches = allocated(new%interfaces%cohesive%cohesive)
   end subroutine begin
 
   !> True: forces are linear in the motion but for the impactor's, and the operator knows all of them.
@@ -258,11 +259,11 @@ contains
     may_stop = new%iterations > 0 .or. .not. model%scene%has_impactor
   end function may_stop
 
-  !> Finds a correction by the tangent, and with it the impactor's force. The operator is renewed where ties and
-  !> contacts have left it, or where the last correction was as dear.
+  !> Finds a correction by the tangent, and with it the impactor's force.
   subroutine find_correction(self, model, operator, old, new, residual, tolerance, correction, falls, error)
     !> The problem
     class(dynamic_step_t), intent(inout) :: self
+    !> Mesh, numbering and interfaces of the plate
     type(model_t), target, intent(in) :: model
     !> The factored operator
     type(tangent_operator_t), target, intent(inout) :: operator
@@ -284,8 +285,13 @@ contains
     real(wp), allocatable :: diagonal(:, :)
     logical :: satisfied
 
-    call self%set_tangent_up(model, operator, old, new, tangent, diagonal, error)
+    falls = .false.
+    call find_tangent(model, operator, old, new, [self%integrator%stiffness_factor(), &
+                      self%integrator%mass_factor(self%step)], self%dear, self%renewal, self%asks_elements, tangent, &
+                      diagonal, error)
     if (allocated(error)) return
+    if (model%scene%has_impactor .and. .not. tangent%is_factored()) &
+      call add_force_slope(model, operator, self%coupling, old, new, tangent)
     call find_krylov_correction(operator, model, tangent, diagonal, residual, tolerance, correction, error, falls, &
                                 satisfied)
     if (allocated(error)) return
@@ -298,68 +304,27 @@ contains
       if (allocated(error)) error%code = exit_convergence
     end if
     call new%interfaces%faces%hold(model, correction)
+    if (.not. (self%searches .or. allocated(error))) call self%take_part(model, old, new, correction)
   end subroutine find_correction
 
-  !> The tangent where the iteration has come to, after the operator was renewed if that is due.
-  subroutine set_tangent_up(self, model, operator, old, new, tangent, diagonal, error)
+  !> Takes part of a correction, where contacts may go round, with the force that goes with it.
+  subroutine take_part(self, model, old, new, correction)
     !> The problem
-    class(dynamic_step_t), intent(in) :: self
-    type(model_t), target, intent(in) :: model
-    !> The factored operator
-    type(tangent_operator_t), target, intent(inout) :: operator
+    class(dynamic_step_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
     !> State at the start
     type(state_t), intent(in) :: old
-    !> State at the end
-    type(state_t), target, intent(in) :: new
-    !> The tangent
-    type(tangent_product_t), intent(out) :: tangent
-    !> Its diagonal, (5, points)
-    real(wp), allocatable, intent(out) :: diagonal(:, :)
-    !> Set if the operator is singular
-    type(error_t), allocatable, intent(inout) :: error
-    real(wp), allocatable :: wanted(:, :)
-    logical :: due
+    !> State at the end, before the correction
+    type(state_t), intent(inout) :: new
+    !> Correction of the displacement, (5, points)
+    real(wp), intent(inout) :: correction(:, :)
 
-    allocate (wanted, source=operator%added)
-    due = self%dear
-    if (model%has_bonds) then
-      call new%interfaces%added_stiffness(model, operator%diagonal, self%integrator%stiffness_factor(), wanted)
-      if (.not. due) due = operator%has_left(model, wanted, self%renewal)
-    end if
-    if (due) call operator%renew(model, new%plies%stiffness, new%interfaces, new%motion%displacement, &
-                                 self%integrator%stiffness_factor(), self%integrator%mass_factor(self%step), error)
-    if (allocated(error)) return
-    tangent%model => model
-    tangent%numbering => operator%numbering
-    tangent%displacement => new%motion%displacement
-    tangent%stiffness => new%plies%stiffness
-    if (allocated(new%plies%free)) tangent%free => new%plies%free
-    tangent%stiffness_factor = self%integrator%stiffness_factor()
-    tangent%mass_factor = self%integrator%mass_factor(self%step)
-    tangent%mass_change = tangent%mass_factor - operator%mass_factor
-    tangent%elements = .not. due .and. (model%scene%has_ply_damage .or. model%scene%kinematics == kinematics_von_karman &
-                                        .and. (self%asks_elements .or. model%has_bonds))
-    if (model%has_bonds) &
-      call tangent%take_jumps(operator%added, wanted, new%interfaces%cohesive%cohesive, tangent%stiffness_factor* &
-        new%interfaces%cohesive%tangents_at(model, old%interfaces%cohesive, new%motion%displacement))
-    diagonal = operator%diagonal
-    diagonal(:3, :) = diagonal(:3, :) + wanted
-    if (.not. model%scene%has_impactor .or. tangent%is_factored()) return
-    allocate (tangent%pattern(operator%numbering%rows))
-    call operator%numbering%gather(unit_push(model), tangent%pattern)
-    tangent%force_slope = self%coupling%slope(model%scene%indentation, old%indentation, &
-                                              model%contact_deflection(new%motion%displacement))
-  end subroutine set_tangent_up
-
-  !> Forces on the modelled part of the plate of a unit force of the impactor.
-  pure function unit_push(model) result(forces)
-    type(model_t), intent(in) :: model
-    !> (5, points)
-    real(wp), allocatable :: forces(:, :)
-
-    allocate (forces(5, size(model%patch)), source=0.0_wp)
-    forces(3, :) = model%patch/model%mesh%multiplicity
-  end function unit_push
+    if (.not. part_taken(new%iterations) < 1) return
+    correction = part_taken(new%iterations)*correction
+    new%motion%displacement = new%motion%displacement + correction
+    call self%find_force(model, old, new)
+    new%motion%displacement = new%motion%displacement - correction
+  end subroutine take_part
 
   !> Finds the impactor's force for a displacement.
   subroutine find_force(self, model, old, new)

@@ -29,6 +29,7 @@ contains
   !> Finds the force that goes with the travel and with the plate's response to it, and adds this response to a
   !> correction.
   subroutine find_push(model, operator, part, new, correction, error)
+    !> Mesh, numbering and interfaces of the plate
     type(model_t), target, intent(in) :: model
     !> The factored operator
     type(tangent_operator_t), target, intent(inout) :: operator

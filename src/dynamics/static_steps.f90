@@ -139,6 +139,7 @@ contains
   subroutine find_correction(self, model, operator, old, new, residual, tolerance, correction, falls, error)
     !> The problem
     class(static_step_t), intent(inout) :: self
+    !> Mesh, numbering and interfaces of the plate
     type(model_t), target, intent(in) :: model
     !> The factored operator
     type(tangent_operator_t), target, intent(inout) :: operator
@@ -160,7 +161,8 @@ contains
     falls = .false.
     if (.not. operator%ready .or. changes(model, new%iterations)) &
       call operator%renew(model, new%plies%stiffness, new%interfaces, new%motion%displacement, 1.0_wp, 0.0_wp, error)
-    if (.not. allocated(error)) call solve_tangent(operator, model, new%interfaces%cohesive, residual, correction, error)
+    if (.not. allocated(error)) &
+      call solve_tangent(operator, model, new%interfaces%cohesive, residual, correction, error)
     if (.not. allocated(error)) call self%complete_correction(model, operator, old, new, correction, error)
     if (.not. allocated(error)) call new%interfaces%faces%hold(model, correction)
   end subroutine find_correction
@@ -169,6 +171,7 @@ contains
   subroutine complete_correction(self, model, operator, old, new, correction, error)
     !> The problem
     class(static_step_t), intent(inout) :: self
+    !> Mesh, numbering and interfaces of the plate
     type(model_t), target, intent(in) :: model
     !> The factored operator
     type(tangent_operator_t), target, intent(inout) :: operator

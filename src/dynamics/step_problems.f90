@@ -18,8 +18,8 @@ module step_problems
   !> What is left of the forces by a correction at most, and part of the square of the last ratio of residuals that the
   !> next may leave (S. C. Eisenstat, H. F. Walker, SIAM J. Sci. Comput. 17 (1996) 16-32, choice 2).
   real(wp), parameter :: most_left = 1.0e-3_wp, left_of_square = 0.9_wp
-  !> What a correction by the factored operator may leave before the elements are asked for their tangents, which costs a
-  !> fifth of a solve each time.
+  !> What a correction by the factored operator may leave before the elements are asked for their tangents, each for a
+  !> fifth of a solve.
   real(wp), parameter :: well_left = 1.0e-2_wp
   !> Part of the tolerance to which the last correction goes: beyond it solves gain nothing.
   real(wp), parameter :: spare = 0.3_wp
@@ -117,6 +117,7 @@ module step_problems
       import :: step_problem_t, model_t, tangent_operator_t, state_t, error_t, wp
       !> The problem
       class(step_problem_t), intent(inout) :: self
+      !> Mesh, numbering and interfaces of the plate
       type(model_t), target, intent(in) :: model
       !> The factored operator
       type(tangent_operator_t), target, intent(inout) :: operator
@@ -179,6 +180,7 @@ contains
   subroutine solve_step(problem, model, equilibrium, operator, old, new, converged, error)
     !> The kind of step
     class(step_problem_t), intent(inout) :: problem
+    !> Mesh, numbering and interfaces of the plate
     type(model_t), target, intent(in) :: model
     !> Convergence asked for
     type(equilibrium_t), intent(in) :: equilibrium
@@ -209,7 +211,8 @@ contains
       if (search%on .and. norm > equilibrium%tolerance) then
         call search%judge(model, smooth, ends)
         if (.not. ends) then
-          call move(problem, model, old, search%start + search%share*search%direction, new)
+          new%motion%displacement = search%start + search%share*search%direction
+          call problem%complete(old, new)
           call problem%find_force(model, old, new)
           cycle
         end if
@@ -235,7 +238,8 @@ contains
         return
       end if
       before = norm
-      call move(problem, model, old, new%motion%displacement + correction, new)
+      new%motion%displacement = new%motion%displacement + correction
+      call problem%complete(old, new)
       new%iterations = new%iterations + 1
     end do
     if (converged) call problem%finish(model, old, energy, new)
@@ -300,6 +304,7 @@ contains
   subroutine correct(problem, model, operator, old, new, residual, smooth, tolerance, correction, search, error)
     !> The kind of step
     class(step_problem_t), intent(inout) :: problem
+    !> Mesh, numbering and interfaces of the plate
     type(model_t), target, intent(in) :: model
     !> The factored operator
     type(tangent_operator_t), target, intent(inout) :: operator
@@ -307,8 +312,9 @@ contains
     type(state_t), intent(in) :: old
     !> State at the end
     type(state_t), target, intent(inout) :: new
-    !> Residual at the owned points, and without ties and contacts, (5, points)
+    !> Residual at the owned points, (5, points)
     real(wp), intent(in) :: residual(:, :)
+    !> Without ties and contacts; allocated where corrections are searched
     real(wp), allocatable, intent(in) :: smooth(:, :)
     !> Part of it that may be left
     real(wp), intent(in) :: tolerance
@@ -328,20 +334,4 @@ contains
     call new%interfaces%rig%add_stiffness(model, 0.0_wp, stiffness)
     call search%begin(model, new%motion%displacement, correction, residual, smooth, stiffness, falls)
   end subroutine correct
-
-  !> Takes a displacement.
-  subroutine move(problem, model, old, displacement, new)
-    !> The kind of step
-    class(step_problem_t), intent(in) :: problem
-    type(model_t), intent(in) :: model
-    !> State at the start
-    type(state_t), intent(in) :: old
-    !> The displacement, (5, points)
-    real(wp), intent(in) :: displacement(:, :)
-    !> State at the end
-    type(state_t), intent(inout) :: new
-
-    new%motion%displacement = displacement
-    call problem%complete(old, new)
-  end subroutine move
 end module step_problems

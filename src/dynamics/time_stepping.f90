@@ -250,7 +250,8 @@ contains
     problem = new_dynamic_step(self%integrator, step, self%stepping%adapt%iterations)
     call solve_step(problem, model, self%stepping%equilibrium, self%operator, self%now, self%trial, converged, error)
     if (converged .and. model%map%layered) &
-      call grow_in_step(problem, model, self%stepping%equilibrium, self%operator, self%now, self%trial, converged, error)
+      call grow_in_step(problem, model, self%stepping%equilibrium, self%operator, self%now, self%trial, converged, &
+                        error)
     self%haste = self%trial%plies%haste
     if (converged .and. self%haste > 1) converged = .not. step > self%smallest_step(model)*(1 + 1.0e-9_wp)
   end subroutine try_step

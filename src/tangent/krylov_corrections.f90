@@ -34,15 +34,16 @@ module krylov_corrections
 contains
 
   !> Correction of the displacement for a residual, ghosts included. Collective.
-  subroutine find_krylov_correction(operator, model, tangent, diagonal, residual, tolerance, correction, error, negative, &
+  subroutine find_krylov_correction(operator, model, tangent, diagonal, residual, tolerance, correction, error, &
+                                    negative, &
                              satisfied)
     !> The factored operator
     type(tangent_operator_t), intent(inout) :: operator
     type(model_t), intent(in) :: model
     !> The tangent
     type(tangent_product_t), intent(in) :: tangent
-    !> Its diagonal, (5, points)
-    real(wp), intent(in) :: diagonal(:, :)
+    !> Its diagonal, (5, points); unallocated: the tangent is the factored operator
+    real(wp), allocatable, intent(in) :: diagonal(:, :)
     !> Residual at the owned points, (5, points)
     real(wp), intent(in) :: residual(:, :)
     !> Part of the residual that may be left
@@ -113,7 +114,8 @@ contains
     do k = 1, most_directions
       call precondition(operator, tangent, space%forces(:, k), space%motions(:, k), error)
       if (allocated(error)) return
-      call tangent%multiply(space%motions(:, k), known_product(tangent, space%forces(:, k), space%motions(:, k)), product)
+      call tangent%multiply(space%motions(:, k), known_product(tangent, space%forces(:, k), space%motions(:, k)), &
+                            product)
       call make_orthogonal(model, space, k, product)
       size_of_product = size_of(model, space%weight, product)
       space%shares(k + 1, k) = size_of_product
@@ -159,8 +161,8 @@ contains
     if (tangent%force_slope > 0) product = product - tangent%force_slope*tangent%mean(motion)*tangent%pattern
   end function known_product
 
-  !> Frees a product from the forces of the space, twice, as digits are lost (L. Giraud, J. Langou, M. Rozloznik, Comput.
-  !> Math. Appl. 50 (2005) 1069-1075), and notes their shares.
+  !> Frees a product from the forces of the space, twice, as digits are lost (L. Giraud, J. Langou, M. Rozloznik,
+  !> Comput. Math. Appl. 50 (2005) 1069-1075), and notes their shares.
   subroutine make_orthogonal(model, space, k, product)
     type(model_t), intent(in) :: model
     !> The space
@@ -193,7 +195,8 @@ contains
     size_of = sqrt(size_of)
   end function size_of
 
-  !> Combination that leaves least: || first e_1 - H y ||, by Givens' rotations of H, which has one row below its diagonal.
+  !> Combination that leaves least: || first e_1 - H y ||, by Givens' rotations of H, which has one row below its
+  !> diagonal.
   pure subroutine least_squares(matrix, first, shares, left)
     !> H, (k + 1, k)
     real(wp), intent(in) :: matrix(:, :)
@@ -220,7 +223,8 @@ contains
     left = abs(right(n + 1))
     allocate (shares(n))
     do k = n, 1, -1
-      shares(k) = (right(k) - dot_product(h(k, k + 1:n), shares(k + 1:)))/sign(max(abs(h(k, k)), tiny(length)), h(k, k))
+      shares(k) = (right(k) - dot_product(h(k, k + 1:n), shares(k + 1:))) &
+                  /sign(max(abs(h(k, k)), tiny(length)), h(k, k))
     end do
   end subroutine least_squares
 

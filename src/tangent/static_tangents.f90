@@ -1,7 +1,7 @@
 !> Solutions with the tangent of a load step, whose symmetric part has just been factored.
 !>
-!> A cohesive law whose toughness depends on the mixture of modes has an unsymmetric tangent where damage grows. The rest,
-!> a few small blocks, is followed by generalised minimal residuals.
+!> A cohesive law whose toughness depends on the mixture of modes has an unsymmetric tangent where damage grows. The
+!> rest, a few small blocks, is followed by generalised minimal residuals.
 module static_tangents
   use cohesive_interfaces, only: cohesive_interfaces_t
   use errors, only: error_t
@@ -24,6 +24,7 @@ contains
   subroutine solve_tangent(operator, model, cohesive, forces, solution, error)
     !> The operator, just factored
     type(tangent_operator_t), target, intent(inout) :: operator
+    !> Mesh, numbering and interfaces of the plate
     type(model_t), target, intent(in) :: model
     !> The interfaces with their tangents
     type(cohesive_interfaces_t), intent(in) :: cohesive

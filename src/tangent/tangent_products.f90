@@ -28,8 +28,9 @@ module tangent_products
     real(wp), allocatable :: jumps(:, :, :)
     !> True: cohesive points soften, so it may be indefinite
     logical :: softens = .false.
-    !> What the impactor's force loses per mean deflection of the patch, and how a unit of it is spread over the rows
+    !> What the impactor's force loses per mean deflection of the patch
     real(wp) :: force_slope = 0
+    !> How a unit of that force is spread over the rows
     real(wp), allocatable :: pattern(:)
   contains
     !> The tangent times a motion.
