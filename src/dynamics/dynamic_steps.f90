@@ -304,7 +304,7 @@ contains
       if (allocated(error)) error%code = exit_convergence
     end if
     call new%interfaces%faces%hold(model, correction)
-    if (.not. (self%searches .or. allocated(error))) call self%take_part(model, old, new, correction)
+    if (.not. allocated(error)) call self%take_part(model, old, new, correction)
   end subroutine find_correction
 
   !> Takes part of a correction, where contacts may go round, with the force that goes with it.
