@@ -14,7 +14,6 @@ module dynamic_steps
   use impact_coupling, only: impact_coupling_t, begin_coupling
   use tangent_operators, only: tangent_operator_t
   use residual_norms, only: relative_residual
-  use static_steps, only: part_taken
   use dynamic_tangents, only: find_tangent, add_force_slope
   use krylov_corrections, only: find_krylov_correction
   use tangent_products, only: tangent_product_t
@@ -62,7 +61,6 @@ module dynamic_steps
     procedure :: may_stop
     procedure :: find_correction
     procedure :: find_force
-    procedure, private :: take_part
     procedure :: complete
     procedure :: finish
   end type dynamic_step_t
@@ -304,27 +302,7 @@ contains
       if (allocated(error)) error%code = exit_convergence
     end if
     call new%interfaces%faces%hold(model, correction)
-    if (.not. allocated(error)) call self%take_part(model, old, new, correction)
   end subroutine find_correction
-
-  !> Takes part of a correction, where contacts may go round, with the force that goes with it.
-  subroutine take_part(self, model, old, new, correction)
-    !> The problem
-    class(dynamic_step_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
-    !> State at the start
-    type(state_t), intent(in) :: old
-    !> State at the end, before the correction
-    type(state_t), intent(inout) :: new
-    !> Correction of the displacement, (5, points)
-    real(wp), intent(inout) :: correction(:, :)
-
-    if (.not. part_taken(new%iterations) < 1) return
-    correction = part_taken(new%iterations)*correction
-    new%motion%displacement = new%motion%displacement + correction
-    call self%find_force(model, old, new)
-    new%motion%displacement = new%motion%displacement - correction
-  end subroutine take_part
 
   !> Finds the impactor's force for a displacement.
   subroutine find_force(self, model, old, new)

@@ -15,8 +15,9 @@ module step_problems
   private
   public :: step_problem_t, solve_step
 
-  !> What is left of the forces by a correction at most, and part of the square of the last ratio of residuals that the
-  !> next may leave (S. C. Eisenstat, H. F. Walker, SIAM J. Sci. Comput. 17 (1996) 16-32, choice 2).
+  !> What is left of the residual by a correction at most, and of the forces in play, and part of the square of the last
+  !> ratio of residuals that the next may leave (S. C. Eisenstat, H. F. Walker, SIAM J. Sci. Comput. 17 (1996) 16-32,
+  !> choice 2).
   real(wp), parameter :: most_left = 1.0e-3_wp, left_of_square = 0.9_wp
   !> What a correction by the factored operator may leave before the elements are asked for their tangents, each for a
   !> fifth of a solve.
@@ -252,8 +253,9 @@ contains
     !> Size of the residual, and of that before the last correction; 0: there was none
     real(wp), intent(in) :: norm, before
 
-    left = most_left
-    if (before > 0) left = min(most_left, left_of_square*(norm/before)**2)
+    ! Faces that a correction has pressed into each other push with a thousandfold of all forces in play.
+    left = most_left*min(1.0_wp, 1/norm)
+    if (before > 0) left = min(left, left_of_square*(norm/before)**2)
     left = max(left, spare*equilibrium%tolerance/norm)
   end function forcing_term
 
