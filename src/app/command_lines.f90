@@ -3,6 +3,7 @@ module command_lines
   use errors, only: error_t, fail, exit_files, exit_usage
   use folder_listings, only: file_by_age
   use kinds, only: wp
+  use rig_decks, only: rig_names
   use text, only: line_t, append, nearest_name, words_of
   use usage_texts, only: option_rows
   implicit none
@@ -24,6 +25,8 @@ module command_lines
     character(len=:), allocatable :: output
     !> Seconds on the wall that override the deck's; 0: the deck's
     real(wp) :: wall_limit = 0
+    !> Rig whose deck is written; empty: none
+    character(len=:), allocatable :: rig
     !> slurm or pbs
     character(len=:), allocatable :: queue
     !> Ranks of a job, and its seconds on the wall; 0: left to the deck, and a day
@@ -45,7 +48,8 @@ module command_lines
                                                   'version', 'help', 'new', 'completion', 'man', 'queue']
 
   !> Options that take a value.
-  character(len=*), parameter :: valued(*) = [character(len=12) :: '--ranks', '--time', '--output', '--wall-limit']
+  character(len=*), parameter :: valued(*) = [character(len=12) :: '--rig', '--ranks', '--time', &
+                                                                      '--output', '--wall-limit']
 
 contains
 
@@ -60,6 +64,7 @@ contains
     logical :: verb_given
 
     command%target = ''
+    command%rig = ''
     command%petsc_options = ''
     verb_given = .false.
     i = 1
@@ -95,6 +100,8 @@ contains
     if (.not. allocated(error)) call require_target(command, error)
     if (command%verify .and. command%verb /= verb_run .and. .not. allocated(error)) &
       call fail(error, exit_usage, '--verify takes a deck to run.')
+    if (command%rig /= '' .and. command%verb /= verb_new .and. .not. allocated(error)) &
+      call fail(error, exit_usage, '--rig goes with new.')
     if (command%profile .and. all(command%verb /= [verb_run, verb_restart]) .and. .not. allocated(error)) &
       call fail(error, exit_usage, '--profile takes a deck to run, or a checkpoint.')
   end subroutine read_command_line
@@ -164,6 +171,9 @@ contains
     type(error_t), allocatable, intent(inout) :: error
 
     select case (word)
+    case ('--rig')
+      command%rig = value
+      if (value /= rig_names) call fail(error, exit_usage, '--rig needs the name of a rig: '//rig_names//'.')
     case ('--ranks')
       command%ranks = whole_number(value)
       if (command%ranks < 1) call fail(error, exit_usage, '--ranks needs a whole number above 0.')

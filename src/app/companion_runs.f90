@@ -52,14 +52,14 @@ contains
     if (allocated(error)) return
     companion%record = new_run_record(model)
     looks = steps_between_looks(coarse%stepping, model%mesh%elements())
-    do while (stepper%now%time < end_of_run(coarse%stepping%time, companion%record%contact_end))
-      call stepper%advance(model, end_of_run(coarse%stepping%time, companion%record%contact_end), error)
+    do while (stepper%now%time < end_of_run(coarse%stepping, companion%record%contact_end))
+      call stepper%advance(model, end_of_run(coarse%stepping, companion%record%contact_end), error)
       if (allocated(error)) exit
       call companion%record%observe(model, stepper%now, steps_between_stages(coarse%stepping))
       if (modulo(stepper%now%step, looks) > 0) cycle
       if (communicator%any(stop_signal() /= 0)) exit
     end do
-    companion%done = .not. (stepper%now%time < end_of_run(coarse%stepping%time, companion%record%contact_end))
+    companion%done = .not. (stepper%now%time < end_of_run(coarse%stepping, companion%record%contact_end))
     companion%velocity = stepper%now%impactor%velocity
     figures = figures_of(model, stepper%now%interfaces)
     companion%area = sum(figures%area)

@@ -6,10 +6,11 @@ module computations
   use command_lines, only: command_t, verb_restart
   use communicators, only: communicator_t, start_mpi
   use deck_contents, only: deck_t
+  use deck_echo, only: adopted_values
   use deck_problems, only: problems_t
   use deck_reader, only: read_deck, read_deck_text
   use deck_refinements, only: refined_text
-  use errors, only: error_t, exit_done, exit_stopped, exit_usage, fail
+  use errors, only: error_t, exit_done, exit_files, exit_stopped, exit_usage, fail
   use files, only: is_directory
   use initial_states, only: fit_initial_state
   use layer_following, only: visit_zones
@@ -254,6 +255,9 @@ contains
     ! A deck without a name has that of its file, which isn't the checkpoint's.
     deck%name = archive%provenance%case_name
     call deck%settings%derive(case_group, key_name, deck%name, .true.)
+    if (problems%errors() == 0 .and. adopted_values(deck%settings) /= archive%provenance%library) &
+      call fail(error, exit_files, path//' was written by version '//archive%provenance%version// &
+                ', whose library of materials has other values; go on with that version, or begin anew.')
     if (problems%errors() == 0) call visit_zones(deck%delaminations, archive)
     call archive%close(error)
     deck%output%directory = '.'

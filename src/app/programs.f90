@@ -20,12 +20,14 @@ module programs
   use computations, only: compute, read_deck_everywhere
   use root_output, only: print_lines
   use queue_signals, only: release_stop_signals
+  use material_explain, only: explain_materials, is_material_topic, material_topic_sentence
   use result_explain, only: explain_column, explain_results, is_result_topic, result_topics_sentence
   use run_costs, only: cost_lines
   use model_sizes, only: model_size_t, size_of_model
   use stepping_parameters, only: is_explicit
   use queue_scripts, only: queue_job_t, write_queue_script
   use shell_pages, only: completion, manual_page
+  use rig_decks, only: rig_deck_name
   use starter_decks, only: starter_name, write_starter
   use usage_texts, only: usage_lines
   implicit none
@@ -127,8 +129,9 @@ contains
 
     path = command%target
     if (path == '') path = starter_name
+    if (command%target == '' .and. command%rig /= '') path = rig_deck_name
     if (.not. communicator%is_root()) return
-    call write_starter(path, error)
+    call write_starter(path, command%rig, error)
     if (.not. allocated(error)) call print_lines(communicator, [line_t('Wrote '//path//'. To run it: implam '//path)])
   end subroutine start_deck
 
@@ -175,8 +178,12 @@ contains
       call print_lines(communicator, columns)
       return
     end if
-    if (is_result_topic(command%target)) then
-      call explain_results(command%target, command%markdown, lines)
+    if (is_result_topic(command%target) .or. is_material_topic(command%target)) then
+      if (is_material_topic(command%target)) then
+        call explain_materials(command%markdown, lines)
+      else
+        call explain_results(command%target, command%markdown, lines)
+      end if
       call print_lines(communicator, lines)
       if (command%markdown .or. size(vocabulary%groups_with(command%target)) == 0) return
       call print_lines(communicator, [line_t('The deck has keys of this name too:')])
@@ -190,7 +197,8 @@ contains
     call print_lines(communicator, lines)
     if (size(columns) > 0 .and. .not. command%markdown) &
       call print_lines(communicator, [line_t('Results have this name too:'), columns])
-    if (command%target == '') call print_lines(communicator, [line_t(result_topics_sentence)])
+    if (command%target == '') call print_lines(communicator, &
+      [line_t(result_topics_sentence), line_t(material_topic_sentence)])
   end subroutine explain_topic
 
   !> Reads and checks a deck, lists what is wrong with it.

@@ -2,6 +2,7 @@
 !> rows behind them come again for each interface that may delaminate and for each line.
 module result_rows
   use deck_contents, only: deck_t
+  use dent_depths, only: dent_depth, dent_rows
   use interface_columns, only: area_rows, area_values, border_rows, border_values, interface_rows, interface_values, &
                                release_rows, release_values, rig_rows, rig_values
   use kinds, only: wp
@@ -10,7 +11,7 @@ module result_rows
   use operator_columns, only: operator_rows, operator_values
   use output_clocks, only: shown_time
   use placed_gauges, only: gauge_column_rows, gauge_strains
-  use ply_columns, only: ply_rows, ply_values
+  use ply_columns, only: permanent_rows, permanent_values, ply_rows, ply_values
   use result_tables, only: cell, column_name, column_type, name_with_number, result_name_length, result_row_length
   use run_records, only: run_record_t
   use step_columns, only: contact_rows, damping_rows, heat_rows, heat_values, iteration_rows, iteration_values, &
@@ -31,7 +32,7 @@ module result_rows
   !> Columns that every history has, of which the first seventeen are the public interface.
   character(len=*), parameter :: plate_rows(*) = [character(len=result_row_length) :: &
     motion_rows, area_rows, ledger_rows, step_rows, release_rows, iteration_rows, operator_rows, ply_rows, &
-    border_rows, rig_rows, heat_rows, limit_rows, contact_rows, damping_rows]
+    border_rows, rig_rows, heat_rows, limit_rows, contact_rows, damping_rows, permanent_rows, dent_rows]
   !> The table of columns in their order.
   character(len=*), parameter, public :: column_rows(*) = [character(len=result_row_length) :: &
     plate_rows, interface_rows, line_column_rows, end_rows, gauge_column_rows, filter_rows]
@@ -154,6 +155,8 @@ contains
              operator_values(stepper%operator), ply_values(model, now%plies), border_values(model, now%interfaces), &
              rig_values(model, now%interfaces, now%motion, loads), heat_values(now%ledger), &
              real(size(record%warning_kinds), wp), model%pressed_area(), now%ledger%damping, &
+             permanent_values(now%plies), &
+             dent_depth(model, now%motion%displacement) + now%indentation%dent, now%indentation%dent, &
              interface_values(model, now%interfaces)]
       lines = line_values(model, now)
       row = [row, lines, end_values(model, lines), gauge_strains(model, now%motion%displacement)]

@@ -1,7 +1,9 @@
 !> What is found out at the end of a run for its summary, beside what the run has recorded on its way.
 module run_figures
   use delamination_parameters, only: toughnesses
+  use dent_depths, only: dent_depth
   use errors, only: error_t, exit_done, exit_stopped
+  use failed_plies_areas, only: failed_areas
   use interface_figures, only: figures_of, interface_figures_t
   use kinds, only: wp
   use models, only: model_t
@@ -28,6 +30,8 @@ module run_figures
     type(interface_figures_t), allocatable :: interfaces(:)
     !> Area that a C-scan sees
     real(wp) :: projected_area = 0
+    !> Depth of the dent, and the part of it that the indentation law keeps
+    real(wp) :: dent(2) = 0
     !> Plies of elements failed in each mode
     integer :: failures(failure_modes) = 0
     !> Area in which each ply has failed in each mode, (modes, plies)
@@ -52,8 +56,9 @@ contains
 
     figures%interfaces = figures_of(model, now%interfaces)
     figures%projected_area = now%interfaces%projected_area(model)
+    figures%dent = [dent_depth(model, now%motion%displacement), 0.0_wp] + now%indentation%dent
     figures%failures = now%plies%counts(model)
-    figures%failed_area = now%plies%areas(model)
+    figures%failed_area = failed_areas(model, now%plies)
     zones = size(figures%interfaces)
     bending = effective_bending_stiffness(model%section%stiffness)
     allocate (figures%threshold(zones))

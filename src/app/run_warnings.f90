@@ -1,6 +1,7 @@
 !> Warnings that a run gives: limits of the model that it passes. Each is given once, in the log at that time and in the
 !> summary at the end.
 module run_warnings
+  use failed_plies_areas, only: failed_areas
   use deck_contents, only: deck_t
   use delamination_parameters, only: delamination_t
   use energy_watches, only: energy_watch_t, energy_created, energy_taken, energy_unaccounted, much
@@ -183,7 +184,7 @@ contains
     has_hole = .false.
     counts = now%plies%counts(model)
     if (counts(fibre_failure) < size(model%scene%laminate%angle)) return
-    areas = now%plies%areas(model)
+    areas = failed_areas(model, now%plies)
     has_hole = all(areas(fibre_failure, :) >= model%pressed_area()*(1 - rounded_off))
   end function has_hole
 

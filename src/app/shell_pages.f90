@@ -3,6 +3,7 @@ module shell_pages
   use deck_values, only: allowed_sentence
   use deck_vocabulary, only: vocabulary_t, key_entry_t
   use errors, only: error_t, fail, exit_usage
+  use material_explain, only: material_topic
   use result_explain, only: result_topics
   use text, only: line_t, append
   use usage_texts, only: command_rows, option_rows, code_rows, notes
@@ -117,7 +118,7 @@ contains
     integer :: i
 
     allocate (lines(0))
-    topics = result_topics
+    topics = result_topics//' '//material_topic
     do i = 1, size(vocabulary%groups)
       topics = topics//' '//vocabulary%groups(i)%name
     end do

@@ -12,9 +12,9 @@ module simulations
   use model_building, only: create_model
   use time_stepping, only: time_stepper_t
   use deck_contents, only: deck_t
-  use build_information, only: this_build
+  use deck_provenance, only: provenance_of
   use result_paths, only: refuse_pipes
-  use run_provenance, only: provenance_t, this_run
+  use run_provenance, only: provenance_t
   use run_advances, only: show_progress, start_progress
   use run_moments, only: moment
   use run_progress, only: progress_t
@@ -159,9 +159,7 @@ contains
     if (allocated(error)) return
     ! A launcher hands its ranks a terminal of its own, whose output may go to a file.
     if (launched()) self%log%interactive = .false.
-    self%provenance = this_run(this_build(), deck%text, communicator%size)
-    self%provenance%units = deck%units
-    self%provenance%case_name = deck%name
+    self%provenance = provenance_of(deck, communicator%size)
     call self%provenance%report(self%log)
     call log_echo(deck, self%log)
     call self%timers%start('model')
@@ -247,7 +245,7 @@ contains
     class(simulation_t), intent(in) :: self
 
     end_of = 1
-    if (.not. self%deck%has_static) end_of = end_of_run(self%deck%stepping%time, self%record%contact_end)
+    if (.not. self%deck%has_static) end_of = end_of_run(self%deck%stepping, self%record%contact_end)
   end function end_of
 
   !> Steps until the end, or until a queue's signal or the time on the wall ends the run.

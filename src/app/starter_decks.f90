@@ -1,7 +1,9 @@
-!> The deck that `implam new` writes: a drop-weight test on a cross-ply coupon, small enough to run at once.
+!> The decks that `implam new` writes: a drop-weight test on a cross-ply coupon, small enough to run at once, or the
+!> test of a rig.
 module starter_decks
   use errors, only: error_t
   use new_files, only: write_new_file
+  use rig_decks, only: d7136_lines
   use text, only: line_t, append
   implicit none
   private
@@ -46,18 +48,26 @@ module starter_decks
 contains
 
   !> Writes the deck into a new file.
-  subroutine write_starter(path, error)
+  subroutine write_starter(path, rig, error)
     !> Its path
     character(len=*), intent(in) :: path
+    !> Name of a rig; empty: none
+    character(len=*), intent(in) :: rig
     !> Raised if there is such a file already, or it can't be written
     type(error_t), allocatable, intent(inout) :: error
     type(line_t), allocatable :: deck(:)
     integer :: i
 
     allocate (deck(0))
-    do i = 1, size(lines)
-      call append(deck, trim(lines(i)))
-    end do
+    if (rig /= '') then
+      do i = 1, size(d7136_lines)
+        call append(deck, trim(d7136_lines(i)))
+      end do
+    else
+      do i = 1, size(lines)
+        call append(deck, trim(lines(i)))
+      end do
+    end if
     call write_new_file(path, deck, error)
   end subroutine write_starter
 end module starter_decks

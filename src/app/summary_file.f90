@@ -1,6 +1,7 @@
 !> NAME_summary.json: what a run says at its end, in full precision. doc/manual/summary.md describes it.
 module summary_file
   use compression_summary, only: put_compression
+  use summary_provenance, only: put_provenance
   use deck_contents, only: deck_t
   use delamination_parameters, only: law_cohesive
   use errors, only: error_t, exit_files, fail
@@ -62,7 +63,7 @@ contains
     call json%close()
     call json%put(trim(merge('load_factor_reached', 'time_reached       ', deck%has_static)), shown_time(record%time))
     call json%put('accepted_steps', stepper%now%step)
-    if (deck%has_impactor .and. .not. deck%has_static) call put_impact(json, stepper%now, record)
+    if (deck%has_impactor .and. .not. deck%has_static) call put_impact(json, stepper%now, record, figures)
     call json%put('largest_deflection', record%deflection)
     call json%put('largest_deflection_at', shown_time(record%deflection_time))
     if (record%compression%strength > 0) call put_compression(json, record%compression, deck%gauges)
@@ -81,13 +82,15 @@ contains
   end function summary_text
 
   !> Force, contact and impactor.
-  subroutine put_impact(json, now, record)
+  subroutine put_impact(json, now, record, figures)
     !> The summary
     type(json_t), intent(inout) :: json
     !> The state reached
     type(state_t), intent(in) :: now
     !> What the run remembers
     type(run_record_t), intent(in) :: record
+    !> Figures of the state
+    type(run_figures_t), intent(in) :: figures
 
     call json%put('peak_force', record%peak_force)
     call json%put('peak_force_at', shown_time(record%peak_time))
@@ -103,6 +106,8 @@ contains
     call json%put('contact_duration', shown_time(record%contact_duration))
     call json%put('contact_until', shown_time(record%contact_end))
     call json%put('in_contact', now%force > 0)
+    call json%put('dent_depth', figures%dent(1))
+    call json%put('dent_indentation', figures%dent(2))
     call json%put('impactor_displacement', now%impactor%displacement)
     call json%put('impactor_velocity', now%impactor%velocity)
     if (now%force > 0 .or. now%impactor%velocity >= 0) then
@@ -356,24 +361,6 @@ contains
     end do
     call json%close()
   end subroutine put_profile
-
-  !> Where the result comes from.
-  subroutine put_provenance(json, provenance)
-    !> The summary
-    type(json_t), intent(inout) :: json
-    !> Version, deck and machine
-    type(provenance_t), intent(in) :: provenance
-
-    call json%open_object('provenance')
-    call json%put('version', provenance%version)
-    call json%put('commit', provenance%commit)
-    call json%put('compiler', provenance%compiler)
-    call json%put('petsc_version', provenance%petsc_version)
-    call json%put('ranks', provenance%ranks)
-    call json%put('started', provenance%started)
-    call json%put('deck', provenance%deck)
-    call json%close()
-  end subroutine put_provenance
 
   !> Writes the summary aside and puts it in its place in one step.
   subroutine write_summary(path, content, error)

@@ -52,6 +52,7 @@ contains
     if (record%compression%strength > 0) &
       call tell(lines, 'residual strength', compression_text(record%compression))
     if (struck) call tell_impact_energy(lines, deck, now)
+    if (struck .and. .not. now%force > 0) call tell_dent(lines, figures)
     call tell_energies(lines, now%ledger)
     if (record%scaled_energy > 0) call tell(lines, 'scaled inertia', 'motions with it held at most '// &
                                             rounded_text(100*record%scaled_share(), 2)//' % of the energy')
@@ -105,6 +106,21 @@ contains
       call tell(lines, 'rebound velocity', rounded_text(-now%impactor%velocity)//within(errors%velocity))
     end if
   end subroutine tell_impact
+
+  !> Depth of the dent.
+  subroutine tell_dent(lines, figures)
+    !> The lines
+    type(line_t), allocatable, intent(inout) :: lines(:)
+    !> Figures of the state
+    type(run_figures_t), intent(in) :: figures
+
+    if (figures%dent(1) > figures%dent(2)) then
+      call tell(lines, 'dent', rounded_text(figures%dent(1))//' below the surface around it, of that indentation '// &
+                rounded_text(figures%dent(2)))
+    else
+      call tell(lines, 'dent', rounded_text(figures%dent(2))//', the indentation''s')
+    end if
+  end subroutine tell_dent
 
   !> How far a figure may be off.
   pure function within(error, figure) result(clause)

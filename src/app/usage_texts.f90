@@ -11,22 +11,25 @@ module usage_texts
   integer, parameter :: indent = 31, width = 96
 
   !> Commands: what is typed behind `implam`, and what it does.
-  character(len=text_length), parameter, public :: command_rows(2, 10) = reshape([character(len=text_length) :: &
+  character(len=text_length), parameter, public :: command_rows(2, 11) = reshape([character(len=text_length) :: &
     '[run] DECK.nml', 'run a deck', &
     'check DECK.nml', 'read and check a deck, list every fault, run nothing', &
-    'new [NAME.nml]', 'write a commented deck to start from, which runs as it is; no file is overwritten', &
+    'new [NAME.nml]', 'write a commented deck to start from, which runs as it is, with --rig that of a rig; &
+      &no file is overwritten', &
     'explain [GROUP [KEY]]', 'what a deck can say: keys, units, defaults, meaning; GROUP.KEY and GROUP%KEY will &
       &do too', &
     'explain history|fields', 'what results hold: names, units, meaning', &
+    'explain materials', 'published materials that a deck can name, with the source of each value', &
     'restart [FILE]', 'go on from a checkpoint (NAME_restart.h5), or from the newest of a folder: the one named, &
       &that of --output, or this one; the deck is that of the checkpoint, and its file is not read again', &
     'queue slurm|pbs [DECK.nml]', 'write a job script with ranks and memory from the deck; with --chain jobs '// &
     'follow each other until the run has ended; array.txt of a sweep instead of a deck makes a job array', &
     'completion bash|zsh', 'print what lets a shell complete commands, groups and keys', &
     'man', 'print this page and all keys as a manual page of Unix: implam man | man -l -', &
-    'help [GROUP [KEY]]', 'this page, or the same as explain'], [2, 10])
+    'help [GROUP [KEY]]', 'this page, or the same as explain'], [2, 11])
   !> Options.
-  character(len=text_length), parameter, public :: option_rows(2, 11) = reshape([character(len=text_length) :: &
+  character(len=text_length), parameter, public :: option_rows(2, 12) = reshape([character(len=text_length) :: &
+    '--rig d7136', 'the deck that new writes is that of a rig: a drop-weight test after ASTM D7136', &
     '--output DIR', 'folder of the results, instead of the deck''s', &
     '--wall-limit SECONDS', 'end with a checkpoint before so many seconds have passed on the wall', &
     '--verify', 'run the deck, then once more with half the elements'' sides and half the steps, and tell what &
@@ -38,7 +41,7 @@ module usage_texts
     '--markdown', 'explain as a table for the manual', &
     '-v, --version', 'version, commit, compiler and PETSc', &
     '-h, --help', 'this page', &
-    '-mat_..., -ksp_..., -log_view', 'these and other words with one dash go to PETSc'], [2, 11])
+    '-mat_..., -ksp_..., -log_view', 'these and other words with one dash go to PETSc'], [2, 12])
   !> Exit codes.
   character(len=text_length), parameter, public :: code_rows(2, 7) = reshape([character(len=text_length) :: &
     '0', 'done', '1', 'usage', '2', 'deck', '3', 'no convergence at the smallest step', '4', 'files', '5', 'internal', &

@@ -11,7 +11,7 @@ module case_deck
   !> Names of the group and of keys.
   character(len=*), parameter, public :: case_group = 'case', key_name = 'name', &
                                          key_accuracy = 'accuracy', key_refine = 'refine', &
-                                         key_error_estimate = 'error_estimate'
+                                         key_error_estimate = 'error_estimate', key_units = 'units'
   character(len=*), parameter :: group = case_group
   !> Row of the group.
   character(len=group_row_length), parameter, public :: case_group_row = &
@@ -87,7 +87,7 @@ contains
     integer, intent(out) :: refine
 
     refine = settings%integer_of(group, key_refine)
-    units = settings%text_of(group, 'units')
+    units = settings%text_of(group, key_units)
     strict = settings%logical_of(group, 'strict')
     select case (lower_case(settings%text_of(group, key_accuracy)))
     case ('draft')

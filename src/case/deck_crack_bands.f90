@@ -13,9 +13,10 @@ module deck_crack_bands
   use mesh_parameters, only: is_halved
   use plies, only: ply_t
   use ply_blocks, only: block_of
-  use ply_damage_deck, only: ply_damage_group, key_in_situ, keys_of_sudden_failure
+  use ply_damage_deck, only: ply_damage_group, key_in_situ, key_permanent, keys_of_sudden_failure
   use short_numbers, only: short_text
   use stacking, only: stacked_plies
+  use stepping_parameters, only: is_explicit
   use text, only: line_t, append, joined, rounded_text
   implicit none
   private
@@ -36,6 +37,8 @@ contains
 
     if (.not. any([(any(deck%materials(i)%toughness > 0), i=1, size(deck%materials))])) then
       if (deck%ply_damage%in_situ) call refuse_in_situ(deck, problems)
+      if (deck%ply_damage%permanent_shear) call tell(deck%settings, problems, ply_damage_group, key_permanent, &
+        'belongs to plies with fracture energies; give G_ft, G_fc, G_mt and G_mc of every material, or leave it out.')
       do i = 1, size(deck%materials)
         call remark_idle(deck%settings, problems, material_group, key_shear_strain, &
                          'has no effect without fracture energies.', i)
@@ -46,6 +49,7 @@ contains
       call check_energies(deck, i, problems)
       call check_shear(deck, i, problems)
     end do
+    if (deck%ply_damage%permanent_shear) call check_permanent_shear(deck, problems)
     call remark_idle(deck%settings, problems, ply_damage_group, keys_of_sudden_failure, &
                      'has no effect on plies with fracture energies.')
     if (problems%errors() > 0) return
@@ -57,6 +61,22 @@ contains
       call check_lengths(deck, i, problems)
     end do
   end subroutine check_crack_bands
+
+  !> Permanent shear strains need a curve of shear, and steps that follow it.
+  subroutine check_permanent_shear(deck, problems)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    integer :: place
+
+    if (.not. (deck%has_time .and. is_explicit(deck%stepping))) &
+      call tell(deck%settings, problems, ply_damage_group, key_permanent, 'implicit steps and load steps have no '// &
+                'permanent strains; take integrator = ''central_difference'' of &time, or leave it out.')
+    if (any([(deck%settings%is_given(material_group, key_shear_strain, place), place=1, size(deck%materials))])) return
+    call tell(deck%settings, problems, ply_damage_group, key_permanent, 'there is no permanent strain without '// &
+              key_shear_strain//' of a &'//material_group//'; give it, or leave this out.')
+  end subroutine check_permanent_shear
 
   !> Strengths in place need fracture energies.
   subroutine refuse_in_situ(deck, problems)

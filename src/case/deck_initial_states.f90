@@ -38,8 +38,6 @@ contains
     integer :: place
 
     associate (s => deck%settings)
-      if (deck%has_impactor .and. is_explicit(deck%stepping)) &
-        call remark_idle(s, problems, time_group, key_settle, 'has no effect with &impactor.')
       if (deck%load_start > 0 .and. .not. deck%load_start < deck%stepping%time%end .and. &
           are_clear(s, problems, time_group, key_settle//' end')) &
         call tell(s, problems, time_group, key_settle, 'leaves no time for the load; allowed: less than end = '// &

@@ -10,6 +10,7 @@ module deck_reader
   use deck_integrators, only: choose_integrator
   use deck_initial_states, only: check_initial_state
   use deck_interface_remarks, only: check_interfaces
+  use deck_library, only: take_library
   use deck_process_zones, only: check_process_zones, settle_flaws
   use deck_extents, only: check_sizes, check_extents
   use deck_explicit_checks, only: check_central_differences
@@ -107,6 +108,7 @@ contains
     if (size(scan%blocks) == 0 .or. problems%is_full()) return
     call settle(scan, vocabulary, deck%settings, problems)
     if (problems%is_full()) return
+    call take_library(deck%settings, problems)
     call note_groups(deck)
     call fill_bodies(deck, problems)
     call choose_integrator(deck)

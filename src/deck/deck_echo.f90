@@ -3,10 +3,10 @@ module deck_echo
   use deck_entries, only: written_values
   use deck_settings, only: settings_t, setting_t
   use deck_vocabulary, only: vocabulary_t
-  use text, only: line_t, append
+  use text, only: line_t, append, to_text
   implicit none
   private
-  public :: echo
+  public :: echo, adopted_values
 
 contains
 
@@ -29,10 +29,30 @@ contains
         origin = ' [default]'
         if (item%chosen) origin = ' [accuracy]'
         if (item%given) origin = ' [deck]'
+        if (allocated(item%origin)) origin = ' ['//item%origin//']'
         call append(lines, '&'//item%group//' '//item%key//' = '//words//origin)
       end associate
     end do
   end subroutine echo
+
+  !> The values that are not from the deck but from a table that it refers to, one a line; empty: there are none.
+  pure function adopted_values(settings) result(words)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+    !> Lines such as `&material 1 E1 = 130e9 [library t700_m21, source a]`
+    character(len=:), allocatable :: words
+    integer :: i
+
+    words = ''
+    do i = 1, size(settings%items)
+      associate (item => settings%items(i))
+        if (.not. allocated(item%origin)) cycle
+        if (words /= '') words = words//new_line('a')
+        words = words//'&'//item%group//' '//to_text(item%place)//' '//item%key//' = '//written_values(item%values)// &
+                ' ['//item%origin//']'
+      end associate
+    end do
+  end function adopted_values
 
   !> Values of a key as they would stand in a deck, or what the absence of one means; empty if it means nothing.
   pure function value_in_effect(vocabulary, item) result(words)

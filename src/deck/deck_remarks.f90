@@ -62,6 +62,8 @@ contains
 
     names = words_of(keys, ' ')
     do i = 1, size(names)
+      if (settings%find(group, names(i)%text, place) == 0) cycle
+      if (allocated(settings%items(settings%find(group, names(i)%text, place))%origin)) cycle
       if (settings%is_given(group, names(i)%text, place) .and. settings%is_known(group, names(i)%text, place)) &
         call remark(settings, problems, group, names(i)%text, message, place)
     end do

@@ -22,6 +22,8 @@ module deck_settings
     logical :: sound = .true.
     !> True: not from the deck but chosen for the accuracy that it asks for
     logical :: chosen = .false.
+    !> Table that gave the value as the deck refers to it; unallocated: none
+    character(len=:), allocatable :: origin
     !> True: without effect on this deck, so the echo leaves it out
     logical :: idle = .false.
     !> The values; none if the key has no default
@@ -58,6 +60,7 @@ module deck_settings
     procedure :: integers_of
     procedure :: integer_of
     procedure :: logical_of
+    procedure :: adopt
     procedure :: derive
     procedure :: derive_numbers
     procedure :: choose
@@ -289,6 +292,27 @@ contains
     logical_of = .false.
     if (size(values) > 0) logical_of = logical_value(values(1))
   end function logical_of
+
+  !> Gives a key that the deck doesn't give the value of a table that the deck refers to. It counts as given.
+  pure subroutine adopt(self, group, key, word, origin, place)
+    class(settings_t), intent(inout) :: self
+    !> Names of group and key
+    character(len=*), intent(in) :: group, key
+    !> The value as it would stand in a deck
+    character(len=*), intent(in) :: word
+    !> Name of the table, for the echo
+    character(len=*), intent(in) :: origin
+    !> Which group of this name
+    integer, intent(in), optional :: place
+    integer :: i
+
+    i = self%find(group, key, place)
+    if (i == 0) return
+    if (self%items(i)%given) return
+    call self%derive(group, key, word, .false., place)
+    self%items(i)%given = .true.
+    self%items(i)%origin = origin
+  end subroutine adopt
 
   !> Sets the value of a key that the deck doesn't give and that follows from others.
   pure subroutine derive(self, group, key, word, quoted, place)

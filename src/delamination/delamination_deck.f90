@@ -19,10 +19,10 @@ module delamination_deck
   public :: fill_delaminations, check_delaminations
 
   !> Names that checks across groups use.
-  character(len=*), parameter, public :: key_zone = 'zone', key_starter = 'starter', key_toughness = 'G_c', &
-                                         key_toughness_shear = 'G_IIc', key_strip = 'starter_strip', &
-                                         key_starter_at = 'starter_at', key_smoothing = 'smoothing', key_law = 'law', &
-                                         key_flaws = 'cracks_as_flaws', key_shear_cracks = 'shear_cracks'
+  character(len=*), parameter, public :: key_zone = 'zone', key_starter = 'starter', key_law = 'law', &
+    key_toughness = 'G_c', key_toughness_opening = 'G_Ic', key_toughness_shear = 'G_IIc', key_smoothing = 'smoothing', &
+    key_strip = 'starter_strip', key_starter_at = 'starter_at', &
+    key_flaws = 'cracks_as_flaws', key_shear_cracks = 'shear_cracks'
   character(len=*), parameter :: group = delamination_group
   !> Keys that have no effect on a cohesive interface, and on one with a front.
   character(len=*), parameter :: fronts_only = 'energy_release growth tie penalty unloading smoothing contact_exponent'
@@ -132,8 +132,8 @@ contains
       call settings%derive(group, key_starter, to_text(delamination%starter), .false., place)
     associate (s => settings, d => delamination)
       d%toughness = s%real_of(group, 'G_c', place)
-      d%toughness_opening = s%real_of(group, 'G_Ic', place)
-      d%toughness_shear = s%real_of(group, 'G_IIc', place)
+      d%toughness_opening = s%real_of(group, key_toughness_opening, place)
+      d%toughness_shear = s%real_of(group, key_toughness_shear, place)
       d%mixing_exponent = s%real_of(group, 'eta', place)
       d%friction = s%real_of(group, 'friction', place)
       d%cracks_as_flaws = s%logical_of(group, key_flaws, place)

@@ -54,7 +54,7 @@ contains
     !> The state
     type(state_t), intent(inout) :: now
 
-    if (now%time < model%scene%load_start) call damp_motion(method, model, now, model%scene%load_start)
+    if (comes_to_rest(method, model, now)) call damp_motion(method, model, now, method%parameters%settle)
     call method%advance(model, event, now)
     if (model%scene%has_ply_damage .and. .not. allocated(now%plies%bands)) then
       call model%profile%enter('ply criteria')
@@ -68,6 +68,24 @@ contains
     if (model%map%layered) call method%stacks%find_onsets(model, now%interfaces%cohesive)
     call model%profile%leave()
   end subroutine advance_explicit
+
+  !> True while damping brings the plate to rest: before lines begin to load it, or once the impactor has left, moves away
+  !> and presses no more.
+  pure logical function comes_to_rest(method, model, now)
+    !> Central differences
+    type(central_difference_t), intent(in) :: method
+    type(model_t), intent(in) :: model
+    !> The state
+    type(state_t), intent(in) :: now
+
+    comes_to_rest = .false.
+    if (.not. method%parameters%settle > 0) return
+    if (model%scene%has_impactor) then
+      comes_to_rest = now%time > 0 .and. .not. now%force > 0 .and. now%impactor%velocity < 0
+    else
+      comes_to_rest = now%time < model%scene%load_start
+    end if
+  end function comes_to_rest
 
   !> Completes what a step leaves until somebody looks: energies, reactions and stress. Collective.
   subroutine complete_step(method, model, now, error)

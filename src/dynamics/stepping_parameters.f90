@@ -108,14 +108,19 @@ contains
   end function is_explicit
 
   !> When a run ends whose contact, as far as it has come, ended or still went on at some time.
-  elemental real(wp) function end_of_run(time, contact_end)
-    !> Time integration
-    type(time_t), intent(in) :: time
+  elemental real(wp) function end_of_run(stepping, contact_end)
+    !> How steps are taken
+    type(stepping_t), intent(in) :: stepping
     !> When there was contact last
     real(wp), intent(in) :: contact_end
 
-    end_of_run = time%end
-    if (time%follows_contact) end_of_run = min(most_followed*time%end, max(time%end, past_contact*contact_end))
+    associate (time => stepping%time, settle => stepping%central%settle)
+      end_of_run = time%end
+      if (time%follows_contact) end_of_run = min(most_followed*time%end, max(time%end, past_contact*contact_end))
+      ! The plate comes to rest from the end of the contact on.
+      if (contact_end > 0 .and. settle > 0) &
+        end_of_run = max(end_of_run, min(contact_end, most_followed*time%end) + settle)
+    end associate
   end function end_of_run
 
   !> True: steps follow the error that each makes.

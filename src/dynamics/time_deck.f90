@@ -47,7 +47,7 @@ module time_deck
     'time | mass_scaling | real | 1 | - | = up to 10, as the waves bear | >= 1, <= 1000 | &
       &Factor of in-plane and rotary inertia for central differences, never of the inertia of w; 1: none.', &
     'time | settle | real | 1 | time | 0 | >= 0 | &
-      &Time in which central differences damp the plate to rest before lines begin to load it.']
+    &Time in which a plate is damped to rest: before lines begin to load it, or after an impact.']
 
   !> Most steps of a run: more pass the range of default integers.
   real(wp), parameter, public :: most_steps = 1.0e8_wp

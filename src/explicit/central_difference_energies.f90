@@ -58,7 +58,7 @@ contains
       ledger%external_work = method%initial_work + method%impact%work + totals(8)
       if (allocated(now%plies%bands)) then
         call now%plies%total_dissipation(model)
-        ledger%ply_damage = sum(now%plies%dissipated)
+        ledger%ply_damage = sum(now%plies%dissipated) + now%plies%permanent_shear
       end if
       if (.not. model%scene%has_impactor) return
       ledger%indentation = now%indentation%work

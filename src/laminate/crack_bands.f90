@@ -8,7 +8,7 @@
 !> (P. Maimi et al., Mechanics of Materials 39 (2007) 897-908, for the energy and its variables). Before the matrix
 !> cracks shear may take a part of G12 throughout the element, as Hahn and Tsai have it.
 module crack_bands
-  use hahn_tsai, only: shear_loss, energy_of_loss
+  use hahn_tsai, only: shear_loss, energy_of_loss, shear_flow, energy_of_flow
   use kinds, only: wp
   use material_parameters, only: material_t
   use matrix_exposures, only: matrix_strengths_t, matrix_strengths, matrix_exposure
@@ -19,7 +19,7 @@ module crack_bands
   implicit none
   private
   public :: crack_band_t, band_state_t, band_strains_t, create_crack_band, strain_band, elasticity_left, onset_strain, &
-            longest_element
+            longest_element, energy_of_shear, is_touched, stiffness_lost
 
   !> Rounds in which both damages find together, and the change at which they have. Poisson's coupling is weak, so that
   !> five are usual.
@@ -40,6 +40,8 @@ module crack_bands
     real(wp) :: remainder = 0
     !> Hahn and Tsai's beta; 0: shear is linear
     real(wp) :: shear_beta = 0
+    !> True: shear strain beyond s12/G12 is permanent
+    logical :: permanent_shear = .false.
   end type crack_band_t
 
   !> What a ply of an element remembers.
@@ -50,6 +52,8 @@ module crack_bands
     real(wp) :: dissipated(energy_modes) = 0
     !> Part of G12 that shear took before the matrix cracked
     real(wp) :: sheared = 0
+    !> Permanent shear strain, and the sum of the sizes of its changes
+    real(wp) :: permanent = 0, accumulated = 0
   end type band_state_t
 
   !> Strains of a ply of an element in the ply's axes.
@@ -58,6 +62,8 @@ module crack_bands
     real(wp) :: mean(2) = 0
     !> Means of their squares and of their product: 11, 22, 12; and of the square of the shear strain
     real(wp) :: square(3) = 0, shear_square = 0
+    !> Mean of the shear strain
+    real(wp) :: shear_mean = 0
   end type band_strains_t
 
 contains
@@ -77,26 +83,37 @@ contains
     band%toughness = material%toughness
     band%remainder = damage%e
     band%shear_beta = material%shear_beta
+    band%permanent_shear = damage%permanent_shear .and. material%shear_beta > 0
   end function create_crack_band
 
   !> What a ply remembers if trial strains are accepted.
-  pure subroutine strain_band(band, lengths, strains, old, new)
+  pure subroutine strain_band(band, lengths, total, old, new)
     !> The law
     type(crack_band_t), intent(in) :: band
     !> Length of the element along and across the fibres
     real(wp), intent(in) :: lengths(2)
     !> Strains of the ply
-    type(band_strains_t), intent(in) :: strains
+    type(band_strains_t), intent(in) :: total
     !> The ply in the last accepted state
     type(band_state_t), intent(in) :: old
     !> The ply with these strains
     type(band_state_t), intent(out) :: new
+    type(band_strains_t) :: strains
     type(softening_t) :: falls(2)
     real(wp) :: before(2)
     integer :: round, i
 
     new = old
-    call shear_band(band, strains, old, new)
+    strains = total
+    if (band%permanent_shear) then
+      ! What a crack opens by is no strain of the ply: with it nothing more becomes permanent.
+      if (.not. old%damage(2) > 0) &
+        call shear_flow(band%elasticity%g12, band%shear_beta, total%shear_mean, new%permanent, new%accumulated)
+      strains%shear_mean = total%shear_mean - new%permanent
+      strains%shear_square = max(0.0_wp, total%shear_square - new%permanent*(total%shear_mean + strains%shear_mean))
+    else
+      call shear_band(band, strains, old, new)
+    end if
     do round = 1, most_rounds
       before = new%damage
       falls = softening_of(sheared_law(band, new%sheared), lengths, strains, new%damage)
@@ -111,6 +128,17 @@ contains
                                         share_growth(falls(i)%ratio, old%damage(i), new%damage(i))
     end do
   end subroutine strain_band
+
+  !> Energy per volume that permanent shear strains of a ply have taken.
+  elemental real(wp) function energy_of_shear(band, state) result(energy)
+    !> The law
+    type(crack_band_t), intent(in) :: band
+    !> The ply
+    type(band_state_t), intent(in) :: state
+
+    energy = 0
+    if (band%permanent_shear) energy = energy_of_flow(band%shear_beta, state%accumulated)
+  end function energy_of_shear
 
   !> What shear takes of G12 as long as the matrix has no crack: up to the strains at which it gets one, in proportion.
   pure subroutine shear_band(band, strains, old, new)
@@ -163,6 +191,24 @@ contains
       cracks = part*maxval(signs%exposure) > 1
     end function cracks_at
   end subroutine shear_band
+
+  !> Parts of the stiffness that a ply has lost: along, across, in shear before it cracked.
+  pure function stiffness_lost(state) result(lost)
+    !> The ply
+    type(band_state_t), intent(in) :: state
+    !> From 0 to 1
+    real(wp) :: lost(3)
+
+    lost = [state%damage, state%sheared]
+  end function stiffness_lost
+
+  !> True: not the undamaged state.
+  pure logical function is_touched(state)
+    !> The ply
+    type(band_state_t), intent(in) :: state
+
+    is_touched = any(stiffness_lost(state) > 0) .or. state%accumulated > 0
+  end function is_touched
 
   !> The law with what shear has left of G12.
   pure function sheared_law(band, loss) result(law)

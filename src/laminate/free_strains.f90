@@ -1,5 +1,5 @@
 !> Resultants that hold a section flat whose plies would take strains without stress, as those by cooling from the
-!> temperature at which they were joined.
+!> temperature at which they were joined, and permanent shear strains.
 module free_strains
   use kinds, only: wp
   use plies, only: ply_t, elasticity_t, reduced_stiffness
@@ -17,7 +17,7 @@ contains
     type(elasticity_t), intent(in) :: elasticity(:)
     !> Nxx, Nyy, Nxy, Mxx, Myy, Mxy of classical laminate theory, and energy per area
     real(wp) :: resultants(7)
-    real(wp) :: q(4), stress(2), force(3), thickness
+    real(wp) :: q(4), stress(3), force(3), thickness
     integer :: i
 
     resultants = 0
@@ -25,8 +25,9 @@ contains
       q = reduced_stiffness(elasticity(i))
       thickness = plies(i)%z_bottom - plies(i)%z_top
       associate (c => plies(i)%cosine, s => plies(i)%sine, free => plies(i)%free_strain)
-        stress = [q(1)*free(1) + q(2)*free(2), q(2)*free(1) + q(3)*free(2)]
+        stress = [q(1)*free(1) + q(2)*free(2), q(2)*free(1) + q(3)*free(2), q(4)*free(3)]
         force = thickness*[c*c*stress(1) + s*s*stress(2), s*s*stress(1) + c*c*stress(2), c*s*(stress(1) - stress(2))]
+        force = force + thickness*stress(3)*[-2*c*s, 2*c*s, c*c - s*s]
         resultants(7) = resultants(7) + thickness*dot_product(stress, free)/2
       end associate
       resultants(1:3) = resultants(1:3) + force

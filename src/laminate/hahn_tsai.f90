@@ -1,11 +1,11 @@
 !> Shear in the plane of a ply whose strain grows faster than its stress: s12/G12 + beta s12**3 (H. T. Hahn, S. W. Tsai,
 !> Journal of Composite Materials 7 (1973) 102-118). Unloading leads back to the origin, so that what stiffness the
-!> shear has lost stays lost.
+!> shear has lost stays lost; or it follows the initial modulus, so that beta s12**3 stays as a permanent strain.
 module hahn_tsai
   use kinds, only: wp
   implicit none
   private
-  public :: shear_coefficient, shear_loss, energy_of_loss
+  public :: shear_coefficient, shear_loss, energy_of_loss, shear_flow, energy_of_flow
 
 contains
 
@@ -28,11 +28,50 @@ contains
 
     loss = 0
     if (.not. (beta > 0 .and. strain > 0)) return
-    ! The real root of ratio + ratio**3 = modulus strain/scale, by Cardano's formula without cancellation.
     scale = 1/sqrt(beta*modulus)
-    ratio = 2/sqrt(3.0_wp)*sinh(asinh(1.5_wp*sqrt(3.0_wp)*modulus*strain/scale)/3)
+    ratio = cubic_root(modulus*strain/scale)
     loss = ratio**2/(1 + ratio**2)
   end function shear_loss
+
+  !> Root x of x + x**3 = sum, by Cardano's formula without cancellation.
+  elemental real(wp) function cubic_root(sum) result(root)
+    !> Not negative
+    real(wp), intent(in) :: sum
+
+    root = 2/sqrt(3.0_wp)*sinh(asinh(1.5_wp*sqrt(3.0_wp)*sum)/3)
+  end function cubic_root
+
+  !> Permanent shear strain that a strain leaves behind: elastic by the initial modulus up to the stress (p/beta)**(1/3)
+  !> that the permanent strains so far, added up to p, have hardened the ply to in either direction; beyond it along the
+  !> curve. Backward Euler's return mapping, exact for shear in one direction.
+  elemental subroutine shear_flow(modulus, beta, strain, permanent, accumulated)
+    !> G12 and the coefficient, above 0
+    real(wp), intent(in) :: modulus, beta
+    !> Shear strain
+    real(wp), intent(in) :: strain
+    !> Permanent strain with its sign, and the sum p of the sizes of its changes
+    real(wp), intent(inout) :: permanent, accumulated
+    real(wp) :: trial, scale, growth
+
+    trial = abs(strain - permanent)
+    ! Elastic where beta (G trial)**3 <= p, which needs no root.
+    if (beta*(modulus*trial)**3 <= accumulated) return
+    ! The stress t at which t/G + beta t**3 = trial + p.
+    scale = 1/sqrt(beta*modulus)
+    growth = max(0.0_wp, trial - scale*cubic_root(modulus*(trial + accumulated)/scale)/modulus)
+    permanent = permanent + sign(growth, strain - permanent)
+    accumulated = accumulated + growth
+  end subroutine shear_flow
+
+  !> Energy per volume that permanent strains have taken: the integral of (p/beta)**(1/3) over p.
+  elemental real(wp) function energy_of_flow(beta, accumulated) result(energy)
+    !> The coefficient, above 0
+    real(wp), intent(in) :: beta
+    !> Sum p of the sizes of the changes of the permanent strain
+    real(wp), intent(in) :: accumulated
+
+    energy = 0.75_wp*accumulated*(accumulated/beta)**(1/3.0_wp)
+  end function energy_of_flow
 
   !> Energy per volume that a loss has taken: beta s12**4/4.
   elemental real(wp) function energy_of_loss(modulus, beta, loss) result(energy)

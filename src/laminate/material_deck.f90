@@ -17,7 +17,7 @@ module material_deck
   character(len=*), parameter, public :: material_group = 'material', key_isotropic = 'E ', key_along = 'E1', &
                                          key_density = 'density', key_tension = 'XT', &
                                          key_shear_strain = 'shear_failure_strain', &
-                                         key_expansion = 'alpha1 alpha2'
+                                         key_expansion = 'alpha1 alpha2', key_library = 'library'
   !> Row of the group.
   character(len=group_row_length), parameter, public :: material_group_row = &
     'material | repeatable | One ply material, orthotropic or isotropic; may be given several times.'
@@ -25,6 +25,8 @@ module material_deck
   character(len=key_row_length), parameter, public :: material_rows(*) = [character(len=key_row_length) :: &
     'material | name | text | 1 | - | required | not empty | &
       &Name that &laminate refers to.', &
+    'material | library | choice | 1 | - | none | t700_m21 t700gc_m21 im7_8552 as4_3501_6 t300_976 e_glass_my750 | &
+      &Published material whose values fill in keys left out.', &
     'material | density | real | 1 | mass/volume | none | > 0 | &
       &Mass per volume; needed unless the analysis is static.', &
     'material | E | real | 1 | pressure | none | > 0 | &
@@ -171,6 +173,7 @@ contains
     type(line_t), allocatable :: given(:), missing(:)
 
     complete = .false.
+    if (.not. are_clear(settings, problems, material_group, key_library, place)) return
     given = words_with(settings, place, orthotropic_keys, .true.)
     if (settings%is_given(material_group, 'E', place) .or. settings%is_given(material_group, 'nu', place)) then
       missing = words_with(settings, place, 'E nu', .false.)
@@ -277,7 +280,7 @@ contains
 
     do i = 1, settings%groups_named(material_group)
       if (settings%is_given(material_group, 'density', i)) cycle
-      if (.not. are_clear(settings, problems, material_group, 'density', i)) cycle
+      if (.not. are_clear(settings, problems, material_group, 'density '//key_library, i)) cycle
       call tell(settings, problems, material_group, 'density', 'is missing; a run in time needs a density > 0.', i)
     end do
   end subroutine require_densities

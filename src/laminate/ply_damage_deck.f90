@@ -10,7 +10,8 @@ module ply_damage_deck
   public :: fill_ply_damage
 
   !> Names that checks across groups use.
-  character(len=*), parameter, public :: ply_damage_group = 'ply_damage', key_in_situ = 'in_situ'
+  character(len=*), parameter, public :: ply_damage_group = 'ply_damage', key_in_situ = 'in_situ', &
+                                         key_permanent = 'permanent_shear'
   !> Keys without effect on plies that soften by their fracture energies.
   character(len=*), parameter, public :: keys_of_sudden_failure = 'd stress'
   !> Row of the group.
@@ -27,7 +28,9 @@ module ply_damage_deck
     'ply_damage | stress | choice | 1 | - | ''middle'' | middle faces | &
       &Where in a ply the stresses are taken: its mid-plane, or the worse of its faces.', &
     'ply_damage | in_situ | logical | 1 | - | .false. | .true. .false. | &
-      &YT and S12 of each block of plies follow from its thickness, G_mt and G_mc (in-situ strengths).']
+      &YT and S12 of each block of plies follow from its thickness, G_mt and G_mc (in-situ strengths).', &
+    'ply_damage | permanent_shear | logical | 1 | - | .false. | .true. .false. | &
+      &Shear strain beyond s12/G12 stays when a ply with shear_failure_strain is unloaded, which leaves a dent.']
 
 contains
 
@@ -45,5 +48,6 @@ contains
     damage%stress = code_of(settings%text_of(ply_damage_group, 'stress'), 'middle faces', &
                             [stress_at_middle, stress_at_faces])
     damage%in_situ = settings%logical_of(ply_damage_group, key_in_situ)
+    damage%permanent_shear = settings%logical_of(ply_damage_group, key_permanent)
   end subroutine fill_ply_damage
 end module ply_damage_deck

@@ -34,6 +34,8 @@ module ply_damage_parameters
     integer :: stress = stress_at_middle
     !> True: the strengths of the matrix are those in place
     logical :: in_situ = .false.
+    !> True: shear strain beyond s12/G12 is permanent, otherwise shear unloads to the origin
+    logical :: permanent_shear = .false.
   end type ply_damage_t
 
 contains

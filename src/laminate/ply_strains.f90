@@ -94,6 +94,7 @@ contains
                                          mean(1)*free(2) + mean(2)*free(1) - free(1)*free(2)]
       mean = mean - free
     end associate
+    strains%shear_mean = dot_product(shear, moments%mean(1:3) + middle*moments%mean(4:6))
     strains%shear_square = max(0.0_wp, dot_product(shear, matmul(squares, shear)))
   end function strains_of_ply
 end module ply_strains

@@ -32,7 +32,7 @@ contains
     associate (c => ply%cosine, s => ply%sine)
       along = c*c*in_plane(1) + s*s*in_plane(2) + c*s*in_plane(3) - ply%free_strain(1)
       across = s*s*in_plane(1) + c*c*in_plane(2) - c*s*in_plane(3) - ply%free_strain(2)
-      distortion = 2*c*s*(in_plane(2) - in_plane(1)) + (c*c - s*s)*in_plane(3)
+      distortion = 2*c*s*(in_plane(2) - in_plane(1)) + (c*c - s*s)*in_plane(3) - ply%free_strain(3)
       stress(1) = q(1)*along + q(2)*across
       stress(2) = q(2)*along + q(3)*across
       stress(3) = q(4)*distortion

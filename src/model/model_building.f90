@@ -52,7 +52,7 @@ contains
     self%plies = stacked_plies(scene%laminate, scene%materials)
     if (scene%has_thermal) then
       do ply = 1, size(self%plies)
-        self%plies(ply)%free_strain = scene%temperature_change*scene%materials(self%plies(ply)%material)%expansion
+        self%plies(ply)%free_strain(:2) = scene%temperature_change*scene%materials(self%plies(ply)%material)%expansion
       end do
     end if
     self%shear_shares = shear_shares_of(self%plies)

@@ -4,7 +4,9 @@
 !> however the strains vary within the element.
 module crack_band_sections
   use archives, only: archive_t
-  use crack_bands, only: crack_band_t, band_state_t, create_crack_band, strain_band, elasticity_left, onset_strain
+  use band_archives, only: visit_bands
+  use crack_bands, only: crack_band_t, band_state_t, create_crack_band, strain_band, elasticity_left, onset_strain, &
+                         energy_of_shear, is_touched, stiffness_lost
   use element_batches, only: batch_of, first_element, lane_of, lanes
   use exact_sums, only: exact_sum_t
   use free_strains, only: free_resultants
@@ -65,7 +67,8 @@ module crack_band_sections
     procedure :: mostly_pressed
     !> Constants left in a ply of an element.
     procedure :: elasticity
-    !> Resultants of strains without stress.
+    !> Neighbouring plies of an element with their permanent strains; resultants of strains without stress.
+    procedure :: strained
     procedure, private :: free_resultants_of
     !> Saves or loads.
     procedure :: visit
@@ -86,7 +89,11 @@ contains
       self%bands(i) = create_crack_band(material_in_place(model%plies, i, model%scene%materials, &
                                                           model%scene%ply_damage), model%scene%ply_damage)
     end do
-    if (allocated(model%free)) self%free = model%free
+    if (allocated(model%free)) then
+      self%free = model%free
+    else if (model%scene%ply_damage%permanent_shear) then
+      allocate (self%free(lanes, 7, model%elements%batches), source=0.0_wp)
+    end if
     self%onset = minval([(onset_strain(self%bands(i)), i=1, size(self%bands))]) &
                  - maxval([(norm2(self%plies(i)%free_strain), i=1, size(self%plies))])
     allocate (self%accepted(size(model%plies), model%elements%elements))
@@ -206,21 +213,10 @@ contains
         changed = changed .or. any(abs(stiffness_lost(self%trial(ply, element)) - before) > 0)
         elasticity(ply) = elasticity_left(self%bands(ply), self%trial(ply, element))
       end do
-      if (.not. changed) return
-      stiffness(:18) = in_plane_section(self%plies(first:last), elasticity(first:last))
-      self%touched(element) = any([(any(stiffness_lost(self%trial(ply, element)) > 0), ply=first, last)])
+      self%touched(element) = any([(is_touched(self%trial(ply, element)), ply=first, last)])
+      if (changed) stiffness(:18) = in_plane_section(self%plies(first:last), elasticity(first:last))
     end associate
   end subroutine soften_element
-
-  !> Parts of the stiffness that a ply has lost: along, across, in shear before it cracked.
-  pure function stiffness_lost(state) result(lost)
-    !> The ply
-    type(band_state_t), intent(in) :: state
-    !> From 0 to 1
-    real(wp) :: lost(3)
-
-    lost = [state%damage, state%sheared]
-  end function stiffness_lost
 
   !> Makes the trial the accepted state.
   pure subroutine commit(self)
@@ -286,12 +282,12 @@ contains
                *(self%trial(ply, element)%dissipated - self%accepted(ply, element)%dissipated)
   end function dissipated_in
 
-  !> Energy dissipated so far in each mode, of this rank's elements, as exact sums.
+  !> Energy dissipated so far in each mode and by permanent shear, of this rank's elements, as exact sums.
   pure function dissipated(self) result(energies)
     !> The plies
     class(crack_band_sections_t), intent(in) :: self
-    !> In the order of the modes
-    type(exact_sum_t) :: energies(energy_modes)
+    !> In the order of the modes, permanent shear behind them
+    type(exact_sum_t) :: energies(energy_modes + 1)
     integer :: element, ply, mode
 
     do element = 1, size(self%touched)
@@ -301,6 +297,7 @@ contains
           do mode = 1, energy_modes
             call energies(mode)%add(volume*self%accepted(ply, element)%dissipated(mode))
           end do
+          call energies(energy_modes + 1)%add(volume*energy_of_shear(self%bands(ply), self%accepted(ply, element)))
         end associate
       end do
     end do
@@ -350,6 +347,22 @@ contains
     elasticity = elasticity_left(self%bands(ply), self%trial(ply, element))
   end function elasticity
 
+  !> Neighbouring plies of an element with the permanent strains of the trial.
+  pure function strained(self, first, last, element) result(plies)
+    !> The plies
+    class(crack_band_sections_t), intent(in) :: self
+    !> First and last ply, and element of this rank
+    integer, intent(in) :: first, last, element
+    !> They
+    type(ply_t) :: plies(first:last)
+    integer :: ply
+
+    plies = self%plies(first:last)
+    do ply = first, last
+      plies(ply)%free_strain(3) = self%trial(ply, element)%permanent
+    end do
+  end function strained
+
   !> Resultants of strains without stress in the trial.
   pure function free_resultants_of(self, element) result(resultants)
     !> The plies
@@ -361,7 +374,8 @@ contains
     integer :: ply
 
     associate (first => self%range(1, element), last => self%range(2, element))
-      resultants = free_resultants(self%plies(first:last), [(self%elasticity(ply, element), ply=first, last)])
+      resultants = free_resultants(self%strained(first, last, element), &
+                                   [(self%elasticity(ply, element), ply=first, last)])
     end associate
   end function free_resultants_of
 
@@ -372,26 +386,12 @@ contains
     !> Where to or where from
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
-    integer, parameter :: numbers = 3 + energy_modes
-    real(wp) :: table(numbers*size(self%plies), size(self%touched))
     integer :: element, ply
 
-    do element = 1, size(self%touched)
-      table(:, element) = [([stiffness_lost(self%accepted(ply, element)), self%accepted(ply, element)%dissipated], &
-                            ply=1, size(self%plies))]
-    end do
-    call archive%field('ply_failure/crack_bands', model%distribution%elements, model%mesh%elements(), table)
+    call visit_bands(archive, model, self%range, self%accepted)
     if (.not. archive%loading) return
     do element = 1, size(self%touched)
-      do ply = 1, size(self%plies)
-        associate (values => table((ply - 1)*numbers + 1:ply*numbers, element))
-          self%accepted(ply, element) = band_state_t(damage=values(1:2), sheared=values(3), dissipated=values(4:))
-          ! What is loaded may come from an element that had more plies.
-          if (ply < self%range(1, element) .or. ply > self%range(2, element)) &
-            self%accepted(ply, element) = band_state_t()
-        end associate
-      end do
-      self%touched(element) = any([(any(stiffness_lost(self%accepted(ply, element)) > 0), ply=1, size(self%plies))])
+      self%touched(element) = any([(is_touched(self%accepted(ply, element)), ply=1, size(self%plies))])
     end do
     self%trial = self%accepted
   end subroutine visit

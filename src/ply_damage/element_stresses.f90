@@ -1,7 +1,7 @@
 !> Stresses of the plies in every element, averaged over its nine points as the failure criteria take them.
 module element_stresses
   use kinds, only: wp
-  use plies, only: elasticity_t
+  use plies, only: elasticity_t, ply_t
   use ply_stresses, only: middle_stress, face_stresses
   use criterion_strains, only: mean_strains_of_elements
   use ply_criteria, only: shear_force
@@ -43,6 +43,7 @@ contains
     !> s11, s22, s12, s13, s23 in the ply's mid-plane, on its top and on its bottom; zero in elements without
     !> this ply, (5, 3, elements)
     real(wp), allocatable :: stresses(:, :, :)
+    type(ply_t) :: strained(1)
     integer :: element
 
     allocate (stresses(5, 3, size(strains, 2)), source=0.0_wp)
@@ -50,15 +51,18 @@ contains
       if (.not. has_ply(model, ply, element)) cycle
       associate (shear => shear_of_ply(model, strains, ply, element), &
                  elasticity => failures%elasticity(model, ply, element))
-        stresses(:, 1, element) = middle_stress(model%plies(ply), elasticity, strains(:6, element), shear)
-        stresses(:, 2:3, element) = face_stresses(model%plies(ply), elasticity, strains(:6, element), shear)
+        strained = failures%strained_plies(model, ply, ply, element)
+        stresses(:, 1, element) = middle_stress(strained(1), elasticity, strains(:6, element), shear)
+        stresses(:, 2:3, element) = face_stresses(strained(1), elasticity, strains(:6, element), shear)
       end associate
     end do
   end function stresses_of_ply
 
   !> Stress of one ply of one element in its own axes and its mid-plane: s11, s22, s12, s13, s23.
-  pure function stress_of_ply(model, elasticity, strains, ply, element) result(stress)
+  pure function stress_of_ply(model, failures, elasticity, strains, ply, element) result(stress)
     type(model_t), intent(in) :: model
+    !> Failures of its plies
+    type(ply_failure_t), intent(in) :: failures
     !> Constants left in the ply
     type(elasticity_t), intent(in) :: elasticity
     !> Those of element_strains
@@ -67,8 +71,10 @@ contains
     integer, intent(in) :: ply, element
     !> The stress
     real(wp) :: stress(5)
+    type(ply_t) :: strained(1)
 
-    stress = middle_stress(model%plies(ply), elasticity, strains(:6, element), &
+    strained = failures%strained_plies(model, ply, ply, element)
+    stress = middle_stress(strained(1), elasticity, strains(:6, element), &
                            shear_of_ply(model, strains, ply, element))
   end function stress_of_ply
 

@@ -6,7 +6,7 @@ module ply_columns
   use result_tables, only: result_row_length
   implicit none
   private
-  public :: ply_values
+  public :: ply_values, permanent_values
 
   !> Failures in each mode, a ply counting once in each element, and the energies of plies that soften.
   character(len=result_row_length), parameter, public :: ply_rows(*) = [character(len=result_row_length) :: &
@@ -20,6 +20,10 @@ module ply_columns
     'energy_matrix_crushing | real | energy | Part of energy_ply_damage that failure of the matrix took, where &
       &compression acts across the fibres.']
 
+  !> Permanent strains of plies that soften.
+  character(len=result_row_length), parameter, public :: permanent_rows(*) = [character(len=result_row_length) :: &
+    'energy_permanent_shear | real | energy | Part of energy_ply_damage that permanent shear strains of plies took.']
+
 contains
 
   !> Failures in each mode. Collective.
@@ -32,4 +36,14 @@ contains
 
     values = [real(plies%counts(model), wp), plies%dissipated]
   end function ply_values
+
+  !> Energies of permanent strains.
+  pure function permanent_values(plies) result(values)
+    !> Failures of the plies
+    type(ply_failure_t), intent(in) :: plies
+    !> A value a column
+    real(wp) :: values(size(permanent_rows))
+
+    values = [plies%permanent_shear]
+  end function permanent_values
 end module ply_columns

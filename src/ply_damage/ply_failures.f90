@@ -1,13 +1,12 @@
 !> Failure of plies: the stiffness it takes from the elements, and the energy lost with it.
 module ply_failures
-  use exact_sums, only: exact_sum_t
   use free_strains, only: free_resultants
   use internal_forces, only: add_internal_force
   use kinds, only: wp
   use archives, only: archive_t
   use crack_band_sections, only: crack_band_sections_t, new_crack_band_sections
   use element_batches, only: batch_of, lane_of
-  use plies, only: elasticity_t
+  use plies, only: elasticity_t, ply_t
   use ply_damage_parameters, only: failure_modes, fibre_failure, matrix_cracking, matrix_crushing, energy_modes
   use stacking, only: in_plane_section, section_stiffness
   use section_stiffnesses, only: visit_stiffness
@@ -37,6 +36,8 @@ module ply_failures
     logical :: softened = .false.
     !> Energy dissipated in each mode by plies that soften, of the whole plate
     real(wp) :: dissipated(energy_modes) = 0
+    !> Energy that their permanent shear strains have taken
+    real(wp) :: permanent_shear = 0
     !> Energy that the last step missed as it followed plies that soften, over the most that it may
     real(wp) :: haste = 0
     !> True while plies that soften keep their stiffness until they are told to follow
@@ -55,6 +56,8 @@ module ply_failures
     procedure :: judge
     !> Finds what plies that soften have dissipated so far.
     procedure :: total_dissipation
+    !> Neighbouring plies of an element with their permanent strains.
+    procedure :: strained_plies
     !> Modes that have occurred in a ply, and constants left in it.
     procedure :: failed
     procedure :: elasticity
@@ -63,9 +66,8 @@ module ply_failures
     procedure :: grow
     !> Gives elements that have come to have fewer plies their stiffness.
     procedure :: restack
-    !> Number of ply elements failed in each mode, and area failed in each ply, of the whole plate.
+    !> Number of ply elements failed in each mode, of the whole plate.
     procedure :: counts
-    procedure :: areas
     !> Saves or loads.
     procedure :: visit
   end type ply_failure_t
@@ -82,6 +84,7 @@ contains
     if (allocated(model%free)) self%free = model%free
     if (model%scene%has_crack_bands()) then
       self%bands = new_crack_band_sections(model)
+      if (allocated(self%bands%free)) self%free = self%bands%free
     else
       self%modes = new_failed_modes(model)
     end if
@@ -180,8 +183,11 @@ contains
     !> The failures
     class(ply_failure_t), intent(inout) :: self
     type(model_t), intent(in) :: model
+    real(wp) :: energies(energy_modes + 1)
 
-    self%dissipated = totals_of(model%communicator, self%bands%dissipated())*model%mesh%multiplicity
+    energies = totals_of(model%communicator, self%bands%dissipated())*model%mesh%multiplicity
+    self%dissipated = energies(:energy_modes)
+    self%permanent_shear = energies(energy_modes + 1)
   end subroutine total_dissipation
 
   !> Judges whether a step has followed how plies soften: the work on them is then what they store and dissipate. A step
@@ -238,6 +244,20 @@ contains
       elasticity = self%modes%elasticity(model, ply, element)
     end if
   end function elasticity
+
+  !> Neighbouring plies of an element with their permanent strains.
+  pure function strained_plies(self, model, first, last, element) result(plies)
+    !> The failures
+    class(ply_failure_t), intent(in) :: self
+    type(model_t), intent(in) :: model
+    !> First and last ply, and element of this rank
+    integer, intent(in) :: first, last, element
+    !> They
+    type(ply_t) :: plies(first:last)
+
+    plies = model%plies(first:last)
+    if (allocated(self%bands)) plies = self%bands%strained(first, last, element)
+  end function strained_plies
 
   !> Constants left in the plies of an element.
   pure function elasticities(self, model, element)
@@ -340,32 +360,6 @@ contains
     end do
   end function counts
 
-  !> Area in which each ply has failed in each mode, of the whole plate. Collective.
-  function areas(self, model)
-    !> The failures
-    class(ply_failure_t), intent(in) :: self
-    type(model_t), intent(in) :: model
-    !> (modes, plies)
-    real(wp) :: areas(failure_modes, size(model%plies))
-    real(wp) :: cells(model%elements%elements)
-    type(exact_sum_t) :: sums(failure_modes, size(model%plies))
-    integer :: ply, mode, i
-
-    areas = 0
-    if (.not. model%scene%has_ply_damage) return
-    do i = 1, size(cells)
-      cells(i) = model%mesh%cell_area(model%mesh%place_of(model%mesh%element_cell(model%distribution%elements(i))))
-    end do
-    do ply = 1, size(model%plies)
-      associate (failed => self%failed(ply))
-        do mode = 1, failure_modes
-          call sums(mode, ply)%add(pack(cells, failed(mode, :)))
-        end do
-      end associate
-    end do
-    areas = reshape(totals_of(model%communicator, [sums]), shape(areas))*model%mesh%multiplicity
-  end function areas
-
   !> Saves or loads the failures.
   subroutine visit(self, archive, model)
     !> The failures
@@ -381,13 +375,15 @@ contains
       do mode = 1, energy_modes
         call archive%item('ply_failure/dissipated_'//to_text(mode), self%dissipated(mode))
       end do
+      if (model%scene%ply_damage%permanent_shear) &
+        call archive%item('ply_failure/dissipated_by_shear', self%permanent_shear)
     end if
     if (model%scene%has_ply_damage) call visit_stiffness(archive, 'ply_failure/stiffness', model, self%stiffness)
     if (.not. (archive%loading .and. allocated(self%free) .and. model%scene%has_ply_damage)) return
     do element = 1, model%elements%elements
       associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
         self%free(lane_of(element), :, batch_of(element)) = &
-          free_resultants(model%plies(range(1):range(2)), self%elasticities(model, element))
+          free_resultants(self%strained_plies(model, range(1), range(2), element), self%elasticities(model, element))
       end associate
     end do
   end subroutine visit

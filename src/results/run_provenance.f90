@@ -26,6 +26,8 @@ module run_provenance
     character(len=:), allocatable :: case_name
     !> Units that the deck says it is in; empty: any that are consistent
     character(len=:), allocatable :: units
+    !> Values in effect that are from a table which the deck refers to; empty: none
+    character(len=:), allocatable :: library
     !> Date and time the run started, local time with its distance from UTC, ISO 8601
     character(len=:), allocatable :: started
     !> Number of ranks
@@ -54,6 +56,7 @@ contains
     run%deck = deck
     run%case_name = ''
     run%units = ''
+    run%library = ''
     run%build_t = build
     run%started = date(1:4)//'-'//date(5:6)//'-'//date(7:8)//'T'//time(1:2)//':'//time(3:4)//':'//time(5:6) &
       //zone(1:3)//':'//zone(4:5)

@@ -23,6 +23,9 @@ contains
     if (allocated(run%units)) then
       if (run%units /= '') call write_text(file, group//'/units', run%units)
     end if
+    if (allocated(run%library)) then
+      if (run%library /= '') call write_text(file, group//'/library', run%library)
+    end if
     call write_text(file, group//'/version', run%version)
     call write_text(file, group//'/commit', run%commit)
     call write_text(file, group//'/compiler', run%compiler)
@@ -43,6 +46,8 @@ contains
 
     call read_text(file, group//'/deck', run%deck)
     call read_text(file, group//'/case_name', run%case_name)
+    run%library = ''
+    if (file%exists(group//'/library')) call read_text(file, group//'/library', run%library)
     call read_text(file, group//'/version', run%version)
     call read_text(file, group//'/commit', run%commit)
     call read_text(file, group//'/compiler', run%compiler)

@@ -4,7 +4,7 @@ module unit_systems
   use text, only: lower_case
   implicit none
   private
-  public :: is_odd, unit_that_fits, unit_name, system_named, base_units
+  public :: is_odd, unit_that_fits, unit_name, system_named, base_units, decades_of
 
   !> Kinds of quantities.
   integer, parameter, public :: of_pressure = 1, of_density = 2, of_length = 3, of_thickness = 4, of_radius = 5, &
@@ -124,6 +124,16 @@ contains
 
     name = trim(unit_of(dimension_of(quantity), system))
   end function unit_name
+
+  !> Power of ten of the SI unit in a system's unit: a value in SI has it taken off.
+  pure integer function decades_of(quantity, system) result(decades)
+    !> Kind of the quantity
+    integer, intent(in) :: quantity
+    !> Index of the system
+    integer, intent(in) :: system
+
+    decades = nint(log10(size_of(quantity, unit_name(quantity, system))))
+  end function decades_of
 
   !> True: a size that the kind of quantity has.
   pure logical function in_range(quantity, value)

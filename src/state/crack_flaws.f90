@@ -101,7 +101,8 @@ contains
       if (.not. cracks(i)) cycle
       left = plies%elasticity(model, ply, i)
       cracks(i) = left%e2 < model%plies(ply)%elasticity%e2
-      if (.not. cracks(i)) cracks(i) = cracks_on_a_plane(strengths, stress_of_ply(model, left, strains, ply, i))
+      if (.not. cracks(i)) &
+        cracks(i) = cracks_on_a_plane(strengths, stress_of_ply(model, plies, left, strains, ply, i))
     end do
     cracked = cells_of(model, cracks)
   end function sheared_cells

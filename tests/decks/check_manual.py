@@ -21,6 +21,8 @@ RESULTS = ("history", "fields")
 # Columns of the history that belong to the ledger.
 ENTRY = re.compile(r"^\| `(energy_\w+|work_external)`", re.MULTILINE)
 EXAMPLE = re.compile(r"^```fortran\n(.*?)^```", re.DOTALL | re.MULTILINE)
+# Values of materials, and their sources.
+MATERIALS = re.compile(r"^\| key \|.*?\n\n(?:- .*\n)+", re.DOTALL | re.MULTILINE)
 GROUP = re.compile(r"^&(\w+).*?/[ ]*$", re.DOTALL | re.MULTILINE)
 # Groups that a static example puts in place of these of the deck that fills in the rest.
 TRANSIENT = ("impactor", "indentation", "time")
@@ -83,6 +85,21 @@ def check_examples(program, topic, text, wrong):
             wrong.append(f"{path}: the example doesn't pass: {output}")
 
 
+def check_materials(program, wrong):
+    """Note in `wrong` if the page of published materials has other values or sources than the program."""
+    path = os.path.join(MANUAL, "materials.md")
+    with open(path, encoding="utf-8") as page:
+        text = page.read()
+    table = ask(program, "explain", "--markdown", "materials")[1].strip()
+    if "--write" in sys.argv:
+        text = MATERIALS.sub(lambda _: table + "\n", text)
+        with open(path, "w", encoding="utf-8") as page:
+            page.write(text)
+    if table not in text:
+        wrong.append(f"{path}: the tables aren't the program's; run check_manual.py IMPLAM --write")
+    check_examples(program, "materials", text, wrong)
+
+
 def check_ledger(program, wrong):
     """Note in `wrong` which entries of the energy ledger its page doesn't define."""
     path = os.path.join(MANUAL, "energy_ledger.md")
@@ -103,6 +120,7 @@ def main():
         if text is not None and topic not in RESULTS:
             check_examples(program, topic, text, wrong)
     check_ledger(program, wrong)
+    check_materials(program, wrong)
     print("\n".join(wrong) or f"{len(groups) + len(RESULTS)} pages agree with the program, so does that of the ledger")
     return 1 if wrong else 0
 

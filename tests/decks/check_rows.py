@@ -16,15 +16,20 @@ import sys
 SRC = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "src")
 # Texts that are no names of keys: file, texts, reason. One that no longer stands there is a breach too.
 OTHERS = (
+    ("app/material_explain.f90", "materials", "the list of materials that `implam explain` is asked for"),
     ("app/result_explain.f90", "history fields", "tables of results that `implam explain` is asked for"),
     ("app/simulations.f90", "history fields", "items of a checkpoint, which must stay readable"),
     ("app/simulations.f90", "steps", "a timer"),
     ("app/summary_file.f90", "angle at force", "a name in NAME_summary.json"),
     ("app/summary_file.f90", "case", "a name in NAME_summary.json"),
     ("app/summary_file.f90", "title", "a name in NAME_summary.json"),
+    ("app/summary_lines.f90", "dent", "a label of the summary"),
+    ("app/summary_provenance.f90", "library", "a name in NAME_summary.json"),
     ("app/summary_file.f90", "energy", "a name in NAME_summary.json"),
     ("base/text.f90", "e", "the exponent of a number"),
     ("case/scale_tables.f90", "length mass time force energy pressure", "dimensions"),
+    ("case/deck_library.f90", "e", "the exponent of a number"),
+    ("case/deck_library.f90", "pressure", "a physical dimension"),
     ("deck/deck_scanner.f90", "end", "&end, which closes a group in old decks"),
     ("deck/deck_values.f90", "name", "a kind of value"),
     ("state/states.f90", "time step iterations stress force", "an item of a checkpoint"),

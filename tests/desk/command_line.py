@@ -3,6 +3,7 @@ Usage: command_line.py IMPLAM FOLDER"""
 
 import os
 import pty
+import re
 import select
 import shutil
 import signal
@@ -167,6 +168,15 @@ def check_new(implam, folder):
     require((folder / "impact.nml").read_bytes() == before, "`implam new` overwrites.")
     answer(implam, "new", "mine.nml", cwd=folder)
     require((folder / "mine.nml").read_bytes() == before, "The name makes another deck.")
+    require("Wrote d7136.nml" in answer(implam, "new", "--rig", "d7136", cwd=folder), "No deck of the rig.")
+    told = answer(implam, "check", "d7136.nml", cwd=folder)
+    thickness, energy = (float(re.search(rf"{name} +([\d.e+-]+)", told)[1])
+                         for name in ("thickness of the laminate", "energy of the impactor"))
+    require("no errors" in told and 4e-3 <= thickness <= 6e-3, told)
+    require(abs(energy - 6.7e3*thickness) < 0.01*energy, "Not the energy that D7136 asks for.")
+    require(told.count("warning:") <= 2, "More is left than a line for plies and one for interfaces.")
+    require("d7136" in answer(implam, "new", "--rig", "d7137", code=EXIT_USAGE), "No word of the rigs there are.")
+    require("new" in answer(implam, "check", "--rig", "d7136", code=EXIT_USAGE), "--rig without new.")
     answer(implam, "new", "no/such/folder.nml", cwd=folder, code=EXIT_FILES)
     told = answer(implam, "impact.nml", cwd=folder)
     require("warning:" not in told, told)

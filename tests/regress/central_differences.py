@@ -8,7 +8,8 @@ events   output times, however they lie, change no step so that motion is fed: t
 travel   an impactor moved slowly has the force of load steps, and says so where it is not slow
 lines    prescribed lines are held exactly; moved smoothly, with the force of load steps
 steep    where slopes stiffen the plate, steps of scaled inertia feed no motion
-fracture what is booked as fracture is the toughness times the area, to 1e-6"""
+fracture what is booked as fracture is the toughness times the area, to 1e-6
+dent     after the blow the plate comes to rest, with a dent where shear strains of plies are permanent"""
 
 import random
 import re
@@ -39,6 +40,8 @@ EXPLICIT = "time%integrator='central_difference'"
 SCENES = {"breaking": ("../small/breaking_rounds.nml", [EXPLICIT]), "layers": ("../small/layers.nml", [EXPLICIT]),
           "turned": ("../small/turned.nml", [EXPLICIT, "time%end=150e-6"]),
           "softening": ("../small/crack_bands.nml", [EXPLICIT, "time%end=150e-6"]),
+          "permanent": ("../small/crack_bands.nml", [EXPLICIT, "time%end=150e-6", "ply_damage%permanent_shear=.true.",
+                                                     "material%shear_failure_strain=0.05"]),
           "lines": ("three_point.nml", ["time%end=1e-4", EXPLICIT])}
 
 
@@ -215,8 +218,29 @@ def check_fracture(implam, folder, _):
     require(area > 5e-5 and abs(booked/(490*area) - 1) < 1e-6, "Fracture is not booked by the area.")
 
 
+def check_dent(implam, folder, _):
+    """Damped to rest after the blow, with shear strains that stay and with such that go."""
+    depths = {}
+    for name, settings in (("stays", []), ("goes", ["ply_damage%permanent_shear=.false."])):
+        history = read_history(run_deck(implam, write_deck(folder / name, "../small/dent.nml", settings)))
+        last = {column: values[-1] for column, values in history.items()}
+        impact = history["energy_impactor"][0]
+        depths[name] = last["dent_depth"] - last["dent_indentation"]
+        print(f"{name}: dent {1e6*depths[name]:.2f} um and {1e6*last['dent_indentation']:.2f} um of the indentation, "
+              f"energy {last['energy_permanent_shear']:.4g} J, kinetic {last['energy_kinetic']:.3g} J, "
+              f"damped {last['energy_damping']:.4g} J, error {last['energy_error']:.3g} J of {impact:.3g} J",
+              flush=True)
+        require(last["force"] == 0 and last["impactor_velocity"] < 0, "The impactor has not left.")
+        require(last["energy_kinetic"] < 1e-6*impact, "The plate is not at rest.")
+        require(last["energy_damping"] > 1e-4*impact, "Nothing was damped.")
+        require(abs(last["energy_error"]) < 1e-3*impact, "The ledger is not closed.")
+        require((last["energy_permanent_shear"] > 1e-3*impact) == (name == "stays"), "Permanent strains took that?")
+    require(depths["stays"] > 5*abs(depths["goes"]), "Permanent strains leave no dent.")
+
+
 TRIALS = {"ranks": check_ranks, "signal": check_signal, "kill": check_kill, "events": check_events,
-          "travel": check_travel, "lines": check_lines, "steep": check_steep, "fracture": check_fracture}
+          "travel": check_travel, "lines": check_lines, "steep": check_steep, "fracture": check_fracture,
+          "dent": check_dent}
 
 if __name__ == "__main__":
     Path(sys.argv[3]).parent.mkdir(parents=True, exist_ok=True)

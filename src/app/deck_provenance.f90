@@ -1,0 +1,27 @@
+!> Where the results of a deck come from: program, deck, and the values in effect that neither tells.
+module deck_provenance
+  use build_information, only: this_build
+  use deck_contents, only: deck_t
+  use deck_echo, only: adopted_values
+  use run_provenance, only: provenance_t, this_run
+  implicit none
+  private
+  public :: provenance_of
+
+contains
+
+  !> Provenance of the run of a deck that is starting.
+  function provenance_of(deck, ranks) result(run)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Number of ranks
+    integer, intent(in) :: ranks
+    !> The provenance
+    type(provenance_t) :: run
+
+    run = this_run(this_build(), deck%text, ranks)
+    run%units = deck%units
+    run%case_name = deck%name
+    run%library = adopted_values(deck%settings)
+  end function provenance_of
+end module deck_provenance

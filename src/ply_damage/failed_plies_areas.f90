@@ -1,0 +1,40 @@
+!> Areas in which plies have failed.
+module failed_plies_areas
+  use exact_sums, only: exact_sum_t
+  use kinds, only: wp
+  use models, only: model_t
+  use ply_damage_parameters, only: failure_modes
+  use ply_failures, only: ply_failure_t
+  use rank_totals, only: totals_of
+  implicit none
+  private
+  public :: failed_areas
+
+contains
+
+  !> Area in which each ply has failed in each mode, of the whole plate. Collective.
+  function failed_areas(model, failures) result(areas)
+    type(model_t), intent(in) :: model
+    !> The failures
+    type(ply_failure_t), intent(in) :: failures
+    !> (modes, plies)
+    real(wp) :: areas(failure_modes, size(model%plies))
+    real(wp) :: cells(model%elements%elements)
+    type(exact_sum_t) :: sums(failure_modes, size(model%plies))
+    integer :: ply, mode, i
+
+    areas = 0
+    if (.not. model%scene%has_ply_damage) return
+    do i = 1, size(cells)
+      cells(i) = model%mesh%cell_area(model%mesh%place_of(model%mesh%element_cell(model%distribution%elements(i))))
+    end do
+    do ply = 1, size(model%plies)
+      associate (failed => failures%failed(ply))
+        do mode = 1, failure_modes
+          call sums(mode, ply)%add(pack(cells, failed(mode, :)))
+        end do
+      end associate
+    end do
+    areas = reshape(totals_of(model%communicator, [sums]), shape(areas))*model%mesh%multiplicity
+  end function failed_areas
+end module failed_plies_areas

@@ -1,0 +1,134 @@
+!> The dent that an impact leaves, as a depth gauge measures it on the struck face: from the plane of the surface around
+!> it to the deepest point (ASTM D7136).
+module dent_depths
+  use exact_sums, only: exact_sum_t
+  use kinds, only: wp
+  use models, only: model_t
+  use rank_totals, only: totals_of
+  use result_tables, only: result_row_length
+  implicit none
+  private
+  public :: dent_depth
+
+  !> Columns of the history.
+  character(len=result_row_length), parameter, public :: dent_rows(*) = [character(len=result_row_length) :: &
+    'dent_depth | real | length | Depth of the struck face at its deepest point below the plane of the surface 3 to 4 &
+      &radii of the nose away, with dent_indentation; meant for a plate at rest.', &
+    'dent_indentation | real | length | Part of dent_depth that the indentation law keeps.']
+
+  !> Distances from the struck point, in radii of the nose, between which the surface gives the plane: 24 and 32 mm for
+  !> the nose of 16 mm in diameter, about where a gauge stands on the panel and within the frame's window.
+  real(wp), parameter, public :: nearest = 3, farthest = 4
+
+contains
+
+  !> Depth of the struck face below the plane of the surface around it; 0 where no nose strikes or the mesh has no cells
+  !> there. What the indentation law keeps comes on top. Collective.
+  real(wp) function dent_depth(model, displacement) result(depth)
+    type(model_t), intent(in) :: model
+    !> Displacement, ghosts up to date, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    real(wp) :: plane(3), place(2)
+    logical :: is_known
+    integer :: i, point
+
+    depth = 0
+    if (.not. (model%scene%has_impactor .and. model%scene%impactor%radius > 0)) return
+    call find_plane(model, displacement, plane, is_known)
+    if (.not. is_known) return
+    associate (mesh => model%mesh, owned => model%distribution%points(:model%distribution%owned))
+      do i = 1, size(owned)
+        point = owned(i)
+        if (mesh%first_point(mesh%point_node(point)) /= point) cycle
+        place = mesh%node_coordinates(:, mesh%point_node(point)) - mesh%struck
+        if (norm2(place) >= nearest*model%scene%impactor%radius) cycle
+        depth = max(depth, displacement(3, i) - plane(1) - dot_product(plane(2:3), place))
+      end do
+    end associate
+    call model%communicator%maximum(depth)
+  end function dent_depth
+
+  !> Plane that lies closest to the surface around the dent, by least squares over the middles of cells, each with its
+  !> area. Symmetry leaves no slope along the directions in which it repeats the model. Collective.
+  subroutine find_plane(model, displacement, plane, is_known)
+    type(model_t), intent(in) :: model
+    !> Displacement, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> Height at the struck point and slopes along x and y
+    real(wp), intent(out) :: plane(3)
+    !> False: there are no cells around the dent
+    logical, intent(out) :: is_known
+    type(exact_sum_t) :: sums(9)
+    real(wp) :: totals(9), place(2), centred(5), w, area, determinant
+    integer :: element, point, i
+
+    associate (mesh => model%mesh)
+      do element = 1, size(model%distribution%elements)
+        associate (global => model%distribution%elements(element))
+          if (mesh%element_plies(1, global) /= 1) cycle
+          point = mesh%connectivity(5, global)
+          place = mesh%node_coordinates(:, mesh%point_node(point)) - mesh%struck
+          if (norm2(place) < nearest*model%scene%impactor%radius .or. &
+              norm2(place) > farthest*model%scene%impactor%radius) cycle
+          area = mesh%cell_area(mesh%place_of(mesh%element_cell(global)))
+        end associate
+        w = displacement(3, model%distribution%local(point))
+        do i = 1, size(sums)
+          call sums(i)%add(area*term(i))
+        end do
+      end do
+      totals = totals_of(model%communicator, sums)
+      is_known = totals(1) > 0
+      plane = 0
+      if (.not. is_known) return
+      totals(2:) = totals(2:)/totals(1)
+      ! Moments about the middle of the cells.
+      centred = [totals(4) - totals(2)**2, totals(5) - totals(2)*totals(3), totals(6) - totals(3)**2, &
+                 totals(8) - totals(2)*totals(7), totals(9) - totals(3)*totals(7)]
+      if (any(mesh%halved .and. .not. mesh%mirrored) .or. all(mesh%mirrored)) then
+        plane = [totals(7), 0.0_wp, 0.0_wp]
+      else if (mesh%mirrored(1)) then
+        plane(3) = centred(5)/centred(3)
+        plane(1) = totals(7) - plane(3)*totals(3)
+      else if (mesh%mirrored(2)) then
+        plane(2) = centred(4)/centred(1)
+        plane(1) = totals(7) - plane(2)*totals(2)
+      else
+        determinant = centred(1)*centred(3) - centred(2)**2
+        plane(2:3) = [centred(3)*centred(4) - centred(2)*centred(5), &
+                      centred(1)*centred(5) - centred(2)*centred(4)]/determinant
+        plane(1) = totals(7) - dot_product(plane(2:3), totals(2:3))
+      end if
+    end associate
+
+  contains
+
+    !> One term of the sums: 1, x, y, xx, xy, yy, w, xw, yw.
+    pure real(wp) function term(number)
+      !> Which
+      integer, intent(in) :: number
+
+      associate (x => place(1), y => place(2))
+        term = merge(1.0_wp, 0.0_wp, number == 1)
+        select case (number)
+        case (2)
+          term = x
+        case (3)
+          term = y
+        case (4)
+          term = x*x
+        case (5)
+          term = x*y
+        case (6)
+          term = y*y
+        case (7)
+          term = w
+        case (8)
+          term = x*w
+        case (9)
+          term = y*w
+        end select
+      end associate
+    end function term
+  end subroutine find_plane
+end module dent_depths
