@@ -69,8 +69,8 @@ contains
     call model%profile%leave()
   end subroutine advance_explicit
 
-  !> True while damping brings the plate to rest: before lines begin to load it, or once the impactor has left, moves away
-  !> and presses no more.
+  !> True while damping brings the plate to rest: before lines begin to load it, or once the impactor has left, moves
+  !> away and presses no more.
   pure logical function comes_to_rest(method, model, now)
     !> Central differences
     type(central_difference_t), intent(in) :: method
