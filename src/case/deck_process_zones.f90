@@ -11,6 +11,7 @@ module deck_process_zones
   use delamination_parameters, only: delamination_t, law_cohesive, toughnesses
   use in_situ_strengths, only: crack_strengths
   use kinds, only: wp
+  use mathematical_constants, only: pi
   use layer_extents, only: largest_extents
   use laminate_parameters, only: shear_five_sixths
   use matrix_exposures, only: shear_across_strength
@@ -160,8 +161,8 @@ contains
 
     largest = 0
     do i = 0, 35
-      c = cos(i*acos(-1.0_wp)/36)
-      s = sin(i*acos(-1.0_wp)/36)
+      c = cos(i*pi/36)
+      s = sin(i*pi/36)
       largest = max(largest, dot_product(moduli, [c**4, 2*(c*s)**2, 4*c**3*s, s**4, 4*c*s**3, 4*(c*s)**2]))
     end do
   end function largest_modulus
