@@ -1,8 +1,10 @@
 """The deck: what its groups say about plate, laminate, impactor and indentation."""
 
-from collections.abc import Iterable
+import re
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -28,10 +30,16 @@ class Impactor:
 class Deck:
     """The groups of a deck, with its defaults filled in."""
 
-    def __init__(self, text: str, path: Path) -> None:
-        """Read the groups from `text`; `path` names the deck in messages."""
+    def __init__(self, text: str, path: Path, adopted: str = "") -> None:
+        """Read the groups from `text`; `path` names the deck in messages.
+
+        `adopted` lists values that published materials gave in a run, a line each: &material 1 E1 = 130e9 [source].
+        """
         self.path = path
         self.groups = read_namelist(text, path.name)
+        for group, place, key, value in re.findall(r"&(\w+) (\d+) (\w+) = (\S+) \[", adopted):
+            given = read_namelist(f"&{group} {key}={value} /", path.name)[group][0]
+            self.groups[group][int(place) - 1] = given | self.groups[group][int(place) - 1]
 
     @property
     def name(self) -> str:
@@ -224,6 +232,13 @@ def as_number(value: Value, where: str) -> float:
     if isinstance(value, (bool, str)) or not np.isfinite(value):
         raise DeckError(f"{where}: {value!r} isn't a number.")
     return value
+
+
+def recorded_deck(provenance: Mapping[str, Any], path: Path) -> Deck:
+    """Return the deck of a run from the provenance in its results, with the values of published materials."""
+    deck, adopted = (text if isinstance(text, str) else text[()].decode("utf-8")
+                     for text in (provenance["deck"], provenance.get("library", "")))
+    return Deck(deck, path, adopted)
 
 
 def read_deck(path: Path | str) -> Deck:

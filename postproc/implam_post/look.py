@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
-from implam_post.deck import Deck
+from implam_post.deck import Deck, recorded_deck
 from implam_post.errors import ImplamError
 from implam_post.fields import opened
 from implam_post.units import SYSTEMS, Axis, axis_of, system_of
@@ -76,7 +76,7 @@ def deck_in(path: Path) -> Deck | None:
     fields = path if path.suffix == ".h5" else path.with_name(path.name.removesuffix("_history.csv") + ".h5")
     try:
         with opened(fields) as file:
-            return Deck(file["provenance/deck"][()].decode("utf-8"), fields)
+            return recorded_deck(file["provenance"], fields)
     except ImplamError:
         return None
 

@@ -12,7 +12,7 @@ from matplotlib.patches import Rectangle
 from matplotlib.ticker import FuncFormatter
 
 from implam_post.curves import AXES, in_contact
-from implam_post.deck import Deck
+from implam_post.deck import recorded_deck
 from implam_post.errors import ImplamError
 from implam_post.fields import Fields
 from implam_post.history import ENERGY_NAMES, UNACCOUNTED, History
@@ -72,7 +72,7 @@ def plan_figure(summary: Mapping[str, Any], look: Look) -> Figure:
     figure = Figure(figsize=(7, min(max(4.4 * across / along, 1.5), 8) + 0.8), layout="constrained")
     axes = figure.subplots()
     try:
-        deck = Deck(summary["provenance"]["deck"], Path(f"{summary['case']}.nml"))
+        deck = recorded_deck(summary["provenance"], Path(f"{summary['case']}.nml"))
         at = deck.numbers("impactor", "at") if deck.has("impactor") else []
     except ImplamError:
         deck, at = None, []

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from implam_post import damage_resistance
-from implam_post.deck import Deck
+from implam_post.deck import recorded_deck
 from implam_post.errors import FileError, ImplamError
 from implam_post.fields import Fields, read_fields
 from implam_post.files import read_text
@@ -47,7 +47,7 @@ class Results(NamedTuple):
     def system(self) -> str:
         """Return the system of units that the deck tells; empty if none."""
         try:
-            deck = Deck(self.summary["provenance"]["deck"], Path(f"{self.summary['case']}.nml"))
+            deck = recorded_deck(self.summary["provenance"], Path(f"{self.summary['case']}.nml"))
         except ImplamError:
             return ""
         return system_of_deck(deck)

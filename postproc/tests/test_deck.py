@@ -1,9 +1,11 @@
 """Tests of what a deck's groups mean."""
 
 import unittest
+from pathlib import Path
 
 import numpy as np
 
+from implam_post.deck import recorded_deck
 from implam_post.errors import DeckError
 from implam_post.semi_analytic import impact_case
 from tests.decks import KARAS, SUN_CHEN, deck
@@ -29,6 +31,15 @@ class DeckTest(unittest.TestCase):
         self.assertAlmostEqual(section.s[0, 0] / (5 / 6 * 5.5e9 * 2.69e-3), 1, delta=1e-14)
         one = deck(SUN_CHEN, ("10*0.269e-3", "0.269e-3")).section()
         np.testing.assert_array_equal(one.d, section.d)
+
+    def test_values_of_published_materials(self) -> None:
+        """What a run took from a published material is read from its results; what the deck gives stays."""
+        text = "&material name='a' library='b' E1=2 /"
+        adopted = "&material 1 E1 = 130e9 [library b, source a]\n&material 1 nu12 = .30e0 [library b, source a]"
+        found = recorded_deck({"deck": text, "library": adopted}, Path("a.nml"))
+        self.assertEqual(found.groups["material"][0]["nu12"], [0.3])
+        self.assertEqual(found.groups["material"][0]["e1"], [2])
+        self.assertNotIn("nu12", recorded_deck({"deck": text}, Path("a.nml")).groups["material"][0])
 
     def test_what_has_no_answer_is_refused(self) -> None:
         """Every deck outside the method ends with a sentence about the reason."""

@@ -25,7 +25,8 @@ class AreasTest(unittest.TestCase):
         """Fields at times of which the end is none, and yet at the end: they hold the state of the summary."""
         for source in DECKS:
             text = source.read_text(encoding="utf-8")
-            if "&delamination" not in text:
+            # What begins from another run's end is run by compression.py.
+            if "&delamination" not in text or "&initial_state" in text:
                 continue
             text = change_deck(text, next((coarse for name, coarse in COARSE.items() if source.name.startswith(name)),
                                           []))

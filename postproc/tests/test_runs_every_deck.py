@@ -44,6 +44,9 @@ class EveryDeckTest(unittest.TestCase):
         """Pictures, one picture of all, movie, page and scene; a command that has nothing to draw says so."""
         self.assertGreater(len(DECKS), 40 if ALL else 5)
         for source in DECKS:
+            # What begins from another run's end is run by compression.py.
+            if "&initial_state" in source.read_text("utf-8"):
+                continue
             with self.subTest(source.name), tempfile.TemporaryDirectory() as folder:
                 deck = Path(folder) / "deck.nml"
                 deck.write_text(short(source), encoding="utf-8")

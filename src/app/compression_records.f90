@@ -8,10 +8,10 @@ module compression_records
   private
   public :: compression_record_t
 
-  !> Strains between which the effective modulus is the slope of the chord (ASTM D7137).
+  !> Strains between which the effective modulus is the slope of the chord (ASTM D7137: 1000 and 3000 microstrain).
   real(wp), parameter :: strains(2) = [1.0e-3_wp, 3.0e-3_wp]
-  !> Part of its largest value below which the stress has to come for the plate to have failed. What a structure bears
-  !> as layers buckle or inertia rings falls by less.
+  !> Part of its largest value below which the stress has to come for the plate to have failed: a test ends when the
+  !> force has dropped by about 30 % (ASTM D7137).
   real(wp), parameter :: fallen = 0.7_wp
 
   !> The record.

@@ -10,7 +10,8 @@ module energy_watches
 
   !> Part of the energy that must not have been created, taken or lost sight of.
   real(wp), parameter, public :: much = 0.01_wp
-  !> Part of the energy of residual stresses below which energies are not judged: the precision of their equilibrium.
+  !> Part of the energy of residual stresses below which energies are not judged. The equilibrium that they start from
+  !> leaves 1e-6 of the forces (`tolerance` of &solver), whose work is up to 1e-6 of this energy: 1 % of what is judged.
   real(wp), parameter :: fine = 1.0e-4_wp
   !> What may be wrong: energy created, energy taken, energy that no entry accounts for.
   integer, parameter, public :: energy_created = 1, energy_taken = 2, energy_unaccounted = 3

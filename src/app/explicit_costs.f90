@@ -2,6 +2,7 @@
 module explicit_costs
   use deck_contents, only: deck_t
   use kinds, only: wp
+  use mathematical_constants, only: pi
   use model_sizes, only: model_size_t
   use delamination_parameters, only: law_cohesive
   use plate_options, only: kinematics_von_karman
@@ -12,10 +13,10 @@ module explicit_costs
   public :: explicit_sentence, spoken
 
   !> Seconds of one processor for an element of one layer in a step, what its interfaces add where they are cohesive,
-  !> and what plies add that soften, in the mean over an impact that breaks many of them: Sun and Chen's plate,
-  !> input/verify/cohesive_threshold.nml and input/experiments/t700_m21_25J.nml, one core of an AMD EPYC.
+  !> and what plies add that soften, in the mean over an impact that breaks many of them. Measured on one core of an AMD
+  !> EPYC: Sun and Chen's plate .2 us, input/verify/cohesive_threshold.nml with 1e4 to 1e6 unknowns .30 to .46 us
+  !> (tests/bench/explicit_table.py costs), input/experiments/t700_m21_25J.nml 1.2 us (panels --run).
   real(wp), parameter :: of_elements = 0.2e-6_wp, of_interfaces = 0.2e-6_wp, of_crack_bands = 0.75e-6_wp
-  real(wp), parameter :: pi = acos(-1.0_wp)
 
 contains
 

@@ -38,7 +38,9 @@ module run_warnings
   !> Share of the work that the kinetic energy of a slow motion may be, a few per cent, and part of the run from
   !> which on it is looked at: by then the velocity is constant, and the work no longer that of the start alone.
   real(wp), parameter :: most_kinetic = 0.05_wp, slow_start = 0.25_wp
-  !> Share of the energy that may be kinetic energy of motions whose inertia is scaled.
+  !> Share of the energy that may be kinetic energy of motions whose inertia is scaled. Forces and velocities go by the
+  !> root of energies: 2 % of these is 1 % of them, the error that the default factor may make. On decks of input/ it
+  !> is .02 to 1 % (input/peanut.nml to input/small/breaking_bursts.nml).
   real(wp), parameter :: most_scaled = 0.02_wp
 
 contains

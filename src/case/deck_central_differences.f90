@@ -8,6 +8,7 @@ module deck_central_differences
   use impact_parameters, only: integrator_central
   use impactor_deck, only: impactor_group, key_integrator
   use kinds, only: wp
+  use mathematical_constants, only: pi
   use element_deck, only: key_mass
   use mesh_deck, only: mesh_group
   use output_deck, only: output_group, key_history_every
@@ -33,7 +34,6 @@ module deck_central_differences
   real(wp), parameter :: frequency_error = 0.0035_wp
   !> Rows of a history, about: as many as a plot shows. They are written at whole steps, which none is cut for.
   real(wp), parameter :: rows = 2000
-  real(wp), parameter :: pi = acos(-1.0_wp)
 
 contains
 

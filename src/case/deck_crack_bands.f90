@@ -22,7 +22,7 @@ module deck_crack_bands
   private
   public :: check_crack_bands
 
-  !> Energy that failure takes over the fracture energy from which it is told.
+  !> Energy that failure takes over the fracture energy from which it is told: in two digits smaller ratios are 1.
   real(wp), parameter :: noted = 1.1_wp
 
 contains

@@ -24,8 +24,8 @@ module deck_initial_states
   private
   public :: check_initial_state, inheritance_objection
 
-  !> Digits of numbers in a list.
-  integer, parameter :: digits = 6
+  !> Digits of numbers in a list: numbers contradict each other from a relative difference of 1e-9 on.
+  integer, parameter :: digits = 10
 
 contains
 

@@ -11,49 +11,34 @@ module deck_process_zones
   use delamination_parameters, only: delamination_t, law_cohesive, toughnesses
   use in_situ_strengths, only: crack_strengths
   use kinds, only: wp
+  use mathematical_constants, only: pi
   use layer_extents, only: largest_extents
   use laminate_parameters, only: shear_five_sixths
   use matrix_exposures, only: shear_across_strength
   use plies, only: ply_t
-  use process_zones, only: is_resolved, process_zone_t, process_zone_warning, resolved_part, resolving_cell
+  use process_zones, only: process_zone_t, process_zone_warning, resolved_part
   use stacking, only: stacked_plies, section_stiffness
-  use text, only: to_text
   implicit none
   private
   public :: check_process_zones, settle_flaws
 
 contains
 
-  !> Warns of unresolved process zones: of each group of interfaces by the one that requires the shortest cells.
+  !> Warns of unresolved process zones.
   subroutine check_process_zones(deck, problems)
     !> The deck, filled and checked
     type(deck_t), intent(in) :: deck
     !> Receives the warnings
     type(problems_t), intent(inout) :: problems
     character(len=:), allocatable :: warning
-    type(process_zone_t) :: zone
-    real(wp) :: shortest
-    integer :: place, i, number, worst
+    integer :: i
 
     if (problems%errors() > 0) return
-    do place = 1, deck%settings%groups_named(delamination_group)
-      shortest = huge(shortest)
-      number = 0
-      worst = 0
-      do i = 1, size(deck%delaminations)
-        if (deck%delaminations(i)%group /= place .or. deck%delaminations(i)%law /= law_cohesive) cycle
-        zone = process_zone(deck, deck%delaminations(i))
-        if (is_resolved(zone)) cycle
-        number = number + 1
-        if (resolving_cell(zone) < shortest) worst = i
-        shortest = min(shortest, resolving_cell(zone))
-      end do
-      if (number == 0) cycle
-      warning = process_zone_warning(process_zone(deck, deck%delaminations(worst)), &
-                                     deck%delaminations(worst)%below_ply)
-      if (number > 1) warning = warning//' The cells are too long for '//to_text(number)// &
-                                ' interfaces of the group; such ones resolve all.'
-      call remark(deck%settings, problems, delamination_group, '', warning, place)
+    do i = 1, size(deck%delaminations)
+      if (deck%delaminations(i)%law /= law_cohesive) cycle
+      warning = process_zone_warning(process_zone(deck, deck%delaminations(i)), deck%delaminations(i)%below_ply)
+      if (warning /= '') call remark(deck%settings, problems, delamination_group, '', warning, &
+                                     deck%delaminations(i)%group)
     end do
   end subroutine check_process_zones
 
@@ -176,8 +161,8 @@ contains
 
     largest = 0
     do i = 0, 35
-      c = cos(i*acos(-1.0_wp)/36)
-      s = sin(i*acos(-1.0_wp)/36)
+      c = cos(i*pi/36)
+      s = sin(i*pi/36)
       largest = max(largest, dot_product(moduli, [c**4, 2*(c*s)**2, 4*c**3*s, s**4, 4*c*s**3, 4*(c*s)**2]))
     end do
   end function largest_modulus

@@ -15,6 +15,7 @@ module deck_units
   use impactor_deck, only: impactor_group, key_mass, key_radius, key_velocity
   use indentation_deck, only: indentation_group, key_k
   use kinds, only: wp
+  use mathematical_constants, only: pi
   use laminate_deck, only: laminate_group, key_thicknesses
   use material_deck, only: material_group, key_isotropic, key_along, key_density, key_tension
   use plate_deck, only: plate_group, key_length
@@ -200,7 +201,6 @@ contains
     !> Warnings are added
     type(problems_t), intent(inout) :: problems
     real(wp) :: longest, ratio
-    real(wp), parameter :: pi = acos(-1.0_wp)
     integer :: i
     real(wp), parameter :: thousands(4) = [1.0e-3_wp, 1.0e-6_wp, 1.0e3_wp, 1.0e6_wp]
     character(len=2), parameter :: of_si(4) = [character(len=2) :: 'ms', 'us', '', ''], &
@@ -231,7 +231,6 @@ contains
     integer, intent(in) :: system
     !> Warnings are added
     type(problems_t), intent(inout) :: problems
-    real(wp), parameter :: pi = acos(-1.0_wp)
     real(wp) :: ball, ratio
 
     associate (impactor => deck%impactor, law => deck%indentation)

@@ -1,11 +1,11 @@
 !> Closed forms for the force on a plate at which delaminations grow, to be held against what a run finds.
 module threshold_forces
   use kinds, only: wp
+  use mathematical_constants, only: pi
   implicit none
   private
   public :: effective_bending_stiffness, threshold_force, patch_factor
 
-  real(wp), parameter :: pi = acos(-1.0_wp)
 
 contains
 

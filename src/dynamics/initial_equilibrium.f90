@@ -7,6 +7,7 @@
 module initial_equilibrium
   use errors, only: error_t, fail, exit_convergence
   use kinds, only: wp
+  use mathematical_constants, only: pi
   use line_motions, only: has_moved_lines, keep_lines, line_displacement, move_lines
   use models, only: model_t
   use residual_norms, only: relative_residual
@@ -170,7 +171,6 @@ contains
   !> Mass in the operator.
   pure real(wp) function mass_factor(model) result(factor)
     type(model_t), intent(in) :: model
-    real(wp), parameter :: pi = acos(-1.0_wp)
 
     factor = 0
     if (model%scene%has_static) return

@@ -10,6 +10,7 @@
 module crack_bands
   use hahn_tsai, only: shear_loss, energy_of_loss, shear_flow, energy_of_flow
   use kinds, only: wp
+  use mathematical_constants, only: pi
   use material_parameters, only: material_t
   use matrix_exposures, only: matrix_strengths_t, matrix_strengths, matrix_exposure
   use plies, only: elasticity_t, elasticity_of
@@ -353,7 +354,6 @@ contains
     !> The law
     type(crack_band_t), intent(in) :: band
     integer, parameter :: directions = 180
-    real(wp), parameter :: pi = acos(-1.0_wp)
     real(wp) :: exposure, angle, nu12, nu21
     integer :: i
 

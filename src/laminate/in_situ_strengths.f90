@@ -3,6 +3,7 @@
 !> P. Robinson, Composites Part A 37 (2006) 165-176).
 module in_situ_strengths
   use kinds, only: wp
+  use mathematical_constants, only: pi
   use material_parameters, only: material_t
   use matrix_exposures, only: matrix_strengths_t, matrix_strengths
   use plies, only: ply_t
@@ -12,7 +13,6 @@ module in_situ_strengths
   private
   public :: strengths_in_place, material_in_place, crack_strengths
 
-  real(wp), parameter :: pi = acos(-1.0_wp)
   !> Factor of the stress intensity at a crack that reaches a free face, and the factor of the strength of a thin block
   !> at a face that goes with it, 2/1.12 as printed.
   real(wp), parameter :: at_free_face = 1.12_wp, thin_at_face = 1.79_wp

@@ -2,6 +2,7 @@
 !> exposure of Puck, which is 1 at failure and grows in proportion to the stresses.
 module matrix_exposures
   use kinds, only: wp
+  use mathematical_constants, only: pi
   use material_parameters, only: material_t
   use ply_damage_parameters, only: criteria_hashin, criteria_puck
   implicit none
@@ -104,7 +105,6 @@ contains
     type(matrix_strengths_t), intent(in) :: strengths
     !> s11, s22, s12, s13, s23
     real(wp), intent(in) :: stress(5)
-    real(wp), parameter :: pi = acos(-1.0_wp)
     real(wp) :: c, s, normal, along, across, strength_across
     integer :: i
 

@@ -1,6 +1,7 @@
 !> One unidirectional ply: elastic constants, place in the stack, stiffness in the axes of the plate.
 module plies
   use kinds, only: wp
+  use mathematical_constants, only: degree
   use material_parameters, only: material_t
   implicit none
   private
@@ -85,14 +86,13 @@ contains
     type(ply_t), intent(inout) :: ply
     !> Fibre angle from x, degrees
     real(wp), intent(in) :: angle
-    real(wp), parameter :: radians = acos(-1.0_wp)/180
     real(wp) :: rest, cosine, sine
     integer :: quarter_turns
 
     ! Quarter turns are taken out first, so that a 90 degree ply has no spurious coupling.
     rest = modulo(angle, 360.0_wp)
     quarter_turns = nint(rest/90)
-    rest = (rest - 90*quarter_turns)*radians
+    rest = (rest - 90*quarter_turns)*degree
     cosine = cos(rest)
     sine = sin(rest)
     ply%angle = angle

@@ -89,7 +89,7 @@ contains
                     dot_product(across, moments%mean(1:3) + middle*moments%mean(4:6))]
     strains%square = [dot_product(along, matmul(squares, along)), dot_product(across, matmul(squares, across)), &
                       dot_product(along, matmul(squares, across))]
-    associate (mean => strains%mean, free => ply%free_strain)
+    associate (mean => strains%mean, free => ply%free_strain(:2))
       strains%square = strains%square - [(2*mean(1) - free(1))*free(1), (2*mean(2) - free(2))*free(2), &
                                          mean(1)*free(2) + mean(2)*free(1) - free(1)*free(2)]
       mean = mean - free

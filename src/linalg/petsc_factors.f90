@@ -153,8 +153,8 @@ contains
     ierr = maxval(codes)
   end subroutine gather_on_one_rank
 
-  !> Factors on the rank that does it for all, before a solve would: if that failed there, the others would wait for the
-  !> solution in vain.
+  !> Factors on the rank that does it for all, before a solve would: if that failed there, the others would wait for a
+  !> solution that never comes.
   subroutine factorize_gathered(self, ierr)
     class(petsc_factor_t), intent(in) :: self
     !> PETSc's code

@@ -3,6 +3,7 @@ module model_loads
   use contact_areas, only: new_contact_area
   use inertia_forces, only: add_lumped_mass
   use kinds, only: wp
+  use mathematical_constants, only: pi
   use load_vectors, only: add_pressure, gauss_coordinates, add_patch_weights
   use models, only: model_t
   use pressure_loads, only: distribution_sine
@@ -102,7 +103,6 @@ contains
   subroutine build_pressure(self)
     type(model_t), intent(inout) :: self
     real(wp), allocatable :: x(:, :, :), pressure(:, :), forces(:, :)
-    real(wp), parameter :: pi = acos(-1.0_wp)
     integer :: element
 
     allocate (forces(5, self%borders%columns), source=0.0_wp)

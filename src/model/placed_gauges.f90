@@ -5,6 +5,7 @@ module placed_gauges
   use exact_sums, only: exact_sum_t
   use gauges, only: face_back, face_front, gauge_t
   use kinds, only: wp
+  use mathematical_constants, only: degree
   use models, only: model_t
   use rank_totals, only: totals_of
   use result_tables, only: result_row_length
@@ -18,7 +19,6 @@ module placed_gauges
     'gauge_strain_N | real | - | Strain of the surface under the N-th &gauge along its angle, positive in tension.']
   !> Corners of an element among its nodes, in the order of their shape functions.
   integer, parameter :: corners(4) = [1, 3, 7, 9]
-  real(wp), parameter :: degree = acos(-1.0_wp)/180
 
 contains
 

@@ -7,13 +7,13 @@
 module force_filters
   use archives, only: archive_t
   use kinds, only: wp
+  use mathematical_constants, only: pi
   implicit none
   private
   public :: force_filter_t
 
   !> What a result says of it.
   character(len=*), parameter, public :: filter_kind = 'Butterworth low pass of 4th order, causal'
-  real(wp), parameter :: pi = acos(-1.0_wp)
   !> Damping of the two sections.
   real(wp), parameter :: damping(2) = [cos(pi/8), cos(3*pi/8)]
 

@@ -1,11 +1,11 @@
 !> Discrete Fourier transforms, and by them sums of sines whose frequencies lie anywhere.
 module fourier_transforms
   use kinds, only: wp
+  use mathematical_constants, only: pi
   implicit none
   private
   public :: fourier, unit_turns, sums_of_sines
 
-  real(wp), parameter :: pi = acos(-1.0_wp)
   !> Points that a sine is spread to on either side: 12 give twelve digits with a grid twice as fine as needed
   !> (Greengard and Lee, Accelerating the nonuniform fast Fourier transform, SIAM Review 46, 2004, table 1).
   integer, parameter :: spread_points = 12

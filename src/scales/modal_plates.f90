@@ -5,6 +5,7 @@
 !> and free opposite edges have cosines, the plate's rigid motion included.
 module modal_plates
   use kinds, only: wp
+  use mathematical_constants, only: pi
   use mesh_parameters, only: edge_free, edge_simple, edge_clamped
   implicit none
   private
@@ -88,7 +89,6 @@ contains
     real(wp), intent(in) :: patch
     !> Wave number; square of the mean over the norm, 1/length
     real(wp), allocatable :: modes(:, :)
-    real(wp), parameter :: pi = acos(-1.0_wp)
     real(wp) :: extent, half
     logical :: free
     integer :: i, number

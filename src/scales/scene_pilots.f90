@@ -2,6 +2,7 @@
 !> keep peak and history of the force within an error.
 module scene_pilots
   use kinds, only: wp
+  use mathematical_constants, only: pi
   use modal_plates, only: modal_plate_t, reduced
   use pilot_impacts, only: pilot_t, run_pilot, difference, bound_of_difference, difference_at_peak, &
                            figures_of
@@ -67,7 +68,6 @@ module scene_pilots
   !> Relative rise of a mode's frequency on elements of side e, (kappa e)**4 times this, kappa its wave number. Settled
   !> by `tests/bench/elastic_scenes.py`.
   real(wp), parameter :: dispersion = 6.0e-4_wp
-  real(wp), parameter :: pi = acos(-1.0_wp)
   !> Half periods of the impactor on the plate's spring that the first pilot may last: pilots wait for twice the time of
   !> contact, and contacts that end and come again have lasted up to 1.4 half periods.
   real(wp), parameter :: waited = 4.5_wp

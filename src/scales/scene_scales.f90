@@ -4,6 +4,7 @@ module scene_scales
   use interface_strengths, only: interlaminar_strengths
   use interlaminar_stresses, only: unit_stresses_t, unit_stresses_of
   use kinds, only: wp
+  use mathematical_constants, only: pi
   use mesh_parameters, only: edge_simple
   use modal_plates, only: modal_plate_t, modal_plate_of
   use packed_matrices, only: unpacked, inverse
@@ -42,7 +43,6 @@ module scene_scales
 
   !> Hertz' contact of two bodies that move freely lasts 2.943 alpha_max/v, Goldsmith 1960.
   real(wp), parameter :: hertz_duration = 2.943_wp
-  real(wp), parameter :: pi = acos(-1.0_wp)
   !> A frequency that no mode has and whose square is finite.
   real(wp), parameter :: all_modes = 1.0e100_wp
 

@@ -164,7 +164,7 @@ def main():
         tau = scene.contact_time()
         said = subprocess.run([options.program, 'check', '/dev/stdin'], env=ENVIRONMENT, capture_output=True, text=True,
                               input=deck_of(scene, case=f'accuracy={options.accuracy}'), check=False).stdout
-        last = re.search(r'end of the last contact +(.*)', said)
+        last = re.search(r'end of the last contact +(\S+)', said)
         if last and float(last[1]) > options.longest*tau:
             print(f'{scene.name:9s}  the contact lasts {float(last[1])/tau:.0f} rises', *named_by(said, {}, 0))
             continue

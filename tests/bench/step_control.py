@@ -33,7 +33,7 @@ def random_decks(program, numbers):
         scene = scenes[number - 1]
         said = subprocess.run([program, 'check', '/dev/stdin'], env=ENVIRONMENT, capture_output=True, text=True,
                               input=deck_of(scene, case="accuracy='draft'"), check=False).stdout
-        last = float(re.search(r'end of the last contact +(.*)', said)[1])
+        last = float(re.search(r'end of the last contact +(\S+)', said)[1])
         tau = scene.contact_time()
         mesh = f'&mesh elements=12, 12 patch={min(scene.thickness*1.5, min(scene.length)/8):.4g} /'
         yield scene.name, deck_of(scene, mesh=mesh, impactor="integrator='trapezoidal'",

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from implam_post.deck import Deck, as_number, read_deck
+from implam_post.deck import Deck, as_number, read_deck, recorded_deck
 from implam_post.errors import FileError, ImplamError
 from implam_post.exchange.degradation import degradation_of
 from implam_post.exchange.panel import Cell, Panel, Stack
@@ -28,7 +28,7 @@ def _from_results(path: Path, time: float | None) -> Panel:
     fields = read_fields(path)
     snapshot = fields.snapshots[-1 if time is None else fields.place(time)]
     with opened(path) as file:
-        deck = Deck(file["provenance/deck"][()].decode(), path)
+        deck = recorded_deck(file["provenance"], path)
         written = set(file["times"][min(file["times"])].get("cells", {}))
     for group, field in _STATES.items():
         if deck.has(group) and field not in written:
