@@ -13,8 +13,9 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "regress"))
-from slurm import MissingError, Slurm
 from solver_runs import change_deck, require, run
+
+from slurm import MissingError, Slurm
 
 SKIPPED = 77
 PARTS = 4

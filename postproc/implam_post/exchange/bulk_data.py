@@ -9,7 +9,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from implam_post.errors import DeckError, FileError, ImplamError
+from implam_post.io.errors import DeckError, FileError, ImplamError
 
 # What pyNastran raises about fields that it can't read.
 _READING_ERRORS = (SyntaxError, RuntimeError, AssertionError, ValueError, TypeError, LookupError, AttributeError)

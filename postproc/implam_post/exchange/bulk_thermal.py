@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from implam_post.exchange.bulk_data import BulkCard, BulkData
 from implam_post.exchange.remarks import Remarks
-from implam_post.laminate import Ply
+from implam_post.laminate.sections import Ply
 
 # Number of the field TREF.
 _TREF = {"PCOMP": 6, "PCOMPG": 6, "MAT1": 7, "MAT8": 11}

@@ -4,11 +4,11 @@ import argparse
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 
-from implam_post.errors import EXIT_DONE, CommandParser, FileError, run
 from implam_post.exchange.abaqus import abaqus_input
 from implam_post.exchange.nastran import nastran_deck
 from implam_post.exchange.panel import Panel
 from implam_post.exchange.results import read_panel
+from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, run
 
 
 def summary(panel: Panel) -> Iterator[str]:

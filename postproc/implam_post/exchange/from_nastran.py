@@ -7,7 +7,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from implam_post.errors import EXIT_DONE, CommandParser, FileError, ImplamError, run
 from implam_post.exchange.bulk_data import KNOWN, BulkData, ranges, read_bulk_data
 from implam_post.exchange.bulk_laminate import read_laminate
 from implam_post.exchange.bulk_shape import Shape, read_grids, read_shape
@@ -15,7 +14,8 @@ from implam_post.exchange.bulk_supports import read_supports
 from implam_post.exchange.bulk_thermal import read_thermal
 from implam_post.exchange.deck_text import Impact, deck_text
 from implam_post.exchange.remarks import Remarks
-from implam_post.laminate import Ply
+from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, ImplamError, run
+from implam_post.laminate.sections import Ply
 
 TAKEN = KNOWN
 

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 
 from implam_post.exchange.panel import MaterialState, Panel, Section
 from implam_post.exchange.shell_mesh import ShellMesh, shell_mesh
-from implam_post.laminate import Material
+from implam_post.laminate.sections import Material
 
 Field = int | float | str | None
 _SUPPORTS, _LOAD = 1, 1

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from implam_post.exchange.degradation import Degradation, told
-from implam_post.laminate import Material, Ply
+from implam_post.laminate.sections import Material, Ply
 
 Cell = tuple[int, int]
 

@@ -4,12 +4,13 @@ from pathlib import Path
 
 import numpy as np
 
-from implam_post.deck import Deck, as_number, read_deck, recorded_deck
-from implam_post.errors import FileError, ImplamError
 from implam_post.exchange.degradation import degradation_of
 from implam_post.exchange.panel import Cell, Panel, Stack
-from implam_post.fields import IMAGES, Snapshot, opened, read_fields
-from implam_post.laminate import Ply
+from implam_post.io.deck import Deck, as_number, read_deck, recorded_deck
+from implam_post.io.errors import FileError, ImplamError
+from implam_post.io.fields import IMAGES, Snapshot, opened, read_fields
+from implam_post.laminate.decks import plies_of
+from implam_post.laminate.sections import Ply
 
 _STATES = {"ply_damage": "ply_1_failure", "delamination": "delaminated_above"}
 
@@ -34,7 +35,7 @@ def _from_results(path: Path, time: float | None) -> Panel:
         if deck.has(group) and field not in written:
             raise FileError(f"{path} doesn't hold the state of &{group}: run again with '{group}' among the fields of "
                             f"&output.")
-    plies = deck.plies()
+    plies = plies_of(deck)
     if snapshot.mesh.last_ply.max() != len(plies):
         raise FileError(f"{path} has {snapshot.mesh.last_ply.max()} plies and its deck {len(plies)}: it is damaged.")
     x, y = (_lines(snapshot.mesh.corners[..., axis]) for axis in (0, 1))
@@ -97,7 +98,7 @@ def _completed(x: np.ndarray, y: np.ndarray, stacks: dict[Cell, tuple[Stack, ...
 
 def _from_deck(deck: Deck) -> Panel:
     """Return the panel in equal cells, as many as the deck's elements make on the whole plate; starters are apart."""
-    plies = deck.plies()
+    plies = plies_of(deck)
     lengths, elements = deck.lengths(), deck.numbers("mesh", "elements")
     if len(elements) != 2 or min(elements) < 1 or any(count % 1 for count in elements):
         raise deck.error("mesh", "elements needs two whole numbers greater than zero.")
@@ -130,7 +131,7 @@ def _starters(deck: Deck, plies: int) -> list[tuple[int, float]]:
         where = f"{deck.path.name}: &delamination"
         named = group.get("below_ply", [0.0])
         if str(named[0]).lower() in ("all", "between_angles"):
-            angles = [ply.angle for ply in deck.plies()]
+            angles = [ply.angle for ply in plies_of(deck)]
             named = [ply for ply in range(1, plies) if (angles[ply] - angles[ply - 1]) % 180]
         side = np.sqrt(0.0005 * np.prod(deck.lengths()))
         for value in named:

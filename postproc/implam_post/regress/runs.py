@@ -1,0 +1,121 @@
+"""Runs of decks that are held against what is expected of them."""
+
+import shutil
+import subprocess
+import time
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from implam_post.io.deck_text import set_keys
+from implam_post.io.errors import EXIT_DONE, FileError, ImplamError
+from implam_post.io.files import read_text, write_text
+from implam_post.io.history import History, read_history
+from implam_post.io.program import environment, history_in, last_words, shell_code
+from implam_post.io.progress import Progress
+from implam_post.regress.compare import Comparison, compare, heading
+from implam_post.regress.expectations import AS_IT_IS, Expectations, Variant
+
+
+@dataclass(eq=False)
+class Outcome:
+    """What became of one variant, run in a folder: its comparisons, or why there are none, and the seconds it took."""
+
+    expectations: Expectations
+    variant: Variant
+    deck: Path
+    folder: Path
+    comparisons: list[Comparison] = field(default_factory=list)
+    trouble: str = ""
+    seconds: float = 0.0
+    history: History | None = None
+
+    @property
+    def label(self) -> str:
+        """Name of the run."""
+        name = self.expectations.path.stem
+        return name if self.variant.name == AS_IT_IS else f"{name}/{self.variant.name}"
+
+    @property
+    def passed(self) -> bool:
+        """Tell whether everything expected was found, and something was expected."""
+        return not self.trouble and bool(self.comparisons) and all(comparison.passed for comparison in self.comparisons)
+
+    @property
+    def verdict(self) -> str:
+        """Why it failed, in one line; empty if it passed."""
+        missed = [comparison.expected.label for comparison in self.comparisons if not comparison.passed]
+        return self.trouble or (f"not as expected: {', '.join(missed)}" if missed else "")
+
+
+def run_variant(outcome: Outcome, program: Sequence[str], timeout: float | None) -> None:
+    """Run a variant and compare it; the outcome is filled in."""
+    start = time.monotonic()
+    try:
+        text = set_keys(read_text(outcome.deck, "the deck"), outcome.variant.settings, outcome.deck.name)
+        shutil.rmtree(outcome.folder, ignore_errors=True)
+        write_text(outcome.folder / "deck.nml", text)
+        outcome.trouble = _run(outcome.folder, program, timeout)
+        if not outcome.trouble:
+            outcome.history = _finite_history(outcome.folder)
+            outcome.comparisons = compare(outcome.history, outcome.variant.expectations,
+                                          outcome.expectations.path.parent)
+    except ImplamError as error:
+        outcome.trouble = str(error)
+    outcome.seconds = time.monotonic() - start
+
+
+def _run(folder: Path, program: Sequence[str], timeout: float | None) -> str:
+    """Run the deck in a folder; return what went wrong."""
+    try:
+        with (folder / "output.txt").open("wb") as output:
+            ended = subprocess.run([*program, "run", str(folder / "deck.nml"), "--output", str(folder)], check=False,
+                                   stdin=subprocess.DEVNULL, stdout=output, stderr=subprocess.STDOUT, timeout=timeout,
+                                   env=environment())
+    except subprocess.TimeoutExpired:
+        return f"the run took longer than {timeout:g} s."
+    if ended.returncode == EXIT_DONE:
+        return ""
+    said = (folder / "output.txt").read_text(encoding="utf-8", errors="replace")
+    return f"the run ended with {shell_code(ended.returncode)}: {last_words(said)}"
+
+
+def _finite_history(folder: Path) -> History:
+    """Return the history in a folder, in which every number has to be finite."""
+    path = history_in(folder)
+    if path is None:
+        raise FileError(f"{folder} holds no history.")
+    history = read_history(path)
+    for name, values in history.columns.items():
+        if not np.all(np.isfinite(values)):
+            raise FileError(f"the column {name} of the history isn't finite throughout.")
+    return history
+
+
+def run_all(outcomes: Sequence[Outcome], program: Sequence[str], jobs: int, timeout: float | None) -> None:
+    """Run variants, some at a time."""
+    with ThreadPoolExecutor(jobs) as pool, Progress(len(outcomes)) as progress:
+        runs = {pool.submit(run_variant, outcome, program, timeout): outcome for outcome in outcomes}
+        try:
+            for ended in as_completed(runs):
+                ended.result()
+                progress.end_run(runs[ended].label, runs[ended].verdict)
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+
+
+def table(outcomes: Sequence[Outcome]) -> str:
+    """Return all comparisons as lines of text."""
+    rows = [(outcome.label, comparison) for outcome in outcomes for comparison in outcome.comparisons]
+    runs = max([len(outcome.label) for outcome in outcomes])
+    width = max([len(comparison.expected.label) for _, comparison in rows] + [len("quantity")])
+    lines = [f"{'run':<{runs}} {heading(width)}"]
+    for outcome in outcomes:
+        if outcome.trouble:
+            lines.append(f"{outcome.label:<{runs}} {outcome.trouble} FAIL")
+        lines += [f"{outcome.label:<{runs}} {comparison.row(width)}" for comparison in outcome.comparisons]
+    return "\n".join(lines)
