@@ -13,9 +13,8 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "regress"))
-from solver_runs import change_deck, require, run
-
 from slurm import MissingError, Slurm
+from solver_runs import change_deck, require, run
 
 SKIPPED = 77
 PARTS = 4

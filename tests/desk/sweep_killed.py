@@ -13,9 +13,8 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "regress"))
-from solver_runs import require, run
-
 from queue_chain import table_of
+from solver_runs import require, run
 
 DECK = HERE.parents[1] / "input/small/damage.nml"
 CASES = 24

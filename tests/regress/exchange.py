@@ -17,7 +17,6 @@ from implam_post.exchange import from_nastran
 from implam_post.exchange.export import to_abaqus, to_nastran
 from implam_post.exchange.results import read_panel
 from implam_post.exchange.shell_mesh import shell_mesh
-
 from solver_runs import exit_code_of, require, run, run_deck, write_deck
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -25,7 +25,6 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "bench"))
 
 from modal_impact import Scene, answer, condensed, patch_weight, section
-
 from solver_runs import ENERGIES, TrialError, change_deck, exit_code_of, read_history, require
 
 LONGEST_ROW = 60  # seconds of the processor: a run that hangs ends

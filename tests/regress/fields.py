@@ -7,7 +7,6 @@ from pathlib import Path
 import h5py
 import meshio
 import numpy as np
-
 from restart import run_split
 from solver_runs import exit_code_of, read_history, require
 
