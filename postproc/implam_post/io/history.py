@@ -1,13 +1,18 @@
 """A history: columns of numbers against time."""
 
-import csv
+import io
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from implam_post.io.errors import FileError
 from implam_post.io.files import read_text
+from implam_post.io.units import dimension_of, unit_of
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 KEPT_ENERGIES = ("energy_impactor", "energy_kinetic", "energy_strain", "energy_indentation")
 # Those of every history.
@@ -39,6 +44,19 @@ class History:
         """Times of the rows."""
         return self["time"]
 
+    def table(self, system: str = "", load_steps: bool = False) -> "pd.DataFrame":
+        """Return the columns as a table, with the unit of each in `attrs["units"]`; empty where it is not known.
+
+        `system` is that of the deck. The time of load steps is a load factor.
+        """
+        import pandas as pd
+
+        table = pd.DataFrame(self.columns)
+        table.attrs = {"name": self.name, "units": {name: unit_of(dimension_of(name), system) for name in table}}
+        if load_steps:
+            table.attrs["units"]["time"] = ""
+        return table
+
     def until(self, time: float) -> "History":
         """Return the rows up to a time."""
         kept = self.time <= time * (1 + 1e-9)
@@ -61,22 +79,26 @@ def read_history(path: Path | str) -> History:
 
 def read_columns(path: Path | str) -> History:
     """Read columns of numbers under their names, in any order of the rows and with or without a time."""
+    import pandas as pd
+
     path = Path(path)
     lines = [(number, line) for number, line in enumerate(read_text(path, "the history").splitlines(), start=1)
              if line.strip() and line[0] != "#"]
-    try:
-        rows = list(csv.reader((line for _, line in lines), skipinitialspace=True))
-    except csv.Error as error:
-        raise FileError(f"the history {path} is no table of numbers ({error}).") from None
-    if len(rows) < 2:
+    if len(lines) < 2:
         raise FileError(f"the history {path} has no rows.")
-    names = [name.strip() for name in rows[0]]
-    table = np.empty((len(rows) - 1, len(names)))
-    for place, ((number, _), row) in enumerate(zip(lines[1:], rows[1:], strict=False)):
-        if len(row) != len(names):
-            raise FileError(f"the history {path} has {len(row)} cells under {len(names)} names in line {number}.")
-        try:
-            table[place] = [float(cell) for cell in row]
-        except ValueError:
-            raise FileError(f"the history {path} has a cell in line {number} that is no number.") from None
-    return History(dict(zip(names, table.T, strict=True)), str(path))
+    widths = [line.count(",") + 1 for _, line in lines]
+    for (number, _), width in zip(lines, widths, strict=True):
+        if width != widths[0]:  # pandas would fill a short row up
+            raise FileError(f"the history {path} has {width} cells under {widths[0]} names in line {number}.")
+    try:
+        cells = pd.read_csv(io.StringIO("\n".join(line for _, line in lines)), skipinitialspace=True, dtype=str,
+                            keep_default_na=False)
+    except ValueError as error:
+        raise FileError(f"the history {path} is no table of numbers ({str(error).strip()}).") from None
+    try:
+        table = cells.astype(float)
+    except ValueError:
+        is_number = cells.apply(pd.to_numeric, errors="coerce").notna() | cells.isin(["nan", "NaN"])
+        number = lines[1 + int((~is_number).any(axis=1).argmax())][0]
+        raise FileError(f"the history {path} has a cell in line {number} that is no number.") from None
+    return History({name.strip(): table[name].to_numpy() for name in table}, str(path))

@@ -1,29 +1,22 @@
-"""Figures of one run: all numbers of its summary, and what ASTM D7136 asks for, each with its dimension."""
+"""Figures of runs: numbers of a summary and what ASTM D7136 requires, each with its dimension; two runs compared."""
 
-import json
 import math
 from collections.abc import Iterator, Mapping
-from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from implam_post.io import damage_resistance
-from implam_post.io.deck import recorded_deck, system_of_deck
-from implam_post.io.errors import FileError, ImplamError
-from implam_post.io.fields import Fields, read_fields
-from implam_post.io.files import read_text
-from implam_post.io.history import History, read_history
-from implam_post.io.units import SYSTEMS
+from implam_post.io.errors import ImplamError
+from implam_post.io.quantities import l2_force_difference
+from implam_post.io.run import Run
+from implam_post.io.units import SYSTEMS, dimension_of, unit_of
 
-SUMMARY = "_summary.json"
+if TYPE_CHECKING:
+    import pandas as pd
+
 # Members of a summary that are no figures of the run.
 _APART = ("costs", "profile", "provenance", "estimated_errors", "exit", "warnings", "plies", "interfaces", "plate_size")
-# Dimensions by what the name of a figure ends or begins with, the first that fits.
-_DIMENSIONS = (("_at", "time"), ("contact_duration", "time"), ("contact_until", "time"), ("time_reached", "time"),
-               ("force", "force"), ("velocity", "velocity"), ("area", "area"), ("energy", "energy"),
-               ("work_external", "energy"), ("deflection", "length"), ("displacement", "length"), ("dent", "length"),
-               ("damage_", "length"), ("depth", "length"))
 _OF_ENDED_CONTACT = ("contact_duration", "contact_until")
 _EVENTS = ("onset", "first_growth")
 
@@ -35,62 +28,18 @@ class Measured(NamedTuple):
     dimension: str
 
 
-class Results(NamedTuple):
-    """What a run has left: its summary, and history and fields if they are there."""
-
-    summary: Mapping[str, Any]
-    history: History | None
-    fields: Fields | None
-
-    @property
-    def system(self) -> str:
-        """Return the system of units that the deck tells; empty if none."""
-        try:
-            deck = recorded_deck(self.summary["provenance"], Path(f"{self.summary['case']}.nml"))
-        except ImplamError:
-            return ""
-        return system_of_deck(deck)
-
-
-def read_summary(path: Path) -> dict[str, Any]:
-    """Read what a run says."""
-    try:
-        summary = json.loads(read_text(path, "the summary"))
-    except ValueError as error:
-        raise FileError(f"{path} isn't a summary written by implam ({error}).") from None
-    if not isinstance(summary, dict) or not {"case", "exit", "plies", "provenance"} <= summary.keys():
-        raise FileError(f"{path} isn't a summary written by implam.")
-    return summary
-
-
-def read_results(path: Path) -> Results:
-    """Read a summary, and the history and the fields beside it."""
-    base = path.with_name(path.name.removesuffix(SUMMARY))
-    history, fields = base.with_name(f"{base.name}_history.csv"), base.with_name(f"{base.name}.h5")
-    return Results(read_summary(path), read_history(history) if history.exists() else None,
-                   read_fields(fields) if fields.exists() else None)
-
-
-def results_in(folder: Path) -> Results:
-    """Read the results of the only run in a folder."""
-    found = sorted(folder.glob(f"*{SUMMARY}"))
-    if not found:
-        raise FileError(f"{folder} holds no summary of a run.")
-    return read_results(found[0])
-
-
-def corner_of(results: Results) -> float | None:
+def corner_of(run: Run) -> float | None:
     """Return the corner frequency of the low pass for the threshold force, in the deck's units; None if it has none."""
-    given = results.summary.get("force_filter")
+    given = run.summary.get("force_filter")
     if given:
         return float(given["frequency"])
-    return damage_resistance.CORNER * SYSTEMS[results.system][2] if results.system in SYSTEMS else None
+    return damage_resistance.CORNER * SYSTEMS[run.system][2] if run.system in SYSTEMS else None
 
 
-def resistance(results: Results) -> dict[str, Measured]:
+def resistance(run: Run) -> dict[str, Measured]:
     """Return what ASTM D7136 asks for beyond the summary; NaN where the force never drops, or nothing is damaged."""
     found: dict[str, Measured] = {}
-    history, corner = results.history, corner_of(results)
+    history, corner = run.columns, corner_of(run)
     if history is not None and np.any(history["force"]) and "impactor_displacement" in history.columns:
         turned = damage_resistance.threshold(history, corner) if corner else None
         force, time, energy = (turned.force, turned.time, turned.energy) if turned else 3 * (math.nan,)
@@ -98,8 +47,8 @@ def resistance(results: Results) -> dict[str, Measured]:
                   "energy_to_threshold": Measured(energy, "energy"),
                   "energy_to_peak": Measured(damage_resistance.energy_to_peak(history), "energy"),
                   "largest_displacement": Measured(float(np.max(history["impactor_displacement"])), "length")}
-    if results.fields is not None and results.fields.snapshots[-1].mesh.interfaces:
-        size = damage_resistance.extent(results.fields)
+    if run.fields is not None and run.fields.snapshots[-1].mesh.interfaces:
+        size = damage_resistance.extent(run.fields)
         told = dict.fromkeys(("damage_diameter", "damage_length", "damage_width"), 0.0) if size is None else {
             "damage_diameter": size.diameter, "damage_length": size.length, "damage_width": size.width}
         told |= {f"damage_along_{angle}".replace("-", "minus_"): size.through[angle] if size else 0.0
@@ -108,10 +57,33 @@ def resistance(results: Results) -> dict[str, Measured]:
     return found
 
 
-def figures(results: Results) -> dict[str, Measured]:
+def figures(run: Run) -> dict[str, Measured]:
     """Return all figures of a run by name: those of the summary, of its interfaces, and those of ASTM D7136."""
-    found = {name: Measured(value, _dimension(name)) for name, value in _numbers(results.summary)}
-    return found | resistance(results)
+    dimensions = {"time": ""} if "load_factor_reached" in run.summary else {}
+    found = {name: Measured(value, dimensions.get(dimension := dimension_of(name), dimension))
+             for name, value in _numbers(run.summary)}
+    return found | resistance(run)
+
+
+def compare(first: Run, second: Run) -> "pd.DataFrame":
+    """Return the figures of two runs side by side: a row for each with both values, difference, ratio less 1, and unit.
+
+    `force_history` is the relative L2 norm of the difference of the contact forces, over the time of the first run.
+    """
+    import pandas as pd
+
+    if first.system != second.system:
+        raise ImplamError(f"{first.name} and {second.name} have different units ({first.system or 'not known'}, "
+                          f"{second.system or 'not known'}).")
+    found = {name: [first.figures[name].value, second.figures[name].value, unit_of(figure.dimension, first.system)]
+             for name, figure in first.figures.items() if name in second.figures}
+    table = pd.DataFrame.from_dict(found, orient="index", columns=["first", "second", "unit"])
+    table.insert(2, "difference", table["second"] - table["first"])
+    table.insert(3, "relative", (table["difference"] / table["first"].abs()).where(table["first"] != 0))
+    if first.columns is not None and second.columns is not None:
+        relative = l2_force_difference(second.columns, first.columns)
+        table.loc["force_history"] = [math.nan, math.nan, math.nan, relative, ""]
+    return table
 
 
 def _numbers(summary: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
@@ -140,11 +112,3 @@ def _numbers(summary: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
 def _is_number(value: object) -> bool:
     """Tell whether a member of a summary is a number, or one that the run does not have."""
     return value is None or (isinstance(value, (int, float)) and not isinstance(value, bool))
-
-
-def _dimension(name: str) -> str:
-    """Return the dimension of a figure, by its name."""
-    if "_extent_" in name:
-        return "length"
-    return next((kind for word, kind in _DIMENSIONS
-                 if (name.endswith(word) if word.startswith("_") else word in name)), "")

@@ -1,7 +1,6 @@
 """Runs of decks that are held against what is expected of them."""
 
 import shutil
-import subprocess
 import time
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
@@ -10,12 +9,11 @@ from pathlib import Path
 
 import numpy as np
 
-from implam_post.io.deck_text import set_keys
-from implam_post.io.errors import EXIT_DONE, FileError, ImplamError
-from implam_post.io.files import read_text, write_text
+from implam_post.io.errors import FileError, ImplamError
 from implam_post.io.history import History, read_history
-from implam_post.io.program import environment, history_in, last_words, shell_code
+from implam_post.io.program import history_in
 from implam_post.io.progress import Progress
+from implam_post.io.start import RunError, run_deck
 from implam_post.regress.compare import Comparison, compare, heading
 from implam_post.regress.expectations import AS_IT_IS, Expectations, Variant
 
@@ -55,10 +53,8 @@ def run_variant(outcome: Outcome, program: Sequence[str], timeout: float | None)
     """Run a variant and compare it; the outcome is filled in."""
     start = time.monotonic()
     try:
-        text = set_keys(read_text(outcome.deck, "the deck"), outcome.variant.settings, outcome.deck.name)
         shutil.rmtree(outcome.folder, ignore_errors=True)
-        write_text(outcome.folder / "deck.nml", text)
-        outcome.trouble = _run(outcome.folder, program, timeout)
+        outcome.trouble = _run(outcome, program, timeout)
         if not outcome.trouble:
             outcome.history = _finite_history(outcome.folder)
             outcome.comparisons = compare(outcome.history, outcome.variant.expectations,
@@ -68,19 +64,17 @@ def run_variant(outcome: Outcome, program: Sequence[str], timeout: float | None)
     outcome.seconds = time.monotonic() - start
 
 
-def _run(folder: Path, program: Sequence[str], timeout: float | None) -> str:
-    """Run the deck in a folder; return what went wrong."""
+def _run(outcome: Outcome, program: Sequence[str], timeout: float | None) -> str:
+    """Run the deck of a variant in its folder; return what went wrong."""
+    started = run_deck(outcome.deck, outcome.variant.settings, outcome.folder, program, "deck.nml")
     try:
-        with (folder / "output.txt").open("wb") as output:
-            ended = subprocess.run([*program, "run", str(folder / "deck.nml"), "--output", str(folder)], check=False,
-                                   stdin=subprocess.DEVNULL, stdout=output, stderr=subprocess.STDOUT, timeout=timeout,
-                                   env=environment())
-    except subprocess.TimeoutExpired:
-        return f"the run took longer than {timeout:g} s."
-    if ended.returncode == EXIT_DONE:
-        return ""
-    said = (folder / "output.txt").read_text(encoding="utf-8", errors="replace")
-    return f"the run ended with {shell_code(ended.returncode)}: {last_words(said)}"
+        started.wait(timeout)
+    except (RunError, TimeoutError) as error:
+        return str(error)
+    finally:
+        if started.is_running:
+            started.kill()
+    return ""
 
 
 def _finite_history(folder: Path) -> History:

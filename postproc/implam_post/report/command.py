@@ -11,7 +11,8 @@ from implam_post.io.damage_resistance import DIRECTIONS, extent, kinds_of_damage
 from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, run
 from implam_post.io.files import write_text
 from implam_post.io.history import ENERGY_NAMES, UNACCOUNTED
-from implam_post.io.run_figures import SUMMARY, Measured, Results, corner_of, read_results, resistance
+from implam_post.io.run import SUMMARY, Run, open_run
+from implam_post.io.run_figures import Measured, corner_of, resistance
 from implam_post.plot.look import Look
 from implam_post.report.html import number, page, picture, table
 from implam_post.report.pictures import history_pictures, layup_figure, map_pictures, plan_figure
@@ -49,13 +50,13 @@ def said(look: Look, dimension: str, value: object) -> str:
     return look.said(dimension, value, 4)
 
 
-def report(results: Results, base: Path) -> str:
+def report(results: Run, base: Path) -> str:
     """Return the page of a run; `base` is what the names of its results begin with."""
     summary, look = results.summary, Look(results.system)
     title = summary["title"] or summary["case"]
     found = resistance(results)
     parts = [f"<h1>{escape(title)}</h1>", _ending(summary, look), "<h2>Summary</h2>", _figures(summary, look)]
-    if "energy_absorbed" in summary and results.history is not None:
+    if "energy_absorbed" in summary and results.columns is not None:
         parts += ["<h2>Damage resistance, as ASTM D7136 asks for it</h2>", _resistance(results, found, look)]
     if summary.get("interfaces"):
         parts += ["<h2>Interfaces</h2>", _interfaces(summary, look)]
@@ -67,7 +68,7 @@ def report(results: Results, base: Path) -> str:
     return page(title, parts)
 
 
-def _resistance(results: Results, found: Mapping[str, Measured], look: Look) -> str:
+def _resistance(results: Run, found: Mapping[str, Measured], look: Look) -> str:
     """Return threshold, energies, size and type of the damage."""
     summary = results.summary
 
@@ -99,7 +100,7 @@ def _frequency(look: Look, corner: float) -> str:
     return f"{corner / look.seconds / 1e3:.4g} kHz" if look.system else number(corner)
 
 
-def _sizes(results: Results, look: Look) -> list[tuple[str, str, str]]:
+def _sizes(results: Run, look: Look) -> list[tuple[str, str, str]]:
     """Return the rows that tell the size of the projected damage."""
     size = extent(results.fields)
     if size is None:
@@ -193,16 +194,16 @@ def _plate(summary: Mapping[str, Any], look: Look) -> str:
                       picture(layup_figure(summary), "lay-up from the struck face"), table(head, rows)])
 
 
-def _curves(results: Results, found: Mapping[str, Measured], base: Path, look: Look) -> str:
+def _curves(results: Run, found: Mapping[str, Measured], base: Path, look: Look) -> str:
     """Return the curves of the history, or why there are none."""
-    if results.history is None:
+    if results.columns is None:
         return f"<p>There is no {escape(base.name)}_history.csv.</p>"
     mark = tuple(found[name].value for name in ("threshold_at", "threshold_force")) if "threshold_at" in found else None
-    pictures = history_pictures(results.history, look, mark if mark and not math.isnan(mark[0]) else None)
+    pictures = history_pictures(results.columns, look, mark if mark and not math.isnan(mark[0]) else None)
     return "\n".join(picture(figure, text) for text, figure in pictures)
 
 
-def _maps(results: Results, base: Path, look: Look) -> str:
+def _maps(results: Run, base: Path, look: Look) -> str:
     """Return what the fields show in plan, or why there is nothing."""
     if results.fields is None:
         return f"<p>There is no {escape(base.name)}.h5.</p>"
@@ -242,7 +243,7 @@ def write_report(path: Path, output: Path | None) -> Path:
         raise FileError(f"{path} isn't NAME{SUMMARY}; a report is made of that file, or of the folder that holds it.")
     base = path.with_name(path.name.removesuffix(SUMMARY))
     written = (output or path.parent) / f"{base.name}_report.html"
-    results = read_results(path)
+    results = open_run(path)
     try:
         text = report(results, base)
     except KeyError as error:

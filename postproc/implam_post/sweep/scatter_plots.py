@@ -43,7 +43,7 @@ def band_figure(groups: Sequence[Group], curves: Sequence[History], look: Look) 
     for place, (group, band) in enumerate(zip(groups, bands, strict=True)):
         colour, name = f"C{place % 10}", f"{group.name}: " if group.name else ""
         for run in group.ended if len(groups) == 1 else ():
-            history = run.results.history
+            history = run.results.columns
             axes.plot(time.factor * history.time, force.factor * history["force"], color=colour, linewidth=0.4,
                       alpha=0.5)
         axes.fill_between(time.factor * band["time"], force.factor * band["low"], force.factor * band["high"],

@@ -21,7 +21,8 @@ from implam_post.io.fields import Fields
 from implam_post.io.files import write_text
 from implam_post.io.history import History, read_history
 from implam_post.io.quantities import AGAINST_QUANTITIES
-from implam_post.io.run_figures import Measured, Results, figures, results_in
+from implam_post.io.run import Run, open_run
+from implam_post.io.run_figures import Measured
 from implam_post.regress.compare import compare
 from implam_post.regress.expectations import Expectation, read_expectations
 from implam_post.sweep.case_run import read_record
@@ -35,12 +36,12 @@ _ROWS = 1000  # of the band of the force history
 
 
 @dataclass
-class Run:
+class EndedRun:
     """A run that has a result: its case, summary and history, its figures, seconds of the processor, and what a C-scan
     sees of it at its end, as polygons of the whole plate; nothing if it has no interface. Fields are not kept."""
 
     case: Case
-    results: Results
+    results: Run
     figures: dict[str, Measured]
     seconds: float
     region: np.ndarray | None
@@ -54,12 +55,12 @@ class Group:
     """
 
     name: str
-    runs: list[Run | None] = field(default_factory=list)
+    runs: list[EndedRun | None] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     plate: Fields | None = None
 
     @property
-    def ended(self) -> list[Run]:
+    def ended(self) -> list[EndedRun]:
         """Return the runs that have a result."""
         return [run for run in self.runs if run is not None]
 
@@ -79,7 +80,7 @@ class Group:
 
         A run has no force once its contact has ended, and counts as long as it lasts where it has not.
         """
-        histories = [run.results.history for run in self.ended if run.results.history is not None]
+        histories = [run.results.columns for run in self.ended if run.results.columns is not None]
         if not histories or not all(np.any(history["force"]) for history in histories):
             return None
         time = np.linspace(0, max(history.time[-1] for history in histories), _ROWS)
@@ -131,20 +132,22 @@ def _telling(plan: Plan) -> list[str]:
                                for cases in of_variants.values()))]
 
 
-def _run(sweep: Sweep, case: Case, group: Group) -> Run:
+def _run(sweep: Sweep, case: Case, group: Group) -> EndedRun:
     """Return a run with its figures."""
     folder = sweep.folder(case)
-    record, results = read_record(folder), results_in(folder)
+    record, results = read_record(folder), open_run(folder)
     fields, region = results.fields, None
     if fields is not None and fields.snapshots[-1].mesh.interfaces:
         region = fields.projected(len(fields.snapshots) - 1)
         group.plate = group.plate or fields
-    return Run(case, results._replace(fields=None), figures(results), record.cpu_time if record else math.nan, region)
+    found = dict(results.figures)
+    results.forget_fields()
+    return EndedRun(case, results, found, record.cpu_time if record else math.nan, region)
 
 
 def held_against(group: Group, measured: Path) -> list[Held]:
     """Return the means of a group beside what a file of expectations or a curve of force against time tells."""
-    histories = [run.results.history for run in group.ended if run.results.history is not None]
+    histories = [run.results.columns for run in group.ended if run.results.columns is not None]
     if not histories:
         return []
     if measured.suffix == ".toml":

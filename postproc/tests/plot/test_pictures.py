@@ -19,7 +19,7 @@ from implam_post.plot import command, movie, pictures
 from implam_post.plot.look import Look, settle
 from implam_post.plot.plan import along_fibres, delamination_figure, failures_figure, projected_figure
 from implam_post.sweep.scatter_plots import share_figure
-from implam_post.sweep.scatter_results import Group, Run
+from implam_post.sweep.scatter_results import EndedRun, Group
 from tests.io.test_fields import write_fields
 
 DECK = """&case units='SI' /
@@ -173,7 +173,7 @@ class PicturesTest(unittest.TestCase):
             corners = np.array([[0, 0], [length, 0], [length, width], [0, width]]) - np.array([length, width]) / 2
             mesh = Mesh(corners[None], *2 * [np.array([2])], np.zeros(1, dtype=bool))
             plate = Fields("none.h5", "whole", [Snapshot(1.0, mesh, np.ones((1, 9)), {}, np.zeros(1))])
-            runs = [Run(None, None, {}, 0.0, region) for region in (corners[None], corners[None] / 2)]
+            runs = [EndedRun(None, None, {}, 0.0, region) for region in (corners[None], corners[None] / 2)]
             figure = share_figure([Group(f"variant {place}", runs, plate=plate) for place in range(groups)],
                                   Look("mm-t-s"))
             settle(figure)
