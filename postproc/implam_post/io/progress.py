@@ -1,12 +1,11 @@
-"""How far many runs are: a bar with the time left on a terminal, a line a run anywhere else."""
+"""How far many runs are: a bar with the time left on a terminal, a line for each run anywhere else."""
 
-import shutil
 import sys
 import time
 from types import TracebackType
 from typing import TextIO
 
-_WIDTH = 24
+from tqdm import tqdm
 
 
 class Progress:
@@ -14,59 +13,36 @@ class Progress:
 
     def __init__(self, total: int, stream: TextIO | None = None) -> None:
         """Runs still to end are `total`; the progress goes to `stream`, the error output unless given."""
-        self._total, self._ended, self._failed = total, 0, 0
         self._stream = stream or sys.stderr
-        self._bar = self._stream.isatty()
-        self._start = self._last = time.monotonic()
+        self._total, self._ended, self._failed, self._start = total, 0, 0, time.monotonic()
+        self._bar = tqdm(total=total, file=self._stream, unit="run", dynamic_ncols=True, miniters=1) if (
+            self._stream.isatty() and total) else None
 
     def __enter__(self) -> "Progress":
-        """Show the bar."""
-        self.tick()
+        """Begin."""
         return self
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None,
                  trace: TracebackType | None) -> None:
         """End the bar's line."""
-        if self._bar and self._total:
-            self._stream.write("\n")
+        if self._bar is not None:
+            self._bar.close()
 
     def end_run(self, label: str, failure: str = "") -> None:
-        """Count a run that has ended; one that failed is told at once."""
-        self._ended, self._last = self._ended + 1, time.monotonic()
-        self._failed += bool(failure)
-        if self._bar:
-            if failure:
-                self._show(f"{label}: {failure}", "\n")
-            self.tick()
-        else:
-            self._stream.write(f"[{self._ended}/{self._total}] {label}: {failure or 'done'}{self._left(self._last)}\n")
-            self._stream.flush()
+        """Count a run that has ended; one that failed is reported at once."""
+        self._ended, self._failed = self._ended + 1, self._failed + bool(failure)
+        if self._bar is None:
+            seconds = (time.monotonic() - self._start) / self._ended * (self._total - self._ended)
+            left = f", {tqdm.format_interval(seconds)} left" if self._ended < self._total else ""
+            print(f"[{self._ended}/{self._total}] {label}: {failure or 'done'}{left}", file=self._stream, flush=True)
+            return
+        if failure:
+            self._bar.write(f"{label}: {failure}", file=self._stream)
+            self._bar.set_postfix_str(f"{self._failed} failed", refresh=False)
+        self._bar.update()
 
     def tick(self) -> None:
-        """Draw the bar anew; nothing without a terminal."""
-        if self._bar and self._total:
-            full = _WIDTH * self._ended // self._total
-            failed = f", {self._failed} failed" if self._failed else ""
-            self._show(f"[{'#' * full}{'.' * (_WIDTH - full)}] {self._ended}/{self._total}{failed}"
-                       f"{self._left(time.monotonic())}")
-
-    def _left(self, now: float) -> str:
-        """Return the time left, by the mean of the runs that have ended."""
-        if not self._ended or self._ended == self._total:
-            return ""
-        seconds = (self._last - self._start) / self._ended * (self._total - self._ended) - (now - self._last)
-        return f", {duration(max(seconds, 0.0))} left"
-
-    def _show(self, text: str, end: str = "") -> None:
-        """Write over the bar's line; a bar is no longer than the terminal is wide."""
-        width = shutil.get_terminal_size().columns - 1
-        self._stream.write(f"\r{(text if end else text[:width]).ljust(width)}{end}")
-        self._stream.flush()
-
-
-def duration(seconds: float) -> str:
-    """Return a time as a person would say it."""
-    if seconds < 100:
-        return f"{seconds:.0f} s" if seconds >= 10 else f"{seconds:.1f} s"
-    minutes = round(seconds / 60)
-    return f"{minutes} min" if minutes < 100 else f"{minutes // 60} h {minutes % 60} min"
+        """Let the bar's clock go on; nothing without a terminal."""
+        if self._bar is not None and time.time() - self._bar.last_print_t > 1:
+            self._bar.refresh()
+            self._bar.last_print_t = time.time()

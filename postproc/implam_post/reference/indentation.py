@@ -24,23 +24,20 @@ class IndentationLaw:
     permanent: float = 0.0
     exponent: float = 1.5
 
-    def force(self, indentation: float) -> tuple[float, float]:
-        """Return the force and its derivative at an indentation reached from the state last committed."""
+    def force(self, indentation: float) -> float:
+        """Return the force at an indentation reached from the state last committed."""
         if indentation <= self.permanent:
-            return 0.0, 0.0
+            return 0.0
         if self.hertz or indentation >= self.largest:
-            force = self.stiffness * indentation**1.5
-            return force, 1.5 * force / indentation
-        depth = indentation - self.permanent
-        force = self.largest_force * (depth / (self.largest - self.permanent))**self.exponent
-        return force, self.exponent * force / depth
+            return self.stiffness * indentation**1.5
+        return self.largest_force * ((indentation - self.permanent) / (self.largest - self.permanent))**self.exponent
 
     def commit(self, indentation: float) -> None:
         """Accept an indentation: record a new largest one and the dent it leaves, or a separation."""
         if self.hertz:
             return
         if indentation > self.largest:
-            self.largest, self.largest_force = indentation, self.force(indentation)[0]
+            self.largest, self.largest_force = indentation, self.force(indentation)
             self.permanent = self._dent()
             self.exponent = self.unloading
         elif indentation <= self.permanent:

@@ -7,6 +7,8 @@ instant is its force. The patch-mean deflection, conjugate to the load, enters t
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.optimize import brentq
+from scipy.signal import fftconvolve
 
 from implam_post.io.deck import Deck
 from implam_post.io.history import History
@@ -81,8 +83,8 @@ def respond(case: ImpactCase, modes: int | None = None, step: float | None = Non
         "indentation": indentation,
         "impactor_displacement": displacement,
         "impactor_velocity": velocity,
-        "deflection": _convolve(centre_kernel, force),
-        "patch_deflection": _convolve(patch_kernel, force),
+        "deflection": fftconvolve(centre_kernel, force)[:count + 1],
+        "patch_deflection": fftconvolve(patch_kernel, force)[:count + 1],
     }, f"semi-analytic {name}".strip())
 
 
@@ -157,35 +159,15 @@ def _march(case: ImpactCase, kernel: np.ndarray, step: float) -> tuple[np.ndarra
         deflection = backwards[instants - now:instants - 1] @ force[1:now]
         indentation[now] = solve_indentation(law, free - deflection, compliance)
         law.commit(indentation[now])
-        force[now] = law.force(indentation[now])[0]
+        force[now] = law.force(indentation[now])
         displacement[now] = free - step**2 / (6 * mass) * force[now]
         velocity[now] = velocity[now - 1] + step * (gravity - (past + force[now]) / (2 * mass))
     return force, displacement, velocity, indentation
 
 
 def solve_indentation(law: IndentationLaw, free: float, compliance: float) -> float:
-    """Return the indentation alpha = free - compliance * F(alpha), by Newton's method kept within a bracket."""
+    """Return the indentation alpha = free - compliance * F(alpha)."""
     if free <= law.permanent:
         return free
-    low, high = law.permanent, free
-    indentation = free
-    for _ in range(100):
-        force, slope = law.force(indentation)
-        residual = indentation + compliance * force - free
-        if residual > 0:
-            high = indentation
-        else:
-            low = indentation
-        trial = indentation - residual / (1 + compliance * slope)
-        if not low < trial < high:
-            trial = (low + high) / 2
-        if abs(trial - indentation) <= 1e-14 * abs(free):
-            return trial
-        indentation = trial
-    return indentation
-
-
-def _convolve(kernel: np.ndarray, force: np.ndarray) -> np.ndarray:
-    """Return the deflection under a force by the kernel of its answer."""
-    length = 2 * len(kernel)
-    return np.fft.irfft(np.fft.rfft(kernel, length) * np.fft.rfft(force, length), length)[:len(kernel)]
+    return brentq(lambda alpha: alpha + compliance * law.force(alpha) - free, law.permanent, free,
+                  xtol=1e-14 * abs(free))

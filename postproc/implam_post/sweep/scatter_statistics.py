@@ -5,11 +5,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.special import stdtrit
 
 LOW, HIGH = 0.05, 0.95
-# Probability with which a difference of nothing at all is taken for one.
+# Probability with which no difference is taken for one, either way.
 _RISK = 0.05
-_STRIPS = 20_000
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class Difference:
     @property
     def least(self) -> float:
         """Return the least difference that is told from the scatter of its mean; NaN of fewer than two pairs."""
-        return student(self.number - 1) * self.error if self.number > 1 else math.nan
+        return stdtrit(self.number - 1, 1 - _RISK / 2) * self.error if self.number > 1 else math.nan
 
     @property
     def differs(self) -> bool:
@@ -70,15 +70,6 @@ def difference_of(first: Sequence[float], second: Sequence[float]) -> Difference
     apart = pairs[:, 1] - pairs[:, 0]
     error = float(np.std(apart, ddof=1) / math.sqrt(len(apart))) if len(apart) > 1 else math.nan
     return Difference(len(apart), float(np.mean(pairs[:, 0])), float(np.mean(apart)), error)
-
-
-def student(freedom: int) -> float:
-    """Return the t of Student's distribution that is passed either way with a probability of 5 %."""
-    # P(|T| < t) by the midpoint rule over the angle atan(t/sqrt(n)), in which the density is a power of a cosine.
-    angles = (np.arange(_STRIPS) + 0.5) * math.pi / 2 / _STRIPS
-    shares = np.cumsum(np.cos(angles)**(freedom - 1))
-    inside = np.interp(1 - _RISK, shares / shares[-1], angles + math.pi / 4 / _STRIPS)
-    return math.sqrt(freedom) * math.tan(float(inside))
 
 
 def spreads(figures: Sequence[Mapping[str, float]]) -> dict[str, Spread]:

@@ -3,12 +3,12 @@
 import unittest
 
 import numpy as np
+from scipy.signal import fftconvolve
 
 from implam_post.io.history import History
 from implam_post.io.quantities import contact, peak, rebound_velocity, second_peak
 from implam_post.reference.navier import centre_shape, odd_pairs, patch_shape
 from implam_post.reference.semi_analytic import (
-    _convolve,
     _kernels,
     _static_rest,
     _sum_of_sines,
@@ -117,7 +117,7 @@ class ClosedFormTest(unittest.TestCase):
             factor = 4 / 0.04 * deflection**2 * patch_shape(plate, case.patch, m, n) * shape
             expected = static * time + sum(
                 c * (time / w**2 - np.sin(w * time) / w**3) for c, w in zip(factor, frequency, strict=True))
-            np.testing.assert_allclose(_convolve(kernel, time), expected, atol=1e-12 * np.max(expected))
+            np.testing.assert_allclose(fftconvolve(kernel, time)[:len(time)], expected, atol=1e-12 * np.max(expected))
 
     def test_static_limit(self) -> None:
         """All modes together, a force put on slowly: the compliance of the patch by plain summation."""
@@ -127,7 +127,7 @@ class ClosedFormTest(unittest.TestCase):
         m, n = odd_pairs(400, 400)
         shape = patch_shape(case.plate, case.patch, m, n)
         expected = 4 / 0.04 * np.sum(shape**2 * case.plate.compliance(m, n))
-        self.assertAlmostEqual(_convolve(patch, force)[-1] / expected, 1, delta=1e-5)
+        self.assertAlmostEqual(fftconvolve(patch, force)[len(force) - 1] / expected, 1, delta=1e-5)
 
     def test_sum_of_sines(self) -> None:
         """The split into coarse and fine angles is exact."""

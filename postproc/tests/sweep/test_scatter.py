@@ -13,7 +13,7 @@ from implam_post.sweep.library_values import adopt, read_library
 from implam_post.sweep.plan import Plan, only, read_plan
 from implam_post.sweep.scatter_plan import KINDS
 from implam_post.sweep.scatter_plots import inside
-from implam_post.sweep.scatter_statistics import difference_of, spread_of, student
+from implam_post.sweep.scatter_statistics import Difference, difference_of, spread_of
 from tests.program import ROOT
 
 DECK = """
@@ -192,10 +192,10 @@ class ScatterPlanTest(unittest.TestCase):
 class StatisticsTest(unittest.TestCase):
     """Means, scatter and differences."""
 
-    def test_student(self) -> None:
-        """Two-sided bounds of 5 %, as tables have them."""
-        for freedom, bound in ((1, 12.706), (2, 4.3027), (9, 2.2622), (30, 2.0423), (1000, 1.9623)):
-            self.assertAlmostEqual(student(freedom), bound, delta=1e-4 * bound)
+    def test_least_difference(self) -> None:
+        """The bound is that of Student's distribution, both ways 5 %."""
+        for pairs, bound in ((2, 12.7062), (3, 4.30265), (11, 2.22814), (101, 1.98397)):
+            self.assertAlmostEqual(Difference(pairs, 1.0, 1.0, 1.0).least, bound, delta=1e-4 * bound)
 
     def test_spread(self) -> None:
         """Runs without the figure are left out; of few runs the points are the least and the largest."""
