@@ -5,8 +5,12 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from implam_post.io.errors import FileError
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 @contextmanager
@@ -27,6 +31,11 @@ def write_text(path: Path, text: str) -> None:
     """Replace a file by one with this text."""
     with replaced(path) as draft:
         draft.write_text(text, encoding="utf-8")
+
+
+def write_table(path: Path, table: "pd.DataFrame", float_format: str | None = None) -> None:
+    """Replace a file by one with a table as CSV; numbers have all digits by default, missing ones are empty cells."""
+    write_text(path, table.to_csv(index=False, float_format=float_format, lineterminator="\n"))
 
 
 def read_text(path: Path, what: str) -> str:

@@ -3,9 +3,10 @@
 import argparse
 import math
 from collections.abc import Mapping, Sequence
-from html import escape
 from pathlib import Path
 from typing import Any
+
+from jinja2 import UndefinedError
 
 from implam_post.io.damage_resistance import DIRECTIONS, extent, kinds_of_damage
 from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, run
@@ -14,7 +15,7 @@ from implam_post.io.history import ENERGY_NAMES, UNACCOUNTED
 from implam_post.io.run import SUMMARY, Run, open_run
 from implam_post.io.run_figures import Measured, corner_of, resistance
 from implam_post.plot.look import Look
-from implam_post.report.html import number, page, picture, table
+from implam_post.report.page import image, render, rounded
 from implam_post.report.pictures import history_pictures, layup_figure, map_pictures, plan_figure
 from implam_post.report.scatter_report import write_page
 from implam_post.sweep.scatter_results import STATISTICS
@@ -46,26 +47,33 @@ _PROVENANCE = ("version", "commit", "compiler", "petsc_version", "ranks", "start
 def said(look: Look, dimension: str, value: object) -> str:
     """Return a figure to four digits, as the summary in the log has them, with its unit where that is known."""
     if value is None or not dimension:
-        return number(value)
+        return rounded(value)
     return look.said(dimension, value, 4)
 
 
-def report(results: Run, base: Path) -> str:
-    """Return the page of a run; `base` is what the names of its results begin with."""
-    summary, look = results.summary, Look(results.system)
-    title = summary["title"] or summary["case"]
-    found = resistance(results)
-    parts = [f"<h1>{escape(title)}</h1>", _ending(summary, look), "<h2>Summary</h2>", _figures(summary, look)]
-    if "energy_absorbed" in summary and results.columns is not None:
-        parts += ["<h2>Damage resistance, as ASTM D7136 asks for it</h2>", _resistance(results, found, look)]
-    if summary.get("interfaces"):
-        parts += ["<h2>Interfaces</h2>", _interfaces(summary, look)]
-    parts += ["<h2>Plate and lay-up</h2>", _plate(summary, look)]
-    parts += ["<h2>Curves</h2>", _curves(results, found, base, look), "<h2>Maps</h2>", _maps(results, base, look)]
-    parts += ["<h2>Energy ledger at the end</h2>", _ledger(summary, look)]
-    parts += ["<h2>Warnings</h2>", _warnings(summary), "<h2>Provenance</h2>", _provenance(summary)]
-    parts += ["<h2>Deck</h2>", f"<pre>{escape(summary['provenance']['deck'])}</pre>"]
-    return page(title, parts)
+def report(run: Run) -> str:
+    """Return the page of a run."""
+    summary, look = run.summary, Look(run.system)
+    found = resistance(run)
+    mark = tuple(found[name].value for name in ("threshold_at", "threshold_force")) if "threshold_at" in found else None
+    mark = None if mark is None or math.isnan(mark[0]) else mark
+    energies = {name: summary[key] for key, name in (ENERGY_NAMES | {"energy_error": UNACCOUNTED}).items()
+                if key in summary}
+    axis = look.axis("energy", "energy", [*energies.values()])
+    curves = [] if run.columns is None else history_pictures(run.columns, look, mark)
+    maps = [] if run.fields is None else map_pictures(run.fields, look)
+    return render(
+        "run.html", title=summary["title"] or summary["case"], summary=summary, base=run.name,
+        reached=_reached(summary, look), has_units=bool(look.system),
+        has_fields=run.fields is not None, figures=_figures(summary, look),
+        resistance=_resistance(run, found, look) if "energy_absorbed" in summary and run.columns is not None else None,
+        interfaces=_interfaces(summary, look), plate=_plate(summary, look), plan=image(plan_figure(summary, look)),
+        layup=image(layup_figure(summary)), plies_head=_plies_head(summary), plies=_plies(summary, look),
+        curves=[(text, image(figure)) for text, figure in curves],
+        maps=[(text, image(figure)) for text, figure in maps],
+        ledger=[(name, axis.factor * value) for name, value in energies.items()], energy_label=axis.label,
+        provenance=[*((key.replace("_", " "), str(summary["provenance"][key])) for key in _PROVENANCE),
+                    *((key.replace("_", " "), value) for key, value in summary["costs"].items())])
 
 
 def _resistance(results: Run, found: Mapping[str, Measured], look: Look) -> str:
@@ -91,13 +99,12 @@ def _resistance(results: Run, found: Mapping[str, Measured], look: Look) -> str:
     if results.fields is not None and "damage_diameter" in found:
         rows += _sizes(results, look)
     kinds = kinds_of_damage(summary)
-    rows += [("type of damage" if place == 0 else "", kind, "") for place, kind in enumerate(kinds or ["none"])]
-    return table((), rows)
+    return rows + [("type of damage" if place == 0 else "", kind, "") for place, kind in enumerate(kinds or ["none"])]
 
 
 def _frequency(look: Look, corner: float) -> str:
     """Return a frequency with its unit."""
-    return f"{corner / look.seconds / 1e3:.4g} kHz" if look.system else number(corner)
+    return f"{corner / look.seconds / 1e3:.4g} kHz" if look.system else rounded(corner)
 
 
 def _sizes(results: Run, look: Look) -> list[tuple[str, str, str]]:
@@ -114,32 +121,20 @@ def _sizes(results: Run, look: Look) -> list[tuple[str, str, str]]:
                    for angle in DIRECTIONS]
 
 
-def _ledger(summary: Mapping[str, Any], look: Look) -> str:
-    """Return the energies at the end in one unit, under the names that summary and legends have."""
-    energies = {name: summary[key] for key, name in (ENERGY_NAMES | {"energy_error": UNACCOUNTED}).items()
-                if key in summary}
-    axis = look.axis("energy", "energy", [*energies.values()])
-    return table(("", axis.label), [(name, axis.factor * value) for name, value in energies.items()])
-
-
 def _time(summary: Mapping[str, Any]) -> str:
     """Return the dimension of the times of a run, none if they are load factors."""
     return "time" if "time_reached" in summary else ""
 
 
-def _ending(summary: Mapping[str, Any], look: Look) -> str:
-    """Return how the run ended."""
-    ending = summary["exit"]
-    reached = f"time {said(look, 'time', summary['time_reached'])}" if "time_reached" in summary else (
-        f"load factor {number(summary['load_factor_reached'])}")
-    units = "" if look.system else "Units are those of the deck."
-    return (f'<p>Case {escape(summary["case"])}: <strong class="{escape(ending["kind"])}">{escape(ending["kind"])}'
-            f"</strong> at {escape(reached)} after {summary['accepted_steps']} steps. {escape(ending['message'])} "
-            f"{units}</p>")
+def _reached(summary: Mapping[str, Any], look: Look) -> str:
+    """Return how far the run came."""
+    if "time_reached" in summary:
+        return f"time {said(look, 'time', summary['time_reached'])}"
+    return f"load factor {rounded(summary['load_factor_reached'])}"
 
 
-def _figures(summary: Mapping[str, Any], look: Look) -> str:
-    """Return the table at the top."""
+def _figures(summary: Mapping[str, Any], look: Look) -> list[tuple[str, ...]]:
+    """Return the rows of the table at the top."""
     rows = []
     for name, key, dimension, at in _FIGURES:
         if key in summary and not (key == "work_external" and not summary[key]):
@@ -148,7 +143,7 @@ def _figures(summary: Mapping[str, Any], look: Look) -> str:
             rows.append((name, value, when))
     if summary.get("in_contact"):
         rows.append(("contact at the end", "yes", ""))
-    return table((), rows)
+    return rows
 
 
 def _range(look: Look, ends: Sequence[float]) -> str:
@@ -157,7 +152,7 @@ def _range(look: Look, ends: Sequence[float]) -> str:
         return "none"
     axis = look.axis("", "length", ends)
     unit = said(look, "length", max(ends, key=abs)).partition(" ")[2]
-    return " to ".join(number(axis.factor * end) for end in ends) + f" {unit}".rstrip()
+    return " to ".join(rounded(axis.factor * end) for end in ends) + f" {unit}".rstrip()
 
 
 def _event(event: Mapping[str, float] | None, look: Look, time: str) -> str:
@@ -168,61 +163,39 @@ def _event(event: Mapping[str, float] | None, look: Look, time: str) -> str:
     return f"{force}at {said(look, time, event['at'])}"
 
 
-def _interfaces(summary: Mapping[str, Any], look: Look) -> str:
-    """Return the table of interfaces."""
-    head = ("below ply", "law", "area", "x", "y", "energy", "onset", "first growth", "closed form", "border reached")
+def _interfaces(summary: Mapping[str, Any], look: Look) -> list[tuple[object, ...]]:
+    """Return the rows of the interfaces."""
     time = _time(summary)
-    return table(head, [
-        (entry["ply_above"], "cohesive" if entry["is_cohesive"] else "front", said(look, "area", entry["area"]),
-         _range(look, entry["x"]), _range(look, entry["y"]), said(look, "energy", entry["energy"]),
-         _event(entry["onset"], look, time), _event(entry["first_growth"], look, time),
-         said(look, "force", entry["threshold_force"]),
-         "yes" if entry["border_reached"] else "no") for entry in summary["interfaces"]])
+    return [(entry["ply_above"], "cohesive" if entry["is_cohesive"] else "front", said(look, "area", entry["area"]),
+             _range(look, entry["x"]), _range(look, entry["y"]), said(look, "energy", entry["energy"]),
+             _event(entry["onset"], look, time), _event(entry["first_growth"], look, time),
+             said(look, "force", entry["threshold_force"]), "yes" if entry["border_reached"] else "no")
+            for entry in summary.get("interfaces", [])]
 
 
 def _plate(summary: Mapping[str, Any], look: Look) -> str:
-    """Return size, lay-up and failures of the plies."""
+    """Return the size of the plate."""
     along, across = (said(look, "length", length) for length in summary["plate_size"])
     thickness = said(look, "length", sum(ply["thickness"] for ply in summary["plies"]))
-    areas = [key for key in ("fibre_failure_area", "matrix_crack_area", "matrix_crushing_area")
-             if key in summary["plies"][0]]
-    head = ("ply", "material", "angle, degrees", "thickness", *(key.replace("_", " ") for key in areas))
-    rows = [(ply["ply"], ply["made_of"], ply["angle"], said(look, "length", ply["thickness"]),
-             *(said(look, "area", ply[key]) for key in areas)) for ply in summary["plies"]]
-    return "\n".join([f"<p>{along} by {across}, {thickness} thick, {len(rows)} plies.</p>",
-                      picture(plan_figure(summary, look), "plate in plan"),
-                      picture(layup_figure(summary), "lay-up from the struck face"), table(head, rows)])
+    return f"{along} by {across}, {thickness} thick, {len(summary['plies'])} plies."
 
 
-def _curves(results: Run, found: Mapping[str, Measured], base: Path, look: Look) -> str:
-    """Return the curves of the history, or why there are none."""
-    if results.columns is None:
-        return f"<p>There is no {escape(base.name)}_history.csv.</p>"
-    mark = tuple(found[name].value for name in ("threshold_at", "threshold_force")) if "threshold_at" in found else None
-    pictures = history_pictures(results.columns, look, mark if mark and not math.isnan(mark[0]) else None)
-    return "\n".join(picture(figure, text) for text, figure in pictures)
+def _failure_areas(summary: Mapping[str, Any]) -> list[str]:
+    """Return the members of a ply that hold areas of failures."""
+    return [key for key in ("fibre_failure_area", "matrix_crack_area", "matrix_crushing_area")
+            if key in summary["plies"][0]]
 
 
-def _maps(results: Run, base: Path, look: Look) -> str:
-    """Return what the fields show in plan, or why there is nothing."""
-    if results.fields is None:
-        return f"<p>There is no {escape(base.name)}.h5.</p>"
-    pictures = [picture(figure, text) for text, figure in map_pictures(results.fields, look)]
-    return "\n".join(pictures) or "<p>The fields hold neither interfaces nor failures of plies.</p>"
+def _plies_head(summary: Mapping[str, Any]) -> tuple[str, ...]:
+    """Return the heads of the columns of the plies."""
+    areas = [key.replace("_", " ") for key in _failure_areas(summary)]
+    return ("ply", "material", "angle, degrees", "thickness", *areas)
 
 
-def _warnings(summary: Mapping[str, Any]) -> str:
-    """Return the warnings."""
-    if not summary["warnings"]:
-        return "<p>None.</p>"
-    items = "\n".join(f'<li class="warning">{escape(warning["text"])}</li>' for warning in summary["warnings"])
-    return f"<ul>\n{items}\n</ul>"
-
-
-def _provenance(summary: Mapping[str, Any]) -> str:
-    """Return where the result comes from and what it took."""
-    rows = [(key.replace("_", " "), str(summary["provenance"][key])) for key in _PROVENANCE]
-    return table((), rows + [(key.replace("_", " "), value) for key, value in summary["costs"].items()])
+def _plies(summary: Mapping[str, Any], look: Look) -> list[tuple[object, ...]]:
+    """Return the rows of lay-up and failures of the plies."""
+    return [(ply["ply"], ply["made_of"], ply["angle"], said(look, "length", ply["thickness"]),
+             *(said(look, "area", ply[key]) for key in _failure_areas(summary))) for ply in summary["plies"]]
 
 
 def summaries_at(path: Path) -> list[Path]:
@@ -241,14 +214,13 @@ def write_report(path: Path, output: Path | None) -> Path:
         return write_page(path, output)
     if not path.name.endswith(SUMMARY):
         raise FileError(f"{path} isn't NAME{SUMMARY}; a report is made of that file, or of the folder that holds it.")
-    base = path.with_name(path.name.removesuffix(SUMMARY))
-    written = (output or path.parent) / f"{base.name}_report.html"
-    results = open_run(path)
+    run_shown = open_run(path)
+    written = (output or path.parent) / f"{run_shown.name}_report.html"
     try:
-        text = report(results, base)
+        text = report(run_shown)
     except KeyError as error:
         raise FileError(f"the summary {path} lacks {error}: another version of implam wrote it.") from None
-    except (TypeError, ValueError, IndexError, AttributeError) as error:
+    except (TypeError, ValueError, IndexError, AttributeError, UndefinedError) as error:
         raise FileError(f"{path} isn't a summary written by implam, or it is damaged ({error}).") from None
     write_text(written, text)
     return written

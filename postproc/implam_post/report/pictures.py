@@ -1,7 +1,5 @@
 """Pictures of the page of a run: plate and lay-up, curves, maps."""
 
-import base64
-import io
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -17,19 +15,11 @@ from implam_post.io.fields import Fields
 from implam_post.io.history import ENERGY_NAMES, UNACCOUNTED, History
 from implam_post.io.quantities import growth_rows
 from implam_post.plot.curves import AXES, in_contact
-from implam_post.plot.look import Look, settle
+from implam_post.plot.look import Look
 from implam_post.plot.plan import delamination_figure, failures_figure, projected_figure
 from implam_post.plot.plan_frame import draw_plate
 
 _SPACE = 0.12  # free part of the picture beside the plies
-
-
-def as_image(figure: Figure) -> str:
-    """Return a figure as a PNG in base64."""
-    stream = io.BytesIO()
-    settle(figure)
-    figure.savefig(stream, format="png", dpi=100)
-    return base64.b64encode(stream.getvalue()).decode("ascii")
 
 
 def layup_figure(summary: Mapping[str, Any]) -> Figure:

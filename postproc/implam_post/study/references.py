@@ -1,19 +1,15 @@
 """What is taken as true of the scenes of a study: a run, a history beside its file, or a semi-analytic answer."""
 
-import csv
 import hashlib
-import io
 import json
 import math
 import re
 from pathlib import Path
 
-import numpy as np
-
 from implam_post.io.deck import Deck
 from implam_post.io.deck_text import KeyPath, set_keys
 from implam_post.io.errors import DeckError
-from implam_post.io.files import write_text
+from implam_post.io.files import write_table
 from implam_post.io.history import History, read_history
 from implam_post.io.namelist import read_namelist
 from implam_post.io.program import history_in
@@ -87,7 +83,4 @@ def _rounded_up(end: float) -> float:
 
 def _write(history: History, path: Path) -> None:
     """Write an answer as a history."""
-    text = io.StringIO()
-    csv.writer(text, lineterminator="\n").writerow(_COLUMNS)
-    np.savetxt(text, np.stack([history[name] for name in _COLUMNS], axis=1), fmt="%.9e", delimiter=",")
-    write_text(path, text.getvalue())
+    write_table(path, history.table()[[*_COLUMNS]], "%.9e")

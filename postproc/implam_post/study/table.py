@@ -4,19 +4,18 @@ Errors are parts of the reference's figure, with their sign, over the time that 
 a relative L2 norm.
 """
 
-import csv
-import io
 import json
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 
 from implam_post.io.deck_text import deck_value
 from implam_post.io.errors import FileError, ImplamError
-from implam_post.io.files import write_text
+from implam_post.io.files import write_table
 from implam_post.io.history import History, read_history
 from implam_post.io.program import history_in, version_in
 from implam_post.io.quantities import COLUMN_QUANTITIES
@@ -183,25 +182,19 @@ def _geometric(values: np.ndarray) -> float:
 
 def write_csv(rows: list[Row], sweep: Sweep, study: Study, path: Path) -> None:
     """Write the table as CSV, everything in the deck's units, errors as parts; cells without a value are empty."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    names = [*_FIGURES, *study.figures]
-    costs = ["cpu_time_min", "cpu_time_median", "repeats", *_COSTS]
-    writer.writerow(["case", "scene", *study.methods, *names, *(f"{name}_error" for name in ERRORS), *costs, "front",
-                     "end", "version", "folder"])
+    costs = ("cpu_time_min", "cpu_time_median", "repeats", *_COSTS)
+    table = []
     for row in rows:
         first = row.trial.runs[0]
         folder = sweep.folder(first)
-        writer.writerow([first.number, row.trial.scene.name, *(deck_value(row.trial.method[n]) for n in study.methods),
-                         *_cells(row.figures, names), *_cells(row.errors, ERRORS), *_cells(row.costs, costs),
-                         int(row.on_front), row.end, version_in(folder), folder.relative_to(study.output)])
-    write_text(path, text.getvalue())
-
-
-def _cells(values: Mapping[str, float], names: Iterable[str]) -> list[str]:
-    """Return cells of a CSV file."""
-    numbers = [values.get(name, math.nan) for name in names]
-    return ["" if math.isnan(number) else f"{number:.8g}" for number in numbers]
+        numbers = {name: row.figures.get(name, math.nan) for name in (*_FIGURES, *study.figures)}
+        numbers |= {f"{name}_error": row.errors.get(name, math.nan) for name in ERRORS}
+        numbers |= {name: row.costs.get(name, math.nan) for name in costs}
+        table.append({"case": first.number, "scene": row.trial.scene.name,
+                      **{name: deck_value(row.trial.method[name]) for name in study.methods}, **numbers,
+                      "front": int(row.on_front), "end": row.end, "version": version_in(folder),
+                      "folder": folder.relative_to(study.output)})
+    write_table(path, pd.DataFrame(table), "%.8g")
 
 
 def text_table(rows: list[Row], study: Study) -> str:

@@ -4,21 +4,20 @@ Written beside the table of the sweep: `statistics.csv`, `differences.csv`, `mea
 figures in `figures.csv`, and all of it in `statistics.json`, from which `implam-report` makes a page.
 """
 
-import csv
-import io
 import json
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 
 from implam_post.io.deck import Deck
 from implam_post.io.deck_text import deck_value
 from implam_post.io.errors import FileError, ImplamError
 from implam_post.io.fields import Fields
-from implam_post.io.files import write_text
+from implam_post.io.files import write_table, write_text
 from implam_post.io.history import History, read_history
 from implam_post.io.quantities import AGAINST_QUANTITIES
 from implam_post.io.run import Run, open_run
@@ -225,15 +224,16 @@ def write_statistics(sweep: Sweep, groups: Sequence[Group], system: str,
                                    "within"), measured)
     if bands:
         tables["force_band.csv"] = (("group", "time", "mean", "low_5", "high_95"), bands)
-    for name, (columns, rows) in tables.items():
-        write_text(output / name, _csv(columns, rows))
+    frames = {name: pd.DataFrame(rows, columns=[*columns]) for name, (columns, rows) in tables.items()}
+    for name, frame in frames.items():
+        write_table(output / name, frame)
     notes = [*plan.notes, *(note for group in groups for note in group.notes)]
     content = {"sweep": plan.text, "title": _title(groups), "system": system, "notes": notes,
                "groups": [{"name": group.name, "runs": len(group.runs), "ended": len(group.ended),
                            "seconds": sum(run.seconds for run in group.ended)} for group in groups],
                "inputs": inputs_of(plan), "variants": list(variants)}
-    content |= {name.removesuffix(".csv"): [dict(zip(columns, map(_plain, row), strict=True)) for row in rows]
-                for name, (columns, rows) in tables.items() if name not in ("figures.csv", "force_band.csv")}
+    content |= {name.removesuffix(".csv"): frame.astype(object).where(frame.notna(), None).to_dict("records")
+                for name, frame in frames.items() if name not in ("figures.csv", "force_band.csv")}
     write_text(output / STATISTICS, json.dumps(content, indent=1) + "\n")
     return [output / name for name in (*tables, STATISTICS)]
 
@@ -259,19 +259,3 @@ def _title(groups: Sequence[Group]) -> str:
         for run in group.ended:
             return run.results.summary["title"] or run.results.summary["case"]
     return ""
-
-
-def _csv(columns: Iterable[str], rows: Iterable[Sequence[object]]) -> str:
-    """Return a table as CSV; cells without a value are empty."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(columns)
-    writer.writerows(["" if (cell := _plain(value)) is None else cell for value in row] for row in rows)
-    return text.getvalue()
-
-
-def _plain(value: object) -> object:
-    """Return a number of Python's own, or nothing for NaN."""
-    if isinstance(value, (float, np.floating)):
-        return float(value) if math.isfinite(value) else None
-    return value

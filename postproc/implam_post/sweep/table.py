@@ -1,7 +1,5 @@
 """The table of a sweep: a row a case, with its swept values, the figures of its run, and how the run ended."""
 
-import csv
-import io
 import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
@@ -9,11 +7,12 @@ from pathlib import Path
 
 import h5py
 import numpy as np
+import pandas as pd
 
 from implam_post.io.deck import Deck, system_of_deck
 from implam_post.io.deck_text import deck_value
 from implam_post.io.errors import EXIT_DONE, DeckError, ImplamError
-from implam_post.io.files import replaced, write_text
+from implam_post.io.files import replaced, write_table
 from implam_post.io.history import History, read_history
 from implam_post.io.program import history_in, version_in
 from implam_post.io.quantities import QUANTITIES
@@ -96,11 +95,7 @@ def make_table(sweep: Sweep, known: dict[str, dict[str, object]]) -> Table:
 
 def write_csv(table: Table, path: Path) -> None:
     """Write the table as CSV; cells without a value are empty."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(table.columns)
-    writer.writerows([_cell(value) for value in row] for row in zip(*table.columns.values(), strict=True))
-    write_text(path, text.getvalue())
+    write_table(path, pd.DataFrame(table.columns, dtype=object))
 
 
 def write_hdf5(table: Table, path: Path) -> None:
@@ -111,7 +106,7 @@ def write_hdf5(table: Table, path: Path) -> None:
             numbers = table.numbers(name)
             if numbers is not None and all(isinstance(value, int) for value in values):
                 numbers = numbers.astype(int)
-            data = [str(_cell(value)) for value in values] if numbers is None else numbers
+            data = list(map(str, values)) if numbers is None else numbers
             columns.create_dataset(name, data=data, dtype=h5py.string_dtype() if numbers is None else None)
             if name in FIGURES:
                 columns[name].attrs["meaning"] = FIGURES[name].label
@@ -156,8 +151,3 @@ def _plain(value: object) -> object:
     """Return a swept value as a cell: numbers as they are, anything else as it stands in the deck."""
     is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
     return value if is_number else deck_value(value)
-
-
-def _cell(value: object) -> object:
-    """Return what stands in a cell."""
-    return "" if isinstance(value, float) and math.isnan(value) else repr(value) if isinstance(value, float) else value
