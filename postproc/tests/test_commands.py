@@ -20,7 +20,7 @@ from tests.decks import SUN_CHEN, deck
 
 
 class CommandTest(unittest.TestCase):
-    """Each test has a folder with a deck and a history that follows the semi-analytic answer."""
+    """Each test has a folder with a deck and a history that follows the semi-analytic solution."""
 
     def setUp(self) -> None:
         """Make the folder."""

@@ -21,7 +21,7 @@ class Thermal(NamedTuple):
 
 
 def read_thermal(bulk: BulkData, properties: Collection[int], plies: Iterable[Ply], remarks: Remarks) -> Thermal | None:
-    """Return the temperatures; None if no ply expands, or nothing is said of them."""
+    """Return the temperatures; None if no ply expands, or none is given."""
     plies = list(plies)
     defaults = list(bulk.named("TEMPD"))
     cards = _cards_with_reference(bulk, properties, {ply.material.name for ply in plies})

@@ -44,6 +44,6 @@ def degradation_of(deck: Deck) -> Degradation:
     return rule
 
 
-def told(failures: int) -> str:
+def failed_modes(failures: int) -> str:
     """Return the modes in words."""
     return " and ".join(word for mode, word in MODES.items() if failures & mode)

@@ -15,7 +15,7 @@ _TRIANGLES = np.array([three for corner in range(4) for three in ((corner, 4 + c
 _QUADS = np.array([(corner, 4 + corner, 8, 4 + (corner + 3) % 4) for corner in range(4)])
 # Halvings of the level: beyond rounding of the shares, which lie between 0 and 1.
 _HALVINGS = 50
-# Places are told apart to this part of the largest coordinate: images agree but for rounding.
+# Places differ by more than this part of the largest coordinate: images agree but for rounding.
 GRAIN = 1e-7
 
 
@@ -75,10 +75,10 @@ def _part_above(values: np.ndarray, level: float) -> np.ndarray:
 
 
 def _cut(points: np.ndarray, shares: np.ndarray, level: float) -> np.ndarray:
-    """Return what of the elements lies above a level: quarters of whole ones, parts of the triangles of others."""
-    whole = np.all(shares >= level, axis=1)
-    quarters = points[whole][:, _QUADS].reshape(-1, 4, 2)
-    triangles, values = points[~whole][:, _TRIANGLES].reshape(-1, 3, 2), shares[~whole][:, _TRIANGLES].reshape(-1, 3)
+    """Return what of the elements lies above a level: quarters of entire ones, parts of the triangles of others."""
+    entire = np.all(shares >= level, axis=1)
+    quarters = points[entire][:, _QUADS].reshape(-1, 4, 2)
+    triangles, values = points[~entire][:, _TRIANGLES].reshape(-1, 3, 2), shares[~entire][:, _TRIANGLES].reshape(-1, 3)
     inside = values >= level
     pieces = [quarters]
     for count in (1, 2, 3):

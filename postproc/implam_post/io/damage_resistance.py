@@ -1,4 +1,4 @@
-"""What ASTM D7136 asks of an impact to be reported: threshold force, energies, size and type of the damage."""
+"""What ASTM D7136 requires to be reported of an impact: threshold force, energies, size and type of the damage."""
 
 import math
 from collections.abc import Mapping
@@ -16,7 +16,7 @@ from implam_post.io.quantities import impact_energy, peak
 # a load cell with its impactor have. A deck's own force_filter goes before it.
 CORNER = 6e3
 # A fall counts from this part of the force on, and if plies and interfaces took at least this part of what the fall
-# releases with the impactor held, F w/2. On panels of 6.5, 10 and 25 J falls by vibration have up to .04 of it, those
+# releases with the impactor fixed, F w/2. On panels of 6.5, 10 and 25 J falls by vibration have up to .04 of it, those
 # in which plies and interfaces break from .18 on.
 _LEAST_FALL, _LEAST_SHARE = 0.02, 0.1
 # Delay of the low pass, in radians at its corner.
@@ -30,7 +30,7 @@ DIRECTIONS = (0, 45, 90, -45)
 
 @dataclass(frozen=True)
 class Threshold:
-    """Where the force curve first drops by damage: force behind the low pass, its time, energy brought in till then."""
+    """Where the force curve first drops by damage: force behind the low pass, its time, energy transferred by then."""
 
     force: float
     time: float
@@ -61,7 +61,7 @@ def low_pass(time: np.ndarray, values: np.ndarray, corner: float) -> tuple[np.nd
 
 
 def threshold(history: History, corner: float) -> Threshold | None:
-    """Return where the force first drops by damage while the impactor goes in; None if it does so nowhere.
+    """Return where the force first drops by damage while the impactor moves towards the plate; None if never.
 
     The force is that behind a low pass with this corner frequency. It drops if it falls by 2 % before it is regained,
     and if plies and interfaces take a tenth at least of F w/2, F being the fall and w the displacement: that is what
@@ -73,7 +73,7 @@ def threshold(history: History, corner: float) -> Threshold | None:
     even, force = low_pass(time, history["force"], corner)
     delay = _DELAY / (2 * math.pi * corner)
     taken = np.interp(even - delay, time, sum(history[name] for name in _DISSIPATED))
-    gone_in = np.interp(even - delay, time, w)
+    displaced = np.interp(even - delay, time, w)
     last = int(np.searchsorted(even, time[np.argmax(w)] + delay))
     place = 0
     while place < last:
@@ -82,21 +82,21 @@ def threshold(history: History, corner: float) -> Threshold | None:
         lowest = place + int(np.argmin(force[place:after + 1]))
         fall = force[place] - force[lowest]
         if fall >= _LEAST_FALL * force[place] > 0 and (
-                taken[lowest] - taken[place] >= _LEAST_SHARE * fall * gone_in[place] / 2):
+                taken[lowest] - taken[place] >= _LEAST_SHARE * fall * displaced[place] / 2):
             at = float(even[place])
-            return Threshold(float(force[place]), at, brought_in(history, at - delay), corner)
+            return Threshold(float(force[place]), at, energy_transferred(history, at - delay), corner)
         place = after
     return None
 
 
-def brought_in(history: History, time: float) -> float:
+def energy_transferred(history: History, time: float) -> float:
     """Return the energy that the impactor has given to the plate by a time."""
     return impact_energy(history) - history.at("energy_impactor", max(time, float(history.time[0])))
 
 
 def energy_to_peak(history: History) -> float:
     """Return the energy that the impactor has given to the plate when its force is largest."""
-    return brought_in(history, peak(history, "force").time)
+    return energy_transferred(history, peak(history, "force").time)
 
 
 def extent(fields: Fields) -> Extent | None:
@@ -118,9 +118,9 @@ def _widest(points: np.ndarray) -> tuple[float, float]:
     reach = points @ np.stack([np.cos(angles), np.sin(angles)])
     # Only points that lie outermost in some direction can be ends of the largest diameter.
     outer = np.unique(points[np.concatenate([np.argmax(reach, axis=0), np.argmin(reach, axis=0)])], axis=0)
-    apart = outer[:, None] - outer[None]
-    lengths = np.hypot(*np.moveaxis(apart, -1, 0))
-    x, y = apart[np.unravel_index(np.argmax(lengths), lengths.shape)]
+    distances = outer[:, None] - outer[None]
+    lengths = np.hypot(*np.moveaxis(distances, -1, 0))
+    x, y = distances[np.unravel_index(np.argmax(lengths), lengths.shape)]
     degrees = math.degrees(math.atan2(y, x))
     return float(lengths.max()), degrees - 180 if degrees > 90 else degrees + 180 if degrees <= -90 else degrees
 
@@ -140,11 +140,11 @@ def _between_outermost(edges: np.ndarray, angle: float) -> float:
 def kinds_of_damage(summary: Mapping[str, Any]) -> list[str]:
     """Return the kinds of damage that a run ends with, each with where it is."""
     kinds = []
-    apart = [entry["ply_above"] for entry in summary.get("interfaces", []) if entry["first_growth"]]
-    if apart:
-        kinds.append(f"delamination below {_listed(apart)}")
+    grown = [entry["ply_above"] for entry in summary.get("interfaces", []) if entry["first_growth"]]
+    if grown:
+        kinds.append(f"delamination below {_listed(grown)}")
     for name, key in (("matrix cracks", "matrix_crack_area"), ("crushed matrix", "matrix_crushing_area"),
-                      ("broken fibres", "fibre_failure_area")):
+                      ("failed fibres", "fibre_failure_area")):
         plies = [ply["ply"] for ply in summary["plies"] if ply.get(key, 0) > 0]
         if plies:
             kinds.append(f"{name} in {_listed(plies)}")

@@ -38,7 +38,7 @@ class Deck:
         return Path(str(self.value("output", "directory", ".")))
 
     def has(self, group: str) -> bool:
-        """Tell whether the deck has a group of this name."""
+        """Return whether the deck has a group of this name."""
         return group in self.groups
 
     def values(self, group: str, key: str) -> list[Value]:
@@ -69,7 +69,7 @@ class Deck:
         return word
 
     def lengths(self) -> tuple[float, float]:
-        """Return the sides of the whole plate along x and y."""
+        """Return the sides of the full plate along x and y."""
         sides = self.numbers("plate", "length")
         if len(sides) != 2 or min(sides) <= 0:
             raise self.error("plate", "length needs the two sides of the plate, greater than zero.")

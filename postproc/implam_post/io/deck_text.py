@@ -121,7 +121,7 @@ def number_of(text: str, path: KeyPath, name: str = "deck") -> float:
 
 
 def _reads_as_values(text: str) -> bool:
-    """Tell whether a text could stand in a deck after key= as it is."""
+    """Return whether a text could stand in a deck after key= as it is."""
     try:
         groups = read_namelist(f"&a b={text} /")
     except DeckError:
@@ -131,7 +131,7 @@ def _reads_as_values(text: str) -> bool:
 
 def _places(text: str, name: str) -> list[_Place]:
     """Return where the groups of a deck and their keys stand."""
-    read_namelist(text, name)  # tells what is wrong with the deck
+    read_namelist(text, name)  # raises what is wrong with the deck
     tokens, found, position = read_tokens(text, name), [], 0
     while position < len(tokens):
         group, start, keys = tokens[position].text[1:].strip().lower(), tokens[position].start, {}

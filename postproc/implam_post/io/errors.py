@@ -1,4 +1,4 @@
-"""Errors told to the user in one sentence, and the exit codes they lead to (those of the solver)."""
+"""Errors reported to the user in one sentence, and the exit codes they lead to (those of the solver)."""
 
 import argparse
 import sys
@@ -14,7 +14,7 @@ class ImplamError(Exception):
 
 
 class DeckError(ImplamError):
-    """The deck can't be read, or describes what the semi-analytic answer doesn't cover."""
+    """The deck can't be read, or describes what the semi-analytic solution doesn't cover."""
 
     exit_code = EXIT_DECK
 
@@ -35,7 +35,7 @@ class CommandParser(argparse.ArgumentParser):
 
 
 def count(text: str) -> int:
-    """Return a whole number greater than zero, out of a command line."""
+    """Return an integer greater than zero, out of a command line."""
     number = int(text)
     if number < 1:
         raise argparse.ArgumentTypeError(f"{text} isn't greater than zero")

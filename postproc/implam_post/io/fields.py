@@ -16,8 +16,8 @@ from implam_post.io.errors import FileError, ImplamError
 __all__ = ["IMAGES", "MODES", "Fields", "Interface", "Mesh", "Snapshot", "area", "deck_in", "extents", "opened",
            "outline", "read_fields", "struck_point"]
 MODES = {"fibre failure": 1, "matrix cracking": 2, "matrix crushing": 4}
-# What h5py and numpy raise over a file whose bytes have been spoilt, or that is another program's.
-_SPOILT = (KeyError, IndexError, TypeError, ValueError, AttributeError, RuntimeError, OverflowError, MemoryError)
+# What h5py and numpy raise over a file whose bytes are damaged, or that is another program's.
+_DAMAGED = (KeyError, IndexError, TypeError, ValueError, AttributeError, RuntimeError, OverflowError, MemoryError)
 
 
 @dataclass(frozen=True)
@@ -109,8 +109,8 @@ class Snapshot:
 
 
 # Signs of x and y that put the images of a part of the plate in their places.
-IMAGES = {"whole": [(1, 1)], "quarter": [(1, 1), (-1, 1), (-1, -1), (1, -1)], "half_x": [(1, 1), (-1, 1)],
-          "half_y": [(1, 1), (1, -1)], "point": [(1, 1), (-1, -1)]}
+IMAGES = {"whole": [(1, 1)], "full": [(1, 1)], "quarter": [(1, 1), (-1, 1), (-1, -1), (1, -1)],
+          "half_x": [(1, 1), (-1, 1)], "half_y": [(1, 1), (1, -1)], "point": [(1, 1), (-1, -1)]}
 
 
 @dataclass(frozen=True)
@@ -139,36 +139,36 @@ class Fields:
         """Whether a quarter was modelled."""
         return self.part == "quarter"
 
-    def whole(self, cells: np.ndarray) -> np.ndarray:
-        """Return the cells of the whole plate: those of the modelled part and their images, all counter-clockwise."""
+    def full_plate(self, cells: np.ndarray) -> np.ndarray:
+        """Return the cells of the full plate: those of the modelled part and their images, all counter-clockwise."""
         return np.concatenate([(cells * np.array(signs))[:, ::signs[0] * signs[1]] for signs in IMAGES[self.part]])
 
     def delaminated(self, place: int, below_ply: int) -> np.ndarray:
-        """Return what has delaminated below a ply at one of the times, as polygons of the whole plate.
+        """Return what has delaminated below a ply at one of the times, as polygons of the full plate.
 
         They hold the largest shares of dissipated toughness, and have the area dissipated.
         """
         if (place, below_ply) not in self._found:
             snapshot = self.snapshots[place]
             own = snapshot.of_interface(below_ply)
-            self._found[place, below_ply] = self.whole(region(snapshot.mesh.corners[own], snapshot.shares[own]))
+            self._found[place, below_ply] = self.full_plate(region(snapshot.mesh.corners[own], snapshot.shares[own]))
         return self._found[place, below_ply]
 
     def projected(self, place: int) -> np.ndarray:
-        """Return what a C-scan sees of all interfaces at one of the times, as polygons of the whole plate."""
-        return self.whole(region(*self.snapshots[place].projected()))
+        """Return what a C-scan sees of all interfaces at one of the times, as polygons of the full plate."""
+        return self.full_plate(region(*self.snapshots[place].projected()))
 
     def projected_depths(self, place: int) -> list[np.ndarray]:
-        """Return what each interface has of the region that a C-scan sees, as polygons of the whole plate."""
+        """Return what each interface has of the region that a C-scan sees, as polygons of the full plate."""
         snapshot = self.snapshots[place]
         level = level_of(*snapshot.projected())
         owns = [snapshot.of_interface(below_ply) for below_ply in snapshot.mesh.interfaces]
-        return [self.whole(above(snapshot.mesh.corners[own], snapshot.shares[own], level)) for own in owns]
+        return [self.full_plate(above(snapshot.mesh.corners[own], snapshot.shares[own], level)) for own in owns]
 
     def starter(self, below_ply: int) -> np.ndarray:
-        """Return the cells of the whole plate that had delaminated below a ply before the run."""
+        """Return the cells of the full plate that had delaminated below a ply before the run."""
         mesh = self.snapshots[-1].mesh
-        return self.whole(mesh.corners[mesh.starter & (mesh.first_ply == below_ply + 1)])
+        return self.full_plate(mesh.corners[mesh.starter & (mesh.first_ply == below_ply + 1)])
 
     def interface(self, place: int, below_ply: int) -> Interface:
         """Return the figures of an interface at one of the times; from its polygons where the file holds none."""
@@ -215,7 +215,7 @@ def opened(path: Path) -> Iterator[h5py.File]:
             yield file
     except OSError as error:
         raise FileError(f"the fields {path} cannot be read ({_reason(error)}).") from None
-    except _SPOILT as error:
+    except _DAMAGED as error:
         raise FileError(f"{path} isn't a file of fields written by implam, or is damaged ({_reason(error)}).") from None
 
 
@@ -291,7 +291,7 @@ def _figures(group: h5py.Group | dict) -> tuple[dict[int, Interface], float | No
 
 
 def deck_in(path: Path) -> Deck | None:
-    """Return the deck of the run whose NAME.h5 or history this is; None if it can't be told."""
+    """Return the deck of the run whose NAME.h5 or history this is; None if it is not known."""
     fields = path if path.suffix == ".h5" else path.with_name(path.name.removesuffix("_history.csv") + ".h5")
     try:
         with opened(fields) as file:
@@ -301,7 +301,7 @@ def deck_in(path: Path) -> Deck | None:
 
 
 def struck_point(fields: Fields) -> np.ndarray:
-    """Return where the plate was struck, from its middle; the middle, if the deck of the run can't be told."""
+    """Return where the plate was struck, from its middle; the middle, if the deck of the run is not known."""
     deck = deck_in(fields.path)
     at = [] if deck is None else deck.numbers("impactor", "at")
     return np.array(at if len(at) == 2 else [0.0, 0.0])

@@ -1,4 +1,4 @@
-"""Files that are replaced as a whole: whoever reads one, or is killed, finds the old one or the new one."""
+"""Files that are replaced at once: a reader, or a stopped process, finds the old one or the new one."""
 
 import fcntl
 import os

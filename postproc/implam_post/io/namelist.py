@@ -88,7 +88,7 @@ def _read_group(tokens: list[Token], position: int, opening: Token, name: str) -
 
 
 def is_key(tokens: list[Token], position: int) -> bool:
-    """Tell whether a key stands at `position`: a name with an equals sign after it."""
+    """Return whether a key stands at `position`: a name with an equals sign after it."""
     return (tokens[position].kind in ("word", "subscripted") and position + 1 < len(tokens)
             and tokens[position + 1].kind == "equals")
 

@@ -39,7 +39,7 @@ def processors() -> int:
 
 
 def check_deck(program: Sequence[str], deck: Path) -> tuple[bool, list[str]]:
-    """Let the program check a deck; return whether it may be run, and what was said about it."""
+    """Let the program check a deck; return whether it may be run, and what it printed about it."""
     try:
         # Without what starts it: checking takes one process.
         ended = subprocess.run([program[-1], "check", str(deck)], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
@@ -47,20 +47,20 @@ def check_deck(program: Sequence[str], deck: Path) -> tuple[bool, list[str]]:
                                env=environment())
     except (OSError, subprocess.TimeoutExpired) as error:
         raise FileError(f"the program {program[-1]} cannot check a deck ({error}).") from None
-    said = [line for line in ended.stdout.splitlines() if line.strip() and not line.endswith(": no errors.")]
-    return ended.returncode == 0, said
+    printed = [line for line in ended.stdout.splitlines() if line.strip() and not line.endswith(": no errors.")]
+    return ended.returncode == 0, printed
 
 
 def shell_code(code: int) -> int:
-    """Return an exit code as a shell tells it: 128 and the number of the signal that ended a process."""
+    """Return an exit code as a shell reports it: 128 and the number of the signal that ended a process."""
     return 128 - code if code < 0 else code
 
 
 def last_words(output: str) -> str:
     """Return the sentence with which a run ended, or its last line."""
     lines = [line.strip() for line in output.splitlines() if line.strip()]
-    told = [line.removeprefix("implam: ") for line in lines if line.startswith("implam: ")]
-    return (told or lines or ["it said nothing"])[-1]
+    sentences = [line.removeprefix("implam: ") for line in lines if line.startswith("implam: ")]
+    return (sentences or lines or ["it printed nothing"])[-1]
 
 
 def history_in(folder: Path) -> Path | None:

@@ -1,4 +1,4 @@
-"""Single numbers that tell a history: peaks, contacts, rebound, energy. A NaN in the data gives a NaN here."""
+"""Single numbers that characterize a history: peaks, contacts, rebound, energy. A NaN in the data gives a NaN here."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -106,7 +106,7 @@ def absorbed_energy(history: History) -> float:
 
 
 def energy_error(history: History) -> float:
-    """Return the largest energy the ledger fails to account for, as a fraction of the total at the start."""
+    """Return the largest energy the energy balance fails to account for, as a fraction of the total at the start."""
     initial = sum(history[column][0] for column in ENERGIES)
     with np.errstate(divide="ignore", invalid="ignore"):
         return float(np.max(np.abs(history["energy_error"])) / np.abs(initial))
@@ -120,7 +120,7 @@ def energy_rise(history: History) -> float:
 
 
 def growth_rows(history: History) -> np.ndarray:
-    """Return the rows at which delaminations have grown; none if the history tells no area."""
+    """Return the rows at which delaminations have grown; none if the history has no area."""
     area = history.columns.get("delaminated_area", np.zeros(len(history.time)))
     return 1 + np.flatnonzero(np.diff(area) > 1e-9 * np.max(area, initial=0))
 

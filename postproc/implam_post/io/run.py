@@ -44,7 +44,7 @@ class Field:
 
 
 class Run:
-    """The results of a run; each part is read when it is first asked for.
+    """The results of a run; each part is read when it is first needed.
 
     `base` is what the names of its files begin with: DIRECTORY/NAME for NAME_summary.json, NAME_history.csv, NAME.h5.
     """
@@ -54,7 +54,7 @@ class Run:
         self.base = base
 
     def __repr__(self) -> str:
-        """Return what tells this run from others."""
+        """Return the place of the results."""
         return f"Run({str(self.base)!r})"
 
     @property
@@ -150,12 +150,17 @@ class Run:
         return figures(self)
 
     def forget_fields(self) -> None:
-        """Free the memory of the fields; they are read again when they are asked for."""
+        """Free the memory of the fields; they are read again when they are needed."""
         self.__dict__.pop("fields", None)
 
     def _file(self, ending: str) -> Path:
         """Return the path of one of the results."""
         return self.base.with_name(f"{self.base.name}{ending}")
+
+
+def material_of(ply: Mapping[str, Any]) -> str:
+    """Return the name of the material of a ply in a summary; `made_of` is its older name."""
+    return str(ply.get("material", ply.get("made_of", "")))
 
 
 def open_run(path: Path | str) -> Run:

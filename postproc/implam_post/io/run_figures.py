@@ -16,7 +16,8 @@ if TYPE_CHECKING:
     import pandas as pd
 
 # Members of a summary that are no figures of the run.
-_APART = ("costs", "profile", "provenance", "estimated_errors", "exit", "warnings", "plies", "interfaces", "plate_size")
+_NO_FIGURES = ("costs", "profile", "provenance", "estimated_errors", "exit", "warnings", "plies", "interfaces",
+               "plate_size")
 _OF_ENDED_CONTACT = ("contact_duration", "contact_until")
 _EVENTS = ("onset", "first_growth")
 
@@ -37,7 +38,7 @@ def corner_of(run: Run) -> float | None:
 
 
 def resistance(run: Run) -> dict[str, Measured]:
-    """Return what ASTM D7136 asks for beyond the summary; NaN where the force never drops, or nothing is damaged."""
+    """Return what ASTM D7136 requires beyond the summary; NaN where the force never drops, or nothing is damaged."""
     found: dict[str, Measured] = {}
     history, corner = run.columns, corner_of(run)
     if history is not None and np.any(history["force"]) and "impactor_displacement" in history.columns:
@@ -49,11 +50,11 @@ def resistance(run: Run) -> dict[str, Measured]:
                   "largest_displacement": Measured(float(np.max(history["impactor_displacement"])), "length")}
     if run.fields is not None and run.fields.snapshots[-1].mesh.interfaces:
         size = damage_resistance.extent(run.fields)
-        told = dict.fromkeys(("damage_diameter", "damage_length", "damage_width"), 0.0) if size is None else {
+        sizes = dict.fromkeys(("damage_diameter", "damage_length", "damage_width"), 0.0) if size is None else {
             "damage_diameter": size.diameter, "damage_length": size.length, "damage_width": size.width}
-        told |= {f"damage_along_{angle}".replace("-", "minus_"): size.through[angle] if size else 0.0
+        sizes |= {f"damage_along_{angle}".replace("-", "minus_"): size.through[angle] if size else 0.0
                  for angle in damage_resistance.DIRECTIONS}
-        found |= {name: Measured(value, "length") for name, value in told.items()}
+        found |= {name: Measured(value, "length") for name, value in sizes.items()}
     return found
 
 
@@ -89,7 +90,7 @@ def compare(first: Run, second: Run) -> "pd.DataFrame":
 def _numbers(summary: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
     """Give the numbers of a summary under their names, those of an interface with the ply above it."""
     for name, value in summary.items():
-        if name in _APART:
+        if name in _NO_FIGURES:
             continue
         if summary.get("in_contact") and name in _OF_ENDED_CONTACT:
             value = None
@@ -102,13 +103,13 @@ def _numbers(summary: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
         yield f"area_{below}", float(entry["area"])
         yield f"energy_{below}", float(entry["energy"])
         for event in _EVENTS:
-            told = entry[event] or {}
-            if "force" in told or not told:
-                yield f"{event}_force_{below}", float(told.get("force", math.nan))
+            seen = entry[event] or {}
+            if "force" in seen or not seen:
+                yield f"{event}_force_{below}", float(seen.get("force", math.nan))
         for axis in ("x", "y"):
             yield f"{axis}_extent_{below}", float(entry[axis][1] - entry[axis][0])
 
 
 def _is_number(value: object) -> bool:
-    """Tell whether a member of a summary is a number, or one that the run does not have."""
+    """Return whether a member of a summary is a number, or one that the run does not have."""
     return value is None or (isinstance(value, (int, float)) and not isinstance(value, bool))

@@ -53,7 +53,7 @@ class StartedRun:
         return open_run(self.folder)
 
     def stop(self) -> None:
-        """Ask the run to stop after its step, with a checkpoint; `wait` raises RunError with exit code 75 then."""
+        """Stop the run after its step, with a checkpoint; `wait` raises RunError with exit code 75 then."""
         self.process.send_signal(signal.SIGTERM)
 
     def kill(self) -> None:

@@ -66,7 +66,7 @@ class Section:
     thickness: float
 
     def is_specially_orthotropic(self) -> bool:
-        """Tell whether bending is free of every coupling that Navier's series cannot satisfy."""
+        """Return whether bending is free of every coupling that Navier's series cannot satisfy."""
         thickness = self.thickness
         couplings = [*(self.a[:2, 2] / self.a[0, 0]), *(self.d[:2, 2] / self.d[0, 0]), self.s[0, 1] / self.s[0, 0],
                      *(self.b.ravel() / (thickness * self.a[0, 0])), self.mass[1] / (thickness * self.mass[0])]

@@ -21,7 +21,7 @@ def _command(options: argparse.Namespace) -> int:
 
 
 def _draw_all(options: argparse.Namespace, look: Look) -> int:
-    """Draw what the command line asks for."""
+    """Draw what the command line requires."""
     from implam_post.io.fields import read_fields
     from implam_post.io.history import read_history
     from implam_post.plot.pictures import plot_fields, plot_overview
@@ -67,7 +67,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = CommandParser("implam-plot", description="Plot force, indentation, deflection and energies of histories, "
                            "several drawn over each other, and of NAME.h5 the delamination of each interface and all "
                            "seen through the plate, the energy release rate along its front and the failures of each "
-                           "ply over the whole plate, with the history beside it.")
+                           "ply over the full plate, with the history beside it.")
     parser.add_argument("results", nargs="+", type=Path, metavar="RESULT",
                         help="histories (.csv) and fields (.h5) written by implam")
     parser.add_argument("--output", type=Path, metavar="DIR", help="folder of the plots (default: beside each result)")
@@ -80,7 +80,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--measured", type=Path, metavar="CSV", help="measured curve to draw as dots: columns time and "
                         "force, indentation or deflection, in the units of the results")
     parser.add_argument("--projected", choices=("depth", "time"), default="depth", help="colour of NAME_projected: the "
-                        "first interface apart, or when the first one came apart (default: depth)")
+                        "first delaminated interface, or when the first one delaminated (default: depth)")
     parser.add_argument("--format", choices=FORMATS, default="png", help="kind of file (default: png)")
     add_options(parser)
     return run(_command, parser, arguments)

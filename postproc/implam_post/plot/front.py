@@ -40,14 +40,14 @@ def front_figure(fields: Fields, times: Sequence[float] | None = None, look: Loo
 def draw_front(axes: Axes, fields: Fields, below_ply: int, snapshot: Snapshot, look: Look = _PLAIN) -> None:
     """Draw the outline in plan at one time, and the cells ahead of it coloured by G/G_c."""
     cells, ratio = snapshot.release(below_ply)
-    cells, ratio = fields.whole(cells), np.tile(ratio, len(IMAGES[fields.part]))
+    cells, ratio = fields.full_plate(cells), np.tile(ratio, len(IMAGES[fields.part]))
     shown = PolyCollection(cells, array=ratio, cmap="plasma_r", norm=Normalize(0, max(1.0, np.max(ratio, initial=0))),
                            linewidths=0)
     axes.add_collection(shown)
-    apart = fields.delaminated(fields.place(snapshot.time), below_ply)
-    axes.add_collection(LineCollection(outline(apart), colors="black", linewidths=0.8))
-    axes.set_title(f"time {look.said('time', snapshot.time)}", fontsize="medium")
-    frame(axes, fields, reach_of(np.concatenate([cells, apart]), fields), look)
+    delaminated = fields.delaminated(fields.place(snapshot.time), below_ply)
+    axes.add_collection(LineCollection(outline(delaminated), colors="black", linewidths=0.8))
+    axes.set_title(f"time {look.shown('time', snapshot.time)}", fontsize="medium")
+    frame(axes, fields, reach_of(np.concatenate([cells, delaminated]), fields), look)
     axes.figure.colorbar(shown, ax=axes, location="bottom", shrink=0.8, label="$G/G_c$ ahead of the front")
 
 
@@ -59,7 +59,7 @@ def _draw_around(axes: Axes, fields: Fields, below_ply: int, snapshots: Sequence
         x, y = (np.mean(cells, axis=1) - struck_point(fields)).T
         angle = np.degrees(np.arctan2(y, x))
         order = np.argsort(angle)
-        axes.plot(angle[order], ratio[order], ".-", color=colour, linewidth=1, label=look.said("time", snapshot.time))
+        axes.plot(angle[order], ratio[order], ".-", color=colour, linewidth=1, label=look.shown("time", snapshot.time))
     axes.axhline(1, color="black", linestyle="--", linewidth=1)
     axes.set(xlabel="angle from x around the struck point (degrees)", ylabel="$G/G_c$",
              xlim=(0, 90) if fields.quarter else (-180, 180))
@@ -71,7 +71,7 @@ def _draw_around(axes: Axes, fields: Fields, below_ply: int, snapshots: Sequence
 
 
 def _chosen(fields: Fields, below_ply: int, times: Sequence[float] | None) -> list[Snapshot]:
-    """Return the times nearest to those asked for, or up to eight evenly among those with a loaded front."""
+    """Return the times nearest to those required, or up to eight evenly among those with a loaded front."""
     def loaded(snapshots: Sequence[Snapshot]) -> list[Snapshot]:
         return [snapshot for snapshot in snapshots if len(snapshot.release(below_ply)[1])]
 

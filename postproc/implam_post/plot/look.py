@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 FORMATS = ("png", "pdf", "svg")
-# Styles of runs drawn over each other, told apart without colours too.
+# Styles of runs drawn over each other, that differ without colours too.
 STYLES = [{"color": f"C{place}", "linestyle": style} for place, style in
           enumerate(("-", "--", "-.", ":", (0, (5, 1)), (0, (3, 1, 1, 1, 1, 1)), (0, (1, 1)), (0, (8, 3))))]
 
@@ -37,7 +37,7 @@ class Look:
         """Return factor and label of an axis, in units that suit its values."""
         return axis_of(label, dimension, values, self.system)
 
-    def said(self, dimension: str, value: float, digits: int = 3) -> str:
+    def shown(self, dimension: str, value: float, digits: int = 3) -> str:
         """Return a value with its unit, to some digits; without one in an unknown system."""
         axis = self.axis("", dimension, [value])
         unit = axis.label.strip(" []") if self.system in SYSTEMS else ""
@@ -46,14 +46,14 @@ class Look:
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the options that say how pictures look."""
-    parser.add_argument("--units", choices=SYSTEMS, help="system of units of the results (default: told by the deck in "
+    parser.add_argument("--units", choices=SYSTEMS, help="system of units of the results (default: that of the deck in "
                         "NAME.h5); axes are in mm, ms, kN and J then")
     parser.add_argument("--dpi", type=int, help="dots per inch (default: 150; pictures of --save and movies 80)")
     parser.add_argument("--font-size", type=float, default=10.0, help="size of letters in points (default: 10)")
 
 
 def look_of(options: argparse.Namespace, results: Iterable[Path]) -> Look:
-    """Return the look that the options ask for; the system of units is that of the first deck that tells one."""
+    """Return the look that the options request; the system of units is that of the first deck that has one."""
     from implam_post.io.deck import system_of_deck
     from implam_post.io.fields import deck_in
 

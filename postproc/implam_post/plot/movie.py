@@ -1,4 +1,4 @@
-"""A movie of a run (`implam-movie NAME.h5`): interfaces coming apart in plan, with the force beside it."""
+"""A movie of a run (`implam-movie NAME.h5`): interfaces that delaminate in plan, with the force beside it."""
 
 import argparse
 from collections.abc import Sequence
@@ -35,7 +35,7 @@ def _picture(fields: Fields, history: History | None, look: Look, moment: int) -
         fill(plan, fields.delaminated(moment, interfaces[place]), facecolor=f"C{place % 10}", linewidth=0)
     plan.legend(handles=[Patch(color=f"C{place % 10}", label=f"below ply {below_ply}")
                          for place, below_ply in enumerate(interfaces)], loc="upper right", fontsize="small")
-    plan.set_title(f"time {look.said('time', time)}")
+    plan.set_title(f"time {look.shown('time', time)}")
     last = len(fields.snapshots) - 1
     frame(plan, fields, reach_of(np.concatenate([fields.delaminated(last, ply) for ply in interfaces]), fields), look)
     if history is not None:
@@ -53,7 +53,7 @@ def _command(options: argparse.Namespace) -> int:
     look = look_of(options, [options.fields])
     fields = read_fields(options.fields)
     if not fields.snapshots[-1].mesh.interfaces:
-        raise FileError(f"{options.fields} has no interface that may come apart.")
+        raise FileError(f"{options.fields} has no interface that may delaminate.")
     history = options.fields.with_name(f"{options.fields.stem}_history.csv")
     with matplotlib.rc_context({"font.size": look.letters}):
         pictures = frames(fields, read_history(history) if history.exists() else None, look)
@@ -68,7 +68,7 @@ def _command(options: argparse.Namespace) -> int:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command."""
-    parser = CommandParser("implam-movie", description="Draw the interfaces of NAME.h5 coming apart, a picture for "
+    parser = CommandParser("implam-movie", description="Draw how the interfaces of NAME.h5 delaminate, a picture for "
                            "each time written (`fields_every` of &output), with the force of the history beside it.")
     parser.add_argument("fields", type=Path, metavar="NAME.h5")
     parser.add_argument("--save", type=Path, metavar="FILE", help="file, .gif, .webp or .png (default: NAME.gif)")

@@ -1,4 +1,4 @@
-"""A scene for ParaView beside NAME.xdmf (`implam-paraview NAME.h5`): the impactor as a sphere that moves, damage seen
+"""Files for ParaView beside NAME.xdmf (`implam-paraview NAME.h5`): the impactor as a sphere that moves, damage seen
 through the plate, and a state that opens all of it ready."""
 
 import argparse
@@ -15,8 +15,8 @@ from implam_post.io.history import History, read_history
 from implam_post.laminate.decks import plies_of
 
 _ROUND, _RINGS = 48, 24
-# Of each place in plan: interfaces apart, the first of them, share of the plies with a failure, and by mode.
-_FIELDS = ("interfaces_apart", "first_apart_below_ply", "share_of_plies_failed", "share_of_plies_cracked",
+# Of each place in plan: delaminated interfaces, the first of them, share of the plies with a failure, and by mode.
+_FIELDS = ("delaminated_interfaces", "first_delaminated_below_ply", "share_of_plies_failed", "share_of_plies_cracked",
            "share_of_plies_with_fibre_failure")
 
 
@@ -40,8 +40,8 @@ def plan_of(snapshot: Snapshot) -> tuple[np.ndarray, dict[str, np.ndarray]]:
     middles = np.round(mesh.corners.mean(axis=1) / scale * 1e7).astype(np.int64)
     _, first, place = np.unique(middles, axis=0, return_index=True, return_inverse=True)
     place = place.ravel()
-    apart, top = np.zeros(len(first)), np.full(len(first), np.inf)
-    np.add.at(apart, place, snapshot.delaminated)
+    delaminated, top = np.zeros(len(first)), np.full(len(first), np.inf)
+    np.add.at(delaminated, place, snapshot.delaminated)
     np.minimum.at(top, place[snapshot.delaminated], mesh.first_ply[snapshot.delaminated] - 1.0)
     failed = {name: np.zeros(len(first)) for name in ("any", *MODES)}
     for ply, flags in snapshot.failures.items():
@@ -50,19 +50,19 @@ def plan_of(snapshot: Snapshot) -> tuple[np.ndarray, dict[str, np.ndarray]]:
         for name, mode in MODES.items():
             np.add.at(failed[name], place[of_ply], flags[of_ply] & mode > 0)
     plies = len(mesh.plies)
-    values = (apart, np.where(np.isfinite(top), top, 0), failed["any"] / plies, failed["matrix cracking"] / plies,
+    values = (delaminated, np.where(np.isfinite(top), top, 0), failed["any"] / plies, failed["matrix cracking"] / plies,
               failed["fibre failure"] / plies)
     return mesh.corners[first], dict(zip(_FIELDS, values, strict=True))
 
 
-def write_scene(fields: Fields, history: History | None, base: Path) -> list[Path]:
-    """Write BASE_scene.h5, BASE_through.xdmf, BASE_impactor.xdmf if one moves, BASE_paraview.py; return the paths."""
+def write_files(fields: Fields, history: History | None, base: Path) -> list[Path]:
+    """Write BASE_paraview.h5, BASE_through.xdmf, BASE_impactor.xdmf if one moves, BASE_paraview.py; return the paths."""
     deck = deck_in(fields.path)
     if deck is None:
-        raise FileError(f"{fields.path} holds no deck, which tells radius and thickness.")
+        raise FileError(f"{fields.path} holds no deck, which has radius and thickness.")
     thickness = sum(ply.thickness for ply in plies_of(deck))
     radius = deck.number("impactor", "radius", 0.0) if deck.has("impactor") else 0.0
-    data = base.with_name(f"{base.name}_scene.h5")
+    data = base.with_name(f"{base.name}_paraview.h5")
     grids: dict[str, list[str]] = {"through": []}
     with h5py.File(data, "w") as file:
         for number, snapshot in enumerate(fields.snapshots, start=1):
@@ -85,11 +85,11 @@ def write_scene(fields: Fields, history: History | None, base: Path) -> list[Pat
 
 
 def _write_plan(file: h5py.File, name: str, fields: Fields, snapshot: Snapshot, height: float) -> str:
-    """Write what is seen through the whole plate at a time, drawn on its back; return the XDMF of it."""
+    """Write what is seen through the full plate at a time, drawn on its back; return the XDMF of it."""
     cells, values = plan_of(snapshot)
-    whole = fields.whole(cells)
-    count = len(whole)
-    file[f"{name}/points"] = np.column_stack([whole.reshape(-1, 2), np.full(4 * count, height)])
+    cells_of_plate = fields.full_plate(cells)
+    count = len(cells_of_plate)
+    file[f"{name}/points"] = np.column_stack([cells_of_plate.reshape(-1, 2), np.full(4 * count, height)])
     file[f"{name}/cells"] = np.arange(4 * count).reshape(-1, 4)
     for field, value in values.items():
         file[f"{name}/{field}"] = np.tile(value, count // len(cells))
@@ -100,11 +100,11 @@ def _write_plan(file: h5py.File, name: str, fields: Fields, snapshot: Snapshot, 
 
 def _write_sphere(file: h5py.File, fields: Fields, history: History, radius: float, start: np.ndarray) -> list[str]:
     """Write the impactor at every time, from where it first touches; return the XDMF of each."""
-    ball, file["triangles"] = sphere(radius)
+    sphere_points, file["triangles"] = sphere(radius)
     depths = np.interp([snapshot.time for snapshot in fields.snapshots], history.time,
                        history["impactor_displacement"])
     for number, depth in enumerate(depths, start=1):
-        file[f"{number:08d}/sphere"] = ball + start + np.array([0, 0, depth])
+        file[f"{number:08d}/sphere"] = sphere_points + start + np.array([0, 0, depth])
     return [_shape(file, "Triangle", "triangles", f"{number:08d}/sphere") for number in range(1, len(depths) + 1)]
 
 
@@ -123,8 +123,8 @@ def _shape(file: h5py.File, kind: str, cells: str, points: str) -> str:
             f'<Geometry GeometryType="XYZ">{_item(file, points)}</Geometry>\n')
 
 
-def _state(base: Path, length: float, comes_apart: bool, moves: bool) -> str:
-    """Return the state: the plate, coloured by what came apart, what is seen through it, and the impactor."""
+def _state(base: Path, length: float, may_delaminate: bool, moves: bool) -> str:
+    """Return the state: the plate, coloured by its delaminations, what is seen through it, and the impactor."""
     script = f'''# State of ParaView: File > Load State, or paraview --script={base.name}_paraview.py
 # z points along the impact, away from the struck face; the camera has the struck face above.
 import os
@@ -148,22 +148,22 @@ moved = WarpByVector(registrationName="moved plate", Input=plate)
 moved.Vectors = ["POINTS", "displacement"]
 plate_shown = Show(moved, view)
 plate_shown.Representation = "Surface With Edges"
-# The whole plate below it: damage seen through the thickness.
+# The full plate below it: damage seen through the thickness.
 lowered = Transform(registrationName="damage through the thickness", Input=opened("{base.name}_through"))
 lowered.Transform.Translate = [0.0, 0.0, {0.2 * length!r}]
 through_shown = Show(lowered, view)
-ColorBy(through_shown, ("CELLS", "{"interfaces_apart" if comes_apart else "share_of_plies_failed"}"))
+ColorBy(through_shown, ("CELLS", "{"delaminated_interfaces" if may_delaminate else "share_of_plies_failed"}"))
 through_shown.RescaleTransferFunctionToDataRangeOverTime()
 through_shown.SetScalarBarVisibility(view, True)
 '''
-    if comes_apart:
+    if may_delaminate:
         script += '''ColorBy(plate_shown, ("CELLS", "delaminated_above"))
 plate_shown.RescaleTransferFunctionToDataRangeOverTime()
 plate_shown.SetScalarBarVisibility(view, True)
 '''
     if moves:
-        script += f'''ball_shown = Show(opened("{base.name}_impactor"), view)
-ball_shown.DiffuseColor = [0.7, 0.7, 0.7]
+        script += f'''sphere_points_shown = Show(opened("{base.name}_impactor"), view)
+sphere_points_shown.DiffuseColor = [0.7, 0.7, 0.7]
 '''
     return script + f'''view.CameraPosition = [{1.2 * length!r}, {1.6 * length!r}, {-0.9 * length!r}]
 view.CameraFocalPoint = [0.0, 0.0, {0.05 * length!r}]
@@ -176,18 +176,18 @@ Render(view)
 
 
 def _command(options: argparse.Namespace) -> int:
-    """Write the scene and say where it is."""
+    """Write the files and print their paths."""
     fields = read_fields(options.fields)
     path = options.fields.with_name(f"{options.fields.stem}_history.csv")
     history = read_history(path) if path.exists() else None
-    print(*write_scene(fields, history, options.fields.with_suffix("")), sep="\n")
+    print(*write_files(fields, history, options.fields.with_suffix("")), sep="\n")
     return EXIT_DONE
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command."""
     parser = CommandParser("implam-paraview", description="Write for ParaView, beside NAME.h5: the impactor as a "
-                           "sphere that moves (NAME_impactor.xdmf), damage seen through the whole plate "
+                           "sphere that moves (NAME_impactor.xdmf), damage seen through the full plate "
                            "(NAME_through.xdmf), and NAME_paraview.py, a state that opens both with the plate. "
                            "z points along the impact.")
     parser.add_argument("fields", type=Path, metavar="NAME.h5")

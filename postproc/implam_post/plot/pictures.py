@@ -55,10 +55,10 @@ def plot_energies(history: History, path: Path, look: Look = _PLAIN) -> Path:
 
 
 def plot_overview(fields: Fields, history: History, path: Path, look: Look = _PLAIN) -> Path:
-    """Draw each interface in plan, with the cracks beside it, the force and the ledger in one picture."""
+    """Draw each interface in plan, with the cracks beside it, the force and the energies in one picture."""
     interfaces = fields.snapshots[-1].mesh.interfaces
     if not interfaces:
-        raise FileError(f"{fields.name} has no interface that may come apart.")
+        raise FileError(f"{fields.name} has no interface that may delaminate.")
     figure = Figure(figsize=(11, 2.9 * max(len(interfaces), 2)), layout="constrained")
     left, right = figure.subfigures(1, 2)
     last = len(fields.snapshots) - 1
@@ -67,9 +67,9 @@ def plot_overview(fields: Fields, history: History, path: Path, look: Look = _PL
         draw_delamination(axes, fields, below_ply, look, reach)
         if fields.snapshots[-1].failures:
             draw_cracks(axes, fields, below_ply)
-    force, ledger = right.subplots(2)
+    force, energies = right.subplots(2)
     _draw(force, [history], "force", look)
-    _stack(ledger, history, look)
+    _stack(energies, history, look)
     figure.supxlabel(caption(fields, look), fontsize="small")
     return _save(figure, path, look)
 
@@ -89,11 +89,11 @@ def plot_fields(fields: Fields, base: Path, times: Sequence[float] | None = None
 
 
 def _stack(axes: Axes, history: History, look: Look) -> None:
-    """Draw the ledger."""
-    ledger = {column: history[column] for column in ENERGY_NAMES if column in history.columns}
-    shown = {column: values for column, values in ledger.items() if np.any(values)}
+    """Draw the energies stacked."""
+    balance = {column: history[column] for column in ENERGY_NAMES if column in history.columns}
+    shown = {column: values for column, values in balance.items() if np.any(values)}
     colours = [f"C{list(ENERGY_NAMES).index(column)}" for column in shown]
-    start = sum(values[0] for values in ledger.values())
+    start = sum(values[0] for values in balance.values())
     time = look.axis("time", "time", history.time)
     energy = look.axis("energy", "energy", [start, *(np.max(np.abs(values)) for values in shown.values())])
     if shown:
@@ -146,12 +146,12 @@ def _draw_loop(axes: Axes, histories: Sequence[History], look: Look) -> None:
     along = "impactor_displacement" if all(
         np.any(history.columns.get("impactor_displacement", 0)) for history in histories) else "deflection"
     shown = [in_contact(history) for history in histories]
-    across, force = (look.axis(*AXES[column], np.concatenate([history[column] for history in shown]))
+    horizontal, force = (look.axis(*AXES[column], np.concatenate([history[column] for history in shown]))
                      for column in (along, "force"))
     for position, (history, name) in enumerate(zip(shown, _names([one.name for one in histories]), strict=True)):
-        axes.plot(across.factor * history[along], force.factor * history["force"], label=name,
+        axes.plot(horizontal.factor * history[along], force.factor * history["force"], label=name,
                   **STYLES[position % len(STYLES)])
-    axes.set(xlabel=across.label, ylabel=force.label)
+    axes.set(xlabel=horizontal.label, ylabel=force.label)
     axes.grid(alpha=0.3)
     axes.legend()
 

@@ -28,7 +28,7 @@ _DIGITS = 4
 
 
 def delamination_figure(fields: Fields, look: Look = _PLAIN) -> Figure:
-    """Draw each interface of the whole plate on one scale of lengths, coloured by the time it delaminated."""
+    """Draw each interface of the full plate on one scale of lengths, coloured by the time it delaminated."""
     interfaces = fields.snapshots[-1].mesh.interfaces
     columns = 1 if len(interfaces) < 4 else 3
     rows = -(-len(interfaces) // columns)
@@ -62,10 +62,10 @@ def title_of(fields: Fields, below_ply: int, look: Look = _PLAIN) -> str:
     """Return what an interface has come to at the last time, with the figures of the summary."""
     figures = fields.interface(len(fields.snapshots) - 1, below_ply)
     kind = "dissipated area" if figures.is_cohesive else "delaminated area"
-    along, across = (look.said("length", length) for length in figures.extents)
+    along, across = (look.shown("length", length) for length in figures.extents)
     grown = f"{'failed' if figures.is_cohesive else 'delaminated'} over {along} by {across}" if any(
         figures.extents) else "no point has failed"
-    return f"below ply {below_ply}: {kind} {look.said('area', figures.area, _DIGITS)}\n{grown}"
+    return f"below ply {below_ply}: {kind} {look.shown('area', figures.area, _DIGITS)}\n{grown}"
 
 
 def projected_figure(fields: Fields, look: Look = _PLAIN) -> Figure:
@@ -91,7 +91,7 @@ def projected_figure(fields: Fields, look: Look = _PLAIN) -> Figure:
                               label="delaminated interface nearest to the struck face, below ply")
         bar.set_ticklabels([str(below_ply) for below_ply in interfaces])
     fill(axes, seen, facecolor="none", edgecolor="black", linewidth=0.8)
-    axes.set_title(f"all interfaces: projected area {look.said('area', fields.projected_area(last), _DIGITS)}",
+    axes.set_title(f"all interfaces: projected area {look.shown('area', fields.projected_area(last), _DIGITS)}",
                    fontsize="medium")
     frame(axes, fields, reach_of(seen, fields), look)
     locate(axes, fields)
@@ -132,14 +132,14 @@ def draw_cracks(axes: Axes, fields: Fields, below_ply: int) -> None:
     """Draw over a delamination where the matrix cracked in the ply on the back and in the one above it."""
     last = fields.snapshots[-1]
     for ply, style in ((last.mesh.plies[-1], "-"), (below_ply, ":")):
-        edges = outline(fields.whole(last.failed_cells(ply, MODES["matrix cracking"])))
+        edges = outline(fields.full_plate(last.failed_cells(ply, MODES["matrix cracking"])))
         if len(edges):
             axes.add_collection(LineCollection(edges, colors="C3", linestyles=style, label=f"cracks of ply {ply}"))
             axes.legend(loc="upper right", fontsize="small")
 
 
 def failures_figure(fields: Fields, modes: Sequence[str] = tuple(MODES), look: Look = _PLAIN) -> Figure:
-    """Draw failures of each ply of the whole plate at the last time, all on one scale; cracks run along the fibres."""
+    """Draw failures of each ply of the full plate at the last time, all on one scale; cracks run along the fibres."""
     last = fields.snapshots[-1]
     plies = sorted(last.failures)
     columns = min(_COLUMNS, len(plies))
@@ -166,7 +166,7 @@ def draw_failures(axes: Axes, fields: Fields, ply: int, modes: Sequence[str], an
                   look: Look = _PLAIN) -> None:
     """Draw where a ply failed, a mode over the others where several meet; cracks as lines along known fibres."""
     for name in reversed(modes):
-        cells = fields.whole(fields.snapshots[-1].failed_cells(ply, MODES[name]))
+        cells = fields.full_plate(fields.snapshots[-1].failed_cells(ply, MODES[name]))
         if name == "matrix cracking" and angle is not None:
             axes.add_collection(LineCollection(along_fibres(cells, angle), colors=_COLOURS[name], linewidths=1))
         else:
@@ -185,7 +185,7 @@ def along_fibres(cells: np.ndarray, angle: float) -> np.ndarray:
 
 
 def _angles(fields: Fields) -> dict[int, float]:
-    """Return the fibre angle of each ply; nothing if the deck of the run can't be told.
+    """Return the fibre angle of each ply; nothing if the deck of the run is not known.
 
     A quarter is mirrored, which leaves only 0 and 90 degrees as they are; no other laminate has a quarter.
     """
@@ -199,6 +199,6 @@ def _angles(fields: Fields) -> dict[int, float]:
 def _reach(fields: Fields) -> tuple[float, float]:
     """Return how far failures reach around the struck point at the last time."""
     last = fields.snapshots[-1]
-    reached = [reach_of(fields.whole(last.failed_cells(ply, mode)), fields)
+    reached = [reach_of(fields.full_plate(last.failed_cells(ply, mode)), fields)
                for ply in last.failures for mode in MODES.values()]
     return max(along for along, _ in reached), max(across for _, across in reached)

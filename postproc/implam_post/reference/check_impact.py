@@ -1,4 +1,4 @@
-"""Check an impact against the semi-analytic answer (`implam-check-impact DECK`)."""
+"""Check an impact against the semi-analytic solution (`implam-check-impact DECK`)."""
 
 import argparse
 import math
@@ -59,7 +59,7 @@ def differences_table(rows: Sequence[Difference]) -> str:
 
 
 def reference_table(reference: History) -> str:
-    """Return the figures of the semi-analytic answer alone as lines of text."""
+    """Return the figures of the semi-analytic solution alone as lines of text."""
     return "\n".join(f"{label:<26} {value:13.6g}" for name, label in _COMPARED.items()
                      if math.isfinite(value := QUANTITIES[name](reference)))
 
@@ -72,11 +72,11 @@ def find_history(deck: Deck, output: Path | None) -> Path | None:
 
 
 def notes(deck: Deck) -> list[str]:
-    """Return what the deck models and the semi-analytic answer leaves out."""
+    """Return what the deck models and the semi-analytic solution leaves out."""
     found = []
     if deck.choice("case", "kinematics", ("von_karman", "linear")) != "linear":
-        found.append("the deck asks for von Karman strains; the semi-analytic plate is linear.")
-    found += [f"the deck models &{group}; the semi-analytic plate stays whole."
+        found.append("the deck requires von Karman strains; the semi-analytic plate is linear.")
+    found += [f"the deck models &{group}; the semi-analytic plate stays undamaged."
               for group in ("ply_damage", "delamination") if deck.has(group)]
     return found
 
@@ -94,7 +94,7 @@ def _command(options: argparse.Namespace) -> int:
         folder = options.output or (path.parent if path else Path())
         print(f"plot: {plot_forces([reference, *([history] if history else [])], folder / f'{deck.name}_check.png')}")
     if history is None:
-        print(f"no {deck.name}_history.csv found: the semi-analytic answer alone\n{reference_table(reference)}")
+        print(f"no {deck.name}_history.csv found: the semi-analytic solution alone\n{reference_table(reference)}")
         return EXIT_DONE
     rows = differences(history, reference.until(history.time[-1]))
     print(f"history: {path}\n{differences_table(rows)}")
@@ -105,13 +105,13 @@ def _command(options: argparse.Namespace) -> int:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command."""
     parser = CommandParser("implam-check-impact", description="Check the impact on a simply supported, specially "
-                           "orthotropic plate against its semi-analytic answer.")
+                           "orthotropic plate against its semi-analytic solution.")
     parser.add_argument("deck", type=Path, metavar="DECK", help="the namelist deck")
     parser.add_argument("--history", type=Path, metavar="CSV",
                         help="history to check (default: NAME_history.csv in the deck's output folder or here)")
     parser.add_argument("--output", type=Path, metavar="DIR", help="folder of the plot (default: beside the history)")
     parser.add_argument("--modes", type=count, metavar="N",
-                        help="odd half-wave numbers a side that answer dynamically (default: two half waves a patch)")
+                        help="odd half-wave numbers a side with inertia (default: two half waves a patch)")
     parser.add_argument("--no-plot", action="store_true", help="only print")
     parser.add_argument("--tolerance", type=float, metavar="FRACTION",
                         help="exit with 1 if a difference exceeds this fraction of its scale")

@@ -1,6 +1,6 @@
-"""Impact of a rigid ball on the centre of a simply supported laminate, by Navier's modes.
+"""Impact of a rigid sphere on the centre of a simply supported laminate, by Navier's modes.
 
-The force is linear between equally spaced instants; plate and ball then answer exactly, and the only unknown of an
+The force is linear between equally spaced instants; plate and sphere then follow exactly, and the only unknown of an
 instant is its force. The patch-mean deflection, conjugate to the load, enters the indentation.
 """
 
@@ -17,7 +17,7 @@ from implam_post.reference.decks import Impactor, impactor_of, indentation_law_o
 from implam_post.reference.indentation import IndentationLaw
 from implam_post.reference.navier import Plate, centre_shape, odd_pairs, patch_shape
 
-# Half waves a patch side that answer dynamically, and those that only add their static compliance.
+# Half waves a patch side with inertia, and those that only add their static compliance.
 _DYNAMIC_HALF_WAVES, _STATIC_HALF_WAVES = 2, 20
 _STEPS_A_CONTACT, _FEWEST_STEPS, _MOST_STEPS = 1000, 2000, 40000
 _MODES_AT_ONCE = 8192
@@ -25,7 +25,7 @@ _MODES_AT_ONCE = 8192
 
 @dataclass(frozen=True)
 class ImpactCase:
-    """Plate, ball and law of one impact, and the time that is asked for."""
+    """Plate, sphere and law of one impact, and the time to be computed."""
 
     plate: Plate
     impactor: Impactor
@@ -41,18 +41,18 @@ class ImpactCase:
         return float(np.clip(contact / _STEPS_A_CONTACT, self.end / _MOST_STEPS, self.end / _FEWEST_STEPS))
 
     def default_modes(self) -> list[int]:
-        """Return how many odd half-wave numbers along x and y answer dynamically by default."""
+        """Return how many odd half-wave numbers along x and y have inertia by default."""
         return [max(10, round(_DYNAMIC_HALF_WAVES * length / (2 * self.patch))) for length in self.plate.lengths]
 
 
 def impact_case(deck: Deck) -> ImpactCase:
-    """Return the impact that the deck describes; an error says why there is no semi-analytic answer to it."""
+    """Return the impact that the deck describes; an error says why there is no semi-analytic solution to it."""
     impactor = impactor_of(deck)
     if set(deck.edges()) != {"simple"}:
-        raise deck.error("plate", "the semi-analytic answer needs edges = 'simple' all round.")
+        raise deck.error("plate", "the semi-analytic solution needs edges = 'simple' all round.")
     for group in ("pressure", "static"):
         if deck.has(group):
-            raise deck.error(group, "the semi-analytic answer knows no load but the impactor.")
+            raise deck.error(group, "the semi-analytic solution knows no load but the impactor.")
     patch, end = deck.number("mesh", "patch", 0.0), deck.number("time", "end")
     if not 0 < patch <= min(deck.lengths()):
         raise deck.error("mesh", "patch needs a side between zero and that of the plate: under a point load the "
@@ -66,13 +66,13 @@ def semi_analytic(deck: Deck, modes: int | None = None, step: float | None = Non
     """Return the semi-analytic history of the impact that the deck describes.
 
     Its columns are those of the solver's history that it can fill, and `patch_deflection`. `modes` is the number of
-    odd half-wave numbers a side that answer dynamically, `step` the distance between instants.
+    odd half-wave numbers a side with inertia, `step` the distance between instants.
     """
     return respond(impact_case(deck), modes, step, deck.name)
 
 
 def respond(case: ImpactCase, modes: int | None = None, step: float | None = None, name: str = "") -> History:
-    """Integrate plate and ball together; see `semi_analytic`."""
+    """Integrate plate and sphere together; see `semi_analytic`."""
     count = int(np.ceil(case.end / (step or case.default_step())))
     step = case.end / count
     patch_kernel, centre_kernel = _kernels(case, modes, step, count)
@@ -91,7 +91,7 @@ def respond(case: ImpactCase, modes: int | None = None, step: float | None = Non
 def _kernels(case: ImpactCase, modes: int | None, step: float, count: int) -> tuple[np.ndarray, np.ndarray]:
     """Return the deflections of patch and centre at every instant after a force that rises and falls in one step.
 
-    A mode of frequency w and coefficient c answers c/w**2 (1 - sin(w h)/(w h)) at the force's peak and
+    A mode of frequency w and coefficient c deflects by c/w**2 (1 - sin(w h)/(w h)) at the force's peak and
     4 c sin(w h/2)**2 sin(w t)/(w**3 h) after it.
     """
     plate = case.plate
@@ -145,7 +145,7 @@ def _sum_of_sines(amplitude: np.ndarray, frequency: np.ndarray, step: float, cou
 
 
 def _march(case: ImpactCase, kernel: np.ndarray, step: float) -> tuple[np.ndarray, ...]:
-    """Step plate and ball through time; return force, displacement and velocity of the ball, and indentation."""
+    """Step plate and sphere through time; return force, displacement and velocity of the sphere, and indentation."""
     instants = len(kernel)
     backwards = kernel[::-1].copy()
     force, displacement, velocity, indentation = (np.zeros(instants) for _ in range(4))

@@ -45,7 +45,7 @@ def accept(expectations: Expectations, comparisons: Sequence[Sequence[Comparison
         raise FileError("its entries aren't [[expect]] tables with a line a key.")
     write_text(expectations.path, changed)
     names = [variant.name for variant in expectations.variants]
-    return [_told(found[place][0].expected, new, names[place[0]] if place[0] >= 0 and len(names) > 1 else "")
+    return [_change_text(found[place][0].expected, new, names[place[0]] if place[0] >= 0 and len(names) > 1 else "")
             for place, new in changes.items()]
 
 
@@ -70,13 +70,13 @@ def accept_new(path: Path, history: History, version: str) -> list[str]:
     text = "\n".join(_written(entry) for entry in entries)
     parse_expectations(path, tomllib.loads(text))
     write_text(path, f"# Accepted from a run of Implam {version}.\n\n{text}")
-    told = [f"{entry.label}: {entry.value:g}, tolerance {_tolerance(entry)}" for entry in entries]
+    listed = [f"{entry.label}: {entry.value:g}, tolerance {_tolerance(entry)}" for entry in entries]
     return [f"written with {len(entries)} figures, tolerance {100 * RELATIVE:g} %, of times {OF_A_STEP:g} of the mean "
-            f"step of {step:.3g}", *told]
+            f"step of {step:.3g}", *listed]
 
 
 def _entry(name: str, value: float, tolerance: dict[str, float], column: str = "") -> Expectation:
-    """Return an entry, its value rounded to what the tolerance can tell."""
+    """Return an entry, its value rounded to the digits that the tolerance needs."""
     entry = Expectation(name, value, column=column, **tolerance)
     return replace(entry, value=_short(value, entry.tolerance))
 
@@ -149,7 +149,7 @@ def _written(entry: Expectation) -> str:
     return f'[[expect]]\nquantity = "{entry.quantity}"\n{column}value = {entry.value!r}\n{tolerance}\n'
 
 
-def _told(old: Expectation, new: Expectation, variant: str) -> str:
+def _change_text(old: Expectation, new: Expectation, variant: str) -> str:
     """Return what was changed."""
     kept = "kept" if old.relative == new.relative else "instead of a relative one"
     where = f"{variant}: " if variant else ""
@@ -157,5 +157,5 @@ def _told(old: Expectation, new: Expectation, variant: str) -> str:
 
 
 def _tolerance(entry: Expectation) -> str:
-    """Return the tolerance as it is told."""
+    """Return the tolerance as it is printed."""
     return f"relative {entry.relative:g}" if entry.absolute is None else f"absolute {entry.absolute:g}"

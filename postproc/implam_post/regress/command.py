@@ -49,21 +49,21 @@ def _accept(expectations: Expectations, outcomes: Sequence[Outcome]) -> bool:
     path = expectations.path
     try:
         for outcome in outcomes:
-            if outcome.trouble:
-                raise FileError(f"{outcome.label}: {outcome.trouble}")
+            if outcome.fault:
+                raise FileError(f"{outcome.label}: {outcome.fault}")
         if expectations.variants[0].expectations:
-            said = accept(expectations, [outcome.comparisons for outcome in outcomes])
+            lines = accept(expectations, [outcome.comparisons for outcome in outcomes])
         else:
-            said = accept_new(path, outcomes[0].history, version_in(outcomes[0].folder))
+            lines = accept_new(path, outcomes[0].history, version_in(outcomes[0].folder))
     except FileError as error:
         print(f"{path}: nothing is accepted: {error}", file=sys.stderr)
         return False
-    print(*(f"{path}: {line}" for line in said), sep="\n")
+    print(*(f"{path}: {line}" for line in lines), sep="\n")
     return True
 
 
 def _run(options: argparse.Namespace, folder: Path) -> bool:
-    """Run everything in a folder, compare and tell; return True if all is as expected, or accepted."""
+    """Run everything in a folder, compare and report; return True if all is as expected, or accepted."""
     program, found = find_program(options.program), find_expectations(options.paths, options.decks)
     outcomes = {expectations.path: [
         Outcome(expectations, variant, deck_path(expectations, options.decks),
@@ -73,12 +73,12 @@ def _run(options: argparse.Namespace, folder: Path) -> bool:
     to_run = [outcome for outcome in everything if outcome.variant.expectations or options.accept]
     for outcome in everything:
         if outcome not in to_run:
-            outcome.trouble = "nothing is expected of it; --accept writes what is found."
+            outcome.fault = "nothing is expected of it; --accept writes what is found."
     start = time.monotonic()
     run_all(to_run, program, options.jobs, options.timeout)
     if options.junit:
         write_text(options.junit, junit(everything, time.monotonic() - start))
-    if any(outcome.comparisons or outcome.trouble for outcome in everything):
+    if any(outcome.comparisons or outcome.fault for outcome in everything):
         print(table(everything))
     failed = sum(not outcome.passed for outcome in everything)
     if options.accept:
@@ -109,7 +109,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         description="Run decks and compare them with what is expected of them: NAME.toml beside NAME.nml. A deck of\n"
         "which nothing is expected fails.")
     parser.add_argument("paths", nargs="+", type=Path, metavar="DIR",
-                        help="folders of decks and expectations, or files of expectations; the format is told below")
+                        help="folders of decks and expectations, or files of expectations; the format is given below")
     parser.add_argument("--decks", type=Path, metavar="DIR", help="folder of the decks (default: beside each file)")
     parser.add_argument("--output", type=Path, metavar="DIR",
                         help="folder of the runs (default: one of its own, which stays if something failed)")

@@ -24,7 +24,7 @@ class Comparison:
 
     @property
     def passed(self) -> bool:
-        """Tell whether the value found is within the tolerance; NaN never is."""
+        """Return whether the value found is within the tolerance; NaN never is."""
         return abs(self.found - self.expected.value) <= self.expected.tolerance
 
     def row(self, width: int) -> str:
@@ -69,15 +69,15 @@ def heading(width: int) -> str:
 
 def _command(options: argparse.Namespace) -> int:
     """Compare, print and draw."""
-    told, history = read_expectations(options.expect), read_history(options.history)
-    if options.plot and not told.curves:
+    expectations, history = read_expectations(options.expect), read_history(options.history)
+    if options.plot and not expectations.curves:
         raise FileError(f"--plot needs a [[curve]] in {options.expect}.")
-    comparisons = compare(history, told.variant(options.variant).expectations, options.expect.parent)
+    comparisons = compare(history, expectations.variant(options.variant).expectations, options.expect.parent)
     print(table(comparisons))
     if options.plot:
         # matplotlib takes a while to load.
         from implam_post.plot.curves import plot_curves
-        print(plot_curves(history, told.curves, options.plot, look_of(options, [options.history])))
+        print(plot_curves(history, expectations.curves, options.plot, look_of(options, [options.history])))
     return EXIT_DONE if all(comparison.passed for comparison in comparisons) else EXIT_USAGE
 
 
@@ -86,7 +86,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = CommandParser("implam-compare", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=FORMAT,
                            description="Compare a history with what is expected of it.")
     parser.add_argument("history", type=Path, metavar="HISTORY.csv", help="history written by implam")
-    parser.add_argument("expect", type=Path, metavar="EXPECT.toml", help="what is expected; the format is told below")
+    parser.add_argument("expect", type=Path, metavar="EXPECT.toml", help="what is expected; the format is given below")
     parser.add_argument("--variant", metavar="NAME", help="the variant that was run, if the file has several")
     parser.add_argument("--plot", type=Path, metavar="FILE",
                         help="draw the history over each [[curve]] into a picture (PNG, PDF or SVG)")

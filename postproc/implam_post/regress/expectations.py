@@ -36,7 +36,7 @@ The file of expectations, of which at least one is needed:
 
     [[expect]]
     quantity = "rms_force"           # over the first contact, as a fraction of the peak
-    against = "deck.nml"             # a deck: its semi-analytic answer; else another history, beside this file or,
+    against = "deck.nml"             # a deck: its semi-analytic solution; else another history, beside this file or,
     value = 0.0                      # if it isn't there, beside the history; deck.nml there is the deck of the run
     absolute = 0.01                  # l2_force: relative L2 difference over the reference's time, as of a measured one
 
@@ -122,8 +122,8 @@ class Expectations:
         """Return a variant by its name, which may be left out if there is only one."""
         names = [variant.name for variant in self.variants]
         if name not in names and (name is not None or len(names) > 1):
-            told = "the file has several variants" if name is None else f"no variant is named '{name}'"
-            raise FileError(f"{self.path}: {told}; there are {', '.join(names)}.")
+            reason = "the file has several variants" if name is None else f"no variant is named '{name}'"
+            raise FileError(f"{self.path}: {reason}; there are {', '.join(names)}.")
         return self.variants[0 if name is None else names.index(name)]
 
 
@@ -197,5 +197,5 @@ def _entries(tables: object) -> list[Expectation]:
 
 
 def _is_number(value: object) -> bool:
-    """Tell whether `value` is a finite number."""
+    """Return whether `value` is a finite number."""
     return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)

@@ -1,4 +1,4 @@
-"""Runs of decks that are held against what is expected of them."""
+"""Runs of decks that are compared with expected values."""
 
 import shutil
 import time
@@ -27,7 +27,7 @@ class Outcome:
     deck: Path
     folder: Path
     comparisons: list[Comparison] = field(default_factory=list)
-    trouble: str = ""
+    fault: str = ""
     seconds: float = 0.0
     history: History | None = None
 
@@ -39,14 +39,14 @@ class Outcome:
 
     @property
     def passed(self) -> bool:
-        """Tell whether everything expected was found, and something was expected."""
-        return not self.trouble and bool(self.comparisons) and all(comparison.passed for comparison in self.comparisons)
+        """Return whether everything expected was found, and something was expected."""
+        return not self.fault and bool(self.comparisons) and all(comparison.passed for comparison in self.comparisons)
 
     @property
     def verdict(self) -> str:
         """Why it failed, in one line; empty if it passed."""
         missed = [comparison.expected.label for comparison in self.comparisons if not comparison.passed]
-        return self.trouble or (f"not as expected: {', '.join(missed)}" if missed else "")
+        return self.fault or (f"not as expected: {', '.join(missed)}" if missed else "")
 
 
 def run_variant(outcome: Outcome, program: Sequence[str], timeout: float | None) -> None:
@@ -54,13 +54,13 @@ def run_variant(outcome: Outcome, program: Sequence[str], timeout: float | None)
     start = time.monotonic()
     try:
         shutil.rmtree(outcome.folder, ignore_errors=True)
-        outcome.trouble = _run(outcome, program, timeout)
-        if not outcome.trouble:
+        outcome.fault = _run(outcome, program, timeout)
+        if not outcome.fault:
             outcome.history = _finite_history(outcome.folder)
             outcome.comparisons = compare(outcome.history, outcome.variant.expectations,
                                           outcome.expectations.path.parent)
     except ImplamError as error:
-        outcome.trouble = str(error)
+        outcome.fault = str(error)
     outcome.seconds = time.monotonic() - start
 
 
@@ -109,7 +109,7 @@ def table(outcomes: Sequence[Outcome]) -> str:
     width = max([len(comparison.expected.label) for _, comparison in rows] + [len("quantity")])
     lines = [f"{'run':<{runs}} {heading(width)}"]
     for outcome in outcomes:
-        if outcome.trouble:
-            lines.append(f"{outcome.label:<{runs}} {outcome.trouble} FAIL")
+        if outcome.fault:
+            lines.append(f"{outcome.label:<{runs}} {outcome.fault} FAIL")
         lines += [f"{outcome.label:<{runs}} {comparison.row(width)}" for comparison in outcome.comparisons]
     return "\n".join(lines)

@@ -12,7 +12,7 @@ from implam_post.io.damage_resistance import DIRECTIONS, extent, kinds_of_damage
 from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, run
 from implam_post.io.files import write_text
 from implam_post.io.history import ENERGY_NAMES, UNACCOUNTED
-from implam_post.io.run import SUMMARY, Run, open_run
+from implam_post.io.run import SUMMARY, Run, material_of, open_run
 from implam_post.io.run_figures import Measured, corner_of, resistance
 from implam_post.plot.look import Look
 from implam_post.report.page import image, render, rounded
@@ -44,7 +44,7 @@ _UNKNOWN = {"energy_absorbed": "contact has not ended"}
 _PROVENANCE = ("version", "commit", "compiler", "petsc_version", "ranks", "started")
 
 
-def said(look: Look, dimension: str, value: object) -> str:
+def shown(look: Look, dimension: str, value: object) -> str:
     """Return a figure to four digits, as the summary in the log has them, with its unit where that is known."""
     if value is None or not dimension:
         return rounded(value)
@@ -71,7 +71,7 @@ def report(run: Run) -> str:
         layup=image(layup_figure(summary)), plies_head=_plies_head(summary), plies=_plies(summary, look),
         curves=[(text, image(figure)) for text, figure in curves],
         maps=[(text, image(figure)) for text, figure in maps],
-        ledger=[(name, axis.factor * value) for name, value in energies.items()], energy_label=axis.label,
+        balance=[(name, axis.factor * value) for name, value in energies.items()], energy_label=axis.label,
         provenance=[*((key.replace("_", " "), str(summary["provenance"][key])) for key in _PROVENANCE),
                     *((key.replace("_", " "), value) for key, value in summary["costs"].items())])
 
@@ -83,19 +83,19 @@ def _resistance(results: Run, found: Mapping[str, Measured], look: Look) -> str:
     def row(name: str, key: str, missing: str = "-", at: str = "") -> tuple[str, str, str]:
         if key not in found or math.isnan(found[key].value):
             return name, missing, ""
-        return name, said(look, found[key].dimension, found[key].value), at
+        return name, shown(look, found[key].dimension, found[key].value), at
 
     corner = corner_of(results)
     behind = f", behind a low pass of {_frequency(look, corner)}" if corner else ""
     unknown = "the force never drops by damage" if corner else "not known without units"
     reached = "threshold_at" in found and not math.isnan(found["threshold_at"].value)
-    when = f"at {said(look, 'time', found['threshold_at'].value)}" if reached else ""
+    when = f"at {shown(look, 'time', found['threshold_at'].value)}" if reached else ""
     rows = [row(f"threshold: force where its curve first drops by damage{behind}", "threshold_force", unknown, when),
-            ("peak force", said(look, "force", summary["peak_force"]),
-             f"at {said(look, 'time', summary['peak_force_at'])}"),
+            ("peak force", shown(look, "force", summary["peak_force"]),
+             f"at {shown(look, 'time', summary['peak_force_at'])}"),
             row("energy to the threshold", "energy_to_threshold"), row("energy to the peak force", "energy_to_peak"),
             ("absorbed energy", "contact has not ended" if summary["energy_absorbed"] is None
-             else said(look, "energy", summary["energy_absorbed"]), "")]
+             else shown(look, "energy", summary["energy_absorbed"]), "")]
     if results.fields is not None and "damage_diameter" in found:
         rows += _sizes(results, look)
     kinds = kinds_of_damage(summary)
@@ -108,16 +108,16 @@ def _frequency(look: Look, corner: float) -> str:
 
 
 def _sizes(results: Run, look: Look) -> list[tuple[str, str, str]]:
-    """Return the rows that tell the size of the projected damage."""
+    """Return the rows of the size of the projected damage."""
     size = extent(results.fields)
     if size is None:
         return [("projected damage", "none", "")]
-    rows = [("largest diameter of the projected damage", said(look, "length", size.diameter),
+    rows = [("largest diameter of the projected damage", shown(look, "length", size.diameter),
              f"along {size.direction:.0f}°"),
-            ("its length along 0°, x", said(look, "length", size.length), ""),
-            ("its width along 90°, y", said(look, "length", size.width), "")]
+            ("its length along 0°, x", shown(look, "length", size.length), ""),
+            ("its width along 90°, y", shown(look, "length", size.width), "")]
     return rows + [(f"between its outermost points through the struck point, along {angle}°",
-                    said(look, "length", size.through[angle]) if size.through[angle] else "none there", "")
+                    shown(look, "length", size.through[angle]) if size.through[angle] else "none there", "")
                    for angle in DIRECTIONS]
 
 
@@ -129,7 +129,7 @@ def _time(summary: Mapping[str, Any]) -> str:
 def _reached(summary: Mapping[str, Any], look: Look) -> str:
     """Return how far the run came."""
     if "time_reached" in summary:
-        return f"time {said(look, 'time', summary['time_reached'])}"
+        return f"time {shown(look, 'time', summary['time_reached'])}"
     return f"load factor {rounded(summary['load_factor_reached'])}"
 
 
@@ -138,8 +138,8 @@ def _figures(summary: Mapping[str, Any], look: Look) -> list[tuple[str, ...]]:
     rows = []
     for name, key, dimension, at in _FIGURES:
         if key in summary and not (key == "work_external" and not summary[key]):
-            value = _UNKNOWN.get(key, "-") if summary[key] is None else said(look, dimension, summary[key])
-            when = f"{_WHEN.get(key, 'at')} {said(look, _time(summary), summary[at])}" if at else ""
+            value = _UNKNOWN.get(key, "-") if summary[key] is None else shown(look, dimension, summary[key])
+            when = f"{_WHEN.get(key, 'at')} {shown(look, _time(summary), summary[at])}" if at else ""
             rows.append((name, value, when))
     if summary.get("in_contact"):
         rows.append(("contact at the end", "yes", ""))
@@ -151,7 +151,7 @@ def _range(look: Look, ends: Sequence[float]) -> str:
     if not any(ends):
         return "none"
     axis = look.axis("", "length", ends)
-    unit = said(look, "length", max(ends, key=abs)).partition(" ")[2]
+    unit = shown(look, "length", max(ends, key=abs)).partition(" ")[2]
     return " to ".join(rounded(axis.factor * end) for end in ends) + f" {unit}".rstrip()
 
 
@@ -159,24 +159,24 @@ def _event(event: Mapping[str, float] | None, look: Look, time: str) -> str:
     """Return when something was first seen, and under what force."""
     if event is None:
         return "none"
-    force = f"{said(look, 'force', event['force'])} " if "force" in event else ""
-    return f"{force}at {said(look, time, event['at'])}"
+    force = f"{shown(look, 'force', event['force'])} " if "force" in event else ""
+    return f"{force}at {shown(look, time, event['at'])}"
 
 
 def _interfaces(summary: Mapping[str, Any], look: Look) -> list[tuple[object, ...]]:
     """Return the rows of the interfaces."""
     time = _time(summary)
-    return [(entry["ply_above"], "cohesive" if entry["is_cohesive"] else "front", said(look, "area", entry["area"]),
-             _range(look, entry["x"]), _range(look, entry["y"]), said(look, "energy", entry["energy"]),
+    return [(entry["ply_above"], "cohesive" if entry["is_cohesive"] else "front", shown(look, "area", entry["area"]),
+             _range(look, entry["x"]), _range(look, entry["y"]), shown(look, "energy", entry["energy"]),
              _event(entry["onset"], look, time), _event(entry["first_growth"], look, time),
-             said(look, "force", entry["threshold_force"]), "yes" if entry["border_reached"] else "no")
+             shown(look, "force", entry["threshold_force"]), "yes" if entry["border_reached"] else "no")
             for entry in summary.get("interfaces", [])]
 
 
 def _plate(summary: Mapping[str, Any], look: Look) -> str:
     """Return the size of the plate."""
-    along, across = (said(look, "length", length) for length in summary["plate_size"])
-    thickness = said(look, "length", sum(ply["thickness"] for ply in summary["plies"]))
+    along, across = (shown(look, "length", length) for length in summary["plate_size"])
+    thickness = shown(look, "length", sum(ply["thickness"] for ply in summary["plies"]))
     return f"{along} by {across}, {thickness} thick, {len(summary['plies'])} plies."
 
 
@@ -194,8 +194,8 @@ def _plies_head(summary: Mapping[str, Any]) -> tuple[str, ...]:
 
 def _plies(summary: Mapping[str, Any], look: Look) -> list[tuple[object, ...]]:
     """Return the rows of lay-up and failures of the plies."""
-    return [(ply["ply"], ply["made_of"], ply["angle"], said(look, "length", ply["thickness"]),
-             *(said(look, "area", ply[key]) for key in _failure_areas(summary))) for ply in summary["plies"]]
+    return [(ply["ply"], material_of(ply), ply["angle"], shown(look, "length", ply["thickness"]),
+             *(shown(look, "area", ply[key]) for key in _failure_areas(summary))) for ply in summary["plies"]]
 
 
 def summaries_at(path: Path) -> list[Path]:
@@ -213,7 +213,7 @@ def write_report(path: Path, output: Path | None) -> Path:
     if path.is_dir():
         return write_page(path, output)
     if not path.name.endswith(SUMMARY):
-        raise FileError(f"{path} isn't NAME{SUMMARY}; a report is made of that file, or of the folder that holds it.")
+        raise FileError(f"{path} isn't NAME{SUMMARY}; a report needs that file, or the folder that holds it.")
     run_shown = open_run(path)
     written = (output or path.parent) / f"{run_shown.name}_report.html"
     try:
@@ -238,8 +238,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command."""
     parser = CommandParser("implam-report", description="Write NAME_report.html, one page that needs no other file: "
                            "the summary of a run, its plate and lay-up, curves of NAME_history.csv, maps of NAME.h5, "
-                           "the ledger, warnings, provenance and the deck. Of a sweep with random inputs the page has "
-                           "means with their scatter instead.")
+                           "energies at the end, warnings, provenance and the deck. Of a sweep with random inputs the page "
+                           "has means with their scatter instead.")
     parser.add_argument("results", nargs="+", type=Path, metavar="RESULT",
                         help="NAME_summary.json, a folder with such files, or the folder of a sweep")
     parser.add_argument("--output", type=Path, metavar="DIR", help="folder of the pages (default: beside each summary)")

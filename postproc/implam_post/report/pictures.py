@@ -14,6 +14,7 @@ from implam_post.io.errors import ImplamError
 from implam_post.io.fields import Fields
 from implam_post.io.history import ENERGY_NAMES, UNACCOUNTED, History
 from implam_post.io.quantities import growth_rows
+from implam_post.io.run import material_of
 from implam_post.plot.curves import AXES, in_contact
 from implam_post.plot.look import Look
 from implam_post.plot.plan import delamination_figure, failures_figure, projected_figure
@@ -34,8 +35,8 @@ def layup_figure(summary: Mapping[str, Any]) -> Figure:
         depth = ply["thickness"] / total
         axes.add_patch(Rectangle((0, -top - depth), 1, depth, facecolor=f"C{shades[ply['angle'] % 180] % 10}",
                                  edgecolor="white", alpha=0.55))
-        axes.text(0.5, -top - depth / 2, f"{ply['ply']}: {ply['angle']:g}°  {ply['made_of']}", ha="center", va="center",
-                  fontsize=min(9, 200 / len(plies)))
+        axes.text(0.5, -top - depth / 2, f"{ply['ply']}: {ply['angle']:g}°  {material_of(ply)}", ha="center",
+                  va="center", fontsize=min(9, 200 / len(plies)))
         _fibre(axes, ply["angle"], -top - depth / 2, depth)
         top += depth
         bottoms.append(-top)

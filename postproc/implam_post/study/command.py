@@ -1,4 +1,4 @@
-"""Run a deck over a grid of methods and hold errors against processor time (`implam-study STUDY.toml`)."""
+"""Run a deck over a grid of methods and compare errors with processor time (`implam-study STUDY.toml`)."""
 
 import argparse
 import os
@@ -45,10 +45,10 @@ class _Tables:
         from implam_post.study.plots import plot_study
         from implam_post.study.table import means, text_means, text_table
         rows, output = self._rows(), self._study.output
-        found = means(rows, self._study) if len(self._study.scenes) > 1 else []
+        found = means(rows, self._study) if len(self._study.problems) > 1 else []
         text = text_table(rows, self._study)
         if found:
-            text += f"\nGeometric means over {len(self._study.scenes)} scenes, and the worst:\n\n"
+            text += f"\nGeometric means over {len(self._study.problems)} problems, and the worst:\n\n"
             text += text_means(found, self._study)
         write_text(output / "table.txt", text)
         print(text)
@@ -66,7 +66,7 @@ def _work(sweep: Sweep, study: Study, options: argparse.Namespace) -> int:
     runs, tables, finished = sweep.open_cases(), _Tables(sweep, study, options.format), True
     if not options.table:
         check_decks(sweep, list({case.deck: case for case in reversed(runs)}.values()), options.jobs)
-        print(f"{len(study.trials)} trials of {len(study.scenes)} scenes, {len(runs)} runs to do", flush=True)
+        print(f"{len(study.trials)} trials of {len(study.problems)} problems, {len(runs)} runs to do", flush=True)
         finished = run_cases(sweep, runs, options.jobs, tables.write_now_and_then)
     tables.write()
     code = tell_ends(sweep)
@@ -96,14 +96,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command; the exit code is 1 if a run failed, 75 if the study was stopped."""
     parser = CommandParser(
         "implam-study", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=FORMAT,
-        description="Run scenes by several methods (meshes, steps, integrators, rules ...), hold each against a\n"
-        "reference, and tell errors and processor times in one table and one plot, with the Pareto front.\n"
+        description="Run problems by several methods (meshes, steps, integrators, rules ...), compare each with a\n"
+        "reference, and print errors and processor times in one table and one plot, with the Pareto front.\n"
         "The same command again goes on where a stopped or killed one was, and runs nothing twice.")
-    parser.add_argument("study", type=Path, metavar="STUDY.toml", help="what is studied; the format is told below")
+    parser.add_argument("study", type=Path, metavar="STUDY.toml", help="what is studied; the format is given below")
     parser.add_argument("--output", type=Path, metavar="DIR", help="folder of runs and table, instead of the file's")
     parser.add_argument("--program", metavar="WORDS", help=PROGRAM_HELP)
     parser.add_argument("--jobs", type=count, default=1, metavar="N",
-                        help="runs at a time (default: 1, since runs beside each other spoil times)")
+                        help="runs at a time (default: 1, since runs beside each other falsify times)")
     parser.add_argument("--error", choices=ERRORS, help="error of the plot and of the front, instead of the file's")
     parser.add_argument("--format", choices=FORMATS, default="png", help="kind of the plot's file (default: png)")
     parser.add_argument("--table", action="store_true", help="run nothing; write tables and plot of what is there")

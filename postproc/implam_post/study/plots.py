@@ -12,7 +12,7 @@ from implam_post.io.files import replaced
 from implam_post.study.plan import Study
 from implam_post.study.table import LEAST, Mean, Row
 
-_MOST_SCENES, _COLUMNS, _MOST_NAMED = 12, 4, 24
+_MOST_PROBLEMS, _COLUMNS, _MOST_NAMED = 12, 4, 24
 _MARKS = "osD^v<>ph*XP"
 _NARROWEST = 5.0  # last over first value of an axis, so that 1, 2 and 5 mark it
 _WIDE = 1e3  # from here on powers of ten are marks enough
@@ -23,11 +23,12 @@ _WORDS = {"peak_force": "error of peak force", "peak_force_time": "error of its 
 
 
 def plot_study(rows: list[Row], means: list[Mean], study: Study, path: Path) -> Path | None:
-    """Draw a panel a scene, and one of the means over all of them; nothing if no trial has an error yet."""
-    panels = [(scene.name, [(row.trial.method, abs(row.errors.get(study.error, math.nan)), row.time, row.on_front)
-                            for row in rows if row.trial.scene is scene]) for scene in study.scenes[:_MOST_SCENES]]
-    if len(study.scenes) > 1 and means:
-        panels.append(("all scenes, geometric means",
+    """Draw a panel for each problem, and one of the means over all of them; nothing if no trial has an error yet."""
+    panels = [(problem.name, [(row.trial.method, abs(row.errors.get(study.error, math.nan)), row.time, row.on_front)
+                              for row in rows if row.trial.problem is problem])
+              for problem in study.problems[:_MOST_PROBLEMS]]
+    if len(study.problems) > 1 and means:
+        panels.append(("all problems, geometric means",
                        [(mean.method, mean.errors[study.error], mean.time, mean.on_front) for mean in means]))
     if not any(math.isfinite(point[1]) for _, points in panels for point in points):
         return None
@@ -52,9 +53,9 @@ def plot_study(rows: list[Row], means: list[Mean], study: Study, path: Path) -> 
 
 
 def series_of(study: Study) -> tuple[list[str], list[str]]:
-    """Return the names that tell curves apart, which are words, and those that run along a curve, which are numbers."""
-    words = [name for name in study.told if any(isinstance(trial.method[name], str) for trial in study.trials)]
-    numbers = [name for name in study.told if name not in words]
+    """Return the names by which curves differ, which are words, and those that run along a curve, which are numbers."""
+    words = [name for name in study.shown if any(isinstance(trial.method[name], str) for trial in study.trials)]
+    numbers = [name for name in study.shown if name not in words]
     if not words and len(numbers) > 1:
         words, numbers = numbers[:1], numbers[1:]
     if not numbers:
@@ -63,7 +64,7 @@ def series_of(study: Study) -> tuple[list[str], list[str]]:
 
 
 def _draw(axes: Axes, points: list[tuple[dict[str, object], float, float, bool]], study: Study) -> None:
-    """Draw the points of a scene as curves, and the front through the best of them."""
+    """Draw the points of a problem as curves, and the front through the best of them."""
     words, numbers = series_of(study)
     curves: dict[str, list[tuple[float, float, str]]] = {}
     for method, error, time, _ in points:
@@ -75,9 +76,9 @@ def _draw(axes: Axes, points: list[tuple[dict[str, object], float, float, bool]]
         axes.plot(x, y, "-", marker=_MARKS[place % len(_MARKS)], color=f"C{place % 10}", markersize=4, linewidth=0.8,
                   alpha=0.8, label=label)
         if len(points) <= _MOST_NAMED:
-            for across, up, name in zip(x, y, names, strict=True):
+            for time, up, name in zip(x, y, names, strict=True):
                 if name and math.isfinite(up):
-                    axes.annotate(name, (across, up), textcoords="offset points", xytext=(3, 3), fontsize=5)
+                    axes.annotate(name, (time, up), textcoords="offset points", xytext=(3, 3), fontsize=5)
     best = np.array(sorted((time, max(100 * error, 100 * LEAST)) for _, error, time, on_front in points if on_front))
     if len(best):
         axes.step(best[:, 0], best[:, 1], "k--", where="post", linewidth=1.2, label="Pareto front")

@@ -55,22 +55,22 @@ class Row:
 
 @dataclass(frozen=True)
 class Mean:
-    """A method over all scenes: geometric means of errors and time, the worst error, and on how many fronts it is."""
+    """A method over all problems: geometric means of errors and time, the worst error, and on how many fronts it is."""
 
     method: dict[str, object]
     errors: dict[str, float]
     worst: dict[str, float]
     time: float
-    scenes: int
+    problems: int
     fronts: int
     on_front: bool = False
 
 
 def make_rows(sweep: Sweep, study: Study, references: References) -> list[Row]:
-    """Return the rows of all trials, with the front of each scene marked."""
+    """Return the rows of all trials, with the front of each problem marked."""
     rows = [_row(sweep, study, trial, references) for trial in study.trials]
-    for scene in study.scenes:
-        mine = [row for row in rows if row.trial.scene is scene]
+    for problem in study.problems:
+        mine = [row for row in rows if row.trial.problem is problem]
         for row, on_front in zip(mine, front((_size(row, study.error), row.time) for row in mine), strict=True):
             row.on_front = on_front
     return rows
@@ -83,12 +83,12 @@ def _size(row: Row, error: str) -> float:
 
 
 def front(points: Iterable[tuple[float, float]]) -> list[bool]:
-    """Tell of each point whether no other is at least as good in both numbers and better in one; NaN never is."""
+    """Return for each point whether no other is at least as good in both numbers and better in one; NaN never is."""
     points = list(points)
-    told = [all(map(math.isfinite, point)) for point in points]
+    known_points = [all(map(math.isfinite, point)) for point in points]
     return [known and not any(other_known and other[0] <= point[0] and other[1] <= point[1] and other != point
-                              for other, other_known in zip(points, told, strict=True))
-            for point, known in zip(points, told, strict=True)]
+                              for other, other_known in zip(points, known_points, strict=True))
+            for point, known in zip(points, known_points, strict=True)]
 
 
 def force_history_error(history: History, reference: History) -> float:
@@ -160,7 +160,7 @@ def _costs(sweep: Sweep, runs: list[Case], folder: Path) -> dict[str, float]:
 
 
 def means(rows: list[Row], study: Study) -> list[Mean]:
-    """Return each method over all scenes; only methods that every scene has a result of are told."""
+    """Return each method over all problems; only methods that every problem has a result of are listed."""
     found = []
     for method in {str(row.trial.method): row.trial.method for row in rows}.values():
         mine = [row for row in rows if row.trial.method == method]
@@ -190,7 +190,7 @@ def write_csv(rows: list[Row], sweep: Sweep, study: Study, path: Path) -> None:
         numbers = {name: row.figures.get(name, math.nan) for name in (*_FIGURES, *study.figures)}
         numbers |= {f"{name}_error": row.errors.get(name, math.nan) for name in ERRORS}
         numbers |= {name: row.costs.get(name, math.nan) for name in costs}
-        table.append({"case": first.number, "scene": row.trial.scene.name,
+        table.append({"case": first.number, "problem": row.trial.problem.name,
                       **{name: deck_value(row.trial.method[name]) for name in study.methods}, **numbers,
                       "front": int(row.on_front), "end": row.end, "version": version_in(folder),
                       "folder": folder.relative_to(study.output)})
@@ -200,13 +200,13 @@ def write_csv(rows: list[Row], sweep: Sweep, study: Study, path: Path) -> None:
 def text_table(rows: list[Row], study: Study) -> str:
     """Return the table for readers, errors in %; `*` marks the front, and columns that nobody has are left out."""
     errors = [name for name in ERRORS if any(math.isfinite(row.errors.get(name, math.nan)) for row in rows)]
-    several = len(study.scenes) > 1
-    head = [*(["scene"] if several else []), *study.told, *(_HEADS[name] for name in errors), *study.figures,
+    several = len(study.problems) > 1
+    head = [*(["problem"] if several else []), *study.shown, *(_HEADS[name] for name in errors), *study.figures,
             "processor, s", *(["median"] if study.repeats > 1 else []), "steps", "solves", "factorizations", "front"]
     lines = []
     for row in rows:
-        words = [*([row.trial.scene.name] if several else []), *(_said(row.trial.method[name])
-                                                                for name in study.told)]
+        words = [*([row.trial.problem.name] if several else []), *(_shown(row.trial.method[name])
+                                                                for name in study.shown)]
         if row.end:
             lines.append([*words, row.end.split(":")[0], *[""] * (len(head) - len(words) - 1)])
             continue
@@ -219,17 +219,17 @@ def text_table(rows: list[Row], study: Study) -> str:
 
 
 def text_means(found: list[Mean], study: Study) -> str:
-    """Return the table of methods over all scenes."""
+    """Return the table of methods over all problems."""
     errors = [name for name in ERRORS if any(math.isfinite(mean.errors[name]) for mean in found)]
-    head = [*study.told, *(f"{_HEADS[name][:-3]}: mean, worst, %" for name in errors), "processor, s", "fronts",
+    head = [*study.shown, *(f"{_HEADS[name][:-3]}: mean, worst, %" for name in errors), "processor, s", "fronts",
             "front"]
-    lines = [[*(_said(mean.method[name]) for name in study.told),
+    lines = [[*(_shown(mean.method[name]) for name in study.shown),
               *(f"{_small(mean.errors[name])}, {_small(mean.worst[name])}".strip(", ") for name in errors),
-              f"{mean.time:.2f}", f"{mean.fronts} of {mean.scenes}", "*" if mean.on_front else ""] for mean in found]
+              f"{mean.time:.2f}", f"{mean.fronts} of {mean.problems}", "*" if mean.on_front else ""] for mean in found]
     return _lined_up([head, *lines])
 
 
-def _said(value: object) -> str:
+def _shown(value: object) -> str:
     """Return a value of a method as readers see it."""
     if isinstance(value, str):
         return value or "-"

@@ -52,7 +52,7 @@ class Record:
 
     @property
     def final(self) -> bool:
-        """Tell whether running again would change nothing."""
+        """Return whether running again would change nothing."""
         return self.exit_code in FINAL
 
 
@@ -69,7 +69,7 @@ def read_record(folder: Path) -> Record | None:
 
 
 def _is_lost(folder: Path) -> bool:
-    """Tell whether the history of a run that has ended is missing, empty, or has no row."""
+    """Return whether the history of a run that has ended is missing, empty, or has no row."""
     path = history_in(folder)
     if path is None:
         return True
@@ -78,7 +78,7 @@ def _is_lost(folder: Path) -> bool:
 
 
 def forget(folder: Path) -> None:
-    """Take record and checkpoint of a case that has failed away, so that it is run afresh; not while it runs."""
+    """Take record and checkpoint of a case that has failed away, so that it is run afrom_deck; not while it runs."""
     record = read_record(folder)
     if record is None or record.exit_code == EXIT_DONE:
         return
@@ -111,7 +111,7 @@ class _Stop:
             signal.signal(number, self._catch)
 
     def __bool__(self) -> bool:
-        """Tell whether to stop."""
+        """Return whether to stop."""
         if self._lifeline is not None and select.select([self._lifeline], [], [], 0)[0]:
             self._caught = True
         return self._caught
@@ -137,7 +137,7 @@ def run_case(folder: Path, deck: Path, program: Sequence[str], stop: _Stop) -> i
             write_text(folder / _RECORD, json.dumps(asdict(record)) + "\n")
             if checkpoint is None or record.exit_code != EXIT_FILES or not _is_useless(checkpoint, folder):
                 break
-            checkpoint.unlink(missing_ok=True)  # the run starts afresh
+            checkpoint.unlink(missing_ok=True)  # the run starts afrom_deck
         return record.exit_code
     finally:
         os.close(lock)
@@ -145,27 +145,27 @@ def run_case(folder: Path, deck: Path, program: Sequence[str], stop: _Stop) -> i
 
 def _run_part(folder: Path, start: Path, program: Sequence[str], stop: _Stop, lock: int, before: Record) -> Record:
     """Run from a deck or a checkpoint until the program ends; return what holds of all parts together."""
-    fresh = start.suffix == ".nml"
-    words = ["run", str(start), "--output", str(folder)] if fresh else ["restart", str(start)]
+    from_deck = start.suffix == ".nml"
+    words = ["run", str(start), "--output", str(folder)] if from_deck else ["restart", str(start)]
     began, cpu_before = time.monotonic(), _children_time()
-    with (folder / OUTPUT).open("wb" if fresh else "ab") as output:
+    with (folder / OUTPUT).open("wb" if from_deck else "ab") as output:
         # The program holds the lock too: while it lives, nobody else runs this case.
         process = subprocess.Popen([*program, *words], stdin=subprocess.DEVNULL, stdout=output,
                                    stderr=subprocess.STDOUT, pass_fds=[lock], env=environment())
-        told = False
+        signalled = False
         while (code := process.poll()) is None:
-            if stop and not told:
+            if stop and not signalled:
                 process.send_signal(signal.SIGUSR1)  # mpirun passes this one on, and ends at others
-                told = True
+                signalled = True
             time.sleep(_PAUSE)
     return Record(shell_code(code), before.cpu_time + _children_time() - cpu_before,
                   before.wall_time + time.monotonic() - began, before.parts + 1)
 
 
 def _is_useless(checkpoint: Path, folder: Path) -> bool:
-    """Tell whether a restart ended because its checkpoint can't be read, rather than a file not be written."""
-    said = last_words(read_text(folder / OUTPUT, "the output"))
-    return checkpoint.name in said and not said.startswith(("Can't write", "Can't complete"))
+    """Return whether a restart ended because its checkpoint can't be read, rather than a file not be written."""
+    printed = last_words(read_text(folder / OUTPUT, "the output"))
+    return checkpoint.name in printed and not printed.startswith(("Can't write", "Can't complete"))
 
 
 def _children_time() -> float:

@@ -24,26 +24,27 @@ if TYPE_CHECKING:  # it takes numpy, which a faulty sweep needn't wait for
     from implam_post.sweep.table import Table
 
 _TABLE_EVERY = 10.0  # seconds between tables written on the way
-_SHOWN = 20  # faulty decks told one by one
+_SHOWN = 20  # faulty decks reported one by one
 _NUMBER = re.compile(r"\d+(?:\.\d*)?(?:[eE][-+]?\d+)?")
 
 
 def check_decks(sweep: Sweep, cases: Sequence[Case], jobs: int) -> None:
-    """Let the program check every deck, and tell what is wrong with any of them before one is run."""
+    """Let the program check every deck, and report what is wrong with any of them before one is run."""
     with ThreadPoolExecutor(jobs) as pool:
         verdicts = list(pool.map(lambda case: check_deck(sweep.program, sweep.deck(case)), cases))
-    faulty = [(case, said) for case, (sound, said) in zip(cases, verdicts, strict=True) if not sound]
-    for case, said in faulty[:_SHOWN]:
-        print(f"case {case.number}: {case.label}", *said, sep="\n  ", file=sys.stderr)
+    faulty = [(case, printed) for case, (sound, printed) in zip(cases, verdicts, strict=True) if not sound]
+    for case, printed in faulty[:_SHOWN]:
+        print(f"case {case.number}: {case.label}", *printed, sep="\n  ", file=sys.stderr)
     if faulty:
-        more = f" (the first {_SHOWN} are told)" if len(faulty) > _SHOWN else ""
+        more = f" (the first {_SHOWN} are listed)" if len(faulty) > _SHOWN else ""
         raise DeckError(f"{len(faulty)} of {len(sweep.plan.cases)} decks are faulty{more}; nothing was run.")
-    told = [[found[1] for line in said if (found := re.match(r".*?: warning: (.*)", line))] for _, said in verdicts]
+    warnings = [[found[1] for line in printed if (found := re.match(r".*?: warning: (.*)", line))]
+                for _, printed in verdicts]
     # Warnings that differ in numbers alone are alike: the first one's words stand for all.
     first: dict[str, str] = {}
-    for warning in itertools.chain(*told):
+    for warning in itertools.chain(*warnings):
         first.setdefault(_NUMBER.sub("#", warning), warning)
-    numbers = Counter(alike for warnings in told for alike in {_NUMBER.sub("#", warning) for warning in warnings})
+    numbers = Counter(alike for of_deck in warnings for alike in {_NUMBER.sub("#", warning) for warning in of_deck})
     for alike, warning in first.items():
         print(f"warning, {numbers[alike]} of {len(cases)} decks: {warning}", file=sys.stderr)
 
@@ -128,7 +129,7 @@ def tell_ends(sweep: Sweep) -> int:
 
 
 def _work(sweep: Sweep, options: argparse.Namespace) -> int:
-    """Write and check the decks, then do with them what is asked for."""
+    """Write and check the decks, then do with them what is required."""
     sweep.write_decks()
     for case in sweep.plan.cases if options.retry else ():
         forget(sweep.folder(case))
@@ -170,7 +171,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         "implam-sweep", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=FORMAT,
         description="Run a deck over lists, grids or samples of its keys. All decks are checked before one is run.\n"
         "The same command again goes on where a stopped or killed one was, and runs nothing twice.")
-    parser.add_argument("sweep", type=Path, metavar="SWEEP.toml", help="what is swept; the format is told below")
+    parser.add_argument("sweep", type=Path, metavar="SWEEP.toml", help="what is swept; the format is given below")
     parser.add_argument("--output", type=Path, metavar="DIR", help="folder of cases and table, instead of the file's")
     parser.add_argument("--program", metavar="WORDS", help=PROGRAM_HELP)
     parser.add_argument("--jobs", type=count, default=processors(), metavar="N",
@@ -180,7 +181,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
                       help="run nothing; list decks (decks.txt) and commands (array.txt) for a queue's job array")
     what.add_argument("--table", action="store_true", help="run nothing; write table and plots of what is there")
     parser.add_argument("--only", nargs="+", metavar="VARIANT",
-                        help="of [variants] only these, and the first one, which others are held against")
+                        help="of [variants] only these, and the first one, which others are compared with")
     parser.add_argument("--retry", action="store_true", help="also run again what found no convergence, all afresh")
     return run(_command, parser, arguments)
 

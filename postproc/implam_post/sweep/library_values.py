@@ -21,17 +21,17 @@ _WAITING = 60.0
 
 
 def asking(program: Sequence[str] | None) -> Callable[[], Library]:
-    """Return what asks the program for its table of published materials."""
-    def ask() -> Library:
+    """Return a function that requests the table of published materials."""
+    def request() -> Library:
         if program is None:
             raise FileError("the deck names a published material, whose values are the program's: give --program.")
         try:
             ended = subprocess.run([program[-1], "explain", "materials"], stdin=subprocess.DEVNULL, capture_output=True,
                                    text=True, timeout=_WAITING, check=False, env=environment())
         except (OSError, subprocess.TimeoutExpired) as error:
-            raise FileError(f"the program {program[-1]} tells no published materials ({error}).") from None
+            raise FileError(f"the program {program[-1]} lists no published materials ({error}).") from None
         return read_library(ended.stdout)
-    return ask
+    return request
 
 
 def read_library(text: str) -> Library:
@@ -51,14 +51,14 @@ def read_library(text: str) -> Library:
     return library
 
 
-def adopt(text: str, name: str, ask: Callable[[], Library]) -> str:
+def adopt(text: str, name: str, request: Callable[[], Library]) -> str:
     """Return a deck with the values in it that it leaves to published materials; a value that it gives stays."""
     deck = Deck(text, Path(name))
     materials = deck.groups.get("material", [])
     named = {place: str(group["library"][0]) for place, group in enumerate(materials, start=1) if group.get("library")}
     if not named:
         return text
-    library, system = ask(), system_of_deck(deck)
+    library, system = request(), system_of_deck(deck)
     if system not in SYSTEMS:
         raise DeckError(f"{name}: a published material needs the units of the deck (&case units).")
     settings: dict[KeyPath, str] = {}

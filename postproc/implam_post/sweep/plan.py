@@ -1,4 +1,4 @@
-"""What a sweep is made of: the cases that its file asks for, each with its deck."""
+"""The plan of a sweep: the cases that its file requires, each with its deck."""
 
 import hashlib
 import itertools
@@ -70,7 +70,7 @@ _SAMPLES = {"number": None, "seed": 1, "method": "random"}
 
 @dataclass(frozen=True)
 class Case:
-    """One case: its number from 1, the values that tell it from others, its deck, and which of several runs of it."""
+    """One case: its number from 1, the values in which it differs, its deck, and which of several runs of it."""
 
     number: int
     values: dict[str, object]
@@ -87,9 +87,9 @@ class Case:
     @property
     def label(self) -> str:
         """Return the values in one line, to six digits, without those drawn by [scatter]."""
-        told = [f"{name}={value:.6g}" if isinstance(value, float) else f"{name}={deck_value(value)}"
+        shown = [f"{name}={value:.6g}" if isinstance(value, float) else f"{name}={deck_value(value)}"
                 for name, value in self.values.items() if " " not in name]
-        return "  ".join([*told, *["random inputs"] * (len(told) < len(self.values))])
+        return "  ".join([*shown, *["random inputs"] * (len(shown) < len(self.values))])
 
 
 @dataclass(frozen=True)
@@ -106,7 +106,7 @@ class Plan:
     """All cases of a sweep, the text of its file, the names of what is set and derived, and where results go.
 
     `random` names what is drawn at random of what is set. `scatter` is the table [scatter], `measured` a curve beside
-    which histories are drawn, and `notes` tell what does not scatter.
+    which histories are drawn, and `notes` say what does not scatter.
     """
 
     path: Path
@@ -123,7 +123,7 @@ class Plan:
 
 
 def read_plan(path: Path, output: Path | None = None, program: Sequence[str] | None = None) -> Plan:
-    """Read the file of a sweep and make the decks of its cases; the program is asked for published materials."""
+    """Read the file of a sweep and make the decks of its cases; the program lists published materials."""
     text = read_text(path, "the sweep")
     try:
         content = tomllib.loads(text)
@@ -189,7 +189,7 @@ def only(plan: Plan, variants: Sequence[str]) -> Plan:
 
 
 def is_random(plan: Plan) -> bool:
-    """Tell whether a sweep has runs that differ in random inputs."""
+    """Return whether a sweep has runs that differ in random inputs."""
     return bool(plan.random) or plan.scatter is not None
 
 
@@ -255,9 +255,9 @@ def _samples(table: Mapping[str, object]) -> dict[str, list[float]]:
     if not table:
         return {}
     number, seed, method = (table.get(name, default) for name, default in _SAMPLES.items())
-    whole = all(isinstance(value, int) and not isinstance(value, bool) for value in (number, seed))
-    if not whole or not 1 <= number <= MOST_CASES or method not in METHODS or not quantities:
-        raise DeckError(f"[samples] needs a number from 1 to {MOST_CASES}, a whole seed, a method out of "
+    are_integers = all(isinstance(value, int) and not isinstance(value, bool) for value in (number, seed))
+    if not are_integers or not 1 <= number <= MOST_CASES or method not in METHODS or not quantities:
+        raise DeckError(f"[samples] needs a number from 1 to {MOST_CASES}, an integer seed, a method out of "
                         f"{', '.join(METHODS)}, and a quantity at least.")
     return {name: draw(name, value, number, seed, method) for name, value in quantities.items()}
 
@@ -266,9 +266,9 @@ class CaseMaker:
     """Makes the cases from the base decks, and keeps in mind which free names a formula uses, and what is drawn."""
 
     def __init__(self, folder: Path, base: str, derived: dict[str, object], scatter: Scatter | None = None,
-                 ask: Callable[[], Library] = dict) -> None:
-        """Decks lie in `folder`; `base` is the deck where none is swept; `ask` tells published materials."""
-        self._folder, self._base, self._derived, self.scatter, self._ask = folder, base, derived, scatter, ask
+                 request: Callable[[], Library] = dict) -> None:
+        """Decks lie in `folder`; `base` is the deck where none is swept; `request` returns published materials."""
+        self._folder, self._base, self._derived, self.scatter, self._request = folder, base, derived, scatter, request
         self._texts: dict[str, str] = {}
         self._used: set[str] = set()
         self.drawn: frozenset[str] = frozenset()
@@ -302,7 +302,7 @@ class CaseMaker:
         """Return the values, the name and the text of a deck with its inputs drawn at random, if they are."""
         if self.scatter is None:
             return values, name, text
-        text = adopt(text, name, self._ask)
+        text = adopt(text, name, self._request)
         note = self.scatter.note(Deck(text, Path(name)))
         if note and note not in self.notes:
             self.notes.append(note)

@@ -36,23 +36,23 @@ def plot_table(table: Table, folder: Path) -> list[Path]:
 def series(table: Table) -> dict[str, np.ndarray]:
     """Return rows that differ in the impact energy alone, in its order, by what they have in common.
 
-    All rows are one series without a name if that tells nothing: if there are too many, or none has two rows.
+    All rows are one series without a name if names say nothing: if there are too many, or none has two rows.
     """
     energy = table.numbers("impact_energy")
-    told = np.isfinite(energy)
+    finite = np.isfinite(energy)
     swept = [name for name in _varied(table) if name not in table.derived]
     kept = [name for name in swept if not _changes_energy(table, swept, name, energy)]
     groups: dict[str, list[int]] = {}
-    for row in np.flatnonzero(told):
+    for row in np.flatnonzero(finite):
         label = ", ".join(f"{name}={_short(table.columns[name][row])}" for name in kept)
         groups.setdefault(label, []).append(int(row))
     if len(groups) > _MOST_SERIES or all(len(rows) < 2 for rows in groups.values()):
-        groups = {"": [int(row) for row in np.flatnonzero(told)]}
+        groups = {"": [int(row) for row in np.flatnonzero(finite)]}
     return {label: np.array(rows)[np.argsort(energy[rows], kind="stable")] for label, rows in groups.items()}
 
 
 def _changes_energy(table: Table, swept: list[str], name: str, energy: np.ndarray) -> bool:
-    """Tell whether two rows with the same swept values but of this name differ in energy."""
+    """Return whether two rows with the same swept values but of this name differ in energy."""
     others = [other for other in swept if other != name]
     seen: dict[tuple, float] = {}
     for row in np.flatnonzero(np.isfinite(energy)):
@@ -69,12 +69,12 @@ def _against_energy(table: Table, name: str) -> Drawing | None:
         return None
     drawing = Drawing(figsize=(7, 4.5), layout="constrained")
     axes = drawing.subplots()
-    across, up = (axis_of(FIGURES[column].label, FIGURES[column].dimension, values, table.system)
+    along, up = (axis_of(FIGURES[column].label, FIGURES[column].dimension, values, table.system)
                   for column, values in (("impact_energy", x), (name, y)))
     for label, rows in series(table).items():
-        axes.plot(across.factor * x[rows], up.factor * y[rows], "o-" if label else "o", label=label or None,
+        axes.plot(along.factor * x[rows], up.factor * y[rows], "o-" if label else "o", label=label or None,
                   markersize=4)
-    axes.set(xlabel=across.label, ylabel=up.label)
+    axes.set(xlabel=along.label, ylabel=up.label)
     axes.set_ylim(0, 1.08 * up.factor * np.nanmax(y[np.isfinite(x)]) or None)
     axes.grid(alpha=0.3)
     if axes.get_legend_handles_labels()[0]:
@@ -106,10 +106,10 @@ def _scatter_one(axes: Axes, table: Table, name: str, values: np.ndarray) -> str
     """Draw numbers against a swept value, or against what isn't a number side by side; return the axis' label."""
     numbers = table.numbers(name)
     if numbers is not None:
-        across = axis_of(name, _dimension(name), numbers, table.system)
-        axes.plot(across.factor * numbers, values, "o", markersize=4, alpha=0.7)
+        along = axis_of(name, _dimension(name), numbers, table.system)
+        axes.plot(along.factor * numbers, values, "o", markersize=4, alpha=0.7)
         axes.xaxis.set_major_locator(MaxNLocator(5))
-        return across.label
+        return along.label
     axes.margins(x=0.3)
     words = list(dict.fromkeys(map(str, table.columns[name])))
     axes.plot([words.index(str(word)) for word in table.columns[name]], values, "o", markersize=4, alpha=0.7)
@@ -123,7 +123,7 @@ def _varied(table: Table) -> list[str]:
 
 
 def _dimension(name: str) -> str:
-    """Return what a swept name is measured in, as far as its last word tells."""
+    """Return what a swept name is measured in, by its last word."""
     group, _, word = name.lower().rpartition(".")
     return (_DIMENSIONS if group else _WORDS).get(word, "")
 

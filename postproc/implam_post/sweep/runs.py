@@ -74,8 +74,8 @@ class Sweep:
         if record.exit_code == EXIT_STOPPED:
             return STOPPED
         output = self.folder(case) / OUTPUT
-        said = last_words(output.read_text(encoding="utf-8", errors="replace")) if output.exists() else ""
-        return f"ended with {record.exit_code}: {said}"
+        printed = last_words(output.read_text(encoding="utf-8", errors="replace")) if output.exists() else ""
+        return f"ended with {record.exit_code}: {printed}"
 
 
 def _start(sweep: Sweep, case: Case) -> _Job:
@@ -118,13 +118,13 @@ def run_cases(sweep: Sweep, cases: Sequence[Case], jobs: int, now_and_then: Call
 
 
 def _end(sweep: Sweep, job: _Job, progress: Progress) -> None:
-    """Tell how a run ended."""
+    """Report how a run ended."""
     _cut(job)
-    said = job.process.stderr.read().strip()
+    printed = job.process.stderr.read().strip()
     job.process.stderr.close()
     failure = sweep.failure(job.case)
     progress.end_run(f"case {job.case.number}: {job.case.label}",
-                     said.splitlines()[-1] if failure == NOT_RUN and said else failure)
+                     printed.splitlines()[-1] if failure == NOT_RUN and printed else failure)
 
 
 def _cut(job: _Job) -> None:

@@ -1,4 +1,4 @@
-"""Random samples of quantities, the same on every machine: each name has its own stream, told by the seed."""
+"""Random samples of quantities, the same on every machine: each name has its own stream, set by the seed."""
 
 import math
 import random

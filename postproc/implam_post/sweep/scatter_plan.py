@@ -33,7 +33,7 @@ KINDS = (
     Kind(THICKNESS, {"laminate": ("thicknesses", "ply_thickness")}, 0.023,
          "all plies alike, even within 4 % (Qu, dissertation, University of Florida 2004, table 8-14)"),
     Kind("moduli", {"material": ("E", "E1", "E2", "G12", "G13", "G23")}, 0.03,
-         "AS4/epoxy (Qu 2004, table 8-12); G13 as G12, since plies are alike across their fibres"),
+         "AS4/epoxy (Qu 2004, table 8-12); G13 as G12, since plies are alike transverse to their fibres"),
     Kind("strengths", {"material": ("XT", "XC", "YT", "YC", "S12", "Sf", "Sm23"),
                        "delamination": ("strength_opening", "strength_shear")}, 0.06,
          "the least that CMH-17-1G lets one assume of a strength, its modified coefficient of variation"),
@@ -130,7 +130,7 @@ class Scatter:
 
 
 def _names(given: KeyPath, path: KeyPath) -> bool:
-    """Tell whether a key as the file of a sweep gives it is a key of the deck; without a number it is each of them."""
+    """Return whether a key as the file of a sweep gives it is a key of the deck; without a number it is each."""
     same = (given.group, given.key.lower()) == (path.group, path.key.lower())
     return same and (not given.number or given.number == (path.number or 1))
 
@@ -149,9 +149,9 @@ def read_scatter(table: Mapping[str, object] | None) -> Scatter | None:
     if not isinstance(table, Mapping):
         raise DeckError("scatter is a table: [scatter].")
     number, seed, method = table.get("number"), table.get("seed", 1), table.get("method", "random")
-    whole = all(isinstance(value, int) and not isinstance(value, bool) for value in (number, seed))
-    if not whole or not 1 <= number <= MOST_RUNS or method not in METHODS:
-        raise DeckError(f"[scatter] needs a number of runs from 1 to {MOST_RUNS}, a whole seed, and a method out of "
+    are_integers = all(isinstance(value, int) and not isinstance(value, bool) for value in (number, seed))
+    if not are_integers or not 1 <= number <= MOST_RUNS or method not in METHODS:
+        raise DeckError(f"[scatter] needs a number of runs from 1 to {MOST_RUNS}, an integer seed, and a method out of "
                         f"{', '.join(METHODS)}.")
     kinds, variations, keys = {kind.name for kind in KINDS}, {}, {}
     known = {f"{group}.{key}".lower() for kind in KINDS if kind.name not in (THICKNESS, PLACE)

@@ -100,7 +100,7 @@ def _draw_share(axes: Axes, regions: Sequence[np.ndarray]) -> object:
 
 
 def inside(cells: np.ndarray, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Tell which points of a grid, (y, x), lie in a region given as polygons that are wound alike."""
+    """Return which points of a grid, (y, x), lie in a region given as polygons that are wound alike."""
     found = np.zeros((len(y), len(x)), dtype=bool)
     edges = outline(cells)
     if not len(edges):

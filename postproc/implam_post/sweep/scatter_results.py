@@ -1,4 +1,4 @@
-"""What runs with random inputs come to: statistics of every figure, variants held against each other, and a test.
+"""Results of runs with random inputs: statistics of every figure, variants compared with each other and with a test.
 
 Written beside the table of the sweep: `statistics.csv`, `differences.csv`, `measured.csv`, `force_band.csv`, the runs'
 figures in `figures.csv`, and all of it in `statistics.json`, from which `implam-report` makes a page.
@@ -37,7 +37,7 @@ _ROWS = 1000  # of the band of the force history
 @dataclass
 class EndedRun:
     """A run that has a result: its case, summary and history, its figures, seconds of the processor, and what a C-scan
-    sees of it at its end, as polygons of the whole plate; nothing if it has no interface. Fields are not kept."""
+    sees of it at its end, as polygons of the full plate; nothing if it has no interface. Fields are not kept."""
 
     case: Case
     results: Run
@@ -85,14 +85,14 @@ class Group:
         time = np.linspace(0, max(history.time[-1] for history in histories), _ROWS)
         forces = np.array([np.interp(time, history.time, history["force"], left=0.0,
                                      right=math.nan if history["force"][-1] > 0 else 0.0) for history in histories])
-        told = np.any(np.isfinite(forces), axis=0)
-        time, forces = time[told], forces[:, told]
+        known = np.any(np.isfinite(forces), axis=0)
+        time, forces = time[known], forces[:, known]
         low, high = np.nanquantile(forces, (LOW, HIGH), axis=0, method="median_unbiased")
         return {"time": time, "mean": np.nanmean(forces, axis=0), "low": low, "high": high}
 
 
 @dataclass(frozen=True)
-class Held:
+class ComparedMean:
     """A measured figure beside the mean of the runs: what was expected, and what came out."""
 
     expected: Expectation
@@ -100,7 +100,7 @@ class Held:
 
     @property
     def passed(self) -> bool:
-        """Tell whether the mean lies within what is aimed at."""
+        """Return whether the mean lies within what is aimed at."""
         return abs(self.found.mean - self.expected.value) <= self.expected.tolerance
 
 
@@ -108,9 +108,9 @@ def groups_of(sweep: Sweep) -> list[Group]:
     """Return the groups of a sweep in their order, with the results of the runs that have ended."""
     plan = sweep.plan
     found: dict[str, Group] = {}
-    told = _telling(plan)
+    distinctive = _distinctive(plan)
     for case in plan.cases:
-        kept = {name: case.values[name] for name in told if name in case.values}
+        kept = {name: case.values[name] for name in distinctive if name in case.values}
         name = ", ".join(str(value) if key == VARIANT else f"{key}={deck_value(value)}" for key, value in kept.items())
         group = found.setdefault(name, Group(name))
         try:
@@ -121,8 +121,8 @@ def groups_of(sweep: Sweep) -> list[Group]:
     return list(found.values())
 
 
-def _telling(plan: Plan) -> list[str]:
-    """Return the names that tell groups apart: the variant, and what differs among the cases of one variant."""
+def _distinctive(plan: Plan) -> list[str]:
+    """Return the names by which groups differ: the variant, and what differs among the cases of one variant."""
     of_variants: dict[object, list[Case]] = {}
     for case in plan.cases:
         of_variants.setdefault(case.values.get(VARIANT), []).append(case)
@@ -144,8 +144,8 @@ def _run(sweep: Sweep, case: Case, group: Group) -> EndedRun:
     return EndedRun(case, results, found, record.cpu_time if record else math.nan, region)
 
 
-def held_against(group: Group, measured: Path) -> list[Held]:
-    """Return the means of a group beside what a file of expectations or a curve of force against time tells."""
+def against_measured(group: Group, measured: Path) -> list[ComparedMean]:
+    """Return the means of a group beside what a file of expectations or a curve of force against time gives."""
     histories = [run.results.columns for run in group.ended if run.results.columns is not None]
     if not histories:
         return []
@@ -155,15 +155,16 @@ def held_against(group: Group, measured: Path) -> list[Held]:
         wanted = [Expectation("l2_force", 0.0, absolute=1.0, against=measured.name)]
     of_runs = [item for item in wanted if item.quantity not in AGAINST_QUANTITIES]
     rows = [[row.found for row in compare(history, of_runs, measured.parent)] for history in histories]
-    held = [Held(item, spread_of(values)) for item, values in zip(of_runs, zip(*rows, strict=True), strict=True)]
+    compared = [ComparedMean(item, spread_of(values))
+                for item, values in zip(of_runs, zip(*rows, strict=True), strict=True)]
     # A history is that of the means: those of single runs have steps that the mean has not.
     band = group.band()
     curves = [item for item in wanted if item.quantity in AGAINST_QUANTITIES]
     if band is not None and curves:
         mean = History({"time": band["time"], "force": band["mean"]}, "the mean of the runs")
-        held += [Held(row.expected, Spread(len(histories), row.found, *3 * (math.nan,)))
+        compared += [ComparedMean(row.expected, Spread(len(histories), row.found, *3 * (math.nan,)))
                  for row in compare(mean, curves, measured.parent)]
-    return held
+    return compared
 
 
 def curves_of(measured: Path | None) -> list[History]:
@@ -200,15 +201,15 @@ def write_statistics(sweep: Sweep, groups: Sequence[Group], system: str,
     `variants` is a table that holds the groups side by side, for the page.
     """
     output, plan = sweep.plan.output, sweep.plan
-    told = [(group, spreads(group.numbers)) for group in groups]
+    found_of = [(group, spreads(group.numbers)) for group in groups]
     head = ("group", "figure", "dimension", "runs", "mean", "deviation", "error_of_mean", "low_5", "high_95")
     statistics = [(group.name, name, group.dimensions.get(name, ""), one.number, one.mean, one.deviation, one.error,
-                   one.low, one.high) for group, found in told for name, one in found.items()]
-    apart = [(group.name, name, one.number, one.first, one.mean, one.error, one.least, int(one.differs))
+                   one.low, one.high) for group, found in found_of for name, one in found.items()]
+    different = [(group.name, name, one.number, one.first, one.mean, one.error, one.least, int(one.differs))
              for group, found in pairs_of(groups) for name, one in found.items()]
     measured = [(group.name, row.expected.label, row.expected.value, row.expected.tolerance, row.found.number,
                  row.found.mean, row.found.deviation, row.found.error, int(row.passed))
-                for group in groups for row in (held_against(group, plan.measured) if plan.measured else ())]
+                for group in groups for row in (against_measured(group, plan.measured) if plan.measured else ())]
     bands = [(group.name, *row) for group in groups if (band := group.band()) is not None
              for row in zip(*band.values(), strict=True)]
     names = dict.fromkeys(name for group in groups for numbers in group.numbers for name in numbers)
@@ -216,9 +217,9 @@ def write_statistics(sweep: Sweep, groups: Sequence[Group], system: str,
                *(run.figures[name].value if name in run.figures else math.nan for name in names))
               for group in groups for run in group.ended]
     tables = {"statistics.csv": (head, statistics), "figures.csv": (("case", "group", "cpu_time", *names), single)}
-    if apart:
-        tables["differences.csv"] = (("group", "figure", "pairs", "first", "difference", "error_of_mean", "least_told",
-                                      "differs"), apart)
+    if different:
+        tables["differences.csv"] = (("group", "figure", "pairs", "first", "difference", "error_of_mean",
+                                      "least_significant", "differs"), different)
     if measured:
         tables["measured.csv"] = (("group", "figure", "measured", "aim", "runs", "mean", "deviation", "error_of_mean",
                                    "within"), measured)

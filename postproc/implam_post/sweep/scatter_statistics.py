@@ -39,12 +39,12 @@ class Difference:
 
     @property
     def least(self) -> float:
-        """Return the least difference that is told from the scatter of its mean; NaN of fewer than two pairs."""
+        """Return the least difference that exceeds the scatter of its mean; NaN of fewer than two pairs."""
         return stdtrit(self.number - 1, 1 - _RISK / 2) * self.error if self.number > 1 else math.nan
 
     @property
     def differs(self) -> bool:
-        """Tell whether the difference is larger than the scatter of its mean."""
+        """Return whether the difference is larger than the scatter of its mean."""
         return self.number > 1 and abs(self.mean) > self.least
 
 
@@ -67,9 +67,9 @@ def difference_of(first: Sequence[float], second: Sequence[float]) -> Difference
     pairs = np.array([pair for pair in zip(first, second, strict=True) if all(map(math.isfinite, pair))])
     if not len(pairs):
         return Difference(0, *3 * (math.nan,))
-    apart = pairs[:, 1] - pairs[:, 0]
-    error = float(np.std(apart, ddof=1) / math.sqrt(len(apart))) if len(apart) > 1 else math.nan
-    return Difference(len(apart), float(np.mean(pairs[:, 0])), float(np.mean(apart)), error)
+    changes = pairs[:, 1] - pairs[:, 0]
+    error = float(np.std(changes, ddof=1) / math.sqrt(len(changes))) if len(changes) > 1 else math.nan
+    return Difference(len(changes), float(np.mean(pairs[:, 0])), float(np.mean(changes)), error)
 
 
 def spreads(figures: Sequence[Mapping[str, float]]) -> dict[str, Spread]:

@@ -4,19 +4,19 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from implam_post.plot.look import Look
 from implam_post.sweep.plan import Plan
-from implam_post.sweep.scatter_results import Group, Held, held_against, pairs_of
+from implam_post.sweep.scatter_results import ComparedMean, Group, against_measured, pairs_of
 from implam_post.sweep.scatter_statistics import Difference, Spread, spreads
 
 # Figures that are printed; all are in the files.
 SHOWN = ("peak_force", "peak_force_at", "threshold_force", "largest_displacement", "largest_deflection",
          "contact_duration", "rebound_velocity", "energy_absorbed", "delaminated_area", "projected_area",
          "damage_diameter", "damage_length", "damage_width")
-# What variants are held by, side by side.
+# What variants are compared by, side by side.
 COMPARED = ("peak_force", "largest_displacement", "contact_duration", "energy_absorbed", "projected_area",
             "damage_diameter")
 HEAD = ("", "mean", "standard error", "standard deviation", "5 % point", "95 % point", "runs")
 PAIRED = ("", "first", "difference", "scatter of it", "", "pairs")
-HELD = ("", "measured", "aim", "mean", "standard error", "off by", "")
+MEASURED = ("", "measured", "aim", "mean", "standard error", "off by", "")
 
 
 def statistics_text(plan: Plan, groups: Sequence[Group], look: Look) -> str:
@@ -26,8 +26,8 @@ def statistics_text(plan: Plan, groups: Sequence[Group], look: Look) -> str:
         seconds = sum(run.seconds for run in group.ended)
         parts += [f"\n{group.name or 'Statistics'}: {len(group.ended)} of {len(group.runs)} runs, {seconds:.4g} s of "
                   "the processor", *_lines(HEAD, spread_rows(spreads(group.numbers), group.dimensions, look, SHOWN))]
-        if plan.measured is not None and (held := held_against(group, plan.measured)):
-            parts += ["", *_lines(HELD, held_rows(held))]
+        if plan.measured is not None and (rows := against_measured(group, plan.measured)):
+            parts += ["", *_lines(MEASURED, measured_rows(rows))]
     if len(groups) > 1:
         parts += ["\nMeans ± standard errors; * differs from the first by more than the scatter of the difference",
                   markdown(variants_table(groups, look))]
@@ -38,23 +38,23 @@ def statistics_text(plan: Plan, groups: Sequence[Group], look: Look) -> str:
 
 
 def variants_table(groups: Sequence[Group], look: Look) -> list[tuple[str, ...]]:
-    """Return a row a variant, the names of the figures above: mean and standard error of what variants are held by.
+    """Return a row a variant, the names of the figures above: mean and standard error of what variants are compared by.
 
     A star stands where the difference from the first variant is larger than the scatter of its mean.
     """
-    apart = {id(group): found for group, found in pairs_of(groups)}
-    told = [(group, spreads(group.numbers)) for group in groups]
-    names = [name for name in COMPARED if any(name in found and found[name].number for _, found in told)]
+    paired = {id(group): found for group, found in pairs_of(groups)}
+    found_of = [(group, spreads(group.numbers)) for group in groups]
+    names = [name for name in COMPARED if any(name in found and found[name].number for _, found in found_of)]
     axes = {name: look.axis(words_of(name), _dimension(groups, name), [
-        found[name].mean for _, found in told if name in found]) for name in names}
+        found[name].mean for _, found in found_of if name in found]) for name in names}
     rows = [("", "runs", *(axes[name].label.replace(" [", ", ").rstrip("]") for name in names))]
-    for group, found in told:
+    for group, found in found_of:
         cells = []
         for name in names:
             if name not in found or not found[name].number:
                 cells.append("-")
                 continue
-            star = " *" if name in apart.get(id(group), {}) and apart[id(group)][name].differs else ""
+            star = " *" if name in paired.get(id(group), {}) and paired[id(group)][name].differs else ""
             mean, error = (axes[name].factor * value for value in (found[name].mean, found[name].error))
             cells.append(f"{_rounded(mean, 4)}{'' if error != error else f' ± {_rounded(error, 2)}'}{star}")
         rows.append((group.name, str(len(group.ended)), *cells))
@@ -62,7 +62,7 @@ def variants_table(groups: Sequence[Group], look: Look) -> list[tuple[str, ...]]
 
 
 def _dimension(groups: Sequence[Group], name: str) -> str:
-    """Return the dimension of a figure, told by any group that has it."""
+    """Return the dimension of a figure, of any group that has it."""
     return next((group.dimensions[name] for group in groups if name in group.dimensions), "")
 
 
@@ -77,27 +77,27 @@ def spread_rows(found: Mapping[str, Spread], dimensions: Mapping[str, str], look
     for name in names:
         if name in found and found[name].number:
             one = found[name]
-            said = _sayer(look, dimensions.get(name, ""), one.mean, one.high)
-            deviation = f"{said(one.deviation, 3)}{_percent(one.deviation, one.mean)}"
-            yield (words_of(name), said(one.mean), said(one.error, 2), deviation, said(one.low), said(one.high),
+            shown = _sayer(look, dimensions.get(name, ""), one.mean, one.high)
+            deviation = f"{shown(one.deviation, 3)}{_percent(one.deviation, one.mean)}"
+            yield (words_of(name), shown(one.mean), shown(one.error, 2), deviation, shown(one.low), shown(one.high),
                    str(one.number))
 
 
 def difference_rows(found: Mapping[str, Difference], dimensions: Mapping[str, str], look: Look,
                     names: Sequence[str]) -> Iterator[tuple[str, ...]]:
-    """Give a row a figure: mean of the first, difference, what of it is scatter, and whether it is told from that."""
+    """Give a row a figure: mean of the first, difference, what of it is scatter, and whether it is larger than that."""
     for name in names:
         if name in found and found[name].number:
             one = found[name]
-            said = _sayer(look, dimensions.get(name, ""), one.first, one.mean)
-            verdict = "differs" if one.differs else "equal" if one.number > 1 else "not told by one pair"
-            yield (words_of(name), said(one.first), f"{said(one.mean, 3)}{_percent(one.mean, one.first)}",
-                   said(one.least, 2), verdict, str(one.number))
+            shown = _sayer(look, dimensions.get(name, ""), one.first, one.mean)
+            verdict = "differs" if one.differs else "equal" if one.number > 1 else "not known from one pair"
+            yield (words_of(name), shown(one.first), f"{shown(one.mean, 3)}{_percent(one.mean, one.first)}",
+                   shown(one.least, 2), verdict, str(one.number))
 
 
-def held_rows(held: Sequence[Held]) -> Iterator[tuple[str, ...]]:
+def measured_rows(rows: Sequence[ComparedMean]) -> Iterator[tuple[str, ...]]:
     """Give a row a measured figure: that, what is aimed at, the mean, how far it is off, and whether it is within."""
-    for row in held:
+    for row in rows:
         expected, found = row.expected, row.found
         aim = f"{100 * expected.relative:.3g} %" if expected.relative is not None else f"{expected.absolute:.3g}"
         off = f"{100 * (found.mean / expected.value - 1):+.1f} %" if expected.value else f"{found.mean:.3g}"
@@ -118,14 +118,14 @@ def _sayer(look: Look, dimension: str, *values: float) -> Callable[..., str]:
 
 
 def _rounded(value: float, digits: int) -> str:
-    """Return a number to some digits, a large one as a whole number."""
+    """Return a number to some digits, a large one as an integer."""
     text = f"{value:.{digits}g}"
     return f"{value:.0f}" if "e+" in text and abs(value) < 1e6 else text
 
 
-def _percent(part: float, whole: float) -> str:
-    """Return a part of a whole in per cent, in brackets; nothing where there is no such part."""
-    return "" if part != part or not whole else f" ({100 * part / abs(whole):.3g} %)"
+def _percent(part: float, total: float) -> str:
+    """Return a part of a total in per cent, in brackets; nothing where there is no such part."""
+    return "" if part != part or not total else f" ({100 * part / abs(total):.3g} %)"
 
 
 def _number(value: float) -> str:

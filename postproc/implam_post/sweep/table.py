@@ -30,7 +30,7 @@ class Figure:
 
 
 def _area(history: History) -> float:
-    """Return the area delaminated at the end, starters included; NaN if the history tells none."""
+    """Return the area delaminated at the end, starters included; NaN if the history has none."""
     return float(history.columns.get("delaminated_area", [math.nan])[-1])
 
 
@@ -117,7 +117,7 @@ def write_hdf5(table: Table, path: Path) -> None:
 def _row(folder: Path, record: Record | None) -> dict[str, object]:
     """Return figures and end of one run; a run that failed has no figures."""
     row: dict[str, object] = dict.fromkeys(FIGURES, math.nan)
-    row |= {"exit_code": math.nan, "cpu_time": math.nan, "version": "", "trouble": ""}
+    row |= {"exit_code": math.nan, "cpu_time": math.nan, "version": "", "fault": ""}
     if record is None:
         return row
     row |= {"exit_code": record.exit_code, "cpu_time": round(record.cpu_time, 3), "version": version_in(folder)}
@@ -128,7 +128,7 @@ def _row(folder: Path, record: Record | None) -> dict[str, object]:
         history = read_history(folder / "history.csv" if path is None else path)
         row |= {name: float(figure.measure(history)) for name, figure in FIGURES.items()}
     except ImplamError as error:
-        row["trouble"] = str(error)
+        row["fault"] = str(error)
     return row
 
 
@@ -136,7 +136,7 @@ def _notes(rows: Iterable[dict[str, object]]) -> list[str]:
     """Return what a reader of the table has to know."""
     versions = sorted({str(row["version"]) for row in rows if row["version"]})
     notes = [f"the runs are of several versions of Implam: {', '.join(versions)}."] if len(versions) > 1 else []
-    return notes + [f"no figures: {row['trouble']}" for row in rows if row["trouble"]]
+    return notes + [f"no figures: {row['fault']}" for row in rows if row["fault"]]
 
 
 def _system(text: str) -> str:

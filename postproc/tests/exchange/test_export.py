@@ -109,7 +109,7 @@ class PanelTest(ExportTest):
         self.assertEqual(sum(len(stacks) > 1 for stacks in self.panel(0.5).stacks.values()), 4)
 
     def test_modelled_whole(self) -> None:
-        """Results of a whole plate are taken as they are."""
+        """Results of a full plate are taken as they are."""
         write_fields(self.results, part="whole")
         self.keep_deck(DECK)
         self.assertEqual(self.panel().cells, (3, 3))
@@ -127,7 +127,7 @@ class PanelTest(ExportTest):
                                    atol=1e-15)
 
     def test_deck(self) -> None:
-        """Equal cells over the whole plate, the starter apart: here the cells that touch the struck point."""
+        """Equal cells over the full plate, the starter apart: here the cells that touch the struck point."""
         panel = read_panel(self.folder / "damaged.nml")
         np.testing.assert_allclose(panel.x, np.linspace(-6, 6, 7))
         self.assertEqual({cell for cell, stacks in panel.stacks.items() if len(stacks) > 1},
@@ -242,7 +242,7 @@ class NastranTest(ExportTest):
         self.assertIn("PLOAD2  1       0.25    1       THRU    144", lines)
         with_z0 = list(nastran_deck(self.panel(), "damaged.h5", with_z0=True))
         self.assertFalse(any(line.startswith("CQUAD4") and len(line) > 64 for line in with_z0))
-        # The first face of each stack beside the middle; that of the whole laminate is where Nastran puts it.
+        # The first face of each stack beside the middle; that of the full laminate is where Nastran puts it.
         places = [line[16:24].strip() for line in with_z0 if line.startswith("PCOMP")]
         self.assertEqual(places, ["", "", "-0.3", "0.0", "0.0"])
 
@@ -348,5 +348,5 @@ class AbaqusTest(ExportTest):
         """It says what it wrote."""
         code, text = self.run_command(to_abaqus, self.results)
         self.assertEqual(code, 0, text)
-        self.assertIn("36 cells, of which 12 came apart and 12 have failed plies; 5 sections, 4 materials", text)
+        self.assertIn("36 cells, of which 12 are delaminated and 12 have failed plies; 5 sections, 4 materials", text)
         self.assertTrue((self.folder / "damaged_panel.inp").exists())

@@ -153,7 +153,7 @@ class CardsTest(ImportTest):
         bulk.more = [("SPC1", 1, "12", 1), ("SPC1", 1, "2", bulk.number(8, 0))]
         self.assertEqual(self.deck(bulk).value("plate", "in_plane"), "free")
         bulk.more.append(("SPC1", 1, "1", bulk.number(4, 2), bulk.number(4, 4)))
-        self.refused(bulk, "in the panel's plane, which isn't the support of a whole edge")
+        self.refused(bulk, "in the panel's plane, which isn't the support of a entire edge")
         self.assertEqual(self.deck(Bulk(edges=("", "", "", ""))).edges(), 4 * ["free"])
 
     def test_softer_supports_are_told(self) -> None:
@@ -388,7 +388,7 @@ class RefusedTest(ImportTest):
         """Parts of edges, grids inside, edges held otherwise."""
         bulk = Bulk(edges=("1234", "1234", "1235", ""))
         bulk.more = [("SPC1", 1, "3", *bulk.on_edge(3)[:3])]
-        self.refused(bulk, "on the edge y-max", "only whole edges can be supported")
+        self.refused(bulk, "on the edge y-max", "only entire edges can be supported")
         self.refused(Bulk(more=[("SPC1", 1, "3", 41)]), "it holds grid 41, which isn't on an edge")
         self.refused(Bulk(edges=("15", "1234", "24", "1235")), "lines of symmetry")
         self.refused(Bulk(edges=("12", "34", "35", "35")), "x-min is held, but not against deflection")

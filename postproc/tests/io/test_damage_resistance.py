@@ -74,7 +74,7 @@ class ExtentTest(unittest.TestCase):
     """The size of the projected damage."""
 
     def fields(self, corners: np.ndarray) -> Fields:
-        """Return the fields of a whole plate with these cells delaminated below ply 1."""
+        """Return the fields of a full plate with these cells delaminated below ply 1."""
         count = len(corners)
         mesh = Mesh(corners, np.full(count, 2), np.full(count, 2), np.zeros(count, dtype=bool))
         return Fields("none.h5", "whole", [Snapshot(1.0, mesh, np.ones((count, 9)), {}, np.zeros(count))])

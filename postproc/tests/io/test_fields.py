@@ -131,7 +131,7 @@ class FieldsTest(unittest.TestCase):
         self.assertAlmostEqual(area(read_fields(self.path).starter(2)), 1)
 
     def test_whole_plate_is_not_mirrored(self) -> None:
-        """A run of the whole plate is shown as it is."""
+        """A run of the full plate is shown as it is."""
         write_fields(self.path, part="whole")
         self.assertAlmostEqual(area(read_fields(self.path).delaminated(2, 2)), 6)
 

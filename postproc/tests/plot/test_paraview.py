@@ -50,24 +50,24 @@ class ParaviewTest(unittest.TestCase):
 
     def test_impactor_moves(self) -> None:
         """Its nose is on the struck face, at -h/2, when it first touches, and as deep as the history says."""
-        self.assertEqual(self.write(), {"case_scene.h5", "case_through.xdmf", "case_impactor.xdmf", "case_paraview.py"})
-        with h5py.File(self.folder / "case_scene.h5") as file:
+        self.assertEqual(self.write(), {"case_paraview.h5", "case_through.xdmf", "case_impactor.xdmf", "case_paraview.py"})
+        with h5py.File(self.folder / "case_paraview.h5") as file:
             for number, depth in enumerate((0.5e-3, 1e-3, 0.5e-3), start=1):
                 nose = file[f"{number:08d}/sphere"][()][:, 2].max()
                 self.assertAlmostEqual(nose, depth - THICKNESS / 2)
                 self.assertAlmostEqual(np.ptp(file[f"{number:08d}/sphere"][()][:, 2]), 2 * RADIUS)
 
     def test_through_the_thickness(self) -> None:
-        """Places with an interface apart, its ply, and the share of plies that failed, over the whole plate."""
+        """Places with a delaminated interface, its ply, and the share of plies that failed, over the full plate."""
         self.write()
-        with h5py.File(self.folder / "case_scene.h5") as file:
+        with h5py.File(self.folder / "case_paraview.h5") as file:
             for number, expected in enumerate((4, 12, 24), start=1):
                 group = file[f"{number:08d}"]
                 cells = group["points"][()][group["cells"][()]][..., :2]
-                apart = group["interfaces_apart"][()] > 0
+                delaminated = group["delaminated_interfaces"][()] > 0
                 self.assertAlmostEqual(area(cells), 144)
-                self.assertAlmostEqual(area(cells[apart]), expected)
-                self.assertEqual(set(group["first_apart_below_ply"][()][apart]), {2})
+                self.assertAlmostEqual(area(cells[delaminated]), expected)
+                self.assertEqual(set(group["first_delaminated_below_ply"][()][delaminated]), {2})
         cells, values = plan_of(read_fields(self.path).snapshots[-1])
         failed = dict(zip(map(tuple, cells[:, 0]), values["share_of_plies_failed"], strict=True))
         self.assertEqual({corner: round(3 * share) for corner, share in failed.items() if share},
@@ -77,13 +77,13 @@ class ParaviewTest(unittest.TestCase):
         """The grids name data that are there, at the times of the fields; the state is Python."""
         self.write()
         ast.parse((self.folder / "case_paraview.py").read_text())
-        with h5py.File(self.folder / "case_scene.h5") as file:
+        with h5py.File(self.folder / "case_paraview.h5") as file:
             for name in ("through", "impactor"):
                 root = ElementTree.parse(self.folder / f"case_{name}.xdmf").getroot()
                 self.assertEqual([float(time.get("Value")) for time in root.iter("Time")], list(TIMES))
                 for item in root.iter("DataItem"):
                     where, path = item.text.split(":")
-                    self.assertEqual(where, "case_scene.h5")
+                    self.assertEqual(where, "case_paraview.h5")
                     self.assertEqual(list(file[path].shape), [int(size) for size in item.get("Dimensions").split()])
 
 

@@ -1,4 +1,4 @@
-"""Tests of the file of a study: scenes, methods, references, and what is refused."""
+"""Tests of the file of a study: problems, methods, references, and what is refused."""
 
 import tempfile
 import unittest
@@ -38,19 +38,19 @@ class StudyPlanTest(unittest.TestCase):
         return read_study(path)
 
     def test_trials_and_references(self) -> None:
-        """Every scene by every method, repeats in rounds, references first; derived steps follow scene and method."""
-        study = self.read('repeats = 2\n[scenes]\ndeck = ["karas.nml", "sun_chen.nml"]\ncoarse = [8e-6, 16e-6]\n'
+        """Every problem by every method, repeats last, references first; derived steps depend on problem and method."""
+        study = self.read('repeats = 2\n[problems]\ndeck = ["karas.nml", "sun_chen.nml"]\ncoarse = [8e-6, 16e-6]\n'
                           + METHODS + REFERENCE)
-        self.assertEqual([scene.name for scene in study.scenes], ["karas", "sun_chen"])
+        self.assertEqual([problem.name for problem in study.problems], ["karas", "sun_chen"])
         self.assertEqual(study.methods, ["part", "method", "impactor.integrator"])
         self.assertEqual(len(study.trials), 8)
         self.assertEqual(len(study.cases), 2 + 2 * 8)
         self.assertEqual([case.repeat for case in study.cases], 10 * [1] + 8 * [2])
-        steps = {(trial.scene.name, trial.method["part"]): trial.runs[0].deck.split("step=")[1].split(" ")[0]
+        steps = {(trial.problem.name, trial.method["part"]): trial.runs[0].deck.split("step=")[1].split(" ")[0]
                  for trial in study.trials}
         self.assertEqual(steps, {("karas", 1): "8e-06", ("karas", 4): "2e-06", ("sun_chen", 1): "1.6e-05",
                                  ("sun_chen", 4): "4e-06"})
-        reference = study.scenes[1].reference
+        reference = study.problems[1].reference
         self.assertIsInstance(reference, Case)
         self.assertIn("step=2.5e-07", reference.deck)
         self.assertIn("integrator='conserving'", reference.deck)
@@ -58,14 +58,14 @@ class StudyPlanTest(unittest.TestCase):
         self.assertEqual(study.trials[0].runs[0].deck, study.trials[0].runs[1].deck)
 
     def test_references_of_scenes(self) -> None:
-        """An answer, a history beside the file, or the run that [reference] tells; scenes of one deck have names."""
+        """An answer, a history beside the file, or the run that [reference] tells; problems of one deck have names."""
         (self.folder / "measured.csv").write_text("time,force\n0,0\n1,1\n")
-        study = self.read('deck = "karas.nml"\n[scenes]\n"impactor.velocity" = [1.0, 2.0, 3.0]\n'
+        study = self.read('deck = "karas.nml"\n[problems]\n"impactor.velocity" = [1.0, 2.0, 3.0]\n'
                           f'reference = ["{SEMI_ANALYTIC}", "measured.csv", ""]\n'
                           '[grid]\n"time.step" = [1e-6]\n[reference]\n"time.step" = 1e-7\n')
-        self.assertEqual([scene.name for scene in study.scenes],
+        self.assertEqual([problem.name for problem in study.problems],
                          ["karas velocity=1.0", "karas velocity=2.0", "karas velocity=3.0"])
-        first, second, third = (scene.reference for scene in study.scenes)
+        first, second, third = (problem.reference for problem in study.problems)
         self.assertEqual((first, second), (SEMI_ANALYTIC, self.folder / "measured.csv"))
         self.assertIn("velocity=3.0", third.deck)
 
@@ -83,10 +83,10 @@ class StudyPlanTest(unittest.TestCase):
         for text, told in (
                 ('deck = "karas.nml"\n' + grid, "a reference is missing"),
                 ('deck = "karas.nml"\n' + grid + "[reference]\npart = 2\n", "'part' is neither a key"),
-                ('deck = "karas.nml"\n[scenes]\nreference = "none.csv"\n' + grid, "there is no history"),
-                ('[scenes]\ndeck = ["karas.nml", "sun_chen.nml"]\n"time.end" = [1]\n' + grid, "lists of one length"),
-                ('[scenes]\ndeck = ["karas.nml", "karas.nml"]\nreference = "semi-analytic"\n' + grid, "several are"),
-                ('deck = "karas.nml"\nrepeats = 0\n' + grid, "repeats is a whole number"),
+                ('deck = "karas.nml"\n[problems]\nreference = "none.csv"\n' + grid, "there is no history"),
+                ('[problems]\ndeck = ["karas.nml", "sun_chen.nml"]\n"time.end" = [1]\n' + grid, "lists of one length"),
+                ('[problems]\ndeck = ["karas.nml", "karas.nml"]\nreference = "semi-analytic"\n' + grid, "several are"),
+                ('deck = "karas.nml"\nrepeats = 0\n' + grid, "repeats is an integer"),
                 ('deck = "karas.nml"\nerror = "force"\n' + grid, "error is one of"),
                 ('deck = "karas.nml"\nrepeat = 2\n' + grid, "'repeat' is none of"),
                 ('deck = "karas.nml"\n' + grid + '[figures]\nforce = "mean"\n', r"\[figures\] says"),

@@ -100,8 +100,8 @@ class StudyTest(unittest.TestCase):
         (self.folder / "measured.csv").write_text("time,force\n0,0\n30e-6,1000\n60e-6,0\n")
         code, text = run_quietly(study.main, *self.arguments("""
             deck = "karas.nml"
-            [scenes]
-            scene = ["answer", "measured"]
+            [problems]
+            problem = ["answer", "measured"]
             reference = ["semi-analytic", "measured.csv"]
             "time.end" = "120e-6"
             [grid]
@@ -109,14 +109,14 @@ class StudyTest(unittest.TestCase):
             """))
         self.assertEqual(code, 0, text)
         answer, measured = self.table()
-        self.assertEqual(self.runs(), 1)  # both scenes are one deck
+        self.assertEqual(self.runs(), 1)  # both problems are one deck
         peak = float(answer["peak_force"])
         self.assertAlmostEqual(peak / (1 + float(answer["peak_force_error"])), 1343.24, delta=0.3)
         self.assertAlmostEqual(float(answer["peak_force_time"]) / (1 + float(answer["peak_force_time_error"])),
                                33.19e-6, delta=0.1e-6)
         self.assertAlmostEqual(float(measured["peak_force_error"]), peak / 1000 - 1, delta=1e-6)
         self.assertEqual(measured["rebound_velocity_error"], "")
-        self.assertIn("Geometric means over 2 scenes", text)
+        self.assertIn("Geometric means over 2 problems", text)
 
     def test_failures_are_collected(self) -> None:
         """A method without convergence has a row that says so, the others have theirs."""

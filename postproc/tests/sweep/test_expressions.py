@@ -20,7 +20,7 @@ class ExpressionsTest(unittest.TestCase):
     """Formulas that have a value, and those that must not."""
 
     def test_values(self) -> None:
-        """Arithmetic, functions, names and keys, lists; whole numbers stay whole."""
+        """Arithmetic, functions, names and keys, lists; integers stay whole."""
         for formula, value in (("sqrt(2*energy/impactor.mass)", math.sqrt(8)), ("-m**2 + 2*3", 5.0),
                                ("material[2].E1/1e9", 4.0), (" [0, 45*m, -45] ", [0, 45, -45]), ("round(2.4)", 2),
                                ("min(pi, 4) - pi", 0.0), ("(1, 2)", [1, 2]), ("radians(180)/pi", 1.0)):
