@@ -56,7 +56,7 @@ def plan_of(snapshot: Snapshot) -> tuple[np.ndarray, dict[str, np.ndarray]]:
 
 
 def write_files(fields: Fields, history: History | None, base: Path) -> list[Path]:
-    """Write BASE_paraview.h5, BASE_through.xdmf, BASE_impactor.xdmf if one moves, BASE_paraview.py; return the paths."""
+    """Write BASE_paraview.h5, BASE_through.xdmf, BASE_impactor.xdmf if one moves, BASE_paraview.py; return paths."""
     deck = deck_in(fields.path)
     if deck is None:
         raise FileError(f"{fields.path} holds no deck, which has radius and thickness.")

@@ -1,4 +1,4 @@
-"""Tests of the scene for ParaView: where the sphere is, what is seen through the plate, that the files can be read."""
+"""Tests of the files for ParaView: where the sphere is, what is seen through the plate, that the files can be read."""
 
 import ast
 import contextlib
@@ -50,7 +50,8 @@ class ParaviewTest(unittest.TestCase):
 
     def test_impactor_moves(self) -> None:
         """Its nose is on the struck face, at -h/2, when it first touches, and as deep as the history says."""
-        self.assertEqual(self.write(), {"case_paraview.h5", "case_through.xdmf", "case_impactor.xdmf", "case_paraview.py"})
+        self.assertEqual(self.write(), {"case_paraview.h5", "case_paraview.py", "case_through.xdmf",
+                                        "case_impactor.xdmf"})
         with h5py.File(self.folder / "case_paraview.h5") as file:
             for number, depth in enumerate((0.5e-3, 1e-3, 0.5e-3), start=1):
                 nose = file[f"{number:08d}/sphere"][()][:, 2].max()
