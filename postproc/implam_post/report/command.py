@@ -238,8 +238,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command."""
     parser = CommandParser("implam-report", description="Write NAME_report.html, one page that needs no other file: "
                            "the summary of a run, its plate and lay-up, curves of NAME_history.csv, maps of NAME.h5, "
-                           "energies at the end, warnings, provenance and the deck. The page of a sweep with random inputs "
-                           "has means with their scatter.")
+                           "energies at the end, warnings, provenance and the deck. The page of a sweep with random "
+                           "inputs has means with their scatter.")
     parser.add_argument("results", nargs="+", type=Path, metavar="RESULT",
                         help="NAME_summary.json, a folder with such files, or the folder of a sweep")
     parser.add_argument("--output", type=Path, metavar="DIR", help="folder of the pages (default: beside each summary)")
