@@ -48,7 +48,7 @@ def shown(look: Look, dimension: str, value: object) -> str:
     """Return a figure to four digits, as the summary in the log has them, with its unit where that is known."""
     if value is None or not dimension:
         return rounded(value)
-    return look.said(dimension, value, 4)
+    return look.shown(dimension, value, 4)
 
 
 def report(run: Run) -> str:
