@@ -74,11 +74,11 @@ install_packages() {
 install_python_tools() {
   local stamp=.venv/ready-to-$task tools=(./postproc) pynastran=() python=/usr/bin/python3
   if [[ $task == test ]]; then
-    tools=('./postproc[nastran]' 'ruff==0.17.*' h5py meshio)
+    tools=('./postproc[nastran,notebook]' 'ruff==0.17.*' meshio)
     pynastran=(--no-deps 'pyNastran==1.4.*')
   fi
   [[ -x $python ]] || python=python3
-  if [[ -e $stamp && -z $(find postproc -name '*.py' -newer "$stamp" -o -name pyproject.toml -newer "$stamp") ]]; then
+  if [[ -e $stamp && -z $(find postproc -name '*.py' -newer "$stamp" -o -name '*.html' -newer "$stamp" -o -name pyproject.toml -newer "$stamp") ]]; then
     return
   fi
   stage "Installing the Python commands into .venv"

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from implam_post.deck import Deck
+from implam_post.io.deck import Deck
 
 KARAS = """
 ! Karas: steel ball on a steel plate

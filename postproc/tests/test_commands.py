@@ -8,16 +8,19 @@ from pathlib import Path
 
 import numpy as np
 
-from implam_post import check_impact, compare, plot, report
-from implam_post.errors import FileError
-from implam_post.expectations import read_expectations
-from implam_post.history import ENERGIES, read_history
-from implam_post.semi_analytic import semi_analytic
+from implam_post.io.errors import FileError
+from implam_post.io.history import ENERGIES, read_history
+from implam_post.plot import command as plot
+from implam_post.reference import check_impact
+from implam_post.reference.semi_analytic import semi_analytic
+from implam_post.regress import compare
+from implam_post.regress.expectations import read_expectations
+from implam_post.report import command as report
 from tests.decks import SUN_CHEN, deck
 
 
 class CommandTest(unittest.TestCase):
-    """Each test has a folder with a deck and a history that follows the semi-analytic answer."""
+    """Each test has a folder with a deck and a history that follows the semi-analytic solution."""
 
     def setUp(self) -> None:
         """Make the folder."""

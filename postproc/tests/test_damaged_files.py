@@ -11,14 +11,15 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from implam_post import movie, paraview, plot
-from implam_post.errors import FileError, ImplamError
 from implam_post.exchange import results
-from implam_post.fields import read_fields
-from implam_post.history import read_columns
+from implam_post.io.errors import FileError, ImplamError
+from implam_post.io.fields import read_fields
+from implam_post.io.history import read_columns
+from implam_post.plot import command as plot
+from implam_post.plot import movie, paraview
+from tests.io.test_fields import write_fields
+from tests.plot.test_pictures import DECK
 from tests.program import run_quietly
-from tests.test_fields import write_fields
-from tests.test_pictures import DECK
 
 FILES = int(os.environ.get("IMPLAM_SPOILT", "40"))
 

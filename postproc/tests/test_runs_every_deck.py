@@ -11,7 +11,9 @@ from pathlib import Path
 
 import h5py
 
-from implam_post import movie, paraview, plot, report
+from implam_post.plot import command as plot
+from implam_post.plot import movie, paraview
+from implam_post.report import command as report
 from tests.program import ROOT, implam, run_quietly
 
 sys.path.insert(0, str(ROOT / "tests" / "regress"))

@@ -7,8 +7,10 @@ import tempfile
 import unittest
 from pathlib import Path
 
-from implam_post import regress, study, sweep
-from implam_post.sweep_plan import COLUMNS
+from implam_post.regress import command as regress
+from implam_post.study import command as study
+from implam_post.sweep import command as sweep
+from implam_post.sweep.plan import COLUMNS
 from tests.program import ROOT, SMALL, implam, run_quietly
 
 # Figures of the manual are rounded.

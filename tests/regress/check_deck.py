@@ -6,9 +6,9 @@ Decks lie in input/verify; `against = "deck.nml"` is the variant's own deck."""
 import sys
 from pathlib import Path
 
-from solver_runs import DECKS, LONGEST_RUN
+from implam_post.regress.command import main
 
-from implam_post.regress import main
+from solver_runs import DECKS, LONGEST_RUN
 
 if __name__ == "__main__":
     implam, expect, folder = sys.argv[1:]

@@ -8,8 +8,10 @@ from pathlib import Path
 
 import h5py
 import numpy as np
-from implam_post.deck import read_deck
-from implam_post.navier import Plate
+from implam_post.io.deck import read_deck
+from implam_post.laminate.decks import plies_of, section_of_deck
+from implam_post.reference.navier import Plate
+
 from solver_runs import exit_code_of, read_history, require, run_deck, write_deck
 
 # Nodes of an element in the file, as 1 + i + 3 j.
@@ -88,7 +90,7 @@ def ply_stresses(material, angle, strains, failures):
 
 def navier_strains(deck, results, amplitude):
     """Return curvatures and shear strains of Navier's plate, exact means over the elements."""
-    plate = Plate(deck.section(), deck.lengths())
+    plate = Plate(section_of_deck(deck), deck.lengths())
     w, x, y = np.linalg.solve(plate.stiffness(np.array(1), np.array(1)), [amplitude, 0, 0])
     a, b = np.pi / np.array(plate.lengths)
     arguments = np.array([a, b]) * np.array([results.low, results.high])
@@ -125,7 +127,7 @@ def check_navier(implam, folder):
     results, deck = Results(run_deck(implam, deck_path)), read_deck(deck_path)
     require(not results.points and set(results.cells) == {*names, *faces}, f"There are {sorted(results.cells)}.")
     curvatures, shear = navier_strains(deck, results, deck.number("pressure", "value"))
-    plies = deck.plies()
+    plies = plies_of(deck)
     forces = 5 / 6 * shear @ sum(ply.thickness * ply.material.transverse_shear_stiffness(ply.angle) for ply in plies)
     z, worst, sound = heights(plies), 0.0, np.zeros(len(curvatures), dtype=int)
     for number, ply in enumerate(plies, start=1):
@@ -150,7 +152,7 @@ def check_damaged_layers(implam, folder):
     """Stresses of layers, some of whose plies have failed, against strains from the nodes' motion."""
     deck_path = write_deck(folder / "damage", "../small/damage.nml",
                            ["output%fields='displacement','rotation','ply_damage','stress','face_stress'"])
-    results, plies = Results(run_deck(implam, deck_path)), read_deck(deck_path).plies()
+    results, plies = Results(run_deck(implam, deck_path)), plies_of(read_deck(deck_path))
     require("jump" not in results.points and "delaminated_above" not in results.cells, "Unwanted fields are there.")
     membrane, curvature = results.mean_strains()
     z, worst, failed = heights(plies), 0.0, 0

@@ -138,7 +138,7 @@ def check_manual(implam, folder):
         for command, main in (("implam-to-nastran", to_nastran), ("implam-to-abaqus", to_abaqus)):
             code, printed = quietly(main, commands[command])
             require(code == 0, printed)
-        check_damage(*map(int, re.search(r"(\d+) came apart and (\d+) have failed plies", printed).groups()))
+        check_damage(*map(int, re.search(r"(\d+) are delaminated and (\d+) have failed plies", printed).groups()))
 
 
 def quietly(main, arguments):

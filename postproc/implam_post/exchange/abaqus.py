@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 
 from implam_post.exchange.panel import MaterialState, Panel, Section
 from implam_post.exchange.shell_mesh import ShellMesh, shell_mesh
-from implam_post.laminate import Material, direction
+from implam_post.laminate.sections import Material, direction
 
 
 def abaqus_input(panel: Panel, source: str) -> Iterator[str]:
@@ -46,13 +46,13 @@ def _elements(panel: Panel, mesh: ShellMesh, sections: Sequence[Section]) -> Ite
 
 
 def _material_name(number: int, state: MaterialState) -> str:
-    """Return a name that tells materials apart by their number, since Abaqus' names are short and case-blind."""
+    """Return a name that distinguishes materials by their number, since Abaqus' names are short and case-blind."""
     return f"M{number}_" + re.sub("[^A-Z0-9]", "_", state.name.upper())[:60]
 
 
 def _material(name: str, state: MaterialState, material: Material) -> Iterator[str]:
     """Return the elastic constants; those through the thickness, which plane stress does without, couple nothing."""
-    yield from (f"** {state.name} {state.told}".rstrip(), f"*MATERIAL, NAME={name}",
+    yield from (f"** {state.name} {state.failed}".rstrip(), f"*MATERIAL, NAME={name}",
                 "*ELASTIC, TYPE=ENGINEERING CONSTANTS")
     constants = [material.e1, material.e2, material.e2, material.nu12, 0.0, 0.0, material.g12, material.g13]
     yield ", ".join(f"{value:.12g}" for value in constants)

@@ -9,7 +9,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from implam_post.errors import DeckError, FileError, ImplamError
+from implam_post.io.errors import DeckError, FileError, ImplamError
 
 # What pyNastran raises about fields that it can't read.
 _READING_ERRORS = (SyntaxError, RuntimeError, AssertionError, ValueError, TypeError, LookupError, AttributeError)
@@ -48,12 +48,12 @@ class BulkCard:
         return DeckError(f"{self.file}:{self.line}: {self.name}: {sentence}")
 
     def unread(self, error: Exception) -> DeckError:
-        """Return an error that tells the first line of one of pyNastran's, after that which repeats the card's name."""
+        """Return an error with the first line of one of pyNastran's, after that which repeats the card's name."""
         lines = [line.strip() for line in str(error).splitlines() if line.strip() and "card_name=" not in line]
         return self.error(f"{(lines or [type(error).__name__])[0].rstrip('.')}.")
 
     def given(self, number: int) -> bool:
-        """Tell whether a field is there and isn't zero."""
+        """Return whether a field is there and isn't zero."""
         text = self.fields.field(number)
         return text is not None and re.fullmatch(r"[-+]?0*\.?0*([-+DdEe]+\d+)?", text.strip()) is None
 
@@ -89,7 +89,7 @@ class BulkData:
             raise card.unread(error) from None
 
     def integer(self, card: BulkCard, number: int) -> int:
-        """Return a field that must hold a whole number."""
+        """Return a field that must hold an integer."""
         from pyNastran.bdf.bdf_interface.assign_type import integer
         try:
             return integer(card.fields, number, f"field {number}")
@@ -208,7 +208,7 @@ def _chosen(command: str, lines: Iterable[str]) -> set[int]:
 
 
 def _is_infinite(text: str) -> bool:
-    """Tell whether a field is no number by name, or one too large."""
+    """Return whether a field is no number by name, or one too large."""
     with contextlib.suppress(ValueError):
         return not math.isfinite(float(_with_exponent(text)))
     return False

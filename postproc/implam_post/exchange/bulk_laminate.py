@@ -7,7 +7,7 @@ from typing import Any
 
 from implam_post.exchange.bulk_data import BulkCard, BulkData
 from implam_post.exchange.remarks import Remarks
-from implam_post.laminate import Material, Ply
+from implam_post.laminate.sections import Material, Ply
 
 _MAT8_STRENGTHS = {12: "XT", 13: "XC", 14: "YT", 15: "YC", 16: "S12"}
 _UNTAKEN = {

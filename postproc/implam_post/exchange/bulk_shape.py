@@ -76,7 +76,7 @@ def read_shape(bulk: BulkData, grids: Mapping[int, tuple[BulkCard, Any]], struck
 
 
 def _other_elements(bulk: BulkData) -> str:
-    """Return a sentence on elements that a panel can't be made of; empty if there are none."""
+    """Return a sentence on elements that a panel can't have; empty if there are none."""
     cards = list(bulk.named(*_OTHERS))
     if not cards:
         return ""
@@ -202,18 +202,18 @@ def _material_angle(bulk: BulkData, quads: Sequence[_Quadrilateral], axes: np.nd
 
 def _angle(bulk: BulkData, quad: _Quadrilateral, axes: np.ndarray, systems: Mapping[int, Any]) -> float:
     """Return the angle of an element's material axis: MCID's x, or its first side turned by THETA about its normal."""
-    said = quad.read.theta_mcid
-    if isinstance(said, float):
+    given = quad.read.theta_mcid
+    if isinstance(given, float):
         direction = quad.corners[1] - quad.corners[0]
-        theta = np.radians(said)
+        theta = np.radians(given)
         direction = np.cos(theta) * direction + np.sin(theta) * np.cross(quad.normal, direction)
-    elif said in systems:
-        direction = systems[said].i
+    elif given in systems:
+        direction = systems[given].i
     else:
-        raise bulk.error(quad.card, f"coordinate system {said} isn't there as a CORD2R.")
+        raise bulk.error(quad.card, f"coordinate system {given} isn't there as a CORD2R.")
     x, y, _ = axes @ direction
     if np.hypot(x, y) < _NEAR * np.linalg.norm(direction):
-        raise bulk.error(quad.card, f"the x axis of coordinate system {said} is normal to the panel.")
+        raise bulk.error(quad.card, f"the x axis of coordinate system {given} is normal to the panel.")
     return float(np.degrees(np.arctan2(y, x)))
 
 

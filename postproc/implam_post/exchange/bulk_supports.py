@@ -40,11 +40,11 @@ def read_supports(bulk: BulkData, grids: Mapping[int, tuple[BulkCard, Any]], sha
     pins = _pins(bulk, held, on_edges, common, remarks)
     if pins and (fixed or len(pins) > _RIGID_MOTIONS):
         card, grid = pins[0]
-        raise bulk.error(card, f"it holds grid {grid} in the panel's plane, which isn't the support of a whole edge.")
+        raise bulk.error(card, f"it holds grid {grid} in the panel's plane, which isn't the support of a entire edge.")
     for card, _ in pins:
         remarks.add(card, "some of it holds rigid motion in the plane; Implam does so by itself")
     for number in sorted({edge for edge, _ in lines}):
-        remarks.edge(EDGES[number], "held in the plane by &line, as the edges aren't held alike or both ways")
+        remarks.edge(EDGES[number], "held in-plane by &line, as the edges aren't held alike or both ways")
     return Supports(kinds, fixed or all(kind == "free" for kind in kinds), lines)
 
 
@@ -124,27 +124,27 @@ def _edges_of(shape: Shape, place: np.ndarray) -> list[int]:
 def _common(bulk: BulkData, held: Held, along: list[int], number: int) -> set[int]:
     """Return what an edge holds all along between its corners; in its plane, what it doesn't hold all along is none."""
     if not along:
-        raise bulk.missing(f"the edge {EDGES[number]} has no grid between its corners that tells its support.")
+        raise bulk.missing(f"the edge {EDGES[number]} has no grid between its corners that shows its support.")
     each = [set(held.get(grid, {})) for grid in along]
     common, somewhere = set.intersection(*each), set.union(*each)
     for component in sorted((somewhere - common) & {3, 4, 5}):
         grid, card = next((grid, held[grid][component]) for grid in along if component in held.get(grid, {}))
         bare = next(grid for grid in along if component not in held.get(grid, {}))
         raise bulk.error(card, f"it holds grid {grid} on the edge {EDGES[number]}, but grid {bare} there isn't held "
-                               "alike: only whole edges can be supported.")
+                               "alike: only entire edges can be supported.")
     return common
 
 
 def _kind(bulk: BulkData, components: set[int], number: int, remarks: Remarks) -> str:
     """Return the kind of an edge; a simple support holds the rotation along the edge, a clamp the other one too."""
-    along, across = (4, 5) if number < 2 else (5, 4)
+    along, about_normal = (4, 5) if number < 2 else (5, 4)
     turns = components & {4, 5}
     if 3 not in components:
         if components:
             raise bulk.missing(f"the edge {EDGES[number]} is held, but not against deflection: it is neither clamped "
                                "nor simple nor free, nor are lines of symmetry taken.")
         return "free"
-    kind = "clamped" if across in turns else "simple"
+    kind = "clamped" if about_normal in turns else "simple"
     if along not in turns:
         remarks.edge(EDGES[number], f"{kind}; in the file the rotation along the edge is free, Implam holds it")
     return kind
@@ -160,7 +160,7 @@ def _in_plane(kinds: tuple[str, ...], in_plane: list[set[int]]) -> tuple[bool, t
 
 def _pins(bulk: BulkData, held: Held, on_edges: Mapping[int, list[int]], common: list[set[int]], remarks: Remarks
           ) -> list[tuple[BulkCard, int]]:
-    """Return card and grid of what is held in the plane beyond the edges; corners have to hold what their edges do."""
+    """Return card and grid of what is held in-plane beyond the edges; corners have to hold what their edges do."""
     pins = []
     for grid, edges in on_edges.items():
         expected = set().union(*(common[number] for number in edges))
@@ -168,7 +168,7 @@ def _pins(bulk: BulkData, held: Held, on_edges: Mapping[int, list[int]], common:
         missing = expected - set(there)
         if missing & {1, 2, 3}:
             raise bulk.missing(f"the corner grid {grid} doesn't hold component {min(missing)} (in the panel's axes) as "
-                               f"its edges do: only whole edges can be supported.")
+                               f"its edges do: only entire edges can be supported.")
         if missing:
             remarks.edge(" and ".join(EDGES[number] for number in edges),
                          f"the corner grid {grid} turns freely in the file, Implam holds it as its edges")
@@ -176,7 +176,7 @@ def _pins(bulk: BulkData, held: Held, on_edges: Mapping[int, list[int]], common:
             if component in expected:
                 continue
             if component > 2:
-                raise bulk.error(card, f"it holds grid {grid}, which isn't on an edge supported like that: only whole "
+                raise bulk.error(card, f"it holds grid {grid}, which isn't on an edge supported like that: only entire "
                                        "edges can be supported.")
             pins.append((card, grid))
     return pins

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from implam_post.exchange.bulk_data import BulkCard, BulkData
 from implam_post.exchange.remarks import Remarks
-from implam_post.laminate import Ply
+from implam_post.laminate.sections import Ply
 
 # Number of the field TREF.
 _TREF = {"PCOMP": 6, "PCOMPG": 6, "MAT1": 7, "MAT8": 11}
@@ -21,7 +21,7 @@ class Thermal(NamedTuple):
 
 
 def read_thermal(bulk: BulkData, properties: Collection[int], plies: Iterable[Ply], remarks: Remarks) -> Thermal | None:
-    """Return the temperatures; None if no ply expands, or nothing is said of them."""
+    """Return the temperatures; None if no ply expands, or none is given."""
     plies = list(plies)
     defaults = list(bulk.named("TEMPD"))
     cards = _cards_with_reference(bulk, properties, {ply.material.name for ply in plies})

@@ -4,11 +4,11 @@ import textwrap
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from implam_post.deck import STRENGTHS
 from implam_post.exchange.bulk_shape import Shape
 from implam_post.exchange.bulk_supports import Supports
 from implam_post.exchange.bulk_thermal import Thermal
-from implam_post.laminate import Material, Ply, natural_shear_correction
+from implam_post.laminate.decks import STRENGTHS
+from implam_post.laminate.sections import Material, Ply, natural_shear_correction
 
 # Fewest elements each way of a patch and the plate around it (src/case/deck_extents.f90).
 _BESIDE_PATCH = 3

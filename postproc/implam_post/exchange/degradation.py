@@ -3,8 +3,8 @@
 import math
 from dataclasses import dataclass, replace
 
-from implam_post.deck import Deck
-from implam_post.laminate import Material
+from implam_post.io.deck import Deck
+from implam_post.laminate.sections import Material
 
 FIBRE, CRACKING, CRUSHING = 1, 2, 4
 MODES = {FIBRE: "fibres", CRACKING: "cracked", CRUSHING: "crushed"}
@@ -44,6 +44,6 @@ def degradation_of(deck: Deck) -> Degradation:
     return rule
 
 
-def told(failures: int) -> str:
+def failed_modes(failures: int) -> str:
     """Return the modes in words."""
     return " and ".join(word for mode, word in MODES.items() if failures & mode)

@@ -4,19 +4,19 @@ import argparse
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 
-from implam_post.errors import EXIT_DONE, CommandParser, FileError, run
 from implam_post.exchange.abaqus import abaqus_input
 from implam_post.exchange.nastran import nastran_deck
 from implam_post.exchange.panel import Panel
 from implam_post.exchange.results import read_panel
+from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, run
 
 
 def summary(panel: Panel) -> Iterator[str]:
     """Return what the panel holds."""
     cells = len(panel.stacks)
-    apart = sum(len(stacks) > 1 for stacks in panel.stacks.values())
+    delaminated = sum(len(stacks) > 1 for stacks in panel.stacks.values())
     failed = sum(any(any(stack.failures) for stack in stacks) for stacks in panel.stacks.values())
-    yield (f"{panel.name}: {cells} cells, of which {apart} came apart and {failed} have failed plies; "
+    yield (f"{panel.name}: {cells} cells, of which {delaminated} are delaminated and {failed} have failed plies; "
            f"{len(panel.sections())} sections, {len(panel.materials())} materials")
     if panel.pressure is not None:
         yield f"uniform pressure on the struck face: {panel.pressure:g}"
@@ -24,7 +24,7 @@ def summary(panel: Panel) -> Iterator[str]:
 
 def _command(options: argparse.Namespace, suffix: str, lines: Callable[[Panel, argparse.Namespace], Iterable[str]]
              ) -> int:
-    """Read, write and tell."""
+    """Read, write and report."""
     panel = read_panel(options.source, options.time).with_pressure(options.pressure)
     output = options.output or options.source.with_name(f"{options.source.stem}_panel{suffix}")
     text = "\n".join(lines(panel, options)) + "\n"

@@ -7,7 +7,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from implam_post.errors import EXIT_DONE, CommandParser, FileError, ImplamError, run
 from implam_post.exchange.bulk_data import KNOWN, BulkData, ranges, read_bulk_data
 from implam_post.exchange.bulk_laminate import read_laminate
 from implam_post.exchange.bulk_shape import Shape, read_grids, read_shape
@@ -15,14 +14,15 @@ from implam_post.exchange.bulk_supports import read_supports
 from implam_post.exchange.bulk_thermal import read_thermal
 from implam_post.exchange.deck_text import Impact, deck_text
 from implam_post.exchange.remarks import Remarks
-from implam_post.laminate import Ply
+from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, ImplamError, run
+from implam_post.laminate.sections import Ply
 
 TAKEN = KNOWN
 
 
 def deck_of(bulk: BulkData, name: str, impact: Impact, struck_last: bool = False, supports: int | None = None,
             shear_23: float | None = None) -> tuple[str, Remarks]:
-    """Return the deck of a panel and what is to be told about its cards."""
+    """Return the deck of a panel and remarks on its cards."""
     for card in bulk.named("INCLUDE"):
         raise bulk.error(card, "it isn't followed: put all bulk data into one file.")
     remarks = Remarks()
@@ -61,8 +61,8 @@ def report(bulk: BulkData, remarks: Remarks) -> Iterator[str]:
         yield f"  WTMASS   {bulk.mass_factor:g}, {ranges((card.line for card in mass_cards), lines)}: times RHO"
     elif bulk.mass_factor != 1:
         yield f"  WTMASS   {bulk.mass_factor:g}, in the case control: times RHO"
-    told = remarks.told(bulk)
-    yield from ["taken in part or otherwise:", *(f"  {text}" for text in told)] if told else []
+    texts = remarks.texts(bulk)
+    yield from ["taken in part or otherwise:", *(f"  {text}" for text in texts)] if texts else []
     left = [card for card in bulk.cards if card.name not in TAKEN and card not in mass_cards]
     others = list(dict.fromkeys(card.name for card in left))
     yield "not taken:" if others else "not taken: none"
@@ -72,7 +72,7 @@ def report(bulk: BulkData, remarks: Remarks) -> Iterator[str]:
 
 
 def _command(options: argparse.Namespace) -> int:
-    """Read, write and tell."""
+    """Read, write and report."""
     impact = Impact(options.mass, options.velocity, options.radius, options.end, options.step)
     if len({value is None for value in impact[:3]}) > 1:
         raise ImplamError("--mass, --velocity and --radius go together.")
@@ -103,7 +103,7 @@ def _positive(text: str) -> float:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command."""
     parser = CommandParser("implam-from-nastran", description="Turn Nastran's bulk data of a rectangular composite "
-                           "panel into a deck, and tell which cards were taken and which weren't.")
+                           "panel into a deck, and report which cards were taken and which weren't.")
     parser.add_argument("bulk", type=Path, metavar="FILE.bdf", help="bulk data, with or without case control")
     parser.add_argument("-o", "--output", type=Path, metavar="DECK.nml", help="the deck (default: FILE.nml)")
     parser.add_argument("--struck", choices=("first", "last"), default="first",

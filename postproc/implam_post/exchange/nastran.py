@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 
 from implam_post.exchange.panel import MaterialState, Panel, Section
 from implam_post.exchange.shell_mesh import ShellMesh, shell_mesh
-from implam_post.laminate import Material
+from implam_post.laminate.sections import Material
 
 Field = int | float | str | None
 _SUPPORTS, _LOAD = 1, 1
@@ -60,7 +60,7 @@ def _property(number: int, section: Section, materials: dict[MaterialState, int]
 
 def _material(number: int, state: MaterialState, material: Material) -> Iterator[str]:
     """Return a MAT8, or a MAT1 if the deck gave E and nu and nothing failed; strengths only where nothing failed."""
-    yield f"$ {state.name} {state.told}".rstrip()
+    yield f"$ {state.name} {state.failed}".rstrip()
     strengths = dict(material.strengths)
     for key in ("Sf", "Sm23"):
         if key in strengths:
@@ -98,7 +98,7 @@ def card(name: str, *fields: Field) -> Iterator[str]:
 
 
 def same(number: float, width: int) -> bool:
-    """Tell whether a field of `width` characters keeps a number as it is."""
+    """Return whether a field of `width` characters keeps a number as it is."""
     mantissa, sign, exponent = re.fullmatch(r"(-?[0-9.]+)([+-]?)([0-9]*)", real(number, width)).groups()
     return float(f"{mantissa}e{sign}{exponent or 0}") == number
 
@@ -109,9 +109,9 @@ def real(number: float, width: int) -> str:
     for text in (shortest, *(f"{number:.{digits}e}" for digits in range(width, -1, -1))):
         mantissa, _, exponent = text.partition("e")
         mantissa = mantissa if "." in mantissa else mantissa + "."
-        whole, _, fraction = mantissa.partition(".")
+        integer, _, fraction = mantissa.partition(".")
         fraction = fraction if text is shortest and not exponent else fraction.rstrip("0")
-        written = f"{whole}.{fraction}" + (f"{int(exponent):+d}" if exponent else "")
+        written = f"{integer}.{fraction}" + (f"{int(exponent):+d}" if exponent else "")
         if len(written) <= width:
             return written
     raise ValueError(f"{number} doesn't fit into {width} characters")

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from implam_post.exchange.degradation import Degradation, told
-from implam_post.laminate import Material, Ply
+from implam_post.exchange.degradation import Degradation, failed_modes
+from implam_post.laminate.sections import Material, Ply
 
 Cell = tuple[int, int]
 
@@ -27,9 +27,9 @@ class MaterialState(NamedTuple):
     failures: int
 
     @property
-    def told(self) -> str:
+    def failed(self) -> str:
         """What failed, in words; empty if nothing did."""
-        return told(self.failures)
+        return failed_modes(self.failures)
 
 
 class Layer(NamedTuple):
@@ -42,7 +42,7 @@ class Layer(NamedTuple):
 
 @dataclass(frozen=True)
 class Section:
-    """The plies of a stack and the z of its middle, from that of the whole laminate downwards."""
+    """The plies of a stack and the z of its middle, from that of the full laminate downwards."""
 
     layers: tuple[Layer, ...]
     middle: float
@@ -62,7 +62,7 @@ class Section:
     def title(self) -> str:
         """Plies by their numbers and what failed in them."""
         words = [f"plies {self.first} to {self.first + len(self.layers) - 1}"]
-        words += [f"{number} {layer.material.told}" for number, layer in enumerate(self.layers, self.first)
+        words += [f"{number} {layer.material.failed}" for number, layer in enumerate(self.layers, self.first)
                   if layer.material.failures]
         return ", ".join(words)
 
@@ -118,8 +118,8 @@ class Panel:
         return {state: self.degradation.degraded(originals[state.name], state.failures)
                 for state in sorted(states, key=lambda state: (state.failures, order.index(state.name)))}
 
-    def broken(self, cell: Cell) -> frozenset[int]:
-        """Return the interfaces of a cell that came apart, by the ply above each."""
+    def delaminated(self, cell: Cell) -> frozenset[int]:
+        """Return the delaminated interfaces of a cell, by the ply above each."""
         return frozenset(stack.last for stack in self.stacks[cell][:-1])
 
     def with_pressure(self, pressure: float | None) -> "Panel":

@@ -1,4 +1,4 @@
-"""What is to be told of the cards that were read: what of them counts otherwise, or doesn't count."""
+"""Remarks on the cards that were read: what of them counts otherwise, or doesn't count."""
 
 from collections.abc import Mapping
 
@@ -27,7 +27,7 @@ class Remarks:
             if card.given(number):
                 self.add(card, f"{name} isn't taken")
 
-    def told(self, bulk: BulkData) -> list[str]:
+    def texts(self, bulk: BulkData) -> list[str]:
         """Return the remarks in the order of the file, those on edges at the end."""
         everything = [card.line for card in bulk.cards]
         found = [(min(lines), f"{name}, {ranges(lines, everything)}: {sentence}")

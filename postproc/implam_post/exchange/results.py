@@ -4,12 +4,13 @@ from pathlib import Path
 
 import numpy as np
 
-from implam_post.deck import Deck, as_number, read_deck, recorded_deck
-from implam_post.errors import FileError, ImplamError
 from implam_post.exchange.degradation import degradation_of
 from implam_post.exchange.panel import Cell, Panel, Stack
-from implam_post.fields import IMAGES, Snapshot, opened, read_fields
-from implam_post.laminate import Ply
+from implam_post.io.deck import Deck, as_number, read_deck, recorded_deck
+from implam_post.io.errors import FileError, ImplamError
+from implam_post.io.fields import IMAGES, Snapshot, opened, read_fields
+from implam_post.laminate.decks import plies_of
+from implam_post.laminate.sections import Ply
 
 _STATES = {"ply_damage": "ply_1_failure", "delamination": "delaminated_above"}
 
@@ -34,20 +35,20 @@ def _from_results(path: Path, time: float | None) -> Panel:
         if deck.has(group) and field not in written:
             raise FileError(f"{path} doesn't hold the state of &{group}: run again with '{group}' among the fields of "
                             f"&output.")
-    plies = deck.plies()
+    plies = plies_of(deck)
     if snapshot.mesh.last_ply.max() != len(plies):
         raise FileError(f"{path} has {snapshot.mesh.last_ply.max()} plies and its deck {len(plies)}: it is damaged.")
     x, y = (_lines(snapshot.mesh.corners[..., axis]) for axis in (0, 1))
     stacks = _stacks(snapshot, x, y)
     x, y, stacks = _completed(x, y, stacks, fields.part)
     every_cell = {(column, row) for column in range(len(x) - 1) for row in range(len(y) - 1)}
-    if stacks.keys() != every_cell or not all(_is_whole(found, len(plies)) for found in stacks.values()):
+    if stacks.keys() != every_cell or not all(_is_complete(found, len(plies)) for found in stacks.values()):
         raise FileError(f"{path} is damaged: its cells don't make a plate of {len(plies)} plies.")
     return _panel(deck, plies, x, y, stacks)
 
 
-def _is_whole(stacks: tuple[Stack, ...], plies: int) -> bool:
-    """Tell whether stacks have every ply once, from the struck face down."""
+def _is_complete(stacks: tuple[Stack, ...], plies: int) -> bool:
+    """Return whether stacks have every ply once, from the struck face down."""
     ends = [0, *(stack.last for stack in stacks)]
     return ends[-1] == plies and all(stack.first == above + 1 and len(stack.failures) == stack.last - above
                                      for above, stack in zip(ends, stacks, strict=False))
@@ -79,28 +80,28 @@ def _stacks(snapshot: Snapshot, x: np.ndarray, y: np.ndarray) -> dict[Cell, tupl
 
 def _completed(x: np.ndarray, y: np.ndarray, stacks: dict[Cell, tuple[Stack, ...]], part: str
                ) -> tuple[np.ndarray, np.ndarray, dict[Cell, tuple[Stack, ...]]]:
-    """Return lines and stacks of the whole plate from those of the modelled part."""
+    """Return lines and stacks of the full plate from those of the modelled part."""
     halved = [any(signs[axis] < 0 for signs in IMAGES[part]) and lines[0] > -1e-9 * lines[-1]
               for axis, lines in enumerate((x, y))]
     x, y = (np.concatenate([-lines[:0:-1], lines]) if half else lines
             for lines, half in zip((x, y), halved, strict=True))
     counts = (len(x) - 1, len(y) - 1)
-    whole = {}
+    full = {}
     for cell, found in stacks.items():
         place = [index + count // 2 if half else index for index, count, half in zip(cell, counts, halved, strict=True)]
         for signs in IMAGES[part]:
             column, row = (index if sign > 0 else count - 1 - index
                            for index, count, sign in zip(place, counts, signs, strict=True))
-            whole[column, row] = found
-    return x, y, whole
+            full[column, row] = found
+    return x, y, full
 
 
 def _from_deck(deck: Deck) -> Panel:
-    """Return the panel in equal cells, as many as the deck's elements make on the whole plate; starters are apart."""
-    plies = deck.plies()
+    """Return the panel in equal cells, as many as the deck's elements on the full plate, with its starters."""
+    plies = plies_of(deck)
     lengths, elements = deck.lengths(), deck.numbers("mesh", "elements")
     if len(elements) != 2 or min(elements) < 1 or any(count % 1 for count in elements):
-        raise deck.error("mesh", "elements needs two whole numbers greater than zero.")
+        raise deck.error("mesh", "elements needs two integers greater than zero.")
     part = deck.choice("plate", "symmetry", ("none", *list(IMAGES)[1:]))
     parts = (1 if part in ("none", "half_y") else 2, 2 if part in ("quarter", "half_y") else 1)
     x, y = (np.linspace(-length / 2, length / 2, factor * int(count) + 1)
@@ -109,8 +110,8 @@ def _from_deck(deck: Deck) -> Panel:
     stacks = {}
     for i, column in enumerate(_in_reach(x)):
         for j, row in enumerate(_in_reach(y)):
-            apart = [ply for ply, side in starters if max(column, row) <= side / 2]
-            ends = [*sorted(apart), len(plies)]
+            delaminated = [ply for ply, side in starters if max(column, row) <= side / 2]
+            ends = [*sorted(delaminated), len(plies)]
             stacks[i, j] = tuple(Stack(above + 1, end, (end - above) * (0,))
                                  for above, end in zip([0, *ends], ends, strict=False))
     return _panel(deck, plies, x, y, stacks)
@@ -130,13 +131,13 @@ def _starters(deck: Deck, plies: int) -> list[tuple[int, float]]:
         where = f"{deck.path.name}: &delamination"
         named = group.get("below_ply", [0.0])
         if str(named[0]).lower() in ("all", "between_angles"):
-            angles = [ply.angle for ply in deck.plies()]
+            angles = [ply.angle for ply in plies_of(deck)]
             named = [ply for ply in range(1, plies) if (angles[ply] - angles[ply - 1]) % 180]
         side = np.sqrt(0.0005 * np.prod(deck.lengths()))
         for value in named:
             below_ply = as_number(value, f"{where} below_ply")
             if below_ply not in range(1, plies):
-                raise deck.error("delamination", f"below_ply needs whole numbers from 1 to {plies - 1}.")
+                raise deck.error("delamination", f"below_ply needs integers from 1 to {plies - 1}.")
             found.append((int(below_ply), as_number(group.get("starter", [side])[0], f"{where} starter")))
     return found
 

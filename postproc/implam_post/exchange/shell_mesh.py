@@ -1,4 +1,4 @@
-"""Grids and elements of a panel: one grid where the plies hold together, coincident ones where they came apart."""
+"""Grids and elements of a panel: one grid where plies are joined, coincident grids where they have delaminated."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -64,9 +64,9 @@ def _numbered(panel: Panel, with_middles: bool) -> tuple[dict[Place, dict[int, i
         for i in range(len(x)):
             if i % 2 and j % 2 and not with_middles:
                 continue
-            apart = frozenset.intersection(*(panel.broken(cell) for cell in _around(panel, i, j)))
+            delaminated = frozenset.intersection(*(panel.delaminated(cell) for cell in _around(panel, i, j)))
             numbers[i, j] = {}
-            for first in (1, *(below + 1 for below in sorted(apart))):
+            for first in (1, *(below + 1 for below in sorted(delaminated))):
                 coordinates.append((float(x[i]), float(y[j])))
                 numbers[i, j][first] = len(coordinates)
     return numbers, coordinates
@@ -81,9 +81,9 @@ def _halved(lines: np.ndarray) -> np.ndarray:
 
 def _around(panel: Panel, i: int, j: int) -> list[Cell]:
     """Return the cells that a place belongs to."""
-    along, across = ([place for place in {(line - 1) // 2, line // 2} if 0 <= place < count]
+    columns, rows = ([place for place in {(line - 1) // 2, line // 2} if 0 <= place < count]
                      for line, count in zip((i, j), panel.cells, strict=True))
-    return [(column, row) for column in along for row in across]
+    return [(column, row) for column in columns for row in rows]
 
 
 def _element(cell: Cell, stack: Stack, numbers: dict[Place, dict[int, int]]) -> Element:

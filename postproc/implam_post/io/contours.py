@@ -1,0 +1,114 @@
+"""Smooth regions of plates: where a field over the nine points of elements reaches a level, as polygons.
+
+An element is cut into eight triangles, its field taken as linear in each, so that outlines are no stairs of elements.
+The level is chosen so that the region has a given area: that which a cohesive law has dissipated is the integral of the
+share, which lies between the area of all that is damaged and that of all that has failed.
+"""
+
+import numpy as np
+
+# Simpson's weights of corners, sides and middle: parts of an element's area that belong to its points.
+WEIGHTS = np.array([1, 1, 1, 1, 4, 4, 4, 4, 16]) / 36
+# Triangles of an element: corner, side, middle, counter-clockwise; diagonals meet in the middle, so images agree.
+_TRIANGLES = np.array([three for corner in range(4) for three in ((corner, 4 + corner, 8),
+                                                                  (corner, 8, 4 + (corner + 3) % 4))])
+_QUADS = np.array([(corner, 4 + corner, 8, 4 + (corner + 3) % 4) for corner in range(4)])
+# Halvings of the level: beyond rounding of the shares, which lie between 0 and 1.
+_HALVINGS = 50
+# Places differ by more than this part of the largest coordinate: images agree but for rounding.
+GRAIN = 1e-7
+
+
+def area(cells: np.ndarray) -> float:
+    """Return the area of cells in plan."""
+    return float(np.sum(areas(cells)))
+
+
+def areas(cells: np.ndarray) -> np.ndarray:
+    """Return the area of each polygon, (polygons, corners, 2)."""
+    x, y = cells[..., 0], cells[..., 1]
+    return np.abs(np.sum(x * np.roll(y, -1, axis=-1) - y * np.roll(x, -1, axis=-1), axis=-1)) / 2
+
+
+def nine_points(corners: np.ndarray) -> np.ndarray:
+    """Return corners, sides and middle of elements with straight edges, (elements, 9, 2)."""
+    sides = (corners + np.roll(corners, -1, axis=1)) / 2
+    return np.concatenate([corners, sides, corners.mean(axis=1, keepdims=True)], axis=1)
+
+
+def region(corners: np.ndarray, shares: np.ndarray) -> np.ndarray:
+    """Return polygons, (polygons, 4, 2), where shares, (elements, 9), are largest; their area is the integral."""
+    return above(corners, shares, level_of(corners, shares))
+
+
+def level_of(corners: np.ndarray, shares: np.ndarray) -> float:
+    """Return the level above which shares lie in an area that is their integral; infinity if they are nothing."""
+    reached = shares.max(axis=1, initial=0) > 0
+    corners, shares = corners[reached], shares[reached]
+    if not len(corners):
+        return np.inf
+    content = float(np.sum(areas(corners) * (shares @ WEIGHTS)))
+    triangles = areas(nine_points(corners)[:, _TRIANGLES]).ravel()
+    values = np.sort(shares[:, _TRIANGLES].reshape(-1, 3), axis=1)
+    low, high = np.nextafter(0, 1), float(np.nextafter(values.max(), 2))
+    for _ in range(_HALVINGS):
+        level = (low + high) / 2
+        low, high = (level, high) if np.sum(triangles * _part_above(values, level)) >= content else (low, level)
+    # Where shares are even over elements the area has steps: the nearer one is taken.
+    beyond = [abs(np.sum(triangles * _part_above(values, level)) - content) for level in (low, high)]
+    return low if beyond[0] <= beyond[1] else high
+
+
+def above(corners: np.ndarray, shares: np.ndarray, level: float) -> np.ndarray:
+    """Return polygons, (polygons, 4, 2), where shares, (elements, 9), reach a level."""
+    reached = shares.max(axis=1, initial=0) >= level
+    return _cut(nine_points(corners[reached]), shares[reached], level)
+
+
+def _part_above(values: np.ndarray, level: float) -> np.ndarray:
+    """Return the part of each triangle where a linear field is at least a level; its values at the corners ascend."""
+    least, middle, most = values.T
+    with np.errstate(divide="ignore", invalid="ignore"):
+        below = (level - least)**2 / ((middle - least) * (most - least))
+        above = (most - level)**2 / ((most - middle) * (most - least))
+    return np.select([level <= least, level <= middle, level <= most], [1.0, 1 - below, above], 0.0)
+
+
+def _cut(points: np.ndarray, shares: np.ndarray, level: float) -> np.ndarray:
+    """Return what of the elements lies above a level: quarters of entire ones, parts of the triangles of others."""
+    entire = np.all(shares >= level, axis=1)
+    quarters = points[entire][:, _QUADS].reshape(-1, 4, 2)
+    triangles, values = points[~entire][:, _TRIANGLES].reshape(-1, 3, 2), shares[~entire][:, _TRIANGLES].reshape(-1, 3)
+    inside = values >= level
+    pieces = [quarters]
+    for count in (1, 2, 3):
+        chosen = inside.sum(axis=1) == count
+        # The corner that differs from the other two comes first.
+        odd = np.argmax(inside[chosen] if count == 1 else ~inside[chosen], axis=1) if count < 3 else 0
+        order = (np.reshape(odd, (-1, 1)) + np.arange(3)) % 3
+        (first, second, third), (a, b, c) = (np.moveaxis(np.take_along_axis(
+            array[chosen], order[..., None] if array.ndim == 3 else order, axis=1), 1, 0)
+            for array in (triangles, values))
+        if count == 3:
+            pieces.append(np.stack([first, second, third, third], axis=1))
+            continue
+        to_second, to_third = ((level - a) / (other - a) for other in (b, c))
+        near, far = first + to_second[:, None] * (second - first), first + to_third[:, None] * (third - first)
+        pieces.append(np.stack([first, near, far, far] if count == 1 else [near, second, third, far], axis=1))
+    return np.concatenate(pieces)
+
+
+def outline(cells: np.ndarray) -> np.ndarray:
+    """Return the edges around cells, (edges, 2 ends, 2), cells on their left; those between cells cancel."""
+    if not len(cells):
+        return np.empty((0, 2, 2))
+    edges = np.stack([cells, np.roll(cells, -1, axis=1)], axis=2).reshape(-1, 2, 2)
+    places = np.round(edges / (np.abs(cells).max() * GRAIN)).astype(np.int64)
+    ends = places @ [2**32, 1]
+    forward = ends[:, 0] < ends[:, 1]
+    _, first, edge = np.unique(np.sort(ends, axis=1), axis=0, return_index=True, return_inverse=True)
+    balance = np.zeros(len(first), dtype=int)
+    np.add.at(balance, edge.ravel(), np.where(forward, 1, -1) * (ends[:, 0] != ends[:, 1]))
+    kept = balance != 0
+    turned = (balance[kept] > 0) != forward[first[kept]]
+    return np.where(turned[:, None, None], edges[first[kept]][:, ::-1], edges[first[kept]])

@@ -1,0 +1,163 @@
+"""What ASTM D7136 requires to be reported of an impact: threshold force, energies, size and type of the damage."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from implam_post.io.contours import outline
+from implam_post.io.fields import Fields, struck_point
+from implam_post.io.history import History
+from implam_post.io.quantities import impact_energy, peak
+
+# Corner frequency, Hz, of the low pass before the force is looked at: the least natural frequency that ASTM D7136 lets
+# a load cell with its impactor have. A deck's own force_filter goes before it.
+CORNER = 6e3
+# A fall counts from this part of the force on, and if plies and interfaces took at least this part of what the fall
+# releases with the impactor fixed, F w/2. On panels of 6.5, 10 and 25 J falls by vibration have up to .04 of it, those
+# in which plies and interfaces break from .18 on.
+_LEAST_FALL, _LEAST_SHARE = 0.02, 0.1
+# Delay of the low pass, in radians at its corner.
+_DELAY = 2.6
+# Steps of the filter in a period of its corner, and the fewest rows of the history in one.
+_STEPS, _FEWEST_ROWS = 20, 4
+_DISSIPATED = ("energy_delamination", "energy_ply_damage")
+# Directions along which the damage is measured, degrees.
+DIRECTIONS = (0, 45, 90, -45)
+
+
+@dataclass(frozen=True)
+class Threshold:
+    """Where the force curve first drops by damage: force behind the low pass, its time, energy transferred by then."""
+
+    force: float
+    time: float
+    energy: float
+    corner: float
+
+
+@dataclass(frozen=True)
+class Extent:
+    """Size of the projected damage: its largest diameter with the direction of that in degrees, its lengths along x
+    and y, and what lies between its outermost points on lines through the struck point, by direction."""
+
+    diameter: float
+    direction: float
+    length: float
+    width: float
+    through: dict[int, float]
+
+
+def low_pass(time: np.ndarray, values: np.ndarray, corner: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return even times and what a causal Butterworth low pass of 4th order leaves of values that begin with zero."""
+    from scipy.signal import butter, sosfilt
+
+    step = min(1 / (_STEPS * corner), float(np.min(np.diff(time), initial=np.inf)))
+    step = max(step, 1 / (50 * _STEPS * corner))
+    even = np.arange(0.0, time[-1] + step / 2, step)
+    return even, sosfilt(butter(4, corner, fs=1 / step, output="sos"), np.interp(even, time, values, left=0.0))
+
+
+def threshold(history: History, corner: float) -> Threshold | None:
+    """Return where the force first drops by damage while the impactor moves towards the plate; None if never.
+
+    The force is that behind a low pass with this corner frequency. It drops if it falls by 2 % before it is regained,
+    and if plies and interfaces take a tenth at least of F w/2, F being the fall and w the displacement: that is what
+    a loss of stiffness releases at fixed displacement, and what the plate's vibration does not take.
+    """
+    time, w = history.time, history["impactor_displacement"]
+    if not np.any(w) or not np.any(history["force"]) or len(time) < _FEWEST_ROWS * time[-1] * corner:
+        return None
+    even, force = low_pass(time, history["force"], corner)
+    delay = _DELAY / (2 * math.pi * corner)
+    taken = np.interp(even - delay, time, sum(history[name] for name in _DISSIPATED))
+    displaced = np.interp(even - delay, time, w)
+    last = int(np.searchsorted(even, time[np.argmax(w)] + delay))
+    place = 0
+    while place < last:
+        ahead = np.flatnonzero(force[place + 1:last + 1] >= force[place])
+        after = place + 1 + int(ahead[0]) if len(ahead) else last
+        lowest = place + int(np.argmin(force[place:after + 1]))
+        fall = force[place] - force[lowest]
+        if fall >= _LEAST_FALL * force[place] > 0 and (
+                taken[lowest] - taken[place] >= _LEAST_SHARE * fall * displaced[place] / 2):
+            at = float(even[place])
+            return Threshold(float(force[place]), at, energy_transferred(history, at - delay), corner)
+        place = after
+    return None
+
+
+def energy_transferred(history: History, time: float) -> float:
+    """Return the energy that the impactor has given to the plate by a time."""
+    return impact_energy(history) - history.at("energy_impactor", max(time, float(history.time[0])))
+
+
+def energy_to_peak(history: History) -> float:
+    """Return the energy that the impactor has given to the plate when its force is largest."""
+    return energy_transferred(history, peak(history, "force").time)
+
+
+def extent(fields: Fields) -> Extent | None:
+    """Return the size of what a C-scan sees at the last time; None if it sees nothing."""
+    cells = fields.projected(len(fields.snapshots) - 1)
+    if not len(cells):
+        return None
+    edges = outline(cells)
+    points = np.unique(edges.reshape(-1, 2), axis=0)
+    (diameter, direction), (length, width) = _widest(points), np.ptp(points, axis=0)
+    middle = struck_point(fields)
+    through = {angle: _between_outermost(edges - middle, math.radians(angle)) for angle in DIRECTIONS}
+    return Extent(diameter, direction, float(length), float(width), through)
+
+
+def _widest(points: np.ndarray) -> tuple[float, float]:
+    """Return the largest distance of two points, and the direction from one to the other, -90 < degrees <= 90."""
+    angles = np.radians(np.arange(0, 180, 0.5))
+    reach = points @ np.stack([np.cos(angles), np.sin(angles)])
+    # Only points that lie outermost in some direction can be ends of the largest diameter.
+    outer = np.unique(points[np.concatenate([np.argmax(reach, axis=0), np.argmin(reach, axis=0)])], axis=0)
+    distances = outer[:, None] - outer[None]
+    lengths = np.hypot(*np.moveaxis(distances, -1, 0))
+    x, y = distances[np.unravel_index(np.argmax(lengths), lengths.shape)]
+    degrees = math.degrees(math.atan2(y, x))
+    return float(lengths.max()), degrees - 180 if degrees > 90 else degrees + 180 if degrees <= -90 else degrees
+
+
+def _between_outermost(edges: np.ndarray, angle: float) -> float:
+    """Return the length between the outermost points of edges on a line through the origin; 0 if none meets it."""
+    along, across = np.array([math.cos(angle), math.sin(angle)]), np.array([-math.sin(angle), math.cos(angle)])
+    heights, places = edges @ across, edges @ along
+    met = (heights[:, 0] >= 0) != (heights[:, 1] >= 0)
+    if not np.any(met):
+        return 0.0
+    (first, second), (from_, to) = heights[met].T, places[met].T
+    crossings = from_ + first / (first - second) * (to - from_)
+    return float(np.ptp(crossings))
+
+
+def kinds_of_damage(summary: Mapping[str, Any]) -> list[str]:
+    """Return the kinds of damage that a run ends with, each with where it is."""
+    kinds = []
+    grown = [entry["ply_above"] for entry in summary.get("interfaces", []) if entry["first_growth"]]
+    if grown:
+        kinds.append(f"delamination below {_listed(grown)}")
+    for name, key in (("matrix cracks", "matrix_crack_area"), ("crushed matrix", "matrix_crushing_area"),
+                      ("failed fibres", "fibre_failure_area")):
+        plies = [ply["ply"] for ply in summary["plies"] if ply.get(key, 0) > 0]
+        if plies:
+            kinds.append(f"{name} in {_listed(plies)}")
+    return kinds
+
+
+def _listed(plies: list[int]) -> str:
+    """Return numbers of plies, runs of them in short."""
+    runs: list[list[int]] = []
+    for ply in sorted(plies):
+        if runs and ply == runs[-1][-1] + 1:
+            runs[-1].append(ply)
+        else:
+            runs.append([ply])
+    words = [str(run[0]) if len(run) == 1 else f"{run[0]} to {run[-1]}" for run in runs]
+    return ("ply " if len(plies) == 1 else "plies ") + ", ".join(words)

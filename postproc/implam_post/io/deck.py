@@ -1,0 +1,133 @@
+"""The deck: its groups, and the values of their keys with their defaults."""
+
+import re
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from implam_post.io.errors import DeckError
+from implam_post.io.files import read_text
+from implam_post.io.namelist import Value, read_namelist
+from implam_post.io.units import SYSTEMS, system_of
+
+
+class Deck:
+    """The groups of a deck, with its defaults filled in."""
+
+    def __init__(self, text: str, path: Path, adopted: str = "") -> None:
+        """Read the groups from `text`; `path` names the deck in messages.
+
+        `adopted` lists values that published materials gave in a run, a line each: &material 1 E1 = 130e9 [source].
+        """
+        self.path = path
+        self.groups = read_namelist(text, path.name)
+        for group, place, key, value in re.findall(r"&(\w+) (\d+) (\w+) = (\S+) \[", adopted):
+            given = read_namelist(f"&{group} {key}={value} /", path.name)[group][0]
+            self.groups[group][int(place) - 1] = given | self.groups[group][int(place) - 1]
+
+    @property
+    def name(self) -> str:
+        """Name of the case, from which those of the results are made."""
+        return str(self.value("case", "name", self.path.stem))
+
+    @property
+    def directory(self) -> Path:
+        """Folder of the results."""
+        return Path(str(self.value("output", "directory", ".")))
+
+    def has(self, group: str) -> bool:
+        """Return whether the deck has a group of this name."""
+        return group in self.groups
+
+    def values(self, group: str, key: str) -> list[Value]:
+        """Return all values of a key; empty if the deck doesn't give it."""
+        found = self.groups.get(group, [])
+        if len(found) > 1:
+            raise self.error(group, "stands in the deck more than once.")
+        return found[0].get(key.lower(), []) if found else []
+
+    def value(self, group: str, key: str, default: Value | None = None) -> Value:
+        """Return the value of a key, or `default` if the deck doesn't give it; no default means it must be there."""
+        return self.single(self.values(group, key), group, key, default)
+
+    def number(self, group: str, key: str, default: float | None = None) -> float:
+        """Return a number, as `value` does."""
+        return as_number(self.value(group, key, default), f"{self.path.name}: &{group} {key}")
+
+    def numbers(self, group: str, key: str) -> list[float]:
+        """Return all values of a key as numbers; empty if the deck doesn't give it."""
+        return [as_number(value, f"{self.path.name}: &{group} {key}") for value in self.values(group, key)]
+
+    def choice(self, group: str, key: str, allowed: Iterable[str]) -> str:
+        """Return a word out of `allowed`, the first of which is the default."""
+        allowed = list(allowed)
+        word = str(self.value(group, key, allowed[0])).lower()
+        if word not in allowed:
+            raise self.error(group, f"{key} = '{word}' is none of {', '.join(allowed)}.")
+        return word
+
+    def lengths(self) -> tuple[float, float]:
+        """Return the sides of the full plate along x and y."""
+        sides = self.numbers("plate", "length")
+        if len(sides) != 2 or min(sides) <= 0:
+            raise self.error("plate", "length needs the two sides of the plate, greater than zero.")
+        return sides[0], sides[1]
+
+    def edges(self) -> list[str]:
+        """Return the supports at x-min, x-max, y-min and y-max."""
+        return [str(edge).lower() for edge in self.spread(self.values("plate", "edges"), 4, "plate")]
+
+    def error(self, group: str, sentence: str) -> DeckError:
+        """Return an error that names deck and group."""
+        return DeckError(f"{self.path.name}: &{group}: {sentence}")
+
+    def single(self, values: list[Value], group: str, key: str, default: Value | None) -> Value:
+        """Return the only value of a key, or its default."""
+        if len(values) > 1:
+            raise self.error(group, f"{key} takes one value.")
+        if values:
+            return values[0]
+        if default is None:
+            raise self.error(group, f"{key} is needed.")
+        return default
+
+    def spread(self, values: list[Value], count: int, group: str) -> list[Value]:
+        """Return `count` values; a single one serves all."""
+        if len(values) not in (1, count):
+            raise self.error(group, f"a list has {len(values)} values where 1 or {count} are needed.")
+        return values if len(values) == count else count * values
+
+
+def as_number(value: Value, where: str) -> float:
+    """Return `value` if it is a finite number."""
+    if isinstance(value, (bool, str)) or not np.isfinite(value):
+        raise DeckError(f"{where}: {value!r} isn't a number.")
+    return value
+
+
+def recorded_deck(provenance: Mapping[str, Any], path: Path) -> Deck:
+    """Return the deck of a run from the provenance in its results, with the values of published materials."""
+    deck, adopted = (text if isinstance(text, str) else text[()].decode("utf-8")
+                     for text in (provenance["deck"], provenance.get("library", "")))
+    return Deck(deck, path, adopted)
+
+
+def read_deck(path: Path | str) -> Deck:
+    """Read the deck from its file."""
+    path = Path(path)
+    return Deck(read_text(path, "the deck"), path)
+
+
+def system_of_deck(deck: Deck | None) -> str:
+    """Return the system of units of a deck: the one it names, else that in which its first material is a solid."""
+    if deck is None:
+        return ""
+    try:
+        named = str(deck.value("case", "units", "")).lower()
+    except DeckError:
+        return ""
+    densities = [group["density"][0] for group in deck.groups.get("material", []) if "density" in group]
+    density = next((value for value in densities if isinstance(value, float)), None)
+    return next((name for name in SYSTEMS if name.lower() == named), "") or system_of(density)

@@ -1,0 +1,54 @@
+"""Errors reported to the user in one sentence, and the exit codes they lead to (those of the solver)."""
+
+import argparse
+import sys
+from collections.abc import Callable, Sequence
+
+EXIT_DONE, EXIT_USAGE, EXIT_DECK, EXIT_FILES, EXIT_INTERRUPTED = 0, 1, 2, 4, 130
+
+
+class ImplamError(Exception):
+    """An error that one sentence explains."""
+
+    exit_code = EXIT_USAGE
+
+
+class DeckError(ImplamError):
+    """The deck can't be read, or describes what the semi-analytic solution doesn't cover."""
+
+    exit_code = EXIT_DECK
+
+
+class FileError(ImplamError):
+    """A file is missing or not what it should be."""
+
+    exit_code = EXIT_FILES
+
+
+class CommandParser(argparse.ArgumentParser):
+    """Parser of a command line that ends with the solver's exit code for wrong usage."""
+
+    def error(self, message: str) -> None:
+        """Say what is wrong and end."""
+        self.print_usage(sys.stderr)
+        self.exit(EXIT_USAGE, f"{self.prog}: {message}\n")
+
+
+def count(text: str) -> int:
+    """Return an integer greater than zero, out of a command line."""
+    number = int(text)
+    if number < 1:
+        raise argparse.ArgumentTypeError(f"{text} isn't greater than zero")
+    return number
+
+
+def run(command: Callable[[argparse.Namespace], int], parser: CommandParser, arguments: Sequence[str] | None) -> int:
+    """Run `command` on the parsed `arguments` and return the exit code; errors become one sentence."""
+    options = parser.parse_args(arguments)
+    try:
+        return command(options)
+    except ImplamError as error:
+        print(f"{parser.prog}: {error}", file=sys.stderr)
+        return error.exit_code
+    except KeyboardInterrupt:
+        return EXIT_INTERRUPTED

@@ -1,0 +1,307 @@
+"""Fields over the plate at chosen times, from NAME.h5: what has delaminated and what failed, seen in plan."""
+
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+from implam_post.io.contours import WEIGHTS, above, area, areas, level_of, outline, region
+from implam_post.io.deck import Deck, recorded_deck
+from implam_post.io.errors import FileError, ImplamError
+
+__all__ = ["IMAGES", "MODES", "Fields", "Interface", "Mesh", "Snapshot", "area", "deck_in", "extents", "opened",
+           "outline", "read_fields", "struck_point"]
+MODES = {"fibre failure": 1, "matrix cracking": 2, "matrix crushing": 4}
+# What h5py and numpy raise over a file whose bytes are damaged, or that is another program's.
+_DAMAGED = (KeyError, IndexError, TypeError, ValueError, AttributeError, RuntimeError, OverflowError, MemoryError)
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """Cells in plan: their corners, counter-clockwise (elements, 4, 2), the plies of each element, and whether its
+    interface on top was delaminated before the run."""
+
+    corners: np.ndarray
+    first_ply: np.ndarray
+    last_ply: np.ndarray
+    starter: np.ndarray
+
+    @property
+    def interfaces(self) -> list[int]:
+        """Plies above the interfaces that may delaminate."""
+        return [int(ply) - 1 for ply in np.unique(self.first_ply) if ply > 1]
+
+    @property
+    def plies(self) -> range:
+        """Numbers of the plies."""
+        return range(1, int(self.last_ply.max()) + 1)
+
+
+@dataclass(frozen=True)
+class Interface:
+    """Figures of an interface as the summary has them; `bounds` are least and greatest x, then y, of what failed."""
+
+    area: float
+    is_cohesive: bool
+    has_grown: bool
+    bounds: tuple[float, float, float, float]
+
+    @property
+    def extents(self) -> tuple[float, float]:
+        """Lengths along x and y."""
+        return self.bounds[1] - self.bounds[0], self.bounds[3] - self.bounds[2]
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """The state of interfaces and plies at one time, by element: share of the toughness dissipated at the nine points
+    of the interface on top, failures, G/G_c ahead of the fronts; figures of the interfaces and the projected area."""
+
+    time: float
+    mesh: Mesh
+    shares: np.ndarray
+    failures: dict[int, np.ndarray]
+    release_ratio: np.ndarray
+    interfaces: dict[int, Interface] = field(default_factory=dict)
+    projected_area: float | None = None
+
+    @property
+    def delaminated(self) -> np.ndarray:
+        """Whether an element counts as delaminated on top: those with the largest shares, as many as have the area
+        dissipated; with fronts those that are."""
+        found = np.zeros(len(self.shares), dtype=bool)
+        parts = self.shares @ WEIGHTS
+        for below_ply in self.mesh.interfaces:
+            own = np.flatnonzero((self.mesh.first_ply == below_ply + 1) & (parts > 0))
+            own = own[np.argsort(-parts[own], kind="stable")]
+            sizes = areas(self.mesh.corners[own])
+            # An element counts if more than half of it is needed to reach the area.
+            found[own[np.cumsum(sizes) - sizes / 2 < np.sum(sizes * parts[own])]] = True
+        return found
+
+    def of_interface(self, below_ply: int) -> np.ndarray:
+        """Return which elements have this interface on top."""
+        return self.mesh.first_ply == below_ply + 1
+
+    def projected(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return cells in plan and the largest of the shares of all interfaces at each of their points."""
+        layered = self.mesh.first_ply > 1
+        corners, shares = self.mesh.corners[layered], self.shares[layered]
+        middles = np.round(corners.mean(axis=1) / (np.abs(self.mesh.corners).max() or 1) * 1e7).astype(np.int64)
+        _, first, place = np.unique(middles, axis=0, return_index=True, return_inverse=True)
+        largest = np.zeros((len(first), 9))
+        np.maximum.at(largest, place.ravel(), shares)
+        return corners[first], largest
+
+    def release(self, below_ply: int) -> tuple[np.ndarray, np.ndarray]:
+        """Return the corners of the cells ahead of the front below a ply that release energy, and G/G_c there."""
+        loaded = (self.release_ratio > 0) & self.of_interface(below_ply)
+        return self.mesh.corners[loaded], self.release_ratio[loaded]
+
+    def failed_cells(self, ply: int, mode: int) -> np.ndarray:
+        """Return the corners of the cells in which a ply failed in a mode (1 fibres, 2 cracking, 4 crushing)."""
+        of_ply = (self.mesh.first_ply <= ply) & (ply <= self.mesh.last_ply)
+        return self.mesh.corners[of_ply & (self.failures[ply] & mode > 0)]
+
+
+# Signs of x and y that put the images of a part of the plate in their places.
+IMAGES = {"whole": [(1, 1)], "full": [(1, 1)], "quarter": [(1, 1), (-1, 1), (-1, -1), (1, -1)],
+          "half_x": [(1, 1), (-1, 1)], "half_y": [(1, 1), (1, -1)], "point": [(1, 1), (-1, -1)]}
+
+
+@dataclass(frozen=True)
+class Fields:
+    """The times of a run; cells are those of the modelled part of the plate."""
+
+    name: str
+    part: str
+    snapshots: list[Snapshot]
+    _found: dict[tuple[int, int], np.ndarray] = field(default_factory=dict, compare=False, repr=False)
+
+    @property
+    def path(self) -> Path:
+        """Path of the file."""
+        return Path(self.name)
+
+    def place(self, time: float) -> int:
+        """Return the place among the snapshots of the one nearest to a time."""
+        stored = np.array([snapshot.time for snapshot in self.snapshots])
+        if not stored[0] * (1 - 1e-6) <= time <= stored[-1] * (1 + 1e-6):
+            raise ImplamError(f"time {time:g} is outside the fields, which reach from {stored[0]:g} to {stored[-1]:g}.")
+        return int(np.argmin(np.abs(stored - time)))
+
+    @property
+    def quarter(self) -> bool:
+        """Whether a quarter was modelled."""
+        return self.part == "quarter"
+
+    def full_plate(self, cells: np.ndarray) -> np.ndarray:
+        """Return the cells of the full plate: those of the modelled part and their images, all counter-clockwise."""
+        return np.concatenate([(cells * np.array(signs))[:, ::signs[0] * signs[1]] for signs in IMAGES[self.part]])
+
+    def delaminated(self, place: int, below_ply: int) -> np.ndarray:
+        """Return what has delaminated below a ply at one of the times, as polygons of the full plate.
+
+        They hold the largest shares of dissipated toughness, and have the area dissipated.
+        """
+        if (place, below_ply) not in self._found:
+            snapshot = self.snapshots[place]
+            own = snapshot.of_interface(below_ply)
+            self._found[place, below_ply] = self.full_plate(region(snapshot.mesh.corners[own], snapshot.shares[own]))
+        return self._found[place, below_ply]
+
+    def projected(self, place: int) -> np.ndarray:
+        """Return what a C-scan sees of all interfaces at one of the times, as polygons of the full plate."""
+        return self.full_plate(region(*self.snapshots[place].projected()))
+
+    def projected_depths(self, place: int) -> list[np.ndarray]:
+        """Return what each interface has of the region that a C-scan sees, as polygons of the full plate."""
+        snapshot = self.snapshots[place]
+        level = level_of(*snapshot.projected())
+        owns = [snapshot.of_interface(below_ply) for below_ply in snapshot.mesh.interfaces]
+        return [self.full_plate(above(snapshot.mesh.corners[own], snapshot.shares[own], level)) for own in owns]
+
+    def starter(self, below_ply: int) -> np.ndarray:
+        """Return the cells of the full plate that had delaminated below a ply before the run."""
+        mesh = self.snapshots[-1].mesh
+        return self.full_plate(mesh.corners[mesh.starter & (mesh.first_ply == below_ply + 1)])
+
+    def interface(self, place: int, below_ply: int) -> Interface:
+        """Return the figures of an interface at one of the times; from its polygons where the file holds none."""
+        snapshot = self.snapshots[place]
+        if below_ply in snapshot.interfaces:
+            return snapshot.interfaces[below_ply]
+        cells = self.delaminated(place, below_ply)
+        bounds = np.stack([cells.min(axis=(0, 1)), cells.max(axis=(0, 1))], axis=1) if len(cells) else np.zeros((2, 2))
+        return Interface(area(cells), bool(np.any(snapshot.shares % 1 > 0)), len(cells) > 0, tuple(bounds.ravel()))
+
+    def projected_area(self, place: int) -> float:
+        """Return the area that a C-scan sees at one of the times."""
+        found = self.snapshots[place].projected_area
+        return area(self.projected(place)) if found is None else found
+
+
+def extents(cells: np.ndarray) -> tuple[float, float]:
+    """Return the lengths along x and y of the smallest rectangle around cells; 0 if there are none."""
+    if not len(cells):
+        return 0.0, 0.0
+    along, across = np.ptp(cells.reshape(-1, 2), axis=0)
+    return float(along), float(across)
+
+
+def read_fields(path: Path | str) -> Fields:
+    """Read interfaces and plies from the solver's NAME.h5."""
+    path = Path(path)
+    with opened(path) as file:
+        meshes = {number: _mesh(group) for number, group in enumerate(_in_order(file["meshes"]), start=1)}
+        snapshots = [_snapshot(group, meshes) for group in _in_order(file["times"])]
+        part = file["part"][()].decode()
+    if not snapshots:
+        raise FileError(f"{path} holds no time yet.")
+    if part not in IMAGES:
+        raise FileError(f"{path} holds a part of the plate that isn't known here: {part}.")
+    return Fields(str(path), part, snapshots)
+
+
+@contextmanager
+def opened(path: Path) -> Iterator[h5py.File]:
+    """Open an HDF5 file; whatever is wrong with it becomes one sentence."""
+    try:
+        with h5py.File(path, "r") as file:
+            yield file
+    except OSError as error:
+        raise FileError(f"the fields {path} cannot be read ({_reason(error)}).") from None
+    except _DAMAGED as error:
+        raise FileError(f"{path} isn't a file of fields written by implam, or is damaged ({_reason(error)}).") from None
+
+
+def _reason(error: Exception) -> str:
+    """Return the first line of what is wrong, without the library's own numbers."""
+    return str(error).splitlines()[0].strip("\"'") if str(error) else type(error).__name__
+
+
+def _in_order(group: h5py.Group) -> list[h5py.Group]:
+    """Return the numbered members of a group in their order."""
+    return [group[name] for name in sorted(group)]
+
+
+def _finite(values: np.ndarray, name: str, count: int | None = None) -> np.ndarray:
+    """Return numbers, of which there must be so many, all finite."""
+    if not np.all(np.isfinite(values)) or (count is not None and len(values) != count):
+        raise ValueError(f"{name} holds no numbers, or not one an element")
+    return values
+
+
+def _flags(values: np.ndarray, name: str, count: int) -> np.ndarray:
+    """Return failures by element, modes added up."""
+    if not np.all((_finite(values, name, count) >= 0) & (values <= sum(MODES.values()))):
+        raise ValueError(f"{name} holds no failures")
+    return values.astype(int)
+
+
+def _mesh(group: h5py.Group) -> Mesh:
+    """Read a mesh; the first four points of an element are its corners."""
+    points, connectivity = group["coordinates"][()], group["connectivity"][()]
+    if connectivity.min(initial=0) < 0:
+        raise ValueError("connectivity has numbers below zero")
+    corners = _finite(points[:, :2][connectivity[:, :4]], "coordinates")
+    first, last = (_finite(group[f"cells/{name}"][()].ravel(), name, len(corners)) for name in ("first_ply",
+                                                                                                 "last_ply"))
+    if first.min() < 1 or np.any(last < first):
+        raise ValueError("first_ply and last_ply are no plies")
+    starter = group["cells/starter_above"][()].ravel() if "starter_above" in group["cells"] else np.zeros(len(first))
+    return Mesh(corners, first, last, _finite(starter, "starter_above", len(first)) > 0)
+
+
+def _snapshot(group: h5py.Group, meshes: dict[int, Mesh]) -> Snapshot:
+    """Read a time; without interfaces nothing is delaminated, without ply damage no ply has an entry."""
+    number = int(group["mesh"][()])
+    mesh, cells = meshes[number], group.get("cells", {})
+    nothing = np.zeros(len(mesh.first_ply))
+    delaminated, release_ratio = (_finite(cells[name][()].ravel(), name, len(nothing)) if name in cells else nothing
+                                  for name in ("delaminated_above", "energy_release_above"))
+    names = (name for name in map(re.compile(r"ply_(\d+)_failure").fullmatch, cells) if name)
+    found = sorted((int(name[1]), name.string) for name in names)
+    failures = {ply: _flags(cells[name][()].ravel(), name, len(nothing)) for ply, name in found if ply in mesh.plies}
+    interfaces, projected = _figures(group.get("interfaces", {}))
+    shares = np.repeat(delaminated[:, None], 9, axis=1)
+    if "points/dissipated_above" in group:
+        at_points = _finite(group["points/dissipated_above"][()], "dissipated_above")
+        at_points = at_points[group.file[f"meshes/{number:08d}/connectivity"][()]]
+        cohesive = [below_ply + 1 for below_ply, figures in interfaces.items() if figures.is_cohesive]
+        shares = np.where(np.isin(mesh.first_ply, cohesive)[:, None], at_points, shares)
+    time = float(_finite(group["time"][()], "time"))
+    return Snapshot(time, mesh, np.clip(shares, 0, 1), failures, release_ratio, interfaces, projected)
+
+
+def _figures(group: h5py.Group | dict) -> tuple[dict[int, Interface], float | None]:
+    """Read the figures of the interfaces and the projected area; files of earlier versions have none."""
+    if not len(group):
+        return {}, None
+    plies, cohesive, stages, sizes = (_finite(group[name][()].ravel(), name) for name in (
+        "ply_above", "is_cohesive", "stage", "area"))
+    bounds = _finite(group["bounds"][()], "bounds", len(plies))
+    interfaces = {int(ply): Interface(float(size), bool(law), stage > 1, tuple(map(float, box)))
+                  for ply, law, stage, size, box in zip(plies, cohesive, stages, sizes, bounds, strict=True)}
+    return interfaces, float(_finite(group["projected_area"][()].ravel(), "projected_area", 1)[0])
+
+
+def deck_in(path: Path) -> Deck | None:
+    """Return the deck of the run whose NAME.h5 or history this is; None if it is not known."""
+    fields = path if path.suffix == ".h5" else path.with_name(path.name.removesuffix("_history.csv") + ".h5")
+    try:
+        with opened(fields) as file:
+            return recorded_deck(file["provenance"], fields)
+    except ImplamError:
+        return None
+
+
+def struck_point(fields: Fields) -> np.ndarray:
+    """Return where the plate was struck, from its middle; the middle, if the deck of the run is not known."""
+    deck = deck_in(fields.path)
+    at = [] if deck is None else deck.numbers("impactor", "at")
+    return np.array(at if len(at) == 2 else [0.0, 0.0])

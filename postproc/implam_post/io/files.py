@@ -1,0 +1,68 @@
+"""Files that are replaced at once: a reader, or a stopped process, finds the old one or the new one."""
+
+import fcntl
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from implam_post.io.errors import FileError
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+@contextmanager
+def replaced(path: Path) -> Iterator[Path]:
+    """Give the path of a draft, with the same suffix; it takes the place of `path` once it has been written."""
+    draft = path.with_name(f".draft_{path.name}")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        yield draft
+        with draft.open("rb") as file:
+            os.fsync(file.fileno())
+        draft.replace(path)
+    except OSError as error:
+        raise FileError(f"{path} cannot be written ({error}).") from None
+
+
+def write_text(path: Path, text: str) -> None:
+    """Replace a file by one with this text."""
+    with replaced(path) as draft:
+        draft.write_text(text, encoding="utf-8")
+
+
+def write_table(path: Path, table: "pd.DataFrame", float_format: str | None = None) -> None:
+    """Replace a file by one with a table as CSV; numbers have all digits by default, missing ones are empty cells."""
+    write_text(path, table.to_csv(index=False, float_format=float_format, lineterminator="\n"))
+
+
+def read_text(path: Path, what: str) -> str:
+    """Return the text of a file; `what` it is stands in the message if it can't be read."""
+    try:
+        return path.read_text(encoding="utf-8-sig")
+    except OSError as error:
+        raise FileError(f"{what} {path} cannot be read ({error}).") from None
+    except UnicodeDecodeError:
+        raise FileError(f"{what} {path} cannot be read: it is no text.") from None
+
+
+def try_lock(path: Path) -> int | None:
+    """Lock a file, made if it isn't there; return its descriptor, or nothing if somebody else has locked it.
+
+    The lock belongs to whoever has the descriptor, children that inherit it too, and ends with the last of them.
+    """
+    try:
+        descriptor = os.open(path, os.O_RDWR | os.O_CREAT, 0o666)
+    except OSError as error:
+        raise FileError(f"{path} cannot be opened ({error}).") from None
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        os.close(descriptor)
+        return None
+    except OSError as error:
+        os.close(descriptor)
+        raise FileError(f"{path} cannot be locked ({error}).") from None
+    return descriptor

@@ -1,0 +1,104 @@
+"""A history: columns of numbers against time."""
+
+import io
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from implam_post.io.errors import FileError
+from implam_post.io.files import read_text
+from implam_post.io.units import dimension_of, unit_of
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+KEPT_ENERGIES = ("energy_impactor", "energy_kinetic", "energy_strain", "energy_indentation")
+# Those of every history.
+ENERGIES = (*KEPT_ENERGIES, "energy_delamination", "energy_ply_damage", "energy_contact", "energy_algorithmic")
+# What each is called in legends and pages, as in the summary; histories of earlier versions lack the last three.
+ENERGY_NAMES = {"energy_impactor": "impactor", "energy_kinetic": "kinetic", "energy_strain": "strain",
+                "energy_indentation": "indentation", "energy_delamination": "delamination",
+                "energy_ply_damage": "ply damage", "energy_contact": "contact",
+                "energy_algorithmic": "algorithmic dissipation", "energy_friction": "friction",
+                "energy_layers": "layers", "energy_damping": "damping"}
+UNACCOUNTED = "not accounted for"
+
+
+@dataclass(frozen=True)
+class History:
+    """Columns by name, all of one length, `time` among them."""
+
+    columns: dict[str, np.ndarray]
+    name: str = ""
+
+    def __getitem__(self, column: str) -> np.ndarray:
+        """Return a column by its name."""
+        if column not in self.columns:
+            raise FileError(f"{self.name or 'the history'} has no column '{column}'.")
+        return self.columns[column]
+
+    @property
+    def time(self) -> np.ndarray:
+        """Times of the rows."""
+        return self["time"]
+
+    def table(self, system: str = "", load_steps: bool = False) -> "pd.DataFrame":
+        """Return the columns as a table, with the unit of each in `attrs["units"]`; empty where it is not known.
+
+        `system` is that of the deck. The time of load steps is a load factor.
+        """
+        import pandas as pd
+
+        table = pd.DataFrame(self.columns)
+        table.attrs = {"name": self.name, "units": {name: unit_of(dimension_of(name), system) for name in table}}
+        if load_steps:
+            table.attrs["units"]["time"] = ""
+        return table
+
+    def until(self, time: float) -> "History":
+        """Return the rows up to a time."""
+        kept = self.time <= time * (1 + 1e-9)
+        return History({name: values[kept] for name, values in self.columns.items()}, self.name)
+
+    def at(self, column: str, time: float) -> float:
+        """Return a column's value at a time, between rows by linear interpolation; NaN outside the history."""
+        if not self.time[0] <= time <= self.time[-1] * (1 + 1e-9):
+            return float("nan")
+        return float(np.interp(time, self.time, self[column]))
+
+
+def read_history(path: Path | str) -> History:
+    """Read a history from the solver's CSV; lines that begin with # are comments."""
+    history = read_columns(path)
+    if not np.all(np.diff(history.time) > 0):
+        raise FileError(f"the times of the history {path} do not increase.")
+    return history
+
+
+def read_columns(path: Path | str) -> History:
+    """Read columns of numbers under their names, in any order of the rows and with or without a time."""
+    import pandas as pd
+
+    path = Path(path)
+    lines = [(number, line) for number, line in enumerate(read_text(path, "the history").splitlines(), start=1)
+             if line.strip() and line[0] != "#"]
+    if len(lines) < 2:
+        raise FileError(f"the history {path} has no rows.")
+    widths = [line.count(",") + 1 for _, line in lines]
+    for (number, _), width in zip(lines, widths, strict=True):
+        if width != widths[0]:  # pandas would fill a short row up
+            raise FileError(f"the history {path} has {width} cells under {widths[0]} names in line {number}.")
+    try:
+        cells = pd.read_csv(io.StringIO("\n".join(line for _, line in lines)), skipinitialspace=True, dtype=str,
+                            keep_default_na=False)
+    except ValueError as error:
+        raise FileError(f"the history {path} is no table of numbers ({str(error).strip()}).") from None
+    try:
+        table = cells.astype(float)
+    except ValueError:
+        is_number = cells.apply(pd.to_numeric, errors="coerce").notna() | cells.isin(["nan", "NaN"])
+        number = lines[1 + int((~is_number).any(axis=1).argmax())][0]
+        raise FileError(f"the history {path} has a cell in line {number} that is no number.") from None
+    return History({name.strip(): table[name].to_numpy() for name in table}, str(path))

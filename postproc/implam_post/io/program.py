@@ -1,0 +1,82 @@
+"""The program implam: where it is, its exit codes, and how it is started."""
+
+import os
+import shlex
+import shutil
+import subprocess
+from collections.abc import Sequence
+from pathlib import Path
+
+from implam_post.io.errors import FileError
+
+EXIT_CONVERGENCE, EXIT_STOPPED = 3, 75
+PROGRAM_HELP = ("the program and what starts it, as \"mpirun -n 2 build/implam\" (default: the environment's IMPLAM, "
+                "else implam on the PATH)")
+_WAITING = 60.0  # seconds for a check of a deck
+
+
+def find_program(words: str | None) -> list[str]:
+    """Return the words that start the program; paths become absolute. `words` are a user's, if any."""
+    chosen = shlex.split(words or os.environ.get("IMPLAM") or "implam")
+    for position in dict.fromkeys((0, len(chosen) - 1)):
+        found = shutil.which(chosen[position]) if chosen else None
+        if found is None:
+            raise FileError(f"the program '{shlex.join(chosen)}' isn't there: name it by --program or by IMPLAM in "
+                            "the environment, or put implam on the PATH.")
+        chosen[position] = str(Path(found).absolute())
+    return chosen
+
+
+def environment() -> dict[str, str]:
+    """Return the environment for several runs side by side: one thread each, no core for oneself."""
+    return {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "OMPI_MCA_hwloc_base_binding_policy": "none",
+            "PRTE_MCA_hwloc_default_binding_policy": "none", **os.environ}
+
+
+def processors() -> int:
+    """Return how many processors this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def check_deck(program: Sequence[str], deck: Path) -> tuple[bool, list[str]]:
+    """Let the program check a deck; return whether it may be run, and what it printed about it."""
+    try:
+        # Without what starts it: checking takes one process.
+        ended = subprocess.run([program[-1], "check", str(deck)], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                               stderr=subprocess.STDOUT, text=True, errors="replace", timeout=_WAITING, check=False,
+                               env=environment())
+    except (OSError, subprocess.TimeoutExpired) as error:
+        raise FileError(f"the program {program[-1]} cannot check a deck ({error}).") from None
+    printed = [line for line in ended.stdout.splitlines() if line.strip() and not line.endswith(": no errors.")]
+    return ended.returncode == 0, printed
+
+
+def shell_code(code: int) -> int:
+    """Return an exit code as a shell reports it: 128 and the number of the signal that ended a process."""
+    return 128 - code if code < 0 else code
+
+
+def last_words(output: str) -> str:
+    """Return the sentence with which a run ended, or its last line."""
+    lines = [line.strip() for line in output.splitlines() if line.strip()]
+    sentences = [line.removeprefix("implam: ") for line in lines if line.startswith("implam: ")]
+    return (sentences or lines or ["it printed nothing"])[-1]
+
+
+def history_in(folder: Path) -> Path | None:
+    """Return the history of the run in a folder."""
+    return next(iter(sorted(folder.glob("*_history.csv"))), None)
+
+
+def checkpoint_in(folder: Path) -> Path | None:
+    """Return the checkpoint of the run in a folder."""
+    return next(iter(sorted(folder.glob("*_restart.h5"))), None)
+
+
+def version_in(folder: Path) -> str:
+    """Return the version that wrote the results, by the last of its lines in the log."""
+    for path in sorted(folder.glob("*.log"))[:1]:
+        lines = [line for line in path.read_text(encoding="utf-8", errors="replace").splitlines()
+                 if line.startswith("Implam ")]
+        return lines[-1].split(",")[0].removeprefix("Implam ") if lines else ""
+    return ""

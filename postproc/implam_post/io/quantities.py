@@ -1,0 +1,196 @@
+"""Single numbers that characterize a history: peaks, contacts, rebound, energy. A NaN in the data gives a NaN here."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from implam_post.io.history import ENERGIES, KEPT_ENERGIES, History
+
+
+class Peak(NamedTuple):
+    """The largest value of a column, and when it is reached."""
+
+    value: float
+    time: float
+
+
+class Contact(NamedTuple):
+    """A stretch of time with force; its end is NaN if the history ends first."""
+
+    begin: float
+    end: float
+
+
+NO_PEAK, NO_CONTACT = Peak(np.nan, np.nan), Contact(np.nan, np.nan)
+
+
+def peak(history: History, column: str, window: Contact | None = None) -> Peak:
+    """Return the largest value of a column, within a window if one is given, by a parabola through the top rows."""
+    time, values = history.time, history[column]
+    if window is not None:
+        inside = (time >= window.begin) & ~(time > window.end)
+        time, values = time[inside], values[inside]
+    if not len(values) or not np.all(np.isfinite(values)):
+        return NO_PEAK
+    top = int(np.argmax(values))
+    if not 0 < top < len(values) - 1:
+        return Peak(float(values[top]), float(time[top]))
+    left, right = time[top - 1] - time[top], time[top + 1] - time[top]
+    rise_left, rise_right = values[top - 1] - values[top], values[top + 1] - values[top]
+    curvature = (rise_left / left - rise_right / right) / (left - right)
+    if curvature == 0:
+        return Peak(float(values[top]), float(time[top]))
+    slope = rise_left / left - curvature * left
+    return Peak(float(values[top] - slope**2 / (4 * curvature)), float(time[top] - slope / (2 * curvature)))
+
+
+def contacts(history: History) -> list[Contact]:
+    """Return the contacts in order; begin and end are where force**(2/3), linear in the indentation, reaches zero."""
+    time, force = history.time, history["force"]
+    if not np.all(np.isfinite(force)):
+        return [NO_CONTACT]
+    touching = force > 0
+    changes = np.diff(np.concatenate([[False], touching, [False]]).astype(int))
+    depth = np.maximum(force, 0)**(2 / 3)
+    found = []
+    for first, after in zip(np.flatnonzero(changes == 1), np.flatnonzero(changes == -1), strict=True):
+        begin = _zero(time, depth, first, 1, time[first - 1] if first else min(0.0, time[0]))
+        end = _zero(time, depth, after - 1, -1, time[after]) if after < len(time) else np.nan
+        found.append(Contact(float(begin), float(end)))
+    return found
+
+
+def _zero(time: np.ndarray, depth: np.ndarray, row: int, inward: int, limit: float) -> float:
+    """Return when `depth`, extrapolated from `row` and its neighbour in the contact, is zero, between row and limit."""
+    neighbour = row + inward
+    if not 0 <= neighbour < len(time) or depth[neighbour] <= depth[row]:
+        return limit
+    zero = time[row] - depth[row] * (time[neighbour] - time[row]) / (depth[neighbour] - depth[row])
+    return np.clip(zero, min(limit, time[row]), max(limit, time[row]))
+
+
+def contact(history: History, number: int) -> Contact:
+    """Return one of the contacts, counted from 0; NaN if there is none of that number."""
+    found = contacts(history)
+    return found[number] if number < len(found) else NO_CONTACT
+
+
+def second_peak(history: History) -> Peak:
+    """Return the largest force of the second contact."""
+    second = contact(history, 1)
+    return NO_PEAK if np.isnan(second.begin) else peak(history, "force", second)
+
+
+def rebound_velocity(history: History) -> float:
+    """Return the impactor's velocity at the end of the last contact."""
+    found = contacts(history)
+    return history.at("impactor_velocity", found[-1].end) if found else np.nan
+
+
+def contact_duration(history: History) -> float:
+    """Return the time from the first touch to the end of the last contact."""
+    found = contacts(history)
+    return found[-1].end - found[0].begin if found else np.nan
+
+
+def impact_energy(history: History) -> float:
+    """Return the energy the impactor brings: all that is there in the first row, less the pressure's work."""
+    return float(sum(history[column][0] for column in ENERGIES) - history["work_external"][0])
+
+
+def absorbed_energy(history: History) -> float:
+    """Return the energy the impactor has left behind, kinetic and of gravity, at the end of the last contact."""
+    found = contacts(history)
+    return impact_energy(history) - history.at("energy_impactor", found[-1].end) if found else np.nan
+
+
+def energy_error(history: History) -> float:
+    """Return the largest energy the energy balance fails to account for, as a fraction of the total at the start."""
+    initial = sum(history[column][0] for column in ENERGIES)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return float(np.max(np.abs(history["energy_error"])) / np.abs(initial))
+
+
+def energy_rise(history: History) -> float:
+    """Return the most that the energy kept, less the pressure's work, rises over any window, over that at the start."""
+    kept = sum(history[column] for column in KEPT_ENERGIES) - history["work_external"]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return float(np.max(kept - np.minimum.accumulate(kept)) / np.abs(kept[0]))
+
+
+def growth_rows(history: History) -> np.ndarray:
+    """Return the rows at which delaminations have grown; none if the history has no area."""
+    area = history.columns.get("delaminated_area", np.zeros(len(history.time)))
+    return 1 + np.flatnonzero(np.diff(area) > 1e-9 * np.max(area, initial=0))
+
+
+def first_growth(history: History) -> Peak:
+    """Return the largest force up to the row at which delaminations first grow, and the time of that row."""
+    rows = growth_rows(history)
+    if not len(rows):
+        return NO_PEAK
+    return Peak(float(np.max(history["force"][:rows[0] + 1])), float(history.time[rows[0]]))
+
+
+def rms_force_difference(history: History, reference: History) -> float:
+    """Return the rms difference of force over the reference's first contact, as a fraction of its peak.
+
+    The window reaches to the later release of the two. NaN if either history ends before the contact does in the
+    other.
+    """
+    first, other = contact(reference, 0), contact(history, 0)
+    both = [max(one.end if np.isfinite(one.end) else data.time[-1], one.begin)
+            for one, data in ((first, reference), (other, history))]
+    grid = reference.time[(reference.time >= first.begin) & (reference.time <= max(both))]
+    if np.isnan(other.begin) or not len(grid) or max(both) > (1 + 1e-6) * min(history.time[-1], reference.time[-1]):
+        return np.nan
+    difference = np.interp(grid, history.time, history["force"]) - np.interp(grid, reference.time, reference["force"])
+    weights = np.gradient(grid) if len(grid) > 1 else np.ones(1)
+    return float(np.sqrt(weights @ difference**2 / np.sum(weights)) / np.max(reference["force"]))
+
+
+def l2_force_difference(history: History, reference: History) -> float:
+    """Return the relative L2 difference of force over the reference's time; NaN if the history ends before it."""
+    grid = reference.time
+    if len(grid) < 2 or history.time[-1] * (1 + 1e-6) < grid[-1]:
+        return np.nan
+    weights = np.gradient(grid)
+    # A history begins with its first step, before which there is no force.
+    difference = np.interp(grid, history.time, history["force"], left=0) - reference["force"]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return float(np.sqrt(weights @ difference**2 / (weights @ reference["force"]**2)))
+
+
+QUANTITIES: dict[str, Callable[[History], float]] = {
+    "peak_force": lambda history: peak(history, "force").value,
+    "peak_force_time": lambda history: peak(history, "force").time,
+    "contact_begin": lambda history: contact(history, 0).begin,
+    "contact_release": lambda history: contact(history, 0).end,
+    "second_contact_begin": lambda history: contact(history, 1).begin,
+    "second_contact_release": lambda history: contact(history, 1).end,
+    "second_peak_force": lambda history: second_peak(history).value,
+    "second_peak_force_time": lambda history: second_peak(history).time,
+    "max_deflection": lambda history: peak(history, "deflection").value,
+    "max_deflection_time": lambda history: peak(history, "deflection").time,
+    "first_growth_force": lambda history: first_growth(history).value,
+    "first_growth_time": lambda history: first_growth(history).time,
+    "contact_duration": contact_duration,
+    "rebound_velocity": rebound_velocity,
+    "impact_energy": impact_energy,
+    "absorbed_energy": absorbed_energy,
+    "energy_error": energy_error,
+    "energy_rise": energy_rise,
+}
+
+COLUMN_QUANTITIES: dict[str, Callable[[np.ndarray], float]] = {
+    "final": lambda values: float(values[-1]),
+    "max": lambda values: float(np.max(values)),
+    "min": lambda values: float(np.min(values)),
+    "max_abs": lambda values: float(np.max(np.abs(values))),
+}
+
+AGAINST_QUANTITIES: dict[str, Callable[[History, History], float]] = {
+    "rms_force": rms_force_difference,
+    "l2_force": l2_force_difference,
+}

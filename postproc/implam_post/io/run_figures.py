@@ -1,0 +1,115 @@
+"""Figures of runs: numbers of a summary and what ASTM D7136 requires, each with its dimension; two runs compared."""
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from implam_post.io import damage_resistance
+from implam_post.io.errors import ImplamError
+from implam_post.io.quantities import l2_force_difference
+from implam_post.io.run import Run
+from implam_post.io.units import SYSTEMS, dimension_of, unit_of
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+# Members of a summary that are no figures of the run.
+_NO_FIGURES = ("costs", "profile", "provenance", "estimated_errors", "exit", "warnings", "plies", "interfaces",
+               "plate_size")
+_OF_ENDED_CONTACT = ("contact_duration", "contact_until")
+_EVENTS = ("onset", "first_growth")
+
+
+class Measured(NamedTuple):
+    """A figure, NaN where a run has none, and its dimension."""
+
+    value: float
+    dimension: str
+
+
+def corner_of(run: Run) -> float | None:
+    """Return the corner frequency of the low pass for the threshold force, in the deck's units; None if it has none."""
+    given = run.summary.get("force_filter")
+    if given:
+        return float(given["frequency"])
+    return damage_resistance.CORNER * SYSTEMS[run.system][2] if run.system in SYSTEMS else None
+
+
+def resistance(run: Run) -> dict[str, Measured]:
+    """Return what ASTM D7136 requires beyond the summary; NaN where the force never drops, or nothing is damaged."""
+    found: dict[str, Measured] = {}
+    history, corner = run.columns, corner_of(run)
+    if history is not None and np.any(history["force"]) and "impactor_displacement" in history.columns:
+        turned = damage_resistance.threshold(history, corner) if corner else None
+        force, time, energy = (turned.force, turned.time, turned.energy) if turned else 3 * (math.nan,)
+        found |= {"threshold_force": Measured(force, "force"), "threshold_at": Measured(time, "time"),
+                  "energy_to_threshold": Measured(energy, "energy"),
+                  "energy_to_peak": Measured(damage_resistance.energy_to_peak(history), "energy"),
+                  "largest_displacement": Measured(float(np.max(history["impactor_displacement"])), "length")}
+    if run.fields is not None and run.fields.snapshots[-1].mesh.interfaces:
+        size = damage_resistance.extent(run.fields)
+        sizes = dict.fromkeys(("damage_diameter", "damage_length", "damage_width"), 0.0) if size is None else {
+            "damage_diameter": size.diameter, "damage_length": size.length, "damage_width": size.width}
+        sizes |= {f"damage_along_{angle}".replace("-", "minus_"): size.through[angle] if size else 0.0
+                 for angle in damage_resistance.DIRECTIONS}
+        found |= {name: Measured(value, "length") for name, value in sizes.items()}
+    return found
+
+
+def figures(run: Run) -> dict[str, Measured]:
+    """Return all figures of a run by name: those of the summary, of its interfaces, and those of ASTM D7136."""
+    dimensions = {"time": ""} if "load_factor_reached" in run.summary else {}
+    found = {name: Measured(value, dimensions.get(dimension := dimension_of(name), dimension))
+             for name, value in _numbers(run.summary)}
+    return found | resistance(run)
+
+
+def compare(first: Run, second: Run) -> "pd.DataFrame":
+    """Return the figures of two runs side by side: a row for each with both values, difference, ratio less 1, and unit.
+
+    `force_history` is the relative L2 norm of the difference of the contact forces, over the time of the first run.
+    """
+    import pandas as pd
+
+    if first.system != second.system:
+        raise ImplamError(f"{first.name} and {second.name} have different units ({first.system or 'not known'}, "
+                          f"{second.system or 'not known'}).")
+    found = {name: [first.figures[name].value, second.figures[name].value, unit_of(figure.dimension, first.system)]
+             for name, figure in first.figures.items() if name in second.figures}
+    table = pd.DataFrame.from_dict(found, orient="index", columns=["first", "second", "unit"])
+    table.insert(2, "difference", table["second"] - table["first"])
+    table.insert(3, "relative", (table["difference"] / table["first"].abs()).where(table["first"] != 0))
+    if first.columns is not None and second.columns is not None:
+        relative = l2_force_difference(second.columns, first.columns)
+        table.loc["force_history"] = [math.nan, math.nan, math.nan, relative, ""]
+    return table
+
+
+def _numbers(summary: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
+    """Give the numbers of a summary under their names, those of an interface with the ply above it."""
+    for name, value in summary.items():
+        if name in _NO_FIGURES:
+            continue
+        if summary.get("in_contact") and name in _OF_ENDED_CONTACT:
+            value = None
+        if name == "force_filter" and value:
+            yield "filtered_peak_force", value["peak_force"]
+        elif _is_number(value):
+            yield name, math.nan if value is None else float(value)
+    for entry in summary.get("interfaces", []):
+        below = f"below_{entry['ply_above']}"
+        yield f"area_{below}", float(entry["area"])
+        yield f"energy_{below}", float(entry["energy"])
+        for event in _EVENTS:
+            seen = entry[event] or {}
+            if "force" in seen or not seen:
+                yield f"{event}_force_{below}", float(seen.get("force", math.nan))
+        for axis in ("x", "y"):
+            yield f"{axis}_extent_{below}", float(entry[axis][1] - entry[axis][0])
+
+
+def _is_number(value: object) -> bool:
+    """Return whether a member of a summary is a number, or one that the run does not have."""
+    return value is None or (isinstance(value, (int, float)) and not isinstance(value, bool))

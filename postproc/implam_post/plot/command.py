@@ -1,0 +1,90 @@
+"""Plots of histories and fields (`implam-plot HISTORY.csv ...`, `implam-plot NAME.h5`).
+
+What draws is imported once the command line has been read, as it takes most of the time that a command needs to start.
+"""
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+
+from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, ImplamError, run
+from implam_post.plot.look import FORMATS, Look, add_options, look_of
+
+
+def _command(options: argparse.Namespace) -> int:
+    """Draw and say what was drawn."""
+    import matplotlib
+
+    look = look_of(options, options.results)
+    with matplotlib.rc_context({"font.size": look.letters}):
+        return _draw_all(options, look)
+
+
+def _draw_all(options: argparse.Namespace, look: Look) -> int:
+    """Draw what the command line requires."""
+    from implam_post.io.fields import read_fields
+    from implam_post.io.history import read_history
+    from implam_post.plot.pictures import plot_fields, plot_overview
+
+    results = [path for path in options.results if path.suffix == ".h5"]
+    histories = [path for path in options.results if path.suffix != ".h5"]
+    for path in options.results:
+        if path.suffix not in (".h5", ".csv") or path.name.endswith("_restart.h5"):
+            raise FileError(f"{path} is neither the fields NAME.h5 nor the history NAME_history.csv of a run.")
+    if options.save and (len(results), len(histories)) != (1, 0):
+        raise ImplamError("--save goes with one NAME.h5.")
+    for path in results:
+        fields, history = read_fields(path), options.history or path.with_name(f"{path.stem}_history.csv")
+        if options.save:
+            print(plot_overview(fields, read_history(history), options.save, look))
+            return EXIT_DONE
+        drawn = plot_fields(fields, (options.output or path.parent) / path.stem, options.times, look)
+        print(*drawn or [f"{path} holds neither interfaces nor failures of plies."], sep="\n")
+        if history not in histories and (options.history or history.exists()):
+            histories.append(history)
+    return _plot_histories(histories, options, look) if histories else EXIT_DONE
+
+
+def _plot_histories(paths: Sequence[Path], options: argparse.Namespace, look: Look) -> int:
+    """Draw the responses over each other and the energies of each history."""
+    from implam_post.io.history import read_history
+    from implam_post.plot.pictures import RESPONSES, plot_energies, plot_response
+
+    histories = [read_history(path) for path in paths]
+    folders = [options.output or path.parent for path in paths]
+    measured = read_history(options.measured) if options.measured else None
+    if measured is not None and not set(measured.columns) & set(RESPONSES):
+        raise FileError(f"{options.measured} has none of the columns {', '.join(RESPONSES)} beside time.")
+    response = folders[0] / f"{paths[0].stem}_response.{look.kind}"
+    print(plot_response(histories, response, look, measured))
+    for history, path, folder in zip(histories, paths, folders, strict=True):
+        print(plot_energies(history, folder / f"{path.stem}_energies.{look.kind}", look))
+    return EXIT_DONE
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command."""
+    parser = CommandParser("implam-plot", description="Plot force, indentation, deflection and energies of histories, "
+                           "several drawn over each other, and of NAME.h5 the delamination of each interface and all "
+                           "seen through the plate, the energy release rate along its front and the failures of each "
+                           "ply over the full plate, with the history beside it.")
+    parser.add_argument("results", nargs="+", type=Path, metavar="RESULT",
+                        help="histories (.csv) and fields (.h5) written by implam")
+    parser.add_argument("--output", type=Path, metavar="DIR", help="folder of the plots (default: beside each result)")
+    parser.add_argument("--history", type=Path, metavar="CSV",
+                        help="history that goes with NAME.h5 (default: NAME_history.csv beside it)")
+    parser.add_argument("--times", nargs="+", type=float, metavar="TIME",
+                        help="times at which the front is drawn (default: up to eight of those written)")
+    parser.add_argument("--save", type=Path, metavar="FILE",
+                        help="one picture of delamination, force and energies of NAME.h5, instead of all")
+    parser.add_argument("--measured", type=Path, metavar="CSV", help="measured curve to draw as dots: columns time and "
+                        "force, indentation or deflection, in the units of the results")
+    parser.add_argument("--projected", choices=("depth", "time"), default="depth", help="colour of NAME_projected: the "
+                        "first delaminated interface, or when the first one delaminated (default: depth)")
+    parser.add_argument("--format", choices=FORMATS, default="png", help="kind of file (default: png)")
+    add_options(parser)
+    return run(_command, parser, arguments)
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

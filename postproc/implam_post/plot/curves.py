@@ -1,0 +1,55 @@
+"""Histories over measured curves, each of two columns, such as force against displacement."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+from matplotlib.figure import Figure
+
+from implam_post.io.errors import FileError
+from implam_post.io.history import History, read_columns
+from implam_post.plot.look import Look
+
+# What columns are called on an axis, and their dimensions.
+AXES = {"time": ("time", "time"), "force": ("contact force", "force"), "indentation": ("indentation", "length"),
+        "deflection": ("deflection of struck point", "length"), "patch_mean": ("deflection of the patch", "length"),
+        "impactor_displacement": ("displacement of the impactor", "length"),
+        "delaminated_area": ("delaminated area", "area"), "projected_area": ("projected area", "area")}
+
+
+def plot_curves(history: History, files: Sequence[Path], path: Path, look: Look) -> Path:
+    """Draw a history as lines over the curves of some files as dots, a panel each."""
+    curves = [read_columns(file) for file in files]
+    with matplotlib.rc_context({"font.size": look.letters}):
+        figure = Figure(figsize=(8, 4.5 * len(curves)), layout="constrained")
+        for axes, curve in zip(figure.subplots(len(curves), squeeze=False)[:, 0], curves, strict=True):
+            along, up = _columns(curve)
+            shown = history if along == "time" else in_contact(history)
+            horizontal, vertical = (look.axis(*AXES[name], [*curve[name], *shown[name]]) for name in (along, up))
+            axes.plot(horizontal.factor * shown[along], vertical.factor * shown[up], label="Implam")
+            axes.plot(horizontal.factor * curve[along], vertical.factor * curve[up], "k.", markersize=4,
+                      label=f"measured ({Path(curve.name).stem})")
+            axes.set(xlabel=horizontal.label, ylabel=vertical.label)
+            axes.grid(alpha=0.3)
+            axes.legend()
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            figure.savefig(path, dpi=look.dots_per_inch)
+        except (OSError, ValueError) as error:
+            raise FileError(f"{path} cannot be written ({error}).") from None
+    return path
+
+
+def in_contact(history: History) -> History:
+    """Return the rows up to the end of the last contact, after which the impactor flies off; all if there is none."""
+    touching = np.flatnonzero(history["force"] > 0)
+    return history.until(history.time[min(touching[-1] + 1, len(history.time) - 1)]) if len(touching) else history
+
+
+def _columns(curve: History) -> tuple[str, str]:
+    """Return the two columns of a curve that are drawn."""
+    names = [*curve.columns][:2]
+    if len(names) < 2 or not set(names) <= set(AXES):
+        raise FileError(f"{curve.name} begins with the columns {', '.join(names)}; curves are of {', '.join(AXES)}.")
+    return names[0], names[1]

@@ -1,0 +1,73 @@
+"""How pictures look: units of the axes, kind of file, dots per inch, size of letters, and styles of several runs."""
+
+import argparse
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from implam_post.io.errors import ImplamError
+from implam_post.io.units import SYSTEMS, Axis, axis_of
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+FORMATS = ("png", "pdf", "svg")
+# Styles of runs drawn over each other, that differ without colours too.
+STYLES = [{"color": f"C{place}", "linestyle": style} for place, style in
+          enumerate(("-", "--", "-.", ":", (0, (5, 1)), (0, (3, 1, 1, 1, 1, 1)), (0, (1, 1)), (0, (8, 3))))]
+
+
+@dataclass(frozen=True)
+class Look:
+    """What holds for all pictures of a command; `system` is that of the results, empty if it isn't known."""
+
+    system: str = ""
+    dots_per_inch: int = 150
+    letters: float = 10.0
+    kind: str = "png"
+    projected: str = "depth"
+
+    @property
+    def seconds(self) -> float:
+        """Seconds of the unit of time of the results; 1 in an unknown system."""
+        return SYSTEMS[self.system][2] if self.system in SYSTEMS else 1.0
+
+    def axis(self, label: str, dimension: str, values: Iterable[float]) -> Axis:
+        """Return factor and label of an axis, in units that suit its values."""
+        return axis_of(label, dimension, values, self.system)
+
+    def shown(self, dimension: str, value: float, digits: int = 3) -> str:
+        """Return a value with its unit, to some digits; without one in an unknown system."""
+        axis = self.axis("", dimension, [value])
+        unit = axis.label.strip(" []") if self.system in SYSTEMS else ""
+        return f"{axis.factor * value:.{digits}g} {unit}".strip()
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options that say how pictures look."""
+    parser.add_argument("--units", choices=SYSTEMS, help="system of units of the results (default: that of the deck in "
+                        "NAME.h5); axes are in mm, ms, kN and J then")
+    parser.add_argument("--dpi", type=int, help="dots per inch (default: 150; pictures of --save and movies 80)")
+    parser.add_argument("--font-size", type=float, default=10.0, help="size of letters in points (default: 10)")
+
+
+def look_of(options: argparse.Namespace, results: Iterable[Path]) -> Look:
+    """Return the look that the options request; the system of units is that of the first deck that has one."""
+    from implam_post.io.deck import system_of_deck
+    from implam_post.io.fields import deck_in
+
+    dots = options.dpi or (80 if getattr(options, "save", None) else 150)
+    if not (10 <= dots <= 2400 and 3 <= options.font_size <= 60):
+        raise ImplamError("--dpi takes 10 to 2400, --font-size 3 to 60.")
+    system = options.units or next((name for path in results if (name := system_of_deck(deck_in(path)))), "")
+    return Look(system, dots, options.font_size, getattr(options, "format", "png"),
+                getattr(options, "projected", "depth"))
+
+
+def settle(figure: "Figure") -> None:
+    """Lay a figure out before it is drawn: ticks follow from the sizes of axes, and these from the widths of ticks.
+
+    Drawn at once, titles and labels are cut off where axes keep equal scales.
+    """
+    figure.draw_without_rendering()

@@ -1,0 +1,82 @@
+"""A movie of a run (`implam-movie NAME.h5`): interfaces that delaminate in plan, with the force beside it."""
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+from PIL import Image
+
+from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, run
+from implam_post.io.fields import Fields, read_fields
+from implam_post.io.history import History, read_history
+from implam_post.plot.look import Look, add_options, look_of
+from implam_post.plot.plan_frame import fill, frame, reach_of
+
+
+def frames(fields: Fields, history: History | None, look: Look) -> list[Image.Image]:
+    """Return a picture for each time written, all of one scale."""
+    return [_picture(fields, history, look, place) for place in range(len(fields.snapshots))]
+
+
+def _picture(fields: Fields, history: History | None, look: Look, moment: int) -> Image.Image:
+    """Draw what has delaminated at a time, an interface a colour, the nearest to the struck face on top."""
+    time = fields.snapshots[moment].time
+    figure = Figure(figsize=(6, 6 if history is None else 8), layout="constrained", dpi=look.dots_per_inch)
+    canvas = FigureCanvasAgg(figure)
+    plan, *below = np.ravel(figure.subplots(1 if history is None else 2, squeeze=False,
+                                            height_ratios=[1] if history is None else [3, 1]))
+    interfaces = fields.snapshots[-1].mesh.interfaces
+    for place in reversed(range(len(interfaces))):
+        fill(plan, fields.delaminated(moment, interfaces[place]), facecolor=f"C{place % 10}", linewidth=0)
+    plan.legend(handles=[Patch(color=f"C{place % 10}", label=f"below ply {below_ply}")
+                         for place, below_ply in enumerate(interfaces)], loc="upper right", fontsize="small")
+    plan.set_title(f"time {look.shown('time', time)}")
+    last = len(fields.snapshots) - 1
+    frame(plan, fields, reach_of(np.concatenate([fields.delaminated(last, ply) for ply in interfaces]), fields), look)
+    if history is not None:
+        clock = look.axis("time", "time", history.time)
+        force = look.axis("contact force", "force", history["force"])
+        below[0].plot(clock.factor * history.time, force.factor * history["force"], linewidth=1)
+        below[0].plot(clock.factor * time, force.factor * history.at("force", min(time, history.time[-1])), "o")
+        below[0].set(xlabel=clock.label, ylabel=force.label)
+    canvas.draw()
+    return Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3].copy())
+
+
+def _command(options: argparse.Namespace) -> int:
+    """Draw the movie and say where it is."""
+    look = look_of(options, [options.fields])
+    fields = read_fields(options.fields)
+    if not fields.snapshots[-1].mesh.interfaces:
+        raise FileError(f"{options.fields} has no interface that may delaminate.")
+    history = options.fields.with_name(f"{options.fields.stem}_history.csv")
+    with matplotlib.rc_context({"font.size": look.letters}):
+        pictures = frames(fields, read_history(history) if history.exists() else None, look)
+    path = options.save or options.fields.with_suffix(".gif")
+    try:
+        pictures[0].save(path, save_all=True, append_images=pictures[1:], duration=1000 / options.rate, loop=0)
+    except (OSError, ValueError) as error:
+        raise FileError(f"{path} cannot be written ({error}).") from None
+    print(path)
+    return EXIT_DONE
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command."""
+    parser = CommandParser("implam-movie", description="Draw how the interfaces of NAME.h5 delaminate, a picture for "
+                           "each time written (`fields_every` of &output), with the force of the history beside it.")
+    parser.add_argument("fields", type=Path, metavar="NAME.h5")
+    parser.add_argument("--save", type=Path, metavar="FILE", help="file, .gif, .webp or .png (default: NAME.gif)")
+    parser.add_argument("--rate", type=float, default=5.0, help="pictures a second (default: 5)")
+    add_options(parser)
+    parser.set_defaults(dpi=80, format="png")
+    return run(_command, parser, arguments)
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

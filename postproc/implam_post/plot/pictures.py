@@ -1,0 +1,174 @@
+"""The pictures that `implam-plot` draws of histories and fields."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from implam_post.io.errors import FileError
+from implam_post.io.fields import Fields
+from implam_post.io.history import ENERGY_NAMES, UNACCOUNTED, History
+from implam_post.io.quantities import growth_rows
+from implam_post.plot.curves import AXES, in_contact
+from implam_post.plot.front import front_figure
+from implam_post.plot.look import STYLES, Look, settle
+from implam_post.plot.plan import (
+    delamination_figure,
+    draw_cracks,
+    draw_delamination,
+    failures_figure,
+    projected_figure,
+)
+from implam_post.plot.plan_frame import caption, reach_of
+
+RESPONSES = {"force": ("contact force", "force"), "indentation": ("indentation", "length"),
+              "deflection": ("deflection of struck point", "length")}
+_PLAIN = Look()
+
+
+def plot_forces(histories: Sequence[History], path: Path) -> Path:
+    """Draw the force of several histories over each other."""
+    figure = Figure(figsize=(8, 4.5), layout="constrained")
+    _draw(figure.subplots(), histories, "force")
+    return _save(figure, path)
+
+
+def plot_response(histories: Sequence[History], path: Path, look: Look = _PLAIN,
+                  measured: History | None = None) -> Path:
+    """Draw force, indentation, deflection, all with what was measured, and force against displacement."""
+    figure = Figure(figsize=(8, 13), layout="constrained")
+    *panels, last = figure.subplots(len(RESPONSES) + 1)
+    for axes, column in zip(panels, RESPONSES, strict=True):
+        axes.sharex(panels[0])
+        _draw(axes, histories, column, look, measured)
+    _draw_loop(last, histories, look)
+    return _save(figure, path, look)
+
+
+def plot_energies(history: History, path: Path, look: Look = _PLAIN) -> Path:
+    """Draw the energies of a history stacked, those below zero downwards, and the total at the start."""
+    figure = Figure(figsize=(8, 5), layout="constrained")
+    _stack(figure.subplots(), history, look)
+    return _save(figure, path, look)
+
+
+def plot_overview(fields: Fields, history: History, path: Path, look: Look = _PLAIN) -> Path:
+    """Draw each interface in plan, with the cracks beside it, the force and the energies in one picture."""
+    interfaces = fields.snapshots[-1].mesh.interfaces
+    if not interfaces:
+        raise FileError(f"{fields.name} has no interface that may delaminate.")
+    figure = Figure(figsize=(11, 2.9 * max(len(interfaces), 2)), layout="constrained")
+    left, right = figure.subfigures(1, 2)
+    last = len(fields.snapshots) - 1
+    reach = np.max([reach_of(fields.delaminated(last, ply), fields) for ply in interfaces], axis=0)
+    for axes, below_ply in zip(left.subplots(len(interfaces), squeeze=False)[:, 0], interfaces, strict=True):
+        draw_delamination(axes, fields, below_ply, look, reach)
+        if fields.snapshots[-1].failures:
+            draw_cracks(axes, fields, below_ply)
+    force, energies = right.subplots(2)
+    _draw(force, [history], "force", look)
+    _stack(energies, history, look)
+    figure.supxlabel(caption(fields, look), fontsize="small")
+    return _save(figure, path, look)
+
+
+def plot_fields(fields: Fields, base: Path, times: Sequence[float] | None = None, look: Look = _PLAIN) -> list[Path]:
+    """Draw what the fields hold of interfaces, of their fronts (at some times) and of plies, a picture each."""
+    figures = {}
+    if fields.snapshots[-1].mesh.interfaces:
+        figures["delamination"] = delamination_figure(fields, look)
+        figures["projected"] = projected_figure(fields, look)
+    if any(np.any(snapshot.release_ratio > 0) for snapshot in fields.snapshots):
+        figures["front"] = front_figure(fields, times, look)
+    if fields.snapshots[-1].failures:
+        figures["matrix"] = failures_figure(fields, ("matrix cracking", "matrix crushing"), look)
+        figures["fibres"] = failures_figure(fields, ("fibre failure",), look)
+    return [_save(figure, base.with_name(f"{base.name}_{name}.{look.kind}"), look) for name, figure in figures.items()]
+
+
+def _stack(axes: Axes, history: History, look: Look) -> None:
+    """Draw the energies stacked."""
+    balance = {column: history[column] for column in ENERGY_NAMES if column in history.columns}
+    shown = {column: values for column, values in balance.items() if np.any(values)}
+    colours = [f"C{list(ENERGY_NAMES).index(column)}" for column in shown]
+    start = sum(values[0] for values in balance.values())
+    time = look.axis("time", "time", history.time)
+    energy = look.axis("energy", "energy", [start, *(np.max(np.abs(values)) for values in shown.values())])
+    if shown:
+        labels = [ENERGY_NAMES[column] for column in shown]
+        for parts, names in ((np.maximum, labels), (np.minimum, ())):
+            axes.stackplot(time.factor * history.time, [energy.factor * parts(values, 0) for values in shown.values()],
+                           labels=names, colors=colours, alpha=0.8)
+    axes.axhline(energy.factor * start, color="black", linestyle="--", linewidth=1, label="total at the start")
+    axes.plot(time.factor * history.time, energy.factor * history["energy_error"], color="black", linewidth=1,
+              label=UNACCOUNTED)
+    axes.set(xlabel=time.label, ylabel=energy.label, title=Path(history.name).stem.removesuffix("_history"))
+    axes.locator_params(axis="x", nbins=6)
+    axes.legend(loc="center left", bbox_to_anchor=(1, 0.5))
+
+
+def response_of(history: History, column: str) -> np.ndarray:
+    """Return a column as it is drawn: without the indentation where there is a gap."""
+    if column == "indentation" and "force" in history.columns:
+        return np.where(history["force"] > 0, history[column], np.nan)
+    return history[column]
+
+
+def _draw(axes: Axes, histories: Sequence[History], column: str, look: Look = _PLAIN,
+          measured: History | None = None) -> None:
+    """Draw a column of several histories, each in a style of its own, and what was measured as dots."""
+    words, dimension = RESPONSES[column]
+    drawn = [*histories, *([measured] if measured is not None and column in measured.columns else [])]
+    time = look.axis("time", "time", np.concatenate([history.time for history in drawn]))
+    value = look.axis(words, dimension, np.concatenate([response_of(history, column) for history in drawn]))
+    names = _names([history.name for history in histories])
+    for position, history in enumerate(histories):
+        style = STYLES[position % len(STYLES)]
+        axes.plot(time.factor * history.time, value.factor * response_of(history, column), label=names[position],
+                  **style)
+        grown = growth_rows(history)
+        if column == "force" and len(grown):
+            axes.plot(time.factor * history.time[grown], value.factor * history[column][grown], "o", markersize=3,
+                      color=style["color"], label="delamination grows" + (f" ({names[position]})" if position else ""))
+    if drawn[-1] is measured:
+        axes.plot(time.factor * measured.time, value.factor * measured[column], "k.", markersize=4,
+                  label=f"measured ({Path(measured.name).stem})")
+    axes.set(xlabel=time.label, ylabel=value.label)
+    axes.locator_params(axis="x", nbins=6)
+    axes.grid(alpha=0.3)
+    axes.legend()
+
+
+def _draw_loop(axes: Axes, histories: Sequence[History], look: Look) -> None:
+    """Draw the force against the displacement of the impactor, or of the struck point where no history has that."""
+    along = "impactor_displacement" if all(
+        np.any(history.columns.get("impactor_displacement", 0)) for history in histories) else "deflection"
+    shown = [in_contact(history) for history in histories]
+    horizontal, force = (look.axis(*AXES[column], np.concatenate([history[column] for history in shown]))
+                     for column in (along, "force"))
+    for position, (history, name) in enumerate(zip(shown, _names([one.name for one in histories]), strict=True)):
+        axes.plot(horizontal.factor * history[along], force.factor * history["force"], label=name,
+                  **STYLES[position % len(STYLES)])
+    axes.set(xlabel=horizontal.label, ylabel=force.label)
+    axes.grid(alpha=0.3)
+    axes.legend()
+
+
+def _names(paths: Sequence[str]) -> list[str]:
+    """Return short names of runs: that of the case, with its folder where two have the same."""
+    stems = [Path(path).stem.removesuffix("_history") for path in paths]
+    return [stem if stems.count(stem) == 1 else f"{Path(path).parent.name}/{stem}"
+            for stem, path in zip(stems, paths, strict=True)]
+
+
+def _save(figure: Figure, path: Path, look: Look = _PLAIN) -> Path:
+    """Write the figure, making the folder if it isn't there, and return the path."""
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        settle(figure)
+        figure.savefig(path, dpi=look.dots_per_inch)
+    except (OSError, ValueError) as error:
+        raise FileError(f"{path} cannot be written ({error}).") from None
+    return path

@@ -1,0 +1,130 @@
+"""What maps of the plate have in common: place and size, what they show of the plate, and the words below them."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.patches import Circle, PathPatch, Rectangle
+from matplotlib.path import Path as Outline
+from matplotlib.ticker import FuncFormatter, MaxNLocator
+
+from implam_post.io.contours import GRAIN, outline
+from implam_post.io.deck import Deck
+from implam_post.io.errors import ImplamError
+from implam_post.io.fields import Fields, deck_in, struck_point
+from implam_post.io.units import Axis
+from implam_post.plot.look import Look
+
+_PLAIN = Look()
+# Room beside what a map shows, as a part of that; the plate in its corner fits into it.
+_MARGIN = 0.15
+
+
+def fill(axes: Axes, cells: np.ndarray, **style: object) -> PathPatch | None:
+    """Draw cells as one region with an outline; nothing without cells."""
+    path = outlines(cells)
+    return None if path is None else axes.add_patch(PathPatch(path, **style))
+
+
+def outlines(cells: np.ndarray) -> Outline | None:
+    """Return the closed lines around cells as one path, holes turning the other way; nothing without cells."""
+    edges = outline(cells)
+    if not len(edges):
+        return None
+    places = np.round(edges / (np.abs(edges).max() * GRAIN)).astype(np.int64)
+    leaving: dict[tuple[int, ...], list[int]] = {}
+    for number, start in enumerate(map(tuple, places[:, 0])):
+        leaving.setdefault(start, []).append(number)
+    corners, codes = [], []
+    while leaving:
+        place = next(iter(leaving))
+        loop = []
+        while place in leaving:
+            number = leaving[place].pop()
+            if not leaving[place]:
+                del leaving[place]
+            loop.append(edges[number, 0])
+            place = tuple(places[number, 1])
+        corners += [*loop, loop[0]]
+        codes += [Outline.MOVETO, *[Outline.LINETO] * (len(loop) - 1), Outline.CLOSEPOLY]
+    return Outline(np.array(corners), codes)
+
+
+def clock_of(fields: Fields, look: Look) -> Axis:
+    """Return how times are shown; load steps have a load factor instead."""
+    deck = deck_in(fields.path)
+    if deck is not None and deck.has("static"):
+        return Axis(1.0, "load factor")
+    return look.axis("time", "time", [fields.snapshots[-1].time])
+
+
+def caption(fields: Fields, look: Look = _PLAIN, outlined: bool = True) -> str:
+    """Return what holds for all maps of a picture: state, what outlines enclose, and from where the plate is seen.
+
+    z points from the struck face to the back, so that with x to the right and y up it points at whoever looks.
+    """
+    clock = clock_of(fields, look)
+    name, _, unit = clock.label.partition(" [")
+    state = f"{name} {clock.factor * fields.snapshots[-1].time:.4g} {unit.rstrip(']')}".strip().replace(
+        "(the deck's units)", "").strip()
+    law = "outlines enclose the area dissipated, where its share is largest; " if outlined and any(
+        found.is_cohesive for found in fields.snapshots[-1].interfaces.values()) else ""
+    return f"State at {state}; {law}0° along x;\nview on the back face (z points at you), + struck point"
+
+
+def locate(axes: Axes, fields: Fields) -> None:
+    """Draw the plate with its supports and what a map shows of it into a corner of the map."""
+    deck = deck_in(fields.path)
+    try:
+        along, across = deck.lengths() if deck else (0.0, 0.0)
+    except ImplamError:
+        along = 0.0
+    (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
+    if not along or (right - left >= along and high - low >= across):
+        return
+    small = axes.inset_axes((0.01, 0.01, _MARGIN, _MARGIN))
+    draw_plate(small, deck, along, across)
+    small.add_patch(Rectangle((left, low), right - left, high - low, facecolor="none", edgecolor="C3", linewidth=0.8))
+    small.set(xlim=(-0.55 * along, 0.55 * along), ylim=(-0.55 * across, 0.55 * across), aspect="equal", anchor="SW")
+    small.axis("off")
+
+
+def draw_plate(axes: Axes, deck: Deck | None, along: float, across: float) -> None:
+    """Draw the border of the plate and the windows of its supports."""
+    axes.add_patch(Rectangle((-along / 2, -across / 2), along, across, facecolor="white", edgecolor="black",
+                             linewidth=0.8))
+    for support in deck.groups.get("support", []) if deck is not None else ():
+        if len(window := support.get("window", [])) == 2:
+            axes.add_patch(Rectangle((-window[0] / 2, -window[1] / 2), *window, facecolor="none", edgecolor="C0",
+                                     linestyle="--", linewidth=0.8, label="window of the support"))
+        elif radius := support.get("radius", []):
+            axes.add_patch(Circle((0, 0), radius[0], facecolor="none", edgecolor="C0", linestyle="--", linewidth=0.8,
+                                  label="window of the support"))
+
+
+def reach_of(cells: np.ndarray, fields: Fields) -> tuple[float, float]:
+    """Return the sides of the smallest rectangle around the struck point that holds cells; 0 if there are none."""
+    if not len(cells):
+        return 0.0, 0.0
+    along, across = 2 * np.max(np.abs(cells - struck_point(fields)), axis=(0, 1))
+    return float(along), float(across)
+
+
+def height_of(width: float, reach: Sequence[float]) -> float:
+    """Return the height of a map of some width, without its words."""
+    along, across = np.maximum(reach, max(reach) / 3)
+    return width * min(across / along, 2.0) if along > 0 else width
+
+
+def frame(axes: Axes, fields: Fields, reach: Sequence[float], look: Look = _PLAIN) -> None:
+    """Show a rectangle around the struck point with room around what is there, equal scales both ways, with units."""
+    largest, middle = max(reach), struck_point(fields)
+    half = (0.5 + _MARGIN) * np.maximum(reach, largest / 3) if largest > 0 else np.ones(2)
+    low, high = middle - half, middle + half
+    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
+    for name, side in (("x", axes.xaxis), ("y", axes.yaxis)):
+        length = look.axis(name, "length", [largest])
+        side.set_label_text(length.label)
+        side.set_major_formatter(FuncFormatter(lambda value, _, factor=length.factor: f"{factor * value:.4g}"))
+        side.set_major_locator(MaxNLocator(5))
+    axes.plot(*middle, "+", color="red", markersize=6)

@@ -1,0 +1,63 @@
+"""Impactor and indentation law of a deck."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from implam_post.io.deck import Deck
+from implam_post.io.errors import DeckError
+from implam_post.laminate.decks import plies_of
+from implam_post.reference.indentation import IndentationLaw
+
+
+@dataclass(frozen=True)
+class Impactor:
+    """The rigid impactor; its velocity at first touch is positive towards the plate."""
+
+    mass: float
+    velocity: float
+    gravity: float
+
+
+def impactor_of(deck: Deck) -> Impactor:
+    """Return the impactor."""
+    if not deck.has("impactor"):
+        raise DeckError(f"{deck.path.name} has no &impactor: there is no impact to check.")
+    mass = deck.number("impactor", "mass")
+    if mass <= 0:
+        raise deck.error("impactor", "the mass must be greater than zero.")
+    if not deck.values("impactor", "energy"):
+        return Impactor(mass, deck.number("impactor", "velocity"), deck.number("impactor", "gravity", 0.0))
+    energy = deck.number("impactor", "energy")
+    if deck.values("impactor", "velocity") or energy < 0:
+        raise deck.error("impactor", "velocity or energy, one of them, is needed, and not below zero.")
+    return Impactor(mass, float(np.sqrt(2 * energy / mass)), deck.number("impactor", "gravity", 0.0))
+
+
+def indentation_law_of(deck: Deck) -> IndentationLaw:
+    """Return the indentation law, elastic if the deck has no &indentation; k by Sun's formula if none is given."""
+    stiffness = deck.number("indentation", "k") if deck.values("indentation", "k") else _sun_stiffness(deck)
+    if stiffness <= 0:
+        raise deck.error("indentation", "k must be greater than zero.")
+    if not deck.has("indentation") or deck.choice("indentation", "law", ("tan_sun", "hertz")) == "hertz":
+        return IndentationLaw(stiffness, hertz=True)
+    law = IndentationLaw(
+        stiffness, unloading=deck.number("indentation", "q", 2.5),
+        reloading=deck.number("indentation", "reload", 1.5), slope=deck.number("indentation", "beta", 0.094),
+        critical=deck.number("indentation", "alpha_cr"),
+        dent=deck.choice("indentation", "dent", ("tan_sun", "yang_sun")))
+    if not (1.5 <= law.reloading <= law.unloading and 0 <= law.slope < 1 and law.critical > 0):
+        raise deck.error("indentation", "1.5 <= reload <= q, 0 <= beta < 1 and 0 < alpha_cr are needed.")
+    return law
+
+
+def _sun_stiffness(deck: Deck) -> float:
+    """Return k = 4/3 sqrt(R) / [(1 - nu**2)/E + 1/E2]: E and nu of the impactor (no E: rigid), E2 of ply 1."""
+    radius = deck.number("impactor", "radius", 0.0)
+    if radius <= 0:
+        raise deck.error("indentation", "without k, the &impactor needs a radius.")
+    flexibility = 1 / plies_of(deck)[0].material.e2
+    if deck.values("indentation", "impactor_E"):
+        ratio = deck.number("indentation", "impactor_nu", 0.3)
+        flexibility += (1 - ratio**2) / deck.number("indentation", "impactor_E")
+    return 4.0 / 3.0 * np.sqrt(radius) / flexibility

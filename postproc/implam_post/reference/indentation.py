@@ -1,0 +1,52 @@
+"""Indentation of the laminate by the impactor."""
+
+from dataclasses import dataclass
+
+
+@dataclass
+class IndentationLaw:
+    """Force against indentation: Hertz both ways, or Tan and Sun's law with its dent, and what has happened so far.
+
+    First loading follows F = k alpha**1.5 up to (alpha_m, F_m). Unloading follows
+    F_m [(alpha - alpha_0)/(alpha_m - alpha_0)]**q, and a reversal during contact goes back up the same curve.
+    After separation the exponent is that of reloading.
+    """
+
+    stiffness: float
+    hertz: bool = False
+    unloading: float = 2.5
+    reloading: float = 1.5
+    slope: float = 0.094
+    critical: float = 0.0
+    dent: str = "tan_sun"
+    largest: float = 0.0
+    largest_force: float = 0.0
+    permanent: float = 0.0
+    exponent: float = 1.5
+
+    def force(self, indentation: float) -> float:
+        """Return the force at an indentation reached from the state last committed."""
+        if indentation <= self.permanent:
+            return 0.0
+        if self.hertz or indentation >= self.largest:
+            return self.stiffness * indentation**1.5
+        return self.largest_force * ((indentation - self.permanent) / (self.largest - self.permanent))**self.exponent
+
+    def commit(self, indentation: float) -> None:
+        """Accept an indentation: record a new largest one and the dent it leaves, or a separation."""
+        if self.hertz:
+            return
+        if indentation > self.largest:
+            self.largest, self.largest_force = indentation, self.force(indentation)
+            self.permanent = self._dent()
+            self.exponent = self.unloading
+        elif indentation <= self.permanent:
+            self.exponent = self.reloading
+
+    def _dent(self) -> float:
+        """Return the permanent indentation that the largest one leaves."""
+        if self.largest <= self.critical:
+            return 0.0
+        if self.dent == "yang_sun":
+            return self.largest * (1 - (self.critical / self.largest)**0.4)
+        return self.slope * (self.largest - self.critical)

@@ -1,0 +1,250 @@
+"""One page a run (`implam-report NAME_summary.json`): what it says, with curves and maps, in one HTML file."""
+
+import argparse
+import math
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from jinja2 import UndefinedError
+
+from implam_post.io.damage_resistance import DIRECTIONS, extent, kinds_of_damage
+from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, run
+from implam_post.io.files import write_text
+from implam_post.io.history import ENERGY_NAMES, UNACCOUNTED
+from implam_post.io.run import SUMMARY, Run, material_of, open_run
+from implam_post.io.run_figures import Measured, corner_of, resistance
+from implam_post.plot.look import Look
+from implam_post.report.page import image, render, rounded
+from implam_post.report.pictures import history_pictures, layup_figure, map_pictures, plan_figure
+from implam_post.report.scatter_report import write_page
+from implam_post.sweep.scatter_results import STATISTICS
+
+# Rows of the table at the top: label, member, its dimension, member with its time.
+_FIGURES = (
+    ("peak force", "peak_force", "force", "peak_force_at"),
+    ("contacts", "contacts", "", None),
+    ("time in contact", "contact_duration", "time", "contact_until"),
+    ("rebound velocity", "rebound_velocity", "velocity", None),
+    ("velocity of the impactor at the end", "impactor_velocity", "velocity", None),
+    ("largest deflection", "largest_deflection", "length", "largest_deflection_at"),
+    ("impact energy", "energy_impact", "energy", None),
+    ("absorbed energy", "energy_absorbed", "energy", None),
+    ("work of the load", "work_external", "energy", None),
+    ("delaminated area, all interfaces", "delaminated_area", "area", None),
+    ("delaminated area, projected", "projected_area", "area", None),
+    ("closed form of the force at the starter", "threshold_force_at_starter", "force", None),
+    ("fibre failures, plies of elements", "fibre_failures", "", None),
+    ("matrix cracks, plies of elements", "matrix_cracks", "", None),
+    ("matrix crushings, plies of elements", "matrix_crushings", "", None),
+)
+# Words before a time, and what a missing figure means.
+_WHEN = {"contact_duration": "until"}
+_UNKNOWN = {"energy_absorbed": "contact has not ended"}
+_PROVENANCE = ("version", "commit", "compiler", "petsc_version", "ranks", "started")
+
+
+def shown(look: Look, dimension: str, value: object) -> str:
+    """Return a figure to four digits, as the summary in the log has them, with its unit where that is known."""
+    if value is None or not dimension:
+        return rounded(value)
+    return look.shown(dimension, value, 4)
+
+
+def report(run: Run) -> str:
+    """Return the page of a run."""
+    summary, look = run.summary, Look(run.system)
+    found = resistance(run)
+    mark = tuple(found[name].value for name in ("threshold_at", "threshold_force")) if "threshold_at" in found else None
+    mark = None if mark is None or math.isnan(mark[0]) else mark
+    energies = {name: summary[key] for key, name in (ENERGY_NAMES | {"energy_error": UNACCOUNTED}).items()
+                if key in summary}
+    axis = look.axis("energy", "energy", [*energies.values()])
+    curves = [] if run.columns is None else history_pictures(run.columns, look, mark)
+    maps = [] if run.fields is None else map_pictures(run.fields, look)
+    return render(
+        "run.html", title=summary["title"] or summary["case"], summary=summary, base=run.name,
+        reached=_reached(summary, look), has_units=bool(look.system),
+        has_fields=run.fields is not None, figures=_figures(summary, look),
+        resistance=_resistance(run, found, look) if "energy_absorbed" in summary and run.columns is not None else None,
+        interfaces=_interfaces(summary, look), plate=_plate(summary, look), plan=image(plan_figure(summary, look)),
+        layup=image(layup_figure(summary)), plies_head=_plies_head(summary), plies=_plies(summary, look),
+        curves=[(text, image(figure)) for text, figure in curves],
+        maps=[(text, image(figure)) for text, figure in maps],
+        balance=[(name, axis.factor * value) for name, value in energies.items()], energy_label=axis.label,
+        provenance=[*((key.replace("_", " "), str(summary["provenance"][key])) for key in _PROVENANCE),
+                    *((key.replace("_", " "), value) for key, value in summary["costs"].items())])
+
+
+def _resistance(results: Run, found: Mapping[str, Measured], look: Look) -> str:
+    """Return threshold, energies, size and type of the damage."""
+    summary = results.summary
+
+    def row(name: str, key: str, missing: str = "-", at: str = "") -> tuple[str, str, str]:
+        if key not in found or math.isnan(found[key].value):
+            return name, missing, ""
+        return name, shown(look, found[key].dimension, found[key].value), at
+
+    corner = corner_of(results)
+    behind = f", behind a low pass of {_frequency(look, corner)}" if corner else ""
+    unknown = "the force never drops by damage" if corner else "not known without units"
+    reached = "threshold_at" in found and not math.isnan(found["threshold_at"].value)
+    when = f"at {shown(look, 'time', found['threshold_at'].value)}" if reached else ""
+    rows = [row(f"threshold: force where its curve first drops by damage{behind}", "threshold_force", unknown, when),
+            ("peak force", shown(look, "force", summary["peak_force"]),
+             f"at {shown(look, 'time', summary['peak_force_at'])}"),
+            row("energy to the threshold", "energy_to_threshold"), row("energy to the peak force", "energy_to_peak"),
+            ("absorbed energy", "contact has not ended" if summary["energy_absorbed"] is None
+             else shown(look, "energy", summary["energy_absorbed"]), "")]
+    if results.fields is not None and "damage_diameter" in found:
+        rows += _sizes(results, look)
+    kinds = kinds_of_damage(summary)
+    return rows + [("type of damage" if place == 0 else "", kind, "") for place, kind in enumerate(kinds or ["none"])]
+
+
+def _frequency(look: Look, corner: float) -> str:
+    """Return a frequency with its unit."""
+    return f"{corner / look.seconds / 1e3:.4g} kHz" if look.system else rounded(corner)
+
+
+def _sizes(results: Run, look: Look) -> list[tuple[str, str, str]]:
+    """Return the rows of the size of the projected damage."""
+    size = extent(results.fields)
+    if size is None:
+        return [("projected damage", "none", "")]
+    rows = [("largest diameter of the projected damage", shown(look, "length", size.diameter),
+             f"along {size.direction:.0f}°"),
+            ("its length along 0°, x", shown(look, "length", size.length), ""),
+            ("its width along 90°, y", shown(look, "length", size.width), "")]
+    return rows + [(f"between its outermost points through the struck point, along {angle}°",
+                    shown(look, "length", size.through[angle]) if size.through[angle] else "none there", "")
+                   for angle in DIRECTIONS]
+
+
+def _time(summary: Mapping[str, Any]) -> str:
+    """Return the dimension of the times of a run, none if they are load factors."""
+    return "time" if "time_reached" in summary else ""
+
+
+def _reached(summary: Mapping[str, Any], look: Look) -> str:
+    """Return how far the run came."""
+    if "time_reached" in summary:
+        return f"time {shown(look, 'time', summary['time_reached'])}"
+    return f"load factor {rounded(summary['load_factor_reached'])}"
+
+
+def _figures(summary: Mapping[str, Any], look: Look) -> list[tuple[str, ...]]:
+    """Return the rows of the table at the top."""
+    rows = []
+    for name, key, dimension, at in _FIGURES:
+        if key in summary and not (key == "work_external" and not summary[key]):
+            value = _UNKNOWN.get(key, "-") if summary[key] is None else shown(look, dimension, summary[key])
+            when = f"{_WHEN.get(key, 'at')} {shown(look, _time(summary), summary[at])}" if at else ""
+            rows.append((name, value, when))
+    if summary.get("in_contact"):
+        rows.append(("contact at the end", "yes", ""))
+    return rows
+
+
+def _range(look: Look, ends: Sequence[float]) -> str:
+    """Return least and greatest coordinate in one unit."""
+    if not any(ends):
+        return "none"
+    axis = look.axis("", "length", ends)
+    unit = shown(look, "length", max(ends, key=abs)).partition(" ")[2]
+    return " to ".join(rounded(axis.factor * end) for end in ends) + f" {unit}".rstrip()
+
+
+def _event(event: Mapping[str, float] | None, look: Look, time: str) -> str:
+    """Return when something was first seen, and under what force."""
+    if event is None:
+        return "none"
+    force = f"{shown(look, 'force', event['force'])} " if "force" in event else ""
+    return f"{force}at {shown(look, time, event['at'])}"
+
+
+def _interfaces(summary: Mapping[str, Any], look: Look) -> list[tuple[object, ...]]:
+    """Return the rows of the interfaces."""
+    time = _time(summary)
+    return [(entry["ply_above"], "cohesive" if entry["is_cohesive"] else "front", shown(look, "area", entry["area"]),
+             _range(look, entry["x"]), _range(look, entry["y"]), shown(look, "energy", entry["energy"]),
+             _event(entry["onset"], look, time), _event(entry["first_growth"], look, time),
+             shown(look, "force", entry["threshold_force"]), "yes" if entry["border_reached"] else "no")
+            for entry in summary.get("interfaces", [])]
+
+
+def _plate(summary: Mapping[str, Any], look: Look) -> str:
+    """Return the size of the plate."""
+    along, across = (shown(look, "length", length) for length in summary["plate_size"])
+    thickness = shown(look, "length", sum(ply["thickness"] for ply in summary["plies"]))
+    return f"{along} by {across}, {thickness} thick, {len(summary['plies'])} plies."
+
+
+def _failure_areas(summary: Mapping[str, Any]) -> list[str]:
+    """Return the members of a ply that hold areas of failures."""
+    return [key for key in ("fibre_failure_area", "matrix_crack_area", "matrix_crushing_area")
+            if key in summary["plies"][0]]
+
+
+def _plies_head(summary: Mapping[str, Any]) -> tuple[str, ...]:
+    """Return the heads of the columns of the plies."""
+    areas = [key.replace("_", " ") for key in _failure_areas(summary)]
+    return ("ply", "material", "angle, degrees", "thickness", *areas)
+
+
+def _plies(summary: Mapping[str, Any], look: Look) -> list[tuple[object, ...]]:
+    """Return the rows of lay-up and failures of the plies."""
+    return [(ply["ply"], material_of(ply), ply["angle"], shown(look, "length", ply["thickness"]),
+             *(shown(look, "area", ply[key]) for key in _failure_areas(summary))) for ply in summary["plies"]]
+
+
+def summaries_at(path: Path) -> list[Path]:
+    """Return the summaries of a folder, or the one that a path names; the folder of a sweep stands for itself."""
+    if not path.is_dir() or (path / STATISTICS).exists():
+        return [path]
+    found = sorted(path.glob(f"*{SUMMARY}"))
+    if not found:
+        raise FileError(f"{path} holds no summary of a run ({SUMMARY.removeprefix('_')}).")
+    return found
+
+
+def write_report(path: Path, output: Path | None) -> Path:
+    """Write the page of a summary, or that of a sweep, and return its path."""
+    if path.is_dir():
+        return write_page(path, output)
+    if not path.name.endswith(SUMMARY):
+        raise FileError(f"{path} isn't NAME{SUMMARY}; a report needs that file, or the folder that holds it.")
+    run_shown = open_run(path)
+    written = (output or path.parent) / f"{run_shown.name}_report.html"
+    try:
+        text = report(run_shown)
+    except KeyError as error:
+        raise FileError(f"the summary {path} lacks {error}: another version of implam wrote it.") from None
+    except (TypeError, ValueError, IndexError, AttributeError, UndefinedError) as error:
+        raise FileError(f"{path} isn't a summary written by implam, or it is damaged ({error}).") from None
+    write_text(written, text)
+    return written
+
+
+def _command(options: argparse.Namespace) -> int:
+    """Write a page for each run."""
+    for given in options.results:
+        for path in summaries_at(given):
+            print(write_report(path, options.output))
+    return EXIT_DONE
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command."""
+    parser = CommandParser("implam-report", description="Write NAME_report.html, one page that needs no other file: "
+                           "the summary of a run, its plate and lay-up, curves of NAME_history.csv, maps of NAME.h5, "
+                           "energies at the end, warnings, provenance and the deck. The page of a sweep with random "
+                           "inputs has means with their scatter.")
+    parser.add_argument("results", nargs="+", type=Path, metavar="RESULT",
+                        help="NAME_summary.json, a folder with such files, or the folder of a sweep")
+    parser.add_argument("--output", type=Path, metavar="DIR", help="folder of the pages (default: beside each summary)")
+    return run(_command, parser, arguments)
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

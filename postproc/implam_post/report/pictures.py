@@ -1,0 +1,152 @@
+"""Pictures of the page of a run: plate and lay-up, curves, maps."""
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
+from matplotlib.ticker import FuncFormatter
+
+from implam_post.io.deck import recorded_deck
+from implam_post.io.errors import ImplamError
+from implam_post.io.fields import Fields
+from implam_post.io.history import ENERGY_NAMES, UNACCOUNTED, History
+from implam_post.io.quantities import growth_rows
+from implam_post.io.run import material_of
+from implam_post.plot.curves import AXES, in_contact
+from implam_post.plot.look import Look
+from implam_post.plot.plan import delamination_figure, failures_figure, projected_figure
+from implam_post.plot.plan_frame import draw_plate
+
+_SPACE = 0.12  # free part of the picture beside the plies
+
+
+def layup_figure(summary: Mapping[str, Any]) -> Figure:
+    """Draw the plies from the struck face, fibres as lines of their angle, interfaces that may delaminate in red."""
+    plies = summary["plies"]
+    total = sum(ply["thickness"] for ply in plies)
+    figure = Figure(figsize=(7, min(max(1.6, 0.34 * len(plies)), 9)), layout="constrained")
+    axes = figure.subplots()
+    top, shades = 0.0, {angle: shade for shade, angle in enumerate(sorted({ply["angle"] % 180 for ply in plies}))}
+    bottoms = []
+    for ply in plies:
+        depth = ply["thickness"] / total
+        axes.add_patch(Rectangle((0, -top - depth), 1, depth, facecolor=f"C{shades[ply['angle'] % 180] % 10}",
+                                 edgecolor="white", alpha=0.55))
+        axes.text(0.5, -top - depth / 2, f"{ply['ply']}: {ply['angle']:g}°  {material_of(ply)}", ha="center",
+                  va="center", fontsize=min(9, 200 / len(plies)))
+        _fibre(axes, ply["angle"], -top - depth / 2, depth)
+        top += depth
+        bottoms.append(-top)
+    for entry in summary.get("interfaces", []):
+        height = bottoms[entry["ply_above"] - 1]
+        axes.plot([0, 1], [height, height], color="red", linewidth=2)
+        axes.text(1.01, height, "grown" if entry["first_growth"] else "intact", color="red", va="center", fontsize=8)
+    axes.annotate("", (0.5, 0), (0.5, _SPACE), arrowprops={"arrowstyle": "->", "color": "red"})
+    axes.set(xlim=(-_SPACE, 1 + _SPACE), ylim=(-1.02, _SPACE))
+    axes.axis("off")
+    return figure
+
+
+def _fibre(axes: Any, angle: float, height: float, depth: float) -> None:
+    """Draw the direction of the fibres at the left of a ply, as seen from the struck face."""
+    turned, length = np.radians(angle), 0.4 * depth
+    axes.plot(np.array([-1, 1]) * 0.03 * np.cos(turned) - _SPACE / 2,
+              height + np.array([-1, 1]) * length * np.sin(turned), color="black", linewidth=1)
+
+
+def plan_figure(summary: Mapping[str, Any], look: Look) -> Figure:
+    """Draw the plate in plan with the rectangle around what has failed of each interface, all to scale."""
+    along, across = summary["plate_size"]
+    figure = Figure(figsize=(7, min(max(4.4 * across / along, 1.5), 8) + 0.8), layout="constrained")
+    axes = figure.subplots()
+    try:
+        deck = recorded_deck(summary["provenance"], Path(f"{summary['case']}.nml"))
+        at = deck.numbers("impactor", "at") if deck.has("impactor") else []
+    except ImplamError:
+        deck, at = None, []
+    draw_plate(axes, deck, along, across)
+    interfaces = [entry for entry in summary.get("interfaces", []) if entry["x"][1] > entry["x"][0]]
+    for position, entry in enumerate(interfaces):
+        (left, right), (front, back) = entry["x"], entry["y"]
+        axes.add_patch(Rectangle((left, front), right - left, back - front, facecolor="none",
+                                 edgecolor=f"C{position % 10}", label=f"below ply {entry['ply_above']}"))
+    axes.plot(*(at if len(at) == 2 else (0, 0)), "+", color="red", label="struck point", linestyle="none")
+    axes.set(xlim=(-0.53 * along, 0.53 * along), ylim=(-0.53 * across, 0.53 * across), aspect="equal")
+    for name, side in (("x, along 0°", axes.xaxis), ("y", axes.yaxis)):
+        length = look.axis(name, "length", [along / 2])
+        side.set_label_text(length.label)
+        side.set_major_formatter(FuncFormatter(lambda value, _, factor=length.factor: f"{factor * value:.4g}"))
+    figure.legend(fontsize="small", title="extents of what failed" if interfaces else None, loc="outside right center")
+    return figure
+
+
+def history_pictures(history: History, look: Look,
+                     threshold: tuple[float, float] | None = None) -> Iterator[tuple[str, Figure]]:
+    """Give the curves of a history: force, force against displacements, deflection, areas and energies.
+
+    Time and force of a threshold are marked on the curve of the force.
+    """
+    if np.any(history["force"]):
+        shown = in_contact(history)
+        yield "contact force against time", _curve(history, "time", "force", look, threshold)
+        if np.any(history.columns.get("impactor_displacement", 0)):
+            yield "contact force against displacement of the impactor", _curve(shown, "impactor_displacement", "force",
+                                                                               look)
+        yield "contact force against deflection", _curve(shown, "deflection", "force", look)
+    yield "deflection against time", _curve(history, "time", "deflection", look)
+    areas = {name: name.replace("area_below_", "below ply ") for name in history.columns
+             if name.startswith("area_below_")}
+    if areas:
+        yield "delaminated area against time", _curves(history, areas, "delaminated area", "area", look)
+    energies = {column: name for column, name in (ENERGY_NAMES | {"energy_error": UNACCOUNTED}).items()
+                if column in history.columns and np.any(history[column])}
+    yield "energies against time", _curves(history, energies, "energy", "energy", look)
+
+
+def _curve(history: History, against: str, column: str, look: Look,
+           mark: tuple[float, float] | None = None) -> Figure:
+    """Draw one column; steps in which delaminations grew are marked on the force, and a threshold if there is one."""
+    figure = Figure(figsize=(7, 3.4), layout="constrained")
+    axes = figure.subplots()
+    along, up = (look.axis(*AXES[name], history[name]) for name in (against, column))
+    axes.plot(along.factor * history[against], up.factor * history[column])
+    grown = growth_rows(history)
+    if column == "force" and len(grown):
+        axes.plot(along.factor * history[against][grown], up.factor * history[column][grown], "o", markersize=3,
+                  label="delamination grows")
+    if mark is not None:
+        axes.plot(along.factor * mark[0], up.factor * mark[1], "kx", label="threshold behind the low pass")
+    if axes.get_legend_handles_labels()[0]:
+        axes.legend()
+    axes.set(xlabel=along.label, ylabel=up.label)
+    axes.grid(alpha=0.3)
+    return figure
+
+
+def _curves(history: History, columns: Mapping[str, str], label: str, dimension: str, look: Look) -> Figure:
+    """Draw several columns, each with its name, against time."""
+    figure = Figure(figsize=(7, 3.4), layout="constrained")
+    axes = figure.subplots()
+    along = look.axis("time", "time", history.time)
+    up = look.axis(label, dimension, np.concatenate([[0.0], *(history[column] for column in columns)]))
+    for column, name in columns.items():
+        axes.plot(along.factor * history.time, up.factor * history[column], label=name,
+                  color="black" if name == UNACCOUNTED else None)
+    axes.set(xlabel=along.label, ylabel=up.label)
+    axes.grid(alpha=0.3)
+    if columns:
+        axes.legend(loc="center left", bbox_to_anchor=(1, 0.5), fontsize="small")
+    return figure
+
+
+def map_pictures(fields: Fields, look: Look) -> Iterator[tuple[str, Figure]]:
+    """Give what the fields hold of interfaces and plies, in plan."""
+    last = fields.snapshots[-1]
+    if last.mesh.interfaces:
+        yield "delamination of each interface", delamination_figure(fields, look)
+        yield "all interfaces seen through the plate", projected_figure(fields, look)
+    if last.failures and any(np.any(failed) for failed in last.failures.values()):
+        yield "failures of each ply", failures_figure(fields, look=look)

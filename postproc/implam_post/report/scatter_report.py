@@ -1,0 +1,96 @@
+"""The page of a sweep whose runs have random inputs: means with their scatter instead of single runs."""
+
+import json
+import math
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from implam_post.io.errors import FileError
+from implam_post.io.files import read_text, write_text
+from implam_post.plot.look import Look
+from implam_post.report.page import image_of, render
+from implam_post.sweep.scatter_plots import BAND, SHARE
+from implam_post.sweep.scatter_results import STATISTICS
+from implam_post.sweep.scatter_statistics import Difference, Spread
+from implam_post.sweep.scatter_text import HEAD, PAIRED, SHOWN, difference_rows, spread_rows
+
+
+def write_page(folder: Path, output: Path | None) -> Path:
+    """Write the page of a sweep into its folder or another one, and return its path."""
+    path = folder / STATISTICS
+    try:
+        content = json.loads(read_text(path, "the statistics"))
+        text = _page(content, folder)
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
+        raise FileError(f"{path} isn't written by implam-sweep, or is damaged ({error}).") from None
+    except OSError as error:
+        raise FileError(f"a picture of {folder} cannot be read ({error}).") from None
+    written = (output or folder) / f"{folder.absolute().name}_report.html"
+    write_text(written, text)
+    return written
+
+
+def _page(content: Mapping[str, Any], folder: Path) -> str:
+    """Return the page."""
+    look, statistics = Look(content["system"]), content["statistics"]
+    runs = ", ".join(f"{group['ended']} of {group['runs']} runs{_of(group['name'])} in {group['seconds']:.4g} s of the "
+                     "processor" for group in content["groups"])
+    pictures = [(text, image_of(folder / name)) for name, text in (
+        (BAND, "Force history"), (SHARE, "Share of the runs in which a place has delaminated"))
+        if (folder / name).exists()]
+    differences = [] if not content.get("differences") else [
+        (group["name"], _differences(_rows_of(content["differences"], group), statistics, look))
+        for group in content["groups"][1:]]
+    return render("sweep.html", title=content["title"] or "Runs with random inputs", runs=runs, notes=content["notes"],
+                  variants=content["variants"], head=HEAD, paired=PAIRED, first=content["groups"][0]["name"],
+                  groups=[_group(group, content, look) for group in content["groups"]], differences=differences,
+                  pictures=pictures, inputs=_inputs(content["inputs"]), sweep=content["sweep"])
+
+
+def _group(group: Mapping[str, Any], content: Mapping[str, Any], look: Look) -> dict[str, object]:
+    """Return the tables of a group: the figures shown, all of them, and what was measured."""
+    rows = _rows_of(content["statistics"], group)
+    measured = [(row["figure"], row["measured"], row["aim"], row["mean"], row["error_of_mean"],
+                 "within" if row["within"] else "beyond") for row in _rows_of(content.get("measured", []), group)]
+    return {"of": _of(group["name"]), "shown": _spreads(rows, look, SHOWN), "measured": measured,
+            "all": _spreads(rows, look, [row["figure"] for row in rows])}
+
+
+def _rows_of(rows: Iterable[Mapping[str, Any]], group: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+    """Return the rows of a group."""
+    return [row for row in rows if row["group"] == group["name"]]
+
+
+def _of(name: str) -> str:
+    """Return words that name a group."""
+    return f" of {name}" if name else ""
+
+
+def _number(value: float | None) -> float:
+    """Return a number, NaN for none."""
+    return math.nan if value is None else value
+
+
+def _spreads(rows: Iterable[Mapping[str, Any]], look: Look, names: Iterable[str]) -> list[tuple[str, ...]]:
+    """Return the rows of means."""
+    keys = ("mean", "deviation", "low_5", "high_95")
+    found = {row["figure"]: Spread(row["runs"], *(_number(row[key]) for key in keys)) for row in rows}
+    return [*spread_rows(found, {row["figure"]: row["dimension"] for row in rows}, look, list(names))]
+
+
+def _differences(rows: Iterable[Mapping[str, Any]], statistics: Iterable[Mapping[str, Any]], look: Look
+                 ) -> list[tuple[str, ...]]:
+    """Return the rows of differences."""
+    found = {row["figure"]: Difference(row["pairs"], *(_number(row[key]) for key in (
+        "first", "difference", "error_of_mean"))) for row in rows}
+    return [*difference_rows(found, {row["figure"]: row["dimension"] for row in statistics}, look, SHOWN)]
+
+
+def _inputs(rows: Iterable[Mapping[str, Any]]) -> list[tuple[str, ...]]:
+    """Return the rows of what scatters."""
+    def variation(row: Mapping[str, Any]) -> str:
+        value = row["variation"]
+        return f"{value:.3g} (the deck's units)" if row["kind"] == "place" else f"{100 * value:.3g} %"
+
+    return [(row["input"], row["kind"], variation(row), row["source"]) for row in rows]

@@ -1,0 +1,190 @@
+"""Run a deck over lists, grids or samples of its keys (`implam-sweep SWEEP.toml`)."""
+
+import argparse
+import itertools
+import os
+import re
+import shlex
+import sys
+import time
+from collections import Counter
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from implam_post.io.errors import EXIT_DONE, EXIT_USAGE, CommandParser, DeckError, FileError, count, run
+from implam_post.io.files import try_lock, write_text
+from implam_post.io.program import EXIT_STOPPED, PROGRAM_HELP, check_deck, find_program, processors
+from implam_post.sweep.case_run import case_command, forget
+from implam_post.sweep.plan import FORMAT, Case, is_random, only, read_plan
+from implam_post.sweep.runs import NOT_RUN, STOPPED, Sweep, run_cases
+
+if TYPE_CHECKING:  # it takes numpy, which a faulty sweep needn't wait for
+    from implam_post.sweep.table import Table
+
+_TABLE_EVERY = 10.0  # seconds between tables written on the way
+_SHOWN = 20  # faulty decks reported one by one
+_NUMBER = re.compile(r"\d+(?:\.\d*)?(?:[eE][-+]?\d+)?")
+
+
+def check_decks(sweep: Sweep, cases: Sequence[Case], jobs: int) -> None:
+    """Let the program check every deck, and report what is wrong with any of them before one is run."""
+    with ThreadPoolExecutor(jobs) as pool:
+        verdicts = list(pool.map(lambda case: check_deck(sweep.program, sweep.deck(case)), cases))
+    faulty = [(case, printed) for case, (sound, printed) in zip(cases, verdicts, strict=True) if not sound]
+    for case, printed in faulty[:_SHOWN]:
+        print(f"case {case.number}: {case.label}", *printed, sep="\n  ", file=sys.stderr)
+    if faulty:
+        more = f" (the first {_SHOWN} are listed)" if len(faulty) > _SHOWN else ""
+        raise DeckError(f"{len(faulty)} of {len(sweep.plan.cases)} decks are faulty{more}; nothing was run.")
+    warnings = [[found[1] for line in printed if (found := re.match(r".*?: warning: (.*)", line))]
+                for _, printed in verdicts]
+    # Warnings that differ in numbers alone are alike: the first one's words stand for all.
+    first: dict[str, str] = {}
+    for warning in itertools.chain(*warnings):
+        first.setdefault(_NUMBER.sub("#", warning), warning)
+    numbers = Counter(alike for of_deck in warnings for alike in {_NUMBER.sub("#", warning) for warning in of_deck})
+    for alike, warning in first.items():
+        print(f"warning, {numbers[alike]} of {len(cases)} decks: {warning}", file=sys.stderr)
+
+
+class _Tables:
+    """Writes the table, on the way too."""
+
+    def __init__(self, sweep: Sweep) -> None:
+        """Nothing is written yet."""
+        self._sweep, self._written, self._figures = sweep, time.monotonic(), {}
+
+    def write_now_and_then(self) -> None:
+        """Write the table as it is if the last one is old."""
+        if time.monotonic() - self._written > _TABLE_EVERY:
+            self.write()
+
+    def write(self) -> "Table":
+        """Write the table as CSV and return it."""
+        from implam_post.sweep.table import make_table, write_csv
+        table = make_table(self._sweep, self._figures)
+        write_csv(table, self._sweep.plan.output / "table.csv")
+        self._written = time.monotonic()
+        return table
+
+
+def _write_array(sweep: Sweep, cases: Sequence[Case]) -> int:
+    """Write the decks still to run, and the commands that run them, one a line."""
+    decks, commands = sweep.plan.output / "decks.txt", sweep.plan.output / "array.txt"
+    write_text(decks, "".join(f"{sweep.deck(case).absolute()}\n" for case in cases))
+    write_text(commands, "".join(shlex.join(case_command(sweep.folder(case), sweep.program)) + "\n" for case in cases))
+    print(f"{len(cases)} decks to run are listed in {decks}, the command for each in {commands}.")
+    return EXIT_DONE
+
+
+def _gather(sweep: Sweep, tables: _Tables) -> int:
+    """Write table and plots, list what failed, and return the exit code."""
+    from implam_post.sweep.plots import plot_table
+    from implam_post.sweep.table import write_hdf5
+    output = sweep.plan.output
+    table = tables.write()
+    write_hdf5(table, output / "table.h5")
+    # Where inputs scatter, a figure against one of them is a cloud: their statistics have pictures of their own.
+    plots = [] if sweep.plan.scatter else plot_table(table, output)
+    print(output / "table.csv", output / "table.h5", *plots, sep="\n")
+    if is_random(sweep.plan):
+        _tell_scatter(sweep, table.system)
+    for note in table.notes:
+        print(f"note: {note}")
+    return tell_ends(sweep)
+
+
+def _tell_scatter(sweep: Sweep, system: str) -> None:
+    """Write and print what runs with random inputs come to."""
+    from implam_post.plot.look import Look
+    from implam_post.sweep.scatter_plots import plot_scatter
+    from implam_post.sweep.scatter_results import curves_of, groups_of, write_statistics
+    from implam_post.sweep.scatter_text import statistics_text, variants_table
+    groups, look = groups_of(sweep), Look(system)
+    files = write_statistics(sweep, groups, system, variants_table(groups, look) if len(groups) > 1 else ())
+    pictures = plot_scatter(groups, curves_of(sweep.plan.measured), look, sweep.plan.output)
+    print(*files, *pictures, sep="\n")
+    text = statistics_text(sweep.plan, groups, look)
+    write_text(sweep.plan.output / "statistics.txt", f"{text.strip()}\n")
+    print(text)
+    for note in (note for group in groups for note in group.notes):
+        print(f"note: {note}")
+
+
+def tell_ends(sweep: Sweep) -> int:
+    """List what failed and what is left, and return the exit code."""
+    total = len(sweep.plan.cases)
+    ends = [(case, sweep.failure(case)) for case in sweep.plan.cases]
+    left = [case for case, failure in ends if failure in (NOT_RUN, STOPPED)]
+    failed = [(case, failure) for case, failure in ends if failure and failure not in (NOT_RUN, STOPPED)]
+    if failed:
+        print(f"{len(failed)} of {total} cases failed:", file=sys.stderr)
+    for case, failure in failed:
+        print(f"  case {case.number} ({sweep.folder(case)}): {case.label}: {failure}", file=sys.stderr)
+    if left:
+        print(f"{len(left)} of {total} cases have not ended; the same command goes on with them.", file=sys.stderr)
+    return EXIT_USAGE if failed else EXIT_STOPPED if left else EXIT_DONE
+
+
+def _work(sweep: Sweep, options: argparse.Namespace) -> int:
+    """Write and check the decks, then do with them what is required."""
+    sweep.write_decks()
+    for case in sweep.plan.cases if options.retry else ():
+        forget(sweep.folder(case))
+    cases, tables = sweep.open_cases(), _Tables(sweep)
+    if options.table:
+        return _gather(sweep, tables)
+    check_decks(sweep, cases, options.jobs)
+    if options.array:
+        return _write_array(sweep, cases)
+    for note in sweep.plan.notes:
+        print(f"note: {note}")
+    print(f"{len(sweep.plan.cases)} cases, {len(cases)} decks to run", flush=True)
+    finished = run_cases(sweep, cases, options.jobs, tables.write_now_and_then)
+    code = _gather(sweep, tables)
+    return code if finished else EXIT_STOPPED
+
+
+def _command(options: argparse.Namespace) -> int:
+    """Read the sweep and work on it, alone in its folder."""
+    program = find_program(options.program)
+    plan = read_plan(options.sweep, options.output, program)
+    sweep = Sweep(only(plan, options.only) if options.only else plan, program)
+    try:
+        sweep.plan.output.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise FileError(f"the folder {sweep.plan.output} cannot be made ({error}).") from None
+    lock = try_lock(sweep.plan.output / "lock")
+    if lock is None:
+        raise FileError(f"another implam-sweep works in {sweep.plan.output}.")
+    try:
+        return _work(sweep, options)
+    finally:
+        os.close(lock)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command; the exit code is 1 if a case failed, 75 if the sweep was stopped."""
+    parser = CommandParser(
+        "implam-sweep", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=FORMAT,
+        description="Run a deck over lists, grids or samples of its keys. All decks are checked before one is run.\n"
+        "The same command again goes on where a stopped or killed one was, and runs nothing twice.")
+    parser.add_argument("sweep", type=Path, metavar="SWEEP.toml", help="what is swept; the format is given below")
+    parser.add_argument("--output", type=Path, metavar="DIR", help="folder of cases and table, instead of the file's")
+    parser.add_argument("--program", metavar="WORDS", help=PROGRAM_HELP)
+    parser.add_argument("--jobs", type=count, default=processors(), metavar="N",
+                        help="runs at a time (default: the processors there are)")
+    what = parser.add_mutually_exclusive_group()
+    what.add_argument("--array", action="store_true",
+                      help="run nothing; list decks (decks.txt) and commands (array.txt) for a queue's job array")
+    what.add_argument("--table", action="store_true", help="run nothing; write table and plots of what is there")
+    parser.add_argument("--only", nargs="+", metavar="VARIANT",
+                        help="of [variants] only these, and the first one, which others are compared with")
+    parser.add_argument("--retry", action="store_true", help="also run again what found no convergence, all afresh")
+    return run(_command, parser, arguments)
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

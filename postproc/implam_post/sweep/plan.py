@@ -1,0 +1,333 @@
+"""The plan of a sweep: the cases that its file requires, each with its deck."""
+
+import hashlib
+import itertools
+import math
+import tomllib
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cache, cached_property
+from pathlib import Path
+
+from implam_post.io.deck import Deck
+from implam_post.io.deck_text import KeyPath, deck_value, drop_group, group_path, key_path, number_of, set_keys
+from implam_post.io.errors import DeckError
+from implam_post.io.files import read_text
+from implam_post.io.units import SYSTEMS
+from implam_post.sweep.expressions import CONSTANTS, FUNCTIONS, evaluate
+from implam_post.sweep.library_values import Library, adopt, asking
+from implam_post.sweep.samples import METHODS, draw
+from implam_post.sweep.scatter_plan import Scatter, read_scatter
+
+FORMAT = """
+The file of a sweep:
+
+    deck = "peanut.nml"                       # the deck all cases start from, beside this file
+    output = "results"                        # folder of the cases and the table; default: the name of this file
+    units = "SI"                              # of the plots: SI, mm-t-s, mm-kg-ms, mm-mN-kg-s; default: the deck's
+
+    [grid]                                    # every combination, the last key changes fastest
+    "laminate.angles" = [[0, 90, 0], "3*0"]   # a list in the list, or text as it stands in a deck
+    energy = [1.0, 2.0]                       # a name without a group is there for [derived]
+
+    [list]                                    # side by side: first with first, second with second
+    "material[1].E1" = [120e9, 139e9]         # [1] counts the groups of one name, [*] means all of them
+    "delamination[*].G_c" = [400, ""]         # "" leaves the key out
+
+    [samples]                                 # at random
+    number = 20
+    seed = 1                                  # default 1
+    method = "random"                         # or "latin_hypercube"
+    "material[*].E2" = { distribution = "normal", mean = 9.4e9, deviation = 0.3e9 }
+    "impactor.mass" = { distribution = "uniform", low = 0.9, high = 1.1 }
+    "delamination[*].G_IIc" = { distribution = "lognormal", mean = 790, deviation = 80 }
+
+    [derived]                                 # in this order, from names, keys of the case's deck, and numbers
+    "impactor.velocity" = "sqrt(2*energy/impactor.mass)"
+
+    [scatter]                                 # runs with inputs drawn within their tolerances
+    number = 10
+    seed = 1                                  # default 1; method as above
+    strengths = 0.08                          # coefficients of variation instead of the defaults, 0: as in the deck
+    "delamination.G_IIc" = 0.1                # of one key alone
+
+    [variants]                                # decks to be compared, with the same random inputs
+    "as it is" = {}
+    "no friction" = { "delamination[*].friction" = 0 }
+    "no clamps" = { drop = ["support[2]"] }   # without a group
+
+Several tables together are combined: each row of [grid] with each of [list] with each of [samples]. `deck` may be swept
+too. Text that reads as values of a deck stands there as it is; any other is put in quotes.
+"""
+MOST_CASES = 100_000
+COLUMNS = ("case", "impact_energy", "peak_force", "peak_force_time", "contact_duration", "max_deflection",
+           "rebound_velocity", "absorbed_energy", "delaminated_area", "first_growth_force", "first_growth_time",
+           "exit_code", "cpu_time", "version", "folder")
+_TABLES = ("grid", "list", "samples", "derived")
+VARIANT = "variant"
+_SAMPLES = {"number": None, "seed": 1, "method": "random"}
+
+
+@dataclass(frozen=True)
+class Case:
+    """One case: its number from 1, the values in which it differs, its deck, and which of several runs of it."""
+
+    number: int
+    values: dict[str, object]
+    deck_name: str
+    deck: str
+    repeat: int = 1
+
+    @cached_property
+    def key(self) -> str:
+        """Return a name of the deck's content: cases of the same deck have the same, but where one is repeated."""
+        name = hashlib.sha256(f"{self.deck_name}\n{self.deck}".encode()).hexdigest()[:12]
+        return name if self.repeat == 1 else f"{name}_{self.repeat}"
+
+    @property
+    def label(self) -> str:
+        """Return the values in one line, to six digits, without those drawn by [scatter]."""
+        shown = [f"{name}={value:.6g}" if isinstance(value, float) else f"{name}={deck_value(value)}"
+                for name, value in self.values.items() if " " not in name]
+        return "  ".join([*shown, *["random inputs"] * (len(shown) < len(self.values))])
+
+
+@dataclass(frozen=True)
+class Variant:
+    """A deck that is compared with others: its name, keys that it sets, and groups that it leaves out."""
+
+    name: str
+    settings: dict[str, object]
+    dropped: list[str]
+
+
+@dataclass(frozen=True)
+class Plan:
+    """All cases of a sweep, the text of its file, the names of what is set and derived, and where results go.
+
+    `random` names what is drawn at random of what is set. `scatter` is the table [scatter], `measured` a curve beside
+    which histories are drawn, and `notes` say what does not scatter.
+    """
+
+    path: Path
+    text: str
+    names: list[str]
+    derived: list[str]
+    cases: list[Case]
+    output: Path
+    units: str
+    random: frozenset[str] = field(default=frozenset(), kw_only=True)
+    scatter: Scatter | None = field(default=None, kw_only=True)
+    measured: Path | None = field(default=None, kw_only=True)
+    notes: tuple[str, ...] = field(default=(), kw_only=True)
+
+
+def read_plan(path: Path, output: Path | None = None, program: Sequence[str] | None = None) -> Plan:
+    """Read the file of a sweep and make the decks of its cases; the program lists published materials."""
+    text = read_text(path, "the sweep")
+    try:
+        content = tomllib.loads(text)
+        tables = {name: flat_table(content.pop(name, {}), name) for name in _TABLES}
+        scatter, variants = read_scatter(content.pop("scatter", None)), read_variants(content.pop("variants", {}))
+        words = {"deck": "", "output": path.stem, "units": "", "measured": ""}
+        base, folder, units, measured = (content.pop(name, default) for name, default in words.items())
+        if content:
+            raise DeckError(f"'{next(iter(content))}' is none of {', '.join(words)}, {', '.join(_TABLES)}, scatter, "
+                            "variants.")
+        if not all(isinstance(word, str) for word in (base, folder, units, measured)) or units not in ("", *SYSTEMS):
+            raise DeckError(f"deck, output and measured are text, and units one of {', '.join(SYSTEMS)}.")
+        check_names(tables)
+        cases = CaseMaker(path.parent, base, tables["derived"], scatter, cache(asking(program)))
+        made = _cases(cases, tables, variants)
+        cases.check_use(name for table in ("grid", "list", "samples") for name in tables[table])
+    except (tomllib.TOMLDecodeError, DeckError) as error:
+        raise DeckError(f"{path}: {error}") from None
+    names = list(dict.fromkeys(name for case in made for name in case.values))
+    drawn = frozenset(name for name in names if name in tables["samples"]) | cases.drawn
+    return Plan(path, text, names, list(tables["derived"]), made, output or path.parent / folder, units, random=drawn,
+                scatter=scatter, measured=path.parent / measured if measured else None, notes=tuple(cases.notes))
+
+
+def _cases(maker: "CaseMaker", tables: dict[str, dict[str, object]], variants: Sequence["Variant"]) -> list[Case]:
+    """Return the cases: each variant with each row of what is swept, run by run."""
+    runs = maker.scatter.number if maker.scatter else 1
+    swept = any(tables[name] for name in ("grid", "list", "samples"))
+    rows = list(combinations(tables)) if swept or not (maker.scatter or variants) else [{}]
+    if (count := max(len(variants), 1) * len(rows) * runs) > MOST_CASES:
+        raise DeckError(f"the sweep has {count} cases; {MOST_CASES} are the most.")
+    chosen = itertools.product(variants or [None], rows, range(runs))
+    return [maker.make(number, row, variant, run) for number, (variant, row, run) in enumerate(chosen, start=1)]
+
+
+def read_variants(table: object) -> list[Variant]:
+    """Return the variants of a sweep, in order."""
+    if not isinstance(table, dict) or not all(isinstance(value, dict) for value in table.values()):
+        raise DeckError('variants is a table of tables: [variants] "name" = { "group.key" = value }.')
+    return [_variant(name, dict(value)) for name, value in table.items()]
+
+
+def _variant(name: str, table: dict[str, object]) -> Variant:
+    """Return one variant."""
+    dropped = table.pop("drop", [])
+    if not isinstance(dropped, list) or not all(isinstance(word, str) and group_path(word) for word in dropped):
+        raise DeckError(f"[variants] {name}: drop is a list of groups, as [\"support[2]\"].")
+    settings = flat_table(table, f"variants.{name}")
+    for key in settings:
+        if key != "deck" and key_path(key) is None:
+            raise DeckError(f"[variants] {name}: '{key}' is no key of the deck, as group.key or group[2].key.")
+    return Variant(name, settings, dropped)
+
+
+def only(plan: Plan, variants: Sequence[str]) -> Plan:
+    """Return the plan with its first variant and some others alone."""
+    names = list(dict.fromkeys(str(case.values[VARIANT]) for case in plan.cases if VARIANT in case.values))
+    for name in variants:
+        if name not in names:
+            raise DeckError(f"{plan.path}: '{name}' is none of the variants {', '.join(names) or '(there are none)'}.")
+    kept = {names[0], *variants}
+    return replace(plan, cases=[case for case in plan.cases if case.values[VARIANT] in kept])
+
+
+def is_random(plan: Plan) -> bool:
+    """Return whether a sweep has runs that differ in random inputs."""
+    return bool(plan.random) or plan.scatter is not None
+
+
+def flat_table(table: object, name: str) -> dict[str, object]:
+    """Return a table with dotted names, whether or not they were written in quotes."""
+    if not isinstance(table, dict):
+        raise DeckError(f"{name} is a table: [{name}].")
+    flat = {}
+    for key, value in table.items():
+        if isinstance(value, dict) and "distribution" not in value:
+            flat |= {f"{key}.{rest}": item for rest, item in flat_table(value, name).items()}
+        else:
+            flat[key] = value
+    return flat
+
+
+def check_names(tables: dict[str, dict[str, object]]) -> None:
+    """Refuse names that are neither keys nor plain names, and those given twice."""
+    seen: dict[str, str] = {}
+    for table, entries in tables.items():
+        for name in entries:
+            if table == "samples" and name in _SAMPLES:
+                continue
+            path = key_path(name)
+            if path is None and (not name.isidentifier() or name in FUNCTIONS or name in CONSTANTS):
+                raise DeckError(f"[{table}] '{name}' is neither a key of the deck, as group.key or group[2].key, "
+                                "nor a free name.")
+            if name in (*COLUMNS, VARIANT):
+                raise DeckError(f"[{table}] '{name}' is the name of another column of the table.")
+            same = str(path).lower() if path else name
+            if same in seen:
+                raise DeckError(f"'{name}' stands in both [{seen[same]}] and [{table}]." if seen[same] != table
+                                else f"'{name}' stands in [{table}] twice.")
+            seen[same] = table
+
+
+def combinations(tables: dict[str, dict[str, object]]) -> Iterator[dict[str, object]]:
+    """Yield the swept values of every case, in order."""
+    for table in ("grid", "list"):
+        for name, values in tables[table].items():
+            if not isinstance(values, list) or not values:
+                raise DeckError(f"[{table}] {name} needs a list of values, one at least.")
+    grid, side_by_side, samples = tables["grid"], tables["list"], _samples(tables["samples"])
+    lengths = {name: len(values) for name, values in side_by_side.items()}
+    if len(set(lengths.values())) > 1:
+        raise DeckError("[list] needs lists of one length, not " +
+                        ", ".join(f"{name} with {length}" for name, length in lengths.items()) + ".")
+    if not grid and not side_by_side and not samples:
+        raise DeckError("nothing is swept: [grid], [list], [samples], [scatter] or [variants] is needed.")
+    rows = [list(itertools.islice(zip(*table.values(), strict=True), MOST_CASES)) if table else [()]
+            for table in (side_by_side, samples)]
+    count = math.prod(len(values) for values in grid.values()) * len(rows[0]) * len(rows[1])
+    if count > MOST_CASES:
+        raise DeckError(f"the sweep has {count} cases; {MOST_CASES} are the most.")
+    names = [*grid, *side_by_side, *samples]
+    for parts in itertools.product(itertools.product(*grid.values()), *rows):
+        yield dict(zip(names, itertools.chain(*parts), strict=True))
+
+
+def _samples(table: Mapping[str, object]) -> dict[str, list[float]]:
+    """Return the samples of each name."""
+    quantities = {name: value for name, value in table.items() if name not in _SAMPLES}
+    if not table:
+        return {}
+    number, seed, method = (table.get(name, default) for name, default in _SAMPLES.items())
+    are_integers = all(isinstance(value, int) and not isinstance(value, bool) for value in (number, seed))
+    if not are_integers or not 1 <= number <= MOST_CASES or method not in METHODS or not quantities:
+        raise DeckError(f"[samples] needs a number from 1 to {MOST_CASES}, an integer seed, a method out of "
+                        f"{', '.join(METHODS)}, and a quantity at least.")
+    return {name: draw(name, value, number, seed, method) for name, value in quantities.items()}
+
+
+class CaseMaker:
+    """Makes the cases from the base decks, and keeps in mind which free names a formula uses, and what is drawn."""
+
+    def __init__(self, folder: Path, base: str, derived: dict[str, object], scatter: Scatter | None = None,
+                 request: Callable[[], Library] = dict) -> None:
+        """Decks lie in `folder`; `base` is the deck where none is swept; `request` returns published materials."""
+        self._folder, self._base, self._derived, self.scatter, self._request = folder, base, derived, scatter, request
+        self._texts: dict[str, str] = {}
+        self._used: set[str] = set()
+        self.drawn: frozenset[str] = frozenset()
+        self.notes: list[str] = []
+
+    def make(self, number: int, swept: dict[str, object], variant: Variant | None = None, run: int = 0) -> Case:
+        """Return the case of these swept values, of a variant and a run with its random inputs."""
+        set_too = variant.settings if variant else {}
+        values = ({VARIANT: variant.name} if variant else {}) | {
+            name: set_too.get(name, value) for name, value in swept.items()}
+        base = set_too.get("deck", values.get("deck", self._base))
+        if not isinstance(base, str) or not base:
+            raise DeckError("deck, the deck that all cases start from, is needed.")
+        settings = {path: deck_value(value) for name, value in (swept | set_too).items() if (path := key_path(name))}
+        name = f"{Path(base).stem}.nml"
+        text = self._text(base)
+        # A group is counted among those of the deck, so groups are left out first, the last ones before others.
+        dropped = sorted(map(group_path, variant.dropped if variant else ()), key=lambda found: -(found[1] or 0))
+        for group, place in dropped:
+            text = drop_group(text, group, place, name)
+        text = set_keys(text, settings, name)
+        for target, formula in self._derived.items():
+            if not isinstance(formula, str):
+                raise DeckError(f"[derived] {target} needs a formula, as text.")
+            values[target] = evaluate(formula, lambda word, text=text: self._look_up(word, values, text, name))
+            if path := key_path(target):
+                text = set_keys(text, {path: deck_value(values[target])}, name)
+        return Case(number, *self._scattered(values, text, name, run))
+
+    def _scattered(self, values: dict[str, object], text: str, name: str, run: int) -> tuple[dict, str, str]:
+        """Return the values, the name and the text of a deck with its inputs drawn at random, if they are."""
+        if self.scatter is None:
+            return values, name, text
+        text = adopt(text, name, self._request)
+        note = self.scatter.note(Deck(text, Path(name)))
+        if note and note not in self.notes:
+            self.notes.append(note)
+        text, drawn = self.scatter.set(text, name, run)
+        self.drawn |= drawn.keys()
+        return values | drawn, name, text
+
+    def check_use(self, names: Iterator[str]) -> None:
+        """Refuse free names that no formula uses: they would make no difference."""
+        for name in names:
+            if name not in (*_SAMPLES, "deck", *self._used) and key_path(name) is None:
+                raise DeckError(f"no formula of [derived] uses '{name}'; a key of the deck is written group.key.")
+
+    def _text(self, base: str) -> str:
+        """Return the text of a base deck."""
+        if base not in self._texts:
+            self._texts[base] = read_text(self._folder / base, "the deck")
+        return self._texts[base]
+
+    def _look_up(self, word: str, values: dict[str, object], text: str, name: str) -> object:
+        """Return what a word of a formula stands for: a free name, or a key as the case's deck has it."""
+        path: KeyPath | None = key_path(word)
+        if path is not None:
+            return number_of(text, path, name)
+        if word not in values:
+            raise DeckError(f"'{word}' is neither swept nor derived before.")
+        self._used.add(word)
+        return values[word]

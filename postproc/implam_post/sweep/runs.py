@@ -1,0 +1,134 @@
+"""The cases of a sweep on this machine: their folders, what has become of them, and the runs that go on."""
+
+import os
+import signal
+import subprocess
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from implam_post.io.errors import EXIT_DONE, FileError
+from implam_post.io.files import read_text, write_text
+from implam_post.io.program import EXIT_STOPPED, last_words
+from implam_post.io.progress import Progress
+from implam_post.sweep.case_run import OUTPUT, case_command, read_record
+from implam_post.sweep.plan import Case, Plan
+
+NOT_RUN, STOPPED = "not run", "stopped"
+_PAUSE = 0.05  # seconds between looks at the runs
+_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGUSR1, signal.SIGUSR2)
+
+
+@dataclass
+class _Job:
+    """A run that goes on; closing its lifeline stops it."""
+
+    case: Case
+    process: subprocess.Popen
+    lifeline: int
+
+
+@dataclass
+class Sweep:
+    """A plan with the program that runs it."""
+
+    plan: Plan
+    program: list[str]
+    folders: dict[str, Path] = field(init=False)
+
+    def __post_init__(self) -> None:
+        """Name the folder of each case."""
+        self.folders = {case.key: self.plan.output / "cases" / case.key for case in self.plan.cases}
+
+    def folder(self, case: Case) -> Path:
+        """Return the folder of a case."""
+        return self.folders[case.key]
+
+    def deck(self, case: Case) -> Path:
+        """Return the path of a case's deck."""
+        return self.folder(case) / case.deck_name
+
+    def write_decks(self) -> None:
+        """Write the decks that aren't there yet."""
+        for case in self.plan.cases:
+            path = self.deck(case)
+            if not path.exists() or read_text(path, "the deck") != case.deck:
+                write_text(path, case.deck)
+
+    def open_cases(self) -> list[Case]:
+        """Return the cases whose run hasn't ended for good, one of each deck."""
+        first: dict[str, Case] = {}
+        for case in self.plan.cases:
+            first.setdefault(case.key, case)
+        records = {key: read_record(self.folders[key]) for key in first}
+        return [case for key, case in first.items() if not (records[key] and records[key].final)]
+
+    def failure(self, case: Case) -> str:
+        """Return why a case has no result; empty if it has one."""
+        record = read_record(self.folder(case))
+        if record is None:
+            return NOT_RUN
+        if record.exit_code == EXIT_DONE:
+            return ""
+        if record.exit_code == EXIT_STOPPED:
+            return STOPPED
+        output = self.folder(case) / OUTPUT
+        printed = last_words(output.read_text(encoding="utf-8", errors="replace")) if output.exists() else ""
+        return f"ended with {record.exit_code}: {printed}"
+
+
+def _start(sweep: Sweep, case: Case) -> _Job:
+    """Start the run of a case, in a session of its own: it stops when its lifeline closes, and not before."""
+    reading, lifeline = os.pipe()
+    try:
+        process = subprocess.Popen(
+            [*case_command(sweep.folder(case), sweep.program), "--lifeline", str(reading)], stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, pass_fds=[reading], start_new_session=True)
+    except OSError as error:
+        raise FileError(f"a run cannot be started ({error}).") from None
+    finally:
+        os.close(reading)
+    return _Job(case, process, lifeline)
+
+
+def run_cases(sweep: Sweep, cases: Sequence[Case], jobs: int, now_and_then: Callable[[], None]) -> bool:
+    """Run cases, some at a time; return False if a signal stopped them. `now_and_then` is called on and on."""
+    waiting, running, stopped = list(reversed(cases)), [], []
+    handlers = {number: signal.signal(number, lambda *_: stopped.append(True)) for number in _SIGNALS}
+    try:
+        with Progress(len(cases)) as progress:
+            while running or (waiting and not stopped):
+                while waiting and len(running) < jobs and not stopped:
+                    running.append(_start(sweep, waiting.pop()))
+                time.sleep(_PAUSE)
+                for job in [job for job in running if job.process.poll() is not None]:
+                    running.remove(job)
+                    _end(sweep, job, progress)
+                for job in running if stopped else ():
+                    _cut(job)
+                progress.tick()
+                now_and_then()
+    finally:
+        for job in running:
+            _cut(job)
+        for number, handler in handlers.items():
+            signal.signal(number, handler)
+    return not stopped
+
+
+def _end(sweep: Sweep, job: _Job, progress: Progress) -> None:
+    """Report how a run ended."""
+    _cut(job)
+    printed = job.process.stderr.read().strip()
+    job.process.stderr.close()
+    failure = sweep.failure(job.case)
+    progress.end_run(f"case {job.case.number}: {job.case.label}",
+                     printed.splitlines()[-1] if failure == NOT_RUN and printed else failure)
+
+
+def _cut(job: _Job) -> None:
+    """Stop a run by closing its lifeline."""
+    if job.lifeline >= 0:
+        os.close(job.lifeline)
+        job.lifeline = -1

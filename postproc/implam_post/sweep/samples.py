@@ -1,0 +1,55 @@
+"""Random samples of quantities, the same on every machine: each name has its own stream, set by the seed."""
+
+import math
+import random
+from collections.abc import Callable, Mapping
+from statistics import NormalDist
+
+from implam_post.io.errors import DeckError
+
+Quantile = Callable[[float], float]
+METHODS = ("random", "latin_hypercube")
+_PARAMETERS = {"uniform": ("low", "high"), "normal": ("mean", "deviation"), "lognormal": ("mean", "deviation")}
+
+
+def draw(name: str, distribution: object, number: int, seed: int, method: str) -> list[float]:
+    """Return `number` samples of a quantity.
+
+    With "random", a larger number begins with the same samples. With "latin_hypercube", each of as many intervals of
+    equal probability as there are samples holds one, in random order.
+    """
+    quantile = _quantile(name, distribution)
+    # The generator's random() alone is promised to give the same numbers in every version of Python.
+    stream = random.Random(f"{seed} {name}")
+    shares = [stream.random() for _ in range(number)]
+    if method == "latin_hypercube":
+        keys = [stream.random() for _ in range(number)]
+        order = sorted(range(number), key=keys.__getitem__)
+        shares = [(place + share) / number for place, share in zip(order, shares, strict=True)]
+    return [quantile(min(max(share, 2.0**-54), 1 - 2.0**-53)) for share in shares]
+
+
+def _quantile(name: str, distribution: object) -> Quantile:
+    """Return the quantile function of a distribution, from its table in the file."""
+    if not isinstance(distribution, Mapping) or distribution.get("distribution") not in _PARAMETERS:
+        raise DeckError(f"{name}: a distribution is needed, one of {', '.join(_PARAMETERS)}.")
+    kind = distribution["distribution"]
+    names = _PARAMETERS[kind]
+    values = [distribution.get(parameter) for parameter in names]
+    finite = [isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
+              for value in values]
+    if set(distribution) != {"distribution", *names} or not all(finite):
+        raise DeckError(f"{name}: {kind} takes {' and '.join(names)}, finite numbers, and nothing else.")
+    if kind == "uniform":
+        low, high = values
+        if low >= high:
+            raise DeckError(f"{name}: low must be less than high.")
+        return lambda share: low + share * (high - low)
+    mean, deviation = values
+    if deviation <= 0 or (kind == "lognormal" and mean <= 0):
+        raise DeckError(f"{name}: the deviation{' and the mean' if kind == 'lognormal' else ''} must be above zero.")
+    if kind == "normal":
+        return NormalDist(mean, deviation).inv_cdf
+    spread = math.log1p((deviation / mean)**2)
+    logarithm = NormalDist(math.log(mean) - spread / 2, math.sqrt(spread))
+    return lambda share: math.exp(logarithm.inv_cdf(share))

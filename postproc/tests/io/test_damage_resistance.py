@@ -1,0 +1,125 @@
+"""Tests of what ASTM D7136 asks to be reported: threshold, energies, size and type of the damage."""
+
+import math
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+from implam_post.io.damage_resistance import energy_to_peak, extent, kinds_of_damage, low_pass, threshold
+from implam_post.io.fields import Fields, Mesh, Snapshot, read_fields
+from implam_post.io.history import ENERGIES, History
+from tests.io.test_fields import write_fields
+
+CORNER = 6e3
+SPEED, STIFFNESS, END = 4.0, 2e6, 1.5e-3  # of a straight rise, and when the impactor has gone in
+
+
+def history(fall: float = 0.0, dissipated: float = 0.0, ripple: float = 0.0) -> History:
+    """Return a force that rises with the displacement and falls by a part at .8 ms, as plies take an energy.
+
+    A ripple at 4 kHz lies over it.
+    """
+    time = np.linspace(2e-6, END, 750)
+    gone_in = SPEED * time
+    after = np.clip((time - 0.8e-3) / 50e-6, 0, 1)
+    force = STIFFNESS * gone_in * (1 - fall * after) * (1 + ripple * np.sin(2 * math.pi * 4e3 * time))
+    columns = {name: np.zeros(len(time)) for name in (*ENERGIES, "work_external")}
+    columns["energy_impactor"] = 25 - STIFFNESS * gone_in**2 / 2
+    columns["energy_ply_damage"] = dissipated * after
+    return History({"time": time, "force": force, "impactor_displacement": gone_in, **columns})
+
+
+class ThresholdTest(unittest.TestCase):
+    """The force at which the curve first drops by damage."""
+
+    def test_low_pass(self) -> None:
+        """What is slow passes, at the corner 1/sqrt(2) of it, and far above nothing; it comes later by 2.6/(2 pi f)."""
+        time = np.linspace(0, 20e-3, 40_001)
+        for frequency, gain in ((600, 1), (CORNER, math.sqrt(0.5)), (30e3, 0.0016)):
+            even, passed = low_pass(time, np.sin(2 * math.pi * frequency * time), CORNER)
+            self.assertAlmostEqual(np.max(passed[even > 10e-3]), gain, delta=0.001 + 0.002 * gain)
+        even, passed = low_pass(time, time, CORNER)
+        self.assertAlmostEqual(even[-1] - passed[-1], 2.613 / (2 * math.pi * CORNER), delta=1e-7)
+
+    def test_a_drop_by_damage(self) -> None:
+        """A fall of three tenths whose energy plies have taken; the energy is what the impactor has given by then."""
+        force = STIFFNESS * SPEED * 0.8e-3
+        found = threshold(history(0.3, 0.3 * force * SPEED * 0.8e-3 / 2), CORNER)
+        self.assertAlmostEqual(found.force / force, 1, delta=0.05)
+        self.assertAlmostEqual(found.time, 0.8e-3, delta=0.1e-3)
+        self.assertAlmostEqual(found.energy / (STIFFNESS * (SPEED * 0.8e-3)**2 / 2), 1, delta=0.06)
+
+    def test_what_is_no_drop(self) -> None:
+        """Vibration without damage, a fall without it, and damage without a fall."""
+        ripple = history(ripple=0.2)
+        self.assertTrue(np.any(np.diff(ripple["force"]) < 0))
+        for found in (ripple, history(0.3, 0.0), history(0.0, 1.0)):
+            self.assertIsNone(threshold(found, CORNER))
+
+    def test_coarse_rows(self) -> None:
+        """Rows too far apart for the low pass tell nothing."""
+        found = history(0.3, 10.0)
+        self.assertIsNotNone(threshold(found, CORNER))
+        coarse = History({name: values[::60] for name, values in found.columns.items()})
+        self.assertIsNone(threshold(coarse, CORNER))
+
+    def test_energy_to_the_peak(self) -> None:
+        """What the impactor has given when the force is largest, here at the end."""
+        self.assertAlmostEqual(energy_to_peak(history()), STIFFNESS * (SPEED * END)**2 / 2, delta=1e-3)
+
+
+class ExtentTest(unittest.TestCase):
+    """The size of the projected damage."""
+
+    def fields(self, corners: np.ndarray) -> Fields:
+        """Return the fields of a full plate with these cells delaminated below ply 1."""
+        count = len(corners)
+        mesh = Mesh(corners, np.full(count, 2), np.full(count, 2), np.zeros(count, dtype=bool))
+        return Fields("none.h5", "whole", [Snapshot(1.0, mesh, np.ones((count, 9)), {}, np.zeros(count))])
+
+    def test_a_turned_rectangle(self) -> None:
+        """8 by 6 mm turned by 45 degrees: a diagonal of 10, and sides met along 45 and -45 degrees."""
+        middle = np.array([[-4, -3], [4, -3], [4, 3], [-4, 3]]) / math.sqrt(2)
+        found = extent(self.fields((middle @ np.array([[1, 1], [-1, 1]]))[None]))
+        self.assertAlmostEqual(found.diameter, 10)
+        angle = 45 + math.degrees(math.atan2(3, 4))
+        self.assertIn(round(found.direction, 6), (round(angle, 6), round(90 - angle, 6)))
+        self.assertAlmostEqual(found.length, 14 / math.sqrt(2))
+        self.assertAlmostEqual(found.width, 14 / math.sqrt(2))
+        self.assertAlmostEqual(found.through[45], 8)
+        self.assertAlmostEqual(found.through[-45], 6)
+        self.assertAlmostEqual(found.through[0], 6 * math.sqrt(2))
+
+    def test_two_lobes(self) -> None:
+        """Between lobes with a gap at the struck point the outermost points count; across, the line meets none."""
+        lobe = np.array([[2, -1], [5, -1], [5, 1], [2, 1]], dtype=float)
+        found = extent(self.fields(np.stack([lobe, -lobe])))
+        self.assertAlmostEqual(found.through[0], 10)
+        self.assertEqual(found.through[90], 0)
+        self.assertAlmostEqual(found.width, 2)
+
+    def test_nothing(self) -> None:
+        """Where nothing has delaminated there is no size; cells of a quarter count with their images."""
+        plate = self.fields(np.array([[[0, 0], [1, 0], [1, 1], [0, 1.0]]]))
+        plate.snapshots[0].shares[:] = 0
+        self.assertIsNone(extent(plate))
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "case.h5"
+            write_fields(path, "quarter")
+            found = extent(read_fields(path))
+        self.assertAlmostEqual(found.length, 12)
+        self.assertAlmostEqual(found.width, 2)
+
+    def test_kinds(self) -> None:
+        """Every kind with its plies, runs of them in short."""
+        plies = [{"ply": ply, "matrix_crack_area": ply > 2, "matrix_crushing_area": ply == 1, "fibre_failure_area": 0}
+                 for ply in range(1, 7)]
+        interfaces = [{"ply_above": 2, "first_growth": {"at": 1}}, {"ply_above": 4, "first_growth": None}]
+        self.assertEqual(kinds_of_damage({"plies": plies, "interfaces": interfaces}), [
+            "delamination below ply 2", "matrix cracks in plies 3 to 6", "crushed matrix in ply 1"])
+
+
+if __name__ == "__main__":
+    unittest.main()

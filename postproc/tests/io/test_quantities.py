@@ -1,0 +1,113 @@
+"""Tests of the single numbers taken from a history."""
+
+import unittest
+
+import numpy as np
+
+from implam_post.io.history import ENERGIES, History
+from implam_post.io.quantities import (
+    QUANTITIES,
+    contacts,
+    l2_force_difference,
+    peak,
+    rms_force_difference,
+    second_peak,
+)
+
+
+def pulses(*forces: float) -> History:
+    """Return a history with the forces at times 0, 1, 2 ..."""
+    return History({"time": np.arange(len(forces), dtype=float), "force": np.array(forces, dtype=float)})
+
+
+class QuantitiesTest(unittest.TestCase):
+    """Peaks, contacts, energies and differences."""
+
+    def test_peak_of_a_parabola_between_uneven_rows(self) -> None:
+        """The parabola through three rows is exact."""
+        time = np.array([0.0, 1.0, 2.5, 3.0, 5.0])
+        found = peak(History({"time": time, "force": 7 - 2 * (time - 2.2)**2}), "force")
+        np.testing.assert_allclose(found, (7, 2.2), rtol=1e-14)
+
+    def test_contacts_of_hertzian_ends(self) -> None:
+        """Where force**(2/3) is linear, begin and end are exact; a contact that lasts has no end."""
+        depth = np.array([0, 0.5, 1.5, 0.4, 0, 0, 0.3, 0.6])
+        found = contacts(pulses(*depth**1.5))
+        np.testing.assert_allclose(found, [(0.5, 3 + 0.4 / 1.1), (5, np.nan)], rtol=1e-14)
+        self.assertEqual(contacts(pulses(0, 0, 0)), [])
+
+    def test_second_peak(self) -> None:
+        """The largest force of the second contact, and NaN if there is none."""
+        self.assertAlmostEqual(second_peak(pulses(0, 9, 0, 0, 2, 3, 2, 0)).value, 3, delta=1e-14)
+        self.assertTrue(np.isnan(second_peak(pulses(0, 9, 0, 0)).value))
+
+    def test_energy_error(self) -> None:
+        """The largest one counts, of either sign, as a fraction of the total at the start."""
+        columns = {name: np.zeros(3) for name in ENERGIES}
+        columns |= {"time": np.arange(3.0), "energy_error": np.array([0, -0.3, 0.1])}
+        columns["energy_impactor"] = np.array([6.0, 1, 1])
+        self.assertAlmostEqual(QUANTITIES["energy_error"](History(columns)), 0.05, delta=1e-15)
+        columns["energy_impactor"] = np.zeros(3)
+        self.assertFalse(np.isfinite(QUANTITIES["energy_error"](History(columns))))
+
+    def test_energy_rise(self) -> None:
+        """From the lowest row before; what the pressure puts in and what is lost don't count."""
+        columns = {name: np.zeros(6) for name in ENERGIES}
+        columns |= {"time": np.arange(6.0), "work_external": np.array([0, 0, 0, 1.0, 1, 1])}
+        columns["energy_impactor"] = np.array([10.0, 8, 6, 8, 7, 6])
+        columns["energy_strain"] = np.array([0, 1, 1, 1, 2.5, 1])
+        columns["energy_delamination"] = np.arange(6.0)
+        self.assertAlmostEqual(QUANTITIES["energy_rise"](History(columns)), 0.15, delta=1e-15)
+        columns["energy_kinetic"] = np.full(6, np.nan)
+        self.assertTrue(np.isnan(QUANTITIES["energy_rise"](History(columns))))
+
+    def test_energy_of_the_impactor(self) -> None:
+        """What is there in the first row, without the pressure's work, less what is left at the last release."""
+        columns = dict(pulses(0, 8, 8, 0, 0, 8, 0, 0).columns)
+        columns |= {name: np.zeros(8) for name in (*ENERGIES, "work_external")}
+        columns["energy_impactor"] = np.array([9.0, 5, 4, 3, 3, 2, 1, 1])
+        columns["energy_strain"][0], columns["work_external"][0] = 1.5, 0.5
+        history = History(columns)
+        self.assertEqual(QUANTITIES["impact_energy"](history), 10)
+        begin, end = contacts(history)[0].begin, contacts(history)[-1].end
+        self.assertEqual(QUANTITIES["contact_duration"](history), end - begin)
+        self.assertAlmostEqual(QUANTITIES["absorbed_energy"](history), 10 - np.interp(end, history.time, columns[
+            "energy_impactor"]), delta=1e-14)
+        untouched = History(columns | {"force": np.zeros(8)})
+        lasting = History(columns | {"force": np.full(8, 8.0)})
+        for one in (untouched, lasting):
+            for name in ("contact_duration", "absorbed_energy"):
+                self.assertTrue(np.isnan(QUANTITIES[name](one)), name)
+
+    def test_first_growth(self) -> None:
+        """The largest force up to the first growth; without growth, area or a number there is none."""
+        columns = dict(pulses(0, 5, 3, 9).columns)
+        force, time = (QUANTITIES[f"first_growth_{name}"] for name in ("force", "time"))
+        self.assertTrue(np.isnan(force(History(columns))))
+        columns["delaminated_area"] = np.array([1.0, 1, 2, 2])
+        self.assertEqual(force(History(columns)), 5)
+        self.assertEqual(time(History(columns)), columns["time"][2])
+        for area in (np.ones(4), np.full(4, np.nan)):
+            self.assertTrue(np.isnan(force(History(columns | {"delaminated_area": area}))))
+        self.assertTrue(np.isnan(force(History(columns | {"force": np.full(4, np.nan)}))))
+
+    def test_rms_force_difference(self) -> None:
+        """A constant difference over the contact, and NaN if a history ends too early."""
+        reference = pulses(0, 2, 4, 2, 0, 0)
+        self.assertEqual(rms_force_difference(reference, reference), 0)
+        self.assertAlmostEqual(rms_force_difference(pulses(1, 3, 5, 3, 1, 0), reference), 0.25, delta=1e-14)
+        self.assertTrue(np.isnan(rms_force_difference(pulses(0, 2, 4), reference)))
+
+    def test_l2_force_difference(self) -> None:
+        """A tenth more force differs by a tenth; NaN if the history ends before the reference."""
+        reference = pulses(0, 2, 4, 2, 0, 0)
+        self.assertAlmostEqual(l2_force_difference(pulses(0, 2.2, 4.4, 2.2, 0, 0, 0), reference), 0.1, delta=1e-14)
+        self.assertAlmostEqual(l2_force_difference(pulses(0, 2, 4, 2, 1, 0), reference), 24**-0.5, delta=1e-14)
+        self.assertTrue(np.isnan(l2_force_difference(pulses(0, 2, 4), reference)))
+
+    def test_nan_stays_nan(self) -> None:
+        """One NaN among the forces spoils every number made from them."""
+        broken = pulses(0, 2, 4, np.nan, 0, 0)
+        for name in ("peak_force", "peak_force_time", "contact_begin", "contact_release", "second_peak_force"):
+            self.assertTrue(np.isnan(QUANTITIES[name](broken)), name)
+        self.assertTrue(np.isnan(rms_force_difference(broken, pulses(0, 2, 4, 2, 0, 0))))

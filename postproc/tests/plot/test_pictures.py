@@ -1,0 +1,184 @@
+"""Tests of what pictures show: units, styles, cracks, the projected C-scan, measured curves, kinds of files."""
+
+import contextlib
+import io
+import tempfile
+import unittest
+from pathlib import Path
+
+import h5py
+import numpy as np
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
+from matplotlib.patches import PathPatch
+from PIL import Image
+
+from implam_post.io.fields import Fields, Mesh, Snapshot, area, read_fields
+from implam_post.io.history import ENERGIES, History
+from implam_post.plot import command, movie, pictures
+from implam_post.plot.look import Look, settle
+from implam_post.plot.plan import along_fibres, delamination_figure, failures_figure, projected_figure
+from implam_post.sweep.scatter_plots import share_figure
+from implam_post.sweep.scatter_results import EndedRun, Group
+from tests.io.test_fields import write_fields
+
+DECK = """&case units='SI' /
+&plate length=10, 10 edges='simple' /
+&material name='ply' density=1580 E1=1e11 E2=1e10 G12=5e9 G23=3e9 nu12=0.3 /
+&laminate materials='ply' stacking='[30/-30/90]' ply_thickness=1e-3 /
+&impactor mass=1 energy=2 radius=1e-2 /
+"""
+
+
+def history(name: str, factor: float = 1.0) -> History:
+    """Return a blow of 2 ms that ends with a gap."""
+    time = np.linspace(0, 3e-3, 31)
+    force = factor * np.maximum(np.sin(np.pi * time / 2e-3), 0) * 2000 * (time < 2e-3)
+    rest = {name: np.zeros(31) for name in (*ENERGIES, "energy_error")}
+    return History({"time": time, "force": force, "indentation": np.where(force > 0, 1e-4, -2e-3),
+                    "deflection": 1e-3 * force / 2000, **rest}, name)
+
+
+class PicturesTest(unittest.TestCase):
+    """Each test draws into a folder of its own, or looks at a figure."""
+
+    def setUp(self) -> None:
+        """Write fields with a deck in them."""
+        self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
+        self.path = self.folder / "case.h5"
+        write_fields(self.path, part="whole")
+        with h5py.File(self.path, "a") as file:
+            file["provenance/deck"] = np.bytes_(DECK)
+
+    def write(self, of: History, name: str) -> Path:
+        """Write a history as a file."""
+        path = self.folder / name
+        np.savetxt(path, np.column_stack(list(of.columns.values())), delimiter=",", header=",".join(of.columns),
+                   comments="")
+        return path
+
+    def plot(self, *arguments: object) -> tuple[int, str]:
+        """Run the command quietly."""
+        text = io.StringIO()
+        with contextlib.redirect_stdout(text), contextlib.redirect_stderr(text):
+            code = command.main([str(argument) for argument in arguments])
+        return code, text.getvalue()
+
+    def test_axes_have_units_and_runs_their_styles(self) -> None:
+        """2 kN at 1 ms are drawn as 2 and 1; two runs differ without colours; the gap isn't drawn as indentation."""
+        axes = Figure().subplots()
+        pictures._draw(axes, [history("a"), history("b", 0.5)], "force", Look("SI"))
+        self.assertEqual((axes.get_xlabel(), axes.get_ylabel()), ("time [ms]", "contact force [kN]"))
+        lines = axes.get_lines()
+        self.assertAlmostEqual(np.max(lines[0].get_ydata()), 2.0, delta=1e-9)
+        self.assertAlmostEqual(lines[0].get_xdata()[np.argmax(lines[0].get_ydata())], 1.0, delta=1e-9)
+        self.assertNotEqual(lines[0].get_linestyle(), lines[1].get_linestyle())
+        shown = pictures.response_of(history("a"), "indentation")
+        self.assertTrue(np.isnan(shown[-1]))
+        self.assertEqual(np.nanmin(shown), 1e-4)
+
+    def test_same_response_in_other_units(self) -> None:
+        """The same blow in mm, t and s has the same picture."""
+        si, other = history("a"), history("a")
+        other = History(other.columns | {"deflection": 1e3 * other["deflection"]}, "a")
+        drawn = []
+        for of, system in ((si, "SI"), (other, "mm-t-s")):
+            axes = Figure().subplots()
+            pictures._draw(axes, [of], "deflection", Look(system))
+            drawn.append((axes.get_ylabel(), axes.get_lines()[0].get_ydata()))
+        self.assertEqual(drawn[0][0], drawn[1][0])
+        np.testing.assert_allclose(drawn[0][1], drawn[1][1], rtol=1e-12)
+
+    def test_projected_interfaces(self) -> None:
+        """What has delaminated is one region; its area stands in the title."""
+        fields = read_fields(self.path)
+        axes = projected_figure(fields, Look("SI")).axes[0]
+        cells = fields.delaminated(2, 2)
+        regions = [part.get_path() for part in axes.patches if isinstance(part, PathPatch)]
+        self.assertEqual([np.count_nonzero(path.codes == path.MOVETO) for path in regions], [1, 1, 1])
+        self.assertIn(f"{1e6 * area(cells):.4g} mm²", axes.get_title())
+        self.assertEqual(axes.get_xlabel(), "x [mm]")
+
+    def test_cracks_run_along_fibres(self) -> None:
+        """The lines of a ply have its angle, which the deck in the file tells, and stay in their cells."""
+        square = np.array([[[0, 0], [2, 0], [2, 1], [0, 1]]], dtype=float)
+        for angle in (0, 30, 90, -45):
+            line = along_fibres(square, angle)[0]
+            run = line[1] - line[0]
+            self.assertAlmostEqual(run[0] * np.sin(np.radians(angle)), run[1] * np.cos(np.radians(angle)))
+            self.assertTrue(np.all(line >= -1e-12) and np.all(line <= [2 + 1e-12, 1 + 1e-12]), line)
+            self.assertGreater(np.hypot(*run), 0.99)
+        figure = failures_figure(read_fields(self.path), ("matrix cracking",), Look("SI"))
+        third = figure.axes[2]
+        self.assertEqual(third.get_title(), "ply 3, 90°")
+        lines = [segment for part in third.collections if isinstance(part, LineCollection)
+                 for segment in part.get_segments()]
+        self.assertEqual(len(lines), 2)
+        self.assertTrue(all(abs(segment[0, 0] - segment[1, 0]) < 1e-9 for segment in lines))
+
+    def test_struck_aside(self) -> None:
+        """The picture is about the struck point, which the deck tells, and holds all that came apart."""
+        with h5py.File(self.path, "a") as file:
+            del file["provenance/deck"]
+            file["provenance/deck"] = np.bytes_(DECK.replace("radius=1e-2", "radius=1e-2 at=2, 1"))
+        fields = read_fields(self.path)
+        cells = fields.delaminated(2, 2)
+        for figure in (projected_figure(fields, Look("SI")), delamination_figure(fields, Look("SI"))):
+            axes = figure.axes[0]
+            low, high = np.transpose([axes.get_xlim(), axes.get_ylim()])
+            self.assertTrue(np.all(cells > low) and np.all(cells < high), (low, high))
+            np.testing.assert_allclose((low + high) / 2, (2, 1))
+
+    def test_movie(self) -> None:
+        """A picture for each time, each with more cells apart than the one before."""
+        self.write(history("case"), "case_history.csv")
+        with contextlib.redirect_stdout(io.StringIO()):
+            self.assertEqual(movie.main([str(self.path), "--dpi", "50"]), 0)
+        with Image.open(self.folder / "case.gif") as film:
+            self.assertEqual(film.n_frames, 3)
+        blue = [np.count_nonzero(np.all(np.asarray(picture) == [31, 119, 180], axis=2))
+                for picture in movie.frames(read_fields(self.path), None, Look("SI", 50))]
+        self.assertTrue(blue[0] < blue[1] < blue[2], blue)
+
+    def test_measured_curve_and_kinds_of_files(self) -> None:
+        """A measured force is a line more of the legend; PDF and SVG come out; a curve without a column is refused."""
+        run, measured = self.write(history("a"), "a_history.csv"), self.folder / "m.csv"
+        measured.write_text("time,force\n0,0\n1e-3,1900\n2e-3,10\n")
+        plain = self.plot(run, "--units", "SI", "--format", "svg")
+        self.assertEqual(plain[0], 0, plain[1])
+        before = (self.folder / "a_history_response.svg").stat().st_size
+        drawn = self.plot(run, "--units", "SI", "--format", "svg", "--measured", measured)
+        self.assertEqual(drawn[0], 0, drawn[1])
+        self.assertGreater((self.folder / "a_history_response.svg").stat().st_size, before)
+        self.assertEqual(self.plot(self.path, "--format", "pdf", "--font-size", 14)[0], 0)
+        self.assertTrue((self.folder / "case_projected.pdf").read_bytes().startswith(b"%PDF"))
+        measured.write_text("time,load\n0,0\n1e-3,1900\n")
+        self.assertEqual(self.plot(run, "--measured", measured)[0], 4)
+        self.assertEqual(self.plot(run, "--dpi", "1")[0], 1)
+
+    def test_titles_are_whole(self) -> None:
+        """Where axes keep equal scales, titles lie within the picture whatever the shape of the damage."""
+        for length, width in ((57, 32), (38, 14), (20, 20), (15, 45)):
+            corners = np.array([[0, 0], [length, 0], [length, width], [0, width]]) - np.array([length, width]) / 2
+            mesh = Mesh(np.stack([corners, corners / 2]), *2 * [np.array([2, 3])], np.zeros(2, dtype=bool))
+            snapshot = Snapshot(1.0, mesh, np.ones((2, 9)), {}, np.zeros(2))
+            figure = projected_figure(Fields("none.h5", "whole", [snapshot]), Look("mm-t-s"))
+            settle(figure)
+            beyond = figure.axes[0].title.get_window_extent().y1 - figure.bbox.height
+            self.assertLess(beyond, 0, (length, width))
+
+    def test_shares_of_runs(self) -> None:
+        """The map of shares has the share of each group's runs at a place, and titles within the picture."""
+        for groups, length, width in ((1, 57, 32), (2, 15, 45), (4, 20, 20)):
+            corners = np.array([[0, 0], [length, 0], [length, width], [0, width]]) - np.array([length, width]) / 2
+            mesh = Mesh(corners[None], *2 * [np.array([2])], np.zeros(1, dtype=bool))
+            plate = Fields("none.h5", "whole", [Snapshot(1.0, mesh, np.ones((1, 9)), {}, np.zeros(1))])
+            runs = [EndedRun(None, None, {}, 0.0, region) for region in (corners[None], corners[None] / 2)]
+            figure = share_figure([Group(f"variant {place}", runs, plate=plate) for place in range(groups)],
+                                  Look("mm-t-s"))
+            settle(figure)
+            shares = figure.axes[0].images[0].get_array()
+            self.assertEqual(set(np.unique(shares)), {0, 0.5, 1})
+            self.assertAlmostEqual(np.sum(shares == 1) / np.sum(shares > 0), 0.25, delta=0.02)
+            for axes in figure.axes[:groups]:
+                self.assertLess(axes.title.get_window_extent().y1, figure.bbox.height, (groups, length, width))

@@ -1,0 +1,76 @@
+"""Pictures and page of every quick deck print the areas of its summary, to the digit.
+
+With IMPLAM_EVERY_DECK=1 in the environment those of all decks in input/, large ones on coarse cells, in an hour."""
+
+import json
+import re
+import tempfile
+import unittest
+from pathlib import Path
+from unittest import mock
+
+from matplotlib.figure import Figure
+
+from implam_post.plot import command as plot
+from implam_post.report import command as report
+from tests.program import implam, run_quietly
+from tests.test_runs_every_deck import COARSE, DECKS, change_deck, run_program
+
+UNITS = "--units", "SI"
+
+
+class AreasTest(unittest.TestCase):
+    """A deck at a time."""
+
+    def test_every_deck(self) -> None:
+        """Fields at times of which the end is none, and yet at the end: they hold the state of the summary."""
+        for source in DECKS:
+            text = source.read_text(encoding="utf-8")
+            # What begins from another run's end is run by compression.py.
+            if "&delamination" not in text or "&initial_state" in text:
+                continue
+            text = change_deck(text, next((coarse for name, coarse in COARSE.items() if source.name.startswith(name)),
+                                          []))
+            ends = re.search(r"^&time\b[^/]*?\bend\s*=\s*([0-9.e+-]+)", text, re.MULTILINE)
+            settings = [f"output%fields_every={0.4 * float(ends[1])!r}"] if ends else []
+            with self.subTest(source.name), tempfile.TemporaryDirectory() as folder:
+                deck = Path(folder) / "deck.nml"
+                deck.write_text(change_deck(text, settings), encoding="utf-8")
+                run_program([implam(), deck, "--output", folder])
+                self.hold(next(Path(folder).glob("*_summary.json")))
+
+    def hold(self, path: Path) -> None:
+        """Hold titles and cells of the page against the summary."""
+        summary, fields = json.loads(path.read_text(encoding="utf-8")), path.with_name(
+            path.name.replace("_summary.json", ".h5"))
+        titles = self.titles(fields)
+        expected = [f"below ply {entry['ply_above']}: {'dissipated' if entry['is_cohesive'] else 'delaminated'} area "
+                    f"{1e6 * entry['area']:.4g} mm²" for entry in summary["interfaces"]]
+        expected.append(f"all interfaces: projected area {1e6 * summary['projected_area']:.4g} mm²")
+        for title in expected:
+            self.assertIn(title, titles)
+        code, told = run_quietly(report.main, path)
+        self.assertEqual(code, 0, told)
+        page = Path(told.strip()).read_text(encoding="utf-8")
+        for area in (summary["delaminated_area"], summary["projected_area"],
+                     *(entry["area"] for entry in summary["interfaces"])):
+            self.assertIn(f">{1e6 * area:.4g} mm²<", page)
+        if len(summary["interfaces"]) == 1:
+            self.assertAlmostEqual(summary["projected_area"] / (summary["delaminated_area"] or 1),
+                                   1 if summary["delaminated_area"] else 0, delta=1e-12)
+
+    def titles(self, fields: Path) -> list[str]:
+        """Draw the fields and return the first line of each title."""
+        found = []
+
+        def note(figure: Figure, *_: object, **__: object) -> None:
+            found.extend(axes.get_title().splitlines()[0] for axes in figure.axes if axes.get_title())
+
+        with mock.patch.object(Figure, "savefig", note):
+            code, told = run_quietly(plot.main, fields, *UNITS)
+        self.assertEqual(code, 0, told)
+        return found
+
+
+if __name__ == "__main__":
+    unittest.main()

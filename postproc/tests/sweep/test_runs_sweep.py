@@ -1,0 +1,294 @@
+"""Tests of sweeps with real runs of the program: the table, failures, and sweeps that are killed or stopped."""
+
+import contextlib
+import csv
+import fcntl
+import json
+import math
+import os
+import shutil
+import signal
+import subprocess
+import tempfile
+import threading
+import time
+import unittest
+from collections.abc import Callable
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+from implam_post.io.history import read_history
+from implam_post.io.program import EXIT_STOPPED
+from implam_post.io.quantities import QUANTITIES
+from implam_post.sweep import command as sweep
+from tests.program import SMALL, implam, run, run_quietly, start, surroundings
+
+# Six runs that take a moment, with checkpoints.
+LONG = """
+deck = "ply_damage.nml"
+[grid]
+"laminate.angles" = [[0, 90, 0], [90, 0, 90]]
+energy = [0.3, 0.6, 0.9]
+"time.end" = [1.5e-3]
+"output.checkpoint_every" = [50e-6]
+[derived]
+"impactor.velocity" = "sqrt(2*energy/impactor.mass)"
+"""
+HARD = """
+deck = "ply_damage.nml"
+[list]
+"solver.max_iterations" = [1, 30]
+"solver.tolerance" = [1e-13, 1e-6]
+"""
+PATIENCE, SLOW = 120, 5  # seconds
+
+
+class SweepTest(unittest.TestCase):
+    """Each test has a folder with small decks; the program that is run notes how it was called."""
+
+    def setUp(self) -> None:
+        """Make the folder."""
+        self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
+        for deck in SMALL.glob("*.nml"):
+            shutil.copy(deck, self.folder)
+        self.output, self.program, self.calls = (self.folder / name for name in ("out", "noting", "calls.txt"))
+        self.program.write_text(f'#!/bin/sh\necho "$@" >> {self.calls}\nexec {implam()} "$@"\n')
+        self.program.chmod(0o755)
+        self.addCleanup(lambda: self.kill(self.processes()))
+
+    def arguments(self, text: str, *more: object) -> list[str]:
+        """Write the file of a sweep and return the arguments to run it."""
+        path = self.folder / "sweep.toml"
+        path.write_text(text)
+        return [str(word) for word in (path, "--output", self.output, "--program", self.program, "--jobs", 2, *more)]
+
+    def called(self, verb: str) -> int:
+        """Return how many times the program was called to do something."""
+        lines = self.calls.read_text().splitlines() if self.calls.exists() else []
+        return sum(line.startswith(f"{verb} ") for line in lines)
+
+    def table(self, output: Path | None = None) -> list[dict[str, str]]:
+        """Return the rows of the table without the processor time."""
+        with ((output or self.output) / "table.csv").open(newline="") as file:
+            rows = list(csv.DictReader(file))
+        for row in rows:
+            self.assertTrue(float(row.pop("cpu_time") or "nan") > 0 or row["exit_code"] == "", row)
+        return rows
+
+    def test_checks_are_told(self) -> None:
+        """Warnings of the check are told once for all decks, and nothing else that it prints."""
+        code, text = run_quietly(sweep.main, *self.arguments("""
+            deck = "ply_damage.nml"
+            [grid]
+            "impactor.mass" = [0.5, 0.6]
+            "output.history_every" = [1e-7]
+            """, "--array"))
+        self.assertEqual(code, 0, text)
+        told = [line for line in text.splitlines() if line.startswith("warning, ")]
+        self.assertEqual(len(told), 1, text)
+        self.assertTrue(told[0].startswith("warning, 2 of 2 decks: "), text)
+
+    def test_lost_histories(self) -> None:
+        """A case whose history is emptied, lacks its rows or is gone runs again, from the start; others do not."""
+        arguments = self.arguments("""
+            deck = "delamination.nml"
+            [grid]
+            "impactor.velocity" = [0.5, 0.6, 0.7, 0.8]
+            "output.checkpoint_every" = [100e-6]
+            """)
+        self.assertEqual(run_quietly(sweep.main, *arguments)[0], 0)
+        before = self.table()
+        histories = [self.output / row["folder"] / "delamination_history.csv" for row in before]
+        first, whole = histories[0].read_text().splitlines()[0], histories[0].read_text()
+        histories[0].write_text("")
+        histories[1].write_text(first + "\n")
+        histories[2].unlink()
+        code, text = run_quietly(sweep.main, *arguments)
+        self.assertEqual(code, 0, text)
+        self.assertEqual((self.called("run"), self.called("restart")), (7, 0), text)
+        self.assertEqual(self.table(), before)
+        self.assertEqual(histories[0].read_text(), whole)
+
+    def test_table_and_plots(self) -> None:
+        """Figures are those of the histories, in CSV and HDF5; the energy is the one swept; nothing is run twice."""
+        arguments = self.arguments("""
+            deck = "delamination.nml"
+            [grid]
+            "delamination.G_c" = [300, 400]
+            energy = [0.1, 0.25]
+            "time.end" = [1.2e-3]
+            [derived]
+            "impactor.velocity" = "sqrt(2*energy/impactor.mass)" """)
+        code, text = run_quietly(sweep.main, *arguments)
+        self.assertEqual(code, 0, text)
+        rows = self.table()
+        self.assertEqual([(row["delamination.G_c"], row["energy"]) for row in rows],
+                         [("300", "0.1"), ("300", "0.25"), ("400", "0.1"), ("400", "0.25")])
+        for row in rows:
+            history = read_history(self.output / row["folder"] / "delamination_history.csv")
+            for name in ("peak_force", "contact_duration", "rebound_velocity", "absorbed_energy", "first_growth_force"):
+                found = float(row[name]) if row[name] else math.nan
+                np.testing.assert_equal(found, QUANTITIES[name](history), name)
+            self.assertAlmostEqual(float(row["impact_energy"]) / float(row["energy"]), 1, delta=1e-9)
+            self.assertEqual(float(row["delaminated_area"]), history["delaminated_area"][-1])
+            self.assertEqual((row["exit_code"], row["version"][:4]), ("0", "0.1."))
+        self.assertLess(float(rows[0]["rebound_velocity"]), -0.5)
+        with h5py.File(self.output / "table.h5") as file:
+            self.assertEqual(file["table/peak_force"][()].tolist(), [float(row["peak_force"]) for row in rows])
+            self.assertEqual([word.decode() for word in file["table/folder"]], [row["folder"] for row in rows])
+            self.assertIn(b"G_c=300", file["decks"][0])
+            self.assertEqual(file.attrs["units"], "SI")
+        for name in ("area_energy", "threshold_energy", "scatter"):
+            self.assertGreater((self.output / f"{name}.png").stat().st_size, 10000)
+        self.assertEqual(self.called("run"), 4)
+        self.assertEqual(run_quietly(sweep.main, *arguments)[0], 0)
+        self.assertEqual((self.called("run"), self.called("check"), self.table()), (4, 4, rows))
+
+    def test_failures_are_collected(self) -> None:
+        """A run without convergence has no figures, the other has; it is run again only if asked for."""
+        for more, runs in (((), 2), ((), 2), (("--retry",), 3)):
+            code, text = run_quietly(sweep.main, *self.arguments(HARD, *more))
+            self.assertEqual((code, self.called("run")), (1, runs), text)
+            self.assertIn("1 of 2 cases failed:\n  case 1 ", text)
+            self.assertIn("solver.max_iterations=1  solver.tolerance=1e-13: ended with 3: ", text)
+            rows = self.table()
+            self.assertEqual([(row["exit_code"], row["peak_force"] == "") for row in rows], [("3", True), ("0", False)])
+
+    def test_faults_are_told_before_anything_runs(self) -> None:
+        """A value out of range and a key misspelt: the program's own sentences, and not a single run."""
+        for key, told in (("impactor.mass", "mass = -1"), ("delamination.G_cc", "no such key")):
+            code, text = run_quietly(sweep.main, *self.arguments(
+                f'deck = "delamination.nml"\n[grid]\n"{key}" = [-1, 0.2]'))
+            self.assertEqual(code, 2, text)
+            self.assertRegex(text, f"case 1: {key}=-1\n.*{told}.*\n(.*\n)*.*decks are faulty; nothing was run\\.")
+        self.assertEqual((self.called("run"), self.called("check")), (0, 4))
+        self.assertEqual([path for path in self.output.rglob("*") if path.suffix not in (".nml", "")], [])
+
+    def test_killed(self) -> None:
+        """The sweep alone, all of its processes, all but the runs are killed: the table is as if nothing had been."""
+        reference = self.folder / "reference"
+        code, text = run("sweep", *self.arguments(LONG, "--output", reference, "--program", implam()))
+        self.assertEqual(code, 0, text)
+        for kill in (self.kill_sweep, self.kill_all, self.kill_all_but_runs):
+            before = self.states()
+            with start("sweep", *self.arguments(LONG)) as process:
+                self.wait_until(lambda before=before: len(self.states() - before) >= 2, process)
+                kill(process)
+        code, text = run("sweep", *self.arguments(LONG))
+        self.assertEqual(code, 0, text)
+        self.assertEqual(self.table(), self.table(reference))
+        self.assertGreater(self.called("restart"), 0)
+        self.assertLess(self.called("run"), 18)
+        for case in (reference / "cases").iterdir():
+            again = self.output / "cases" / case.name / "ply_damage_history.csv"
+            self.assertEqual((case / again.name).read_bytes(), again.read_bytes())
+        self.assertEqual(list(self.output.rglob(".draft*")), [])
+
+    def test_stopped_by_a_signal(self) -> None:
+        """SIGTERM ends the runs with checkpoints; the same command goes on with them."""
+        with start("sweep", *self.arguments(LONG)) as process:
+            self.wait_until(lambda: self.states(), process)
+            process.send_signal(signal.SIGTERM)
+            text, _ = process.communicate(timeout=PATIENCE)
+        self.assertEqual(process.returncode, EXIT_STOPPED, text)
+        self.assertRegex(text, r"\d of 6 cases have not ended; the same command goes on")
+        self.assertEqual(self.processes(), [])
+        code, text = run("sweep", *self.arguments(LONG))
+        self.assertEqual(code, 0, text)
+        self.assertGreater(self.called("restart"), 0)
+        self.assertEqual({row["exit_code"] for row in self.table()}, {"0"})
+
+    def test_array(self) -> None:
+        """A queue runs the lines of a file, one a deck; the sweep then has the table without a run of its own."""
+        arguments = self.arguments(HARD)
+        code, text = run_quietly(sweep.main, *arguments, "--array")
+        self.assertEqual((code, self.called("run")), (0, 0), text)
+        decks, commands = ((self.output / name).read_text().splitlines() for name in ("decks.txt", "array.txt"))
+        self.assertEqual(([Path(deck).name for deck in decks], len(commands)), (2 * ["ply_damage.nml"], 2))
+        codes = [subprocess.run(["/bin/sh", "-c", command], env=surroundings(), stdout=subprocess.DEVNULL, check=False,
+                                cwd="/").returncode for command in commands]
+        self.assertEqual((codes, self.called("run")), ([3, 0], 2))
+        self.assertEqual(run_quietly(sweep.main, *arguments, "--table")[0], 1)
+        self.assertEqual((self.called("run"), len(self.table())), (2, 2))
+        self.assertEqual(run_quietly(sweep.main, *arguments, "--array")[0], 0)
+        self.assertEqual((self.output / "decks.txt").read_text(), "")
+
+    def test_useless_checkpoint(self) -> None:
+        """A file that isn't a checkpoint doesn't stop a case: it is run afresh."""
+        text = 'deck = "ply_damage.nml"\n[grid]\n"impactor.mass" = [0.2]'
+        self.assertEqual(run_quietly(sweep.main, *self.arguments(text, "--array"))[0], 0)
+        case = next((self.output / "cases").iterdir())
+        (case / "ply_damage_restart.h5").write_text("nothing")
+        code, said = run_quietly(sweep.main, *self.arguments(text))
+        self.assertEqual((code, self.called("restart"), self.called("run")), (0, 1, 1), said)
+
+    def test_one_sweep_a_folder(self) -> None:
+        """A second sweep in a folder and a program that isn't there end with one sentence and 4."""
+        self.output.mkdir()
+        with (self.output / "lock").open("w") as file:
+            fcntl.flock(file, fcntl.LOCK_EX)
+            code, text = run_quietly(sweep.main, *self.arguments(LONG))
+        self.assertEqual((code, text.count("\n")), (4, 1), text)
+        code, text = run_quietly(sweep.main, *self.arguments(LONG, "--program", "no_such_program"))
+        self.assertEqual((code, text.count("\n")), (4, 1), text)
+        self.assertEqual(list(self.output.rglob("*.nml")), [])
+
+    def states(self) -> set[tuple[str, int]]:
+        """Return the checkpoints there are, with the time they were written."""
+        return {(str(path), path.stat().st_mtime_ns) for path in self.output.glob("cases/*/*_restart.h5")}
+
+    def wait_until(self, condition: Callable[[], bool], process: subprocess.Popen) -> None:
+        """Wait until the condition holds; the process must still run then."""
+        latest = time.monotonic() + PATIENCE
+        while not condition():
+            self.assertIsNone(process.poll(), "the sweep was over too early")
+            self.assertLess(time.monotonic(), latest, "nothing happens")
+            time.sleep(0.005)
+
+    def processes(self) -> list[int]:
+        """Return the processes that work in the folder of the test."""
+        numbers = [int(path.name) for path in Path("/proc").glob("[0-9]*")]
+        return [number for number in numbers if str(self.folder).encode() in self.command(number)]
+
+    def kill_sweep(self, process: subprocess.Popen) -> None:
+        """Kill the sweep alone: what it has started stops by itself, to go on from a checkpoint."""
+        process.kill()
+        latest = time.monotonic() + PATIENCE
+        while self.processes() and time.monotonic() < latest:
+            time.sleep(0.01)
+        records = [json.loads(path.read_text()) for path in self.output.glob("cases/*/run.json")]
+        self.assertIn(EXIT_STOPPED, [record["exit_code"] for record in records])
+
+    def kill_all(self, process: subprocess.Popen) -> None:
+        """Kill the sweep and all it has started, at once, as when a machine goes down."""
+        self.kill(self.processes())
+
+    def kill_all_but_runs(self, process: subprocess.Popen) -> None:
+        """Kill the sweep and the watchers over its runs; these go on, slowly, with nobody to note how they end."""
+        runs = [number for number in self.processes() if b"implam_post" not in self.command(number)]
+        self.assertGreater(len(runs), 0)
+        self.send(signal.SIGSTOP, runs)
+        self.kill([number for number in self.processes() if number not in runs])
+        timer = threading.Timer(SLOW, self.send, (signal.SIGCONT, runs))
+        timer.start()
+        self.addCleanup(timer.join)
+
+    def kill(self, numbers: list[int]) -> None:
+        """Kill processes, none of which sees another one end."""
+        self.send(signal.SIGSTOP, numbers)
+        self.send(signal.SIGKILL, numbers)
+
+    def send(self, number: signal.Signals, processes: list[int]) -> None:
+        """Send a signal to processes; some may have ended."""
+        for process in processes:
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(process, number)
+
+    def command(self, number: int) -> bytes:
+        """Return the command line of a process; nothing if it has ended."""
+        try:
+            return Path(f"/proc/{number}/cmdline").read_bytes()
+        except OSError:
+            return b""
