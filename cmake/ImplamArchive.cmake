@@ -7,7 +7,8 @@ set(CPACK_PACKAGE_DESCRIPTION_SUMMARY ${PROJECT_DESCRIPTION})
 set(CPACK_RESOURCE_FILE_LICENSE ${CMAKE_SOURCE_DIR}/LICENSE)
 set(CPACK_SOURCE_GENERATOR TGZ)
 set(CPACK_SOURCE_PACKAGE_FILE_NAME implam-${PROJECT_VERSION})
-set(CPACK_SOURCE_IGNORE_FILES "/[.]git/" "/[.]git$" "/build[^/]*/" "/results/" "/[.]venv/" "/__pycache__/"
+string(REGEX REPLACE "([][+.*()^$?|\\])" "\\\\\\1" root ${CMAKE_SOURCE_DIR})
+set(CPACK_SOURCE_IGNORE_FILES "/[.]git/" "/[.]git$" "^${root}/build[^/]*/" "^${root}/results/" "/[.]venv/" "/__pycache__/"
   "/[.]ruff_cache/" "[.]egg-info/" "/postproc/build/" "[.]swp$" "~$")
 set(CPACK_INSTALL_SCRIPTS ${CMAKE_CURRENT_LIST_DIR}/ImplamArchivedCommit.cmake)
 set(CPACK_IMPLAM_SOURCE_DIR ${CMAKE_SOURCE_DIR})
