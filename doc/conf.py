@@ -47,7 +47,7 @@ OUTSIDE = re.compile(r"(?<!!)\[([^\]]*)\]\(((?:\.\./)+(?!manual/|theory/|studies
 
 
 def drop_links_outside(app, name, source):
-    """Leave the words of links to Markdown that is not part of the site."""
+    """Leave the words of links to Markdown that is not part of the site; CHANGELOG.md stands in for its page."""
     folder = Path(app.srcdir, name).parent
 
     def words(match):
@@ -55,6 +55,8 @@ def drop_links_outside(app, name, source):
         outside = not path.is_relative_to(app.srcdir) or "news" in path.parts
         return match.group(1) if outside else match.group(0)
 
+    if name == "changelog":
+        source[0] = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8").replace("](doc/", "](")
     source[0] = OUTSIDE.sub(words, source[0])
 
 
