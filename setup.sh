@@ -70,20 +70,24 @@ install_packages() {
 }
 
 # The commands that check and plot results go into .venv, and with them, for the tests, a checker of style and readers
-# of field files and of Nastran's. pyNastran comes by itself, as its package asks for an older numpy than it needs.
+# of field files and of Nastran's, and the builder of pages. pyNastran comes by itself, as its package asks for an older
+# numpy than it needs.
 install_python_tools() {
-  local stamp=.venv/ready-to-$task tools=(./postproc) pynastran=() python=/usr/bin/python3
+  local stamp=.venv/ready-to-$task tools=(./postproc) pynastran=() pages=() python=/usr/bin/python3
   if [[ $task == test ]]; then
     tools=('./postproc[nastran,notebook]' 'ruff==0.17.*' meshio)
+    pages=(--only-binary :all: -r doc/requirements.txt)
     pynastran=(--no-deps 'pyNastran==1.4.*')
   fi
   [[ -x $python ]] || python=python3
-  if [[ -e $stamp && -z $(find postproc -name '*.py' -newer "$stamp" -o -name '*.html' -newer "$stamp" -o -name pyproject.toml -newer "$stamp") ]]; then
+  if [[ -e $stamp && -z $(find postproc doc/requirements.txt -newer "$stamp" \( -name '*.py' -o -name '*.html' \
+      -o -name pyproject.toml -o -name requirements.txt \)) ]]; then
     return
   fi
   stage "Installing the Python commands into .venv"
   if { [[ -x .venv/bin/pip ]] || "$python" -m venv --clear .venv; } &&
     .venv/bin/pip install --quiet --disable-pip-version-check "${tools[@]}" &&
+    { ((${#pages[@]} == 0)) || .venv/bin/pip install --quiet --disable-pip-version-check "${pages[@]}"; } &&
     { ((${#pynastran[@]} == 0)) || .venv/bin/pip install --quiet --disable-pip-version-check "${pynastran[@]}"; }; then
     touch "$stamp"
   else

@@ -4,6 +4,9 @@
 
 if(CMAKE_SCRIPT_MODE_FILE)
   set(IMPLAM_COMMIT "unknown")
+  if(EXISTS ${IMPLAM_SOURCE_DIR}/COMMIT) # in an archive of the source
+    file(STRINGS ${IMPLAM_SOURCE_DIR}/COMMIT IMPLAM_COMMIT LIMIT_COUNT 1)
+  endif()
   find_program(GIT git)
   if(GIT AND EXISTS ${IMPLAM_SOURCE_DIR}/.git)
     execute_process(COMMAND ${GIT} describe --always --abbrev=12 --exclude=* --dirty=-modified

@@ -15,6 +15,7 @@ module programs
   use hdf5_file, only: files_left_open
   use initial_states, only: fit_initial_state
   use build_information, only: version, commit, compiler, petsc_version
+  use run_provenance, only: citation_of
   use command_lines, only: command_t, read_command_line, verb_run, verb_check, verb_explain, verb_restart, &
                            verb_version, verb_help, verb_new, verb_completion, verb_man, verb_queue
   use computations, only: compute, read_deck_everywhere
@@ -56,7 +57,8 @@ contains
       select case (command%verb)
       case (verb_version)
         call print_lines(communicator, &
-                         [line_t('Implam '//version//' ('//commit//'), '//compiler//', PETSc '//petsc_version)])
+                         [line_t('Implam '//version//' ('//commit//'), '//compiler//', PETSc '//petsc_version), &
+                          line_t('To cite: '//citation_of(version))])
       case (verb_help)
         if (command%target == '') then
           call tell_usage(communicator)

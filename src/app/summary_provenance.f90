@@ -1,7 +1,7 @@
 !> What the summary tells of where its result comes from.
 module summary_provenance
   use json_text, only: json_t
-  use run_provenance, only: provenance_t
+  use run_provenance, only: citation_of, provenance_t
   implicit none
   private
   public :: put_provenance
@@ -20,6 +20,7 @@ contains
     call json%put('commit', provenance%commit)
     call json%put('compiler', provenance%compiler)
     call json%put('petsc_version', provenance%petsc_version)
+    call json%put('citation', citation_of(provenance%version))
     call json%put('ranks', provenance%ranks)
     call json%put('started', provenance%started)
     call json%put('deck', provenance%deck)

@@ -39,7 +39,7 @@ module usage_texts
     '--time H:MM:SS', 'its limit on the wall; a day without', &
     '--chain', 'it comes again, from its checkpoint, until the run has ended', &
     '--markdown', 'explain as a table for the manual', &
-    '-v, --version', 'version, commit, compiler and PETSc', &
+    '-v, --version', 'version, commit, compiler and PETSc, and how to cite', &
     '-h, --help', 'this page', &
     '-mat_..., -ksp_..., -log_view', 'these and other words with one dash go to PETSc'], [2, 12])
   !> Exit codes.

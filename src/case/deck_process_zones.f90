@@ -152,7 +152,7 @@ contains
   end function bending_moduli
 
   !> Largest bending modulus over all directions. Delaminations run first and farthest where the thinner layer is stiff,
-  !> and cells that resolve that front were measured to be enough (doc/manual/accuracy.md).
+  !> and cells that resolve that front were measured to be enough (doc/studies/accuracy.md).
   pure real(wp) function largest_modulus(moduli) result(largest)
     !> Along x and y, as of bending_moduli
     real(wp), intent(in) :: moduli(6)

@@ -245,7 +245,7 @@ contains
   end subroutine fill_loads
 
   !> Spectral radius at high frequency that suits a scene: ties that vanish excite the mesh's highest frequencies, a law
-  !> that softens less. With it doc/manual/accuracy.md has the same area at steps of 16, 8 and 4 us.
+  !> that softens less. With it doc/studies/accuracy.md has the same area at steps of 16, 8 and 4 us.
   pure real(wp) function natural_rho_infinity(deck) result(rho_infinity)
     !> The deck, its interfaces filled
     type(deck_t), intent(in) :: deck

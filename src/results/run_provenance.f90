@@ -4,7 +4,7 @@ module run_provenance
   use text, only: to_text
   implicit none
   private
-  public :: build_t, provenance_t, this_run
+  public :: build_t, provenance_t, this_run, citation_of
 
   !> What a program was built from.
   type :: build_t
@@ -37,6 +37,17 @@ module run_provenance
   end type provenance_t
 
 contains
+
+  !> How to cite the program, as in CITATION.cff.
+  pure function citation_of(version) result(citation)
+    !> Version of Implam
+    character(len=*), intent(in) :: version
+    !> The program, and the paper whose method it extends
+    character(len=:), allocatable :: citation
+
+    citation = 'The Implam developers: Implam '//version//', low-velocity impact on composite laminates. Method: C. F. Li, '// &
+               'N. Hu, Y. J. Yin, H. Sekine, H. Fukunaga, Composites Part A 33 (2002) 1055-1062.'
+  end function citation_of
 
   !> Provenance of the run that is starting.
   function this_run(build, deck, ranks) result(run)
@@ -73,6 +84,7 @@ contains
     call log%note('Implam '//self%version//' (commit '//self%commit//'), '//self%compiler//', PETSc ' &
                   //self%petsc_version//', '//to_text(self%ranks)//trim(merge(' rank ', ' ranks', self%ranks == 1)) &
                   //', started '//self%started)
+    call log%detail('To cite: '//citation_of(self%version))
     call log%detail('deck:'//new_line('a')//self%deck)
     call log%detail('end of the deck')
   end subroutine report

@@ -2,7 +2,7 @@
 module stored_provenance
   use hdf5_data, only: read_integers, read_text, write_integers, write_text
   use hdf5_file, only: hdf5_file_t
-  use run_provenance, only: provenance_t
+  use run_provenance, only: citation_of, provenance_t
   implicit none
   private
   public :: write_provenance, read_provenance
@@ -31,6 +31,7 @@ contains
     call write_text(file, group//'/compiler', run%compiler)
     call write_text(file, group//'/petsc_version', run%petsc_version)
     call write_text(file, group//'/started', run%started)
+    call write_text(file, group//'/citation', citation_of(run%version))
     call write_integers(file, group//'/ranks', [run%ranks], [integer ::])
   end subroutine write_provenance
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What a tenth of each input does to a measured panel (doc/manual/experiments.md).
+"""What a tenth of each input does to a measured panel (doc/studies/measured_panels.md).
 Usage: panel_sensitivity.py IMPLAM 6.5J|25J FOLDER [GROUP%KEY=VALUE ...]
 
 Runs the deck of measured_panels.py as it is and with each figure of material, interface and indentation 10 %

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What transverse shear bears of the force on the 25 J panel (doc/manual/experiments.md).
+"""What transverse shear bears of the force on the 25 J panel (doc/studies/measured_panels.md).
 Usage: panel_shear.py FOLDER
 
 Reads what measured_panels.py has left there of a run of 25J with output%fields='stress','ply_damage' and

@@ -7,6 +7,8 @@ check_pages.py [ROOT] [--write] [--sentences]
 - A block of code after <!-- from PATH --> stands in that file, line by line; "..." stands for lines left out.
 - doc/index.md lists every page of doc/, every key, column and field of the manual and every term of the glossary.
 - Pages say what holds now: the words of a diary ("as it was then") are refused outside CHANGELOG.md and doc/news/.
+- No sentence of the pages under doc/ and of README.md has more than 40 words.
+- Equations of a page of doc/theory/ are numbered without a gap, by one letter and a number, and equations referred to exist.
 
 --write writes the lists of doc/index.md anew. --sentences counts the sentences of more than 30 words and prints them.
 Prints one line a breach, as file:line: sentence, and ends with code 1 if there is any.
@@ -16,10 +18,14 @@ import re
 import sys
 from pathlib import Path
 
-LONGEST = 30
+# Words of a sentence: as a habit, and at most.
+LONGEST, MOST = 30, 40
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 CODE = re.compile(r"`([^`\n]+)`")
 HEADING = re.compile(r"^(#+) +(.*?) *#*$")
+TAG = re.compile(r"\\tag\{([A-Z])(\d+)\}")
+REFERRED = re.compile(r"\(([A-Z]\d+)\)")
+FORMULA = re.compile(r"\$[^$\n]+\$")
 FENCE = re.compile(r"^ *```")
 ORIGIN = re.compile(r"^<!-- from (\S+) -->$")
 # A file in a folder of the project, a source by the folder of src/ that it is in, or a bare name of one.
@@ -38,7 +44,7 @@ BEGIN, END = "<!-- lists: written by tests/lint/check_pages.py --write -->", "<!
 ROW = re.compile(r"^\| `(\w+)` \|", re.MULTILINE)
 TERM = re.compile(r"^\*\*(.+?)\*\*(.*?)(?=^\*\*|^#|\Z)", re.MULTILINE | re.DOTALL)
 # What ends with a full stop without ending a sentence.
-SHORT = re.compile(r"\b(?:et al|Eqs?|Sec|Fig|No|e\.g|i\.e|vs|cf|J|Proc|Comput|Mech|Appl|Int|Numer|Meth|Eng)\.")
+SHORT = re.compile(r"\b(?:et al|Eqs?|Sec|Fig|No|e\.g|i\.e|vs|cf|(?<!\d )J|Proc|Comput|Mech|Appl|Int|Numer|Meth|Eng)\.")
 
 
 def pages(root):
@@ -62,10 +68,15 @@ def anchors(page):
 
 def prose(page):
     """The lines of a page outside blocks of code, with their numbers."""
-    lines, inside = [], False
+    lines, inside, displayed = [], False, False
     for number, line in enumerate(page.read_text(encoding="utf-8").splitlines(), 1):
         if FENCE.match(line):
             inside = not inside
+        elif line.strip().startswith("$$") and not inside:
+            displayed = not displayed
+            lines.append(("", number))
+        elif displayed:
+            lines.append(("", number))
         elif not inside:
             lines.append((line, number))
     return lines
@@ -243,7 +254,7 @@ def check_index(root, write):
 def sentences(page):
     """The sentences of a page, with the numbers of the lines on which their paragraphs begin."""
     for text, number in paragraphs(page):
-        text = LINK.sub("Link", CODE.sub("Code", text))
+        text = LINK.sub("Link", FORMULA.sub("Formula", CODE.sub("Code", text)))
         for sentence in re.split(r"(?<=[.!?])[\")*]* +(?=[\"(*`A-Z0-9&])", SHORT.sub("short", text)):
             yield sentence, number
 
@@ -269,12 +280,36 @@ def paragraphs(page):
             text += " " + re.sub(r"^(?:[-*>]+|\d+\.) +", "", stripped)
 
 
-def long_sentences(page):
+def long_sentences(page, most=LONGEST):
     """The sentences of a page that are too long."""
     for sentence, number in sentences(page):
         words = [word for word in sentence.split() if re.search(r"\w", word)]
-        if len(words) > LONGEST:
+        if len(words) > most:
             yield number, len(words), sentence.strip()
+
+
+def check_sentences(page, root):
+    """Breaches of sentences of far too many words."""
+    if page.is_relative_to(root / "doc") or page == root / "README.md":
+        for number, words, text in long_sentences(page, MOST):
+            yield f"{page}:{number}: a sentence of {words} words: {' '.join(text.split()[:8])} ..."
+
+
+def check_equations(pages_of_theory):
+    """Breaches of the numbers of equations."""
+    known = set()
+    for page in pages_of_theory:
+        tags = TAG.findall(page.read_text(encoding="utf-8"))
+        known |= {letter + number for letter, number in tags}
+        expected = [(tags[0][0], str(number)) for number in range(1, len(tags) + 1)] if tags else []
+        if tags != expected:
+            yield f"{page}:1: the equations are not numbered from 1 without a gap, by one letter"
+    for page in pages_of_theory:
+        letters = {name[0] for name in known}
+        for line, number in prose(page):
+            for name in REFERRED.findall(line):
+                if name[0] in letters and name not in known:
+                    yield f"{page}:{number}: there is no equation ({name})"
 
 
 def main(arguments):
@@ -289,9 +324,12 @@ def main(arguments):
         print(f"{len(found)} of {total} sentences have more than {LONGEST} words")
         return 0
     breaches = list(check_index(root, "--write" in arguments))
+    breaches += check_equations([root / "doc" / "theory.md", *sorted((root / "doc" / "theory").glob("*.md"))]
+                                if (root / "doc" / "theory.md").exists() else [])
     names = Names(root)
     for page in pages(root):
         breaches += [*check_links(page), *check_names(page, names), *check_quotes(page, root), *check_diary(page, root)]
+        breaches += check_sentences(page, root)
     print("\n".join(breaches) if breaches else f"{len(pages(root))} pages keep the rules")
     return 1 if breaches else 0
 

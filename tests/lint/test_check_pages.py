@@ -119,6 +119,21 @@ class PagesTest(unittest.TestCase):
         self.assertIn("not up to date", self.said(glossary="# Glossary\n\n**new**: a term.\n")[1])
         self.assertIn("lost the comments", self.said(index="# Index\n")[1])
 
+    def test_longest(self):
+        """A sentence of more than forty words is a breach; displayed equations are no part of it."""
+        long = " ".join(["word"] * 41)
+        self.assert_breach(f"# Page\n\n{long}.\n", "a sentence of 41 words")
+        code, said = self.said(page=f"# Page\n\n{long[5:]}.\n\n$$\n{long} \\tag{{A1}}\n$$\n\nIt is $a = b + c$.\n")
+        self.assertEqual(code, 0, said)
+
+    def test_equations(self):
+        """Gaps in the numbers of equations are found, and references to none."""
+        good = "# Theory\n\n$$\na \\tag{A1}\n$$\n\n$$\nb \\tag{A2}\n$$\n\nBy (A1) and (A2).\n"
+        self.assertEqual(self.said(theory=good)[0], 1)  # the index lacks the page
+        for text, sentence in ((good.replace("A2}", "A3}"), "without a gap"), (good.replace("(A2)", "(A4)"), "no equation (A4)")):
+            self.assertIn(sentence, self.said(theory=text)[1])
+        self.assertNotIn("equation", self.said(theory=good)[1])
+
     def test_sentences(self):
         """Sentences of more than thirty words are counted; code, links and equations are one word or none."""
         long = " ".join(["word"] * 31)

@@ -45,7 +45,7 @@ def main(implam, folder):
     require(max(areas) < STEADY * sum(areas), "The front moves in bursts.")
 
 
-# Of the force; in the mean over the area; and of the area in one step. Measured: see doc/manual/accuracy.md.
+# Of the force; in the mean over the area; and of the area in one step. Measured: see doc/studies/accuracy.md.
 LARGEST, IN_THE_MEAN, STEADY = 0.06, 0.04, 0.4
 
 if __name__ == "__main__":

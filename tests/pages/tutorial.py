@@ -1,0 +1,58 @@
+"""Runs the commands of the tutorial, page by page, as a reader would: the lines of blocks marked `sh`, in one folder that has the
+decks. Each command ends with code 0, and each picture of a page is drawn by one of them.
+Usage: tutorial.py IMPLAM ROOT FOLDER [--keep]      (--keep puts the pictures into doc/tutorial/pictures)
+
+Ends with code 77 where the Python commands are not installed."""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+SKIPPED = 77
+BLOCK = re.compile(r"^```sh\n(.*?)^```", re.MULTILINE | re.DOTALL)
+PICTURE = re.compile(r"!\[[^\]]*\]\(pictures/([\w.-]+)\)")
+
+
+def commands_of(page):
+    """The commands of a page; a line that ends with a backslash goes on."""
+    return [line for block in BLOCK.findall(page) for line in block.replace("\\\n", " ").splitlines() if line.strip()]
+
+
+def main(arguments):
+    """Run all pages; return the exit code."""
+    keep = "--keep" in arguments
+    implam, root, folder = (Path(word).resolve() for word in arguments if word != "--keep")
+    scripts = root / ".venv" / "bin"
+    if not (scripts / "implam-plot").exists():
+        print("skipped: the Python commands are not installed")
+        return SKIPPED
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    for name in ("tutorial", "small"):
+        shutil.copytree(root / "input" / name, folder / "input" / name)
+    environment = os.environ | {"PATH": f"{implam.parent}:{scripts}:{os.environ['PATH']}"}
+    wrong = []
+    for path in sorted((root / "doc" / "tutorial").glob("*.md")):
+        page = path.read_text(encoding="utf-8")
+        for command in commands_of(page):
+            begun = time.monotonic()
+            done = subprocess.run(command, shell=True, cwd=folder, env=environment, capture_output=True, text=True,
+                                  check=False)
+            print(f"{path.name}: {command}: {time.monotonic() - begun:.1f} s", flush=True)
+            if done.returncode:
+                wrong.append(f"{path.name}: {command}: code {done.returncode}\n{done.stdout[-2000:]}{done.stderr[-2000:]}")
+        for picture in PICTURE.findall(page):
+            if not (folder / "pictures" / picture).exists():
+                wrong.append(f"{path.name}: no command draws pictures/{picture}")
+    if keep and not wrong:
+        shutil.copytree(folder / "pictures", root / "doc" / "tutorial" / "pictures", dirs_exist_ok=True)
+    print("\n".join(wrong) if wrong else "The tutorial runs.")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,118 @@
+"""Writes doc/verification.md from what the tests check: the expectations of tests/regress/expect and the scripts that
+tests/regress/CMakeLists.txt registers. Usage: verification_report.py [ROOT] [--check]
+
+--check writes nothing and ends with code 1 if the page is not up to date."""
+
+import ast
+import re
+import sys
+import tomllib
+from pathlib import Path
+
+HEAD = """# Verification
+
+What the tests hold runs against: {cases} cases with {figures} figures, and {scripts} scripts. This page is written from the tests by
+`tests/pages/verification_report.py`; `ctest -R docs_verification` fails if it is not up to date. A row is met when its test passes:
+`ctest --test-dir build -R NAME`, or all of them, `ctest --test-dir build -L verify`.
+
+A tolerance in % is relative; the others are in the unit of the figure. Units are SI.
+
+## Figures
+| test | case | reference | figure | expected | tolerance |
+|---|---|---|---|---|---|
+"""
+SCRIPTS = """
+## Scripts
+Comparisons that need more than one figure of one run: closed forms of specimens, symmetries, ranks, restarts.
+
+| test | label | held by |
+|---|---|---|
+"""
+KNOWN = ("quantity", "column", "value", "relative", "absolute", "against", "at")
+
+
+def first_sentence(text):
+    """The first sentence of a comment or docstring."""
+    return re.split(r"(?<=[.!?;])\s|(?<=\w):\s", " ".join(text.split()), maxsplit=1)[0].rstrip(".:;").replace("|", "\\|")
+
+
+def comment(text):
+    """The comment at the head of a file."""
+    lines = []
+    for line in text.splitlines():
+        if not line.startswith("#"):
+            break
+        lines.append(line.lstrip("# "))
+    return " ".join(lines)
+
+
+def figure_of(row):
+    """What a row looks at."""
+    name = row["quantity"]
+    parts = [f"`{row['column']}`"] if "column" in row else []
+    parts += [f"{key} {value:g}" for key, value in row.items() if key not in KNOWN and isinstance(value, float)]
+    return f"{name} of {', '.join(parts)}" if parts else name
+
+
+def tolerance_of(row):
+    """The tolerance of a row."""
+    if "relative" in row:
+        return f"{100 * row['relative']:.3g} %"
+    return f"{row['absolute']:g}" if "absolute" in row else "bound"
+
+
+def expected_of(row):
+    """The value of a row, or its bounds."""
+    if "value" in row:
+        return f"{row['value']:.6g}"
+    bounds = [f"{word} {row[key]:.4g}" for key, word in (("min", "at least"), ("max", "at most"),
+                                                         ("at_least", "at least"), ("at_most", "at most")) if key in row]
+    return ", ".join(bounds) or "see file"
+
+
+def rows_of(path):
+    """The rows of a file of expectations."""
+    text = path.read_text(encoding="utf-8")
+    data = tomllib.loads(text)
+    cases = data.get("variant") or [{"name": ""}]
+    common = [(row, "all" if data.get("variant") else "") for row in data.get("expect", [])]
+    own = [(row, case.get("name", "")) for case in cases for row in case.get("expect", [])]
+    reference = first_sentence(comment(text))
+    for row, case in common + own:
+        yield (f"`verify_{path.stem}`", case, reference, figure_of(row), expected_of(row), tolerance_of(row))
+
+
+def scripts_of(folder):
+    """Registered scripts with the first sentence of their docstrings."""
+    listed = (folder / "CMakeLists.txt").read_text(encoding="utf-8")
+    for test, label, script in re.findall(r"implam_add_script\((\w+) ([\w-]+) (\w+\.py)", listed):
+        told = ast.get_docstring(ast.parse((folder / script).read_text(encoding="utf-8"))) or ""
+        yield f"`{test}`", label, first_sentence(told)
+
+
+def page_of(root):
+    """The text of the page."""
+    folder = root / "tests" / "regress"
+    files = sorted((folder / "expect").glob("*.toml"))
+    rows = [row for path in files for row in rows_of(path)]
+    scripts = list(scripts_of(folder))
+    text = HEAD.format(cases=len(files), figures=len(rows), scripts=len(scripts))
+    text += "".join(f"| {' | '.join(row)} |\n" for row in rows) + SCRIPTS
+    return text + "".join(f"| {' | '.join(row)} |\n" for row in scripts)
+
+
+def main(arguments):
+    """Write or check the page; return the exit code."""
+    folders = [word for word in arguments if not word.startswith("--")]
+    root = Path(folders[0] if folders else Path(__file__).resolve().parents[2])
+    page, text = root / "doc" / "verification.md", page_of(root)
+    if "--check" not in arguments:
+        page.write_text(text, encoding="utf-8")
+    elif not page.exists() or page.read_text(encoding="utf-8") != text:
+        print(f"{page} is not up to date; run tests/pages/verification_report.py")
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
