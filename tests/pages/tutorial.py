@@ -1,5 +1,5 @@
-"""Runs the commands of the tutorial, page by page, as a reader would: the lines of blocks marked `sh`, in one folder that has the
-decks. Each command ends with code 0, and each picture of a page is drawn by one of them.
+"""Runs the commands of the tutorial, page by page, as a reader would: the lines of blocks marked `sh`, in one folder
+that has the decks. Each command ends with code 0, and each picture of a page is drawn by one of them.
 Usage: tutorial.py IMPLAM ROOT FOLDER [--keep]      (--keep puts the pictures into doc/tutorial/pictures)
 
 Ends with code 77 where the Python commands are not installed."""
@@ -44,7 +44,8 @@ def main(arguments):
                                   check=False)
             print(f"{path.name}: {command}: {time.monotonic() - begun:.1f} s", flush=True)
             if done.returncode:
-                wrong.append(f"{path.name}: {command}: code {done.returncode}\n{done.stdout[-2000:]}{done.stderr[-2000:]}")
+                told = done.stdout[-2000:] + done.stderr[-2000:]
+                wrong.append(f"{path.name}: {command}: code {done.returncode}\n{told}")
         for picture in PICTURE.findall(page):
             if not (folder / "pictures" / picture).exists():
                 wrong.append(f"{path.name}: no command draws pictures/{picture}")
