@@ -11,7 +11,7 @@ from pathlib import Path
 
 HEAD = """# Verification
 
-What the tests hold runs against: {cases} cases with {figures} figures, and {scripts} scripts. This page is written from
+What the tests hold runs against: {cases} cases with {figures} figures, and {scripts} scripts. It is written from
 the tests by `tests/pages/verification_report.py`; `ctest -R docs_verification` fails if it is not up to date. A row is met
 when its test passes:
 `ctest --test-dir build -R NAME`, or all of them, `ctest --test-dir build -L verify`.
