@@ -162,7 +162,8 @@ def split_next_to_rejections(implam, folder, deck, settings, period, periods):
         raise TrialError(f"No number of iterations rejects steps and yet reaches the end: {failure}") from None
     before, after, histories = 0, 0, []
     # Half a period after a checkpoint would not show a forgotten step: the halved one and the full one both fit in.
-    for end in sorted({number + share for number in sorted(found)[:2] for share in (0.9999, 1.9999) if number + share > 1}):
+    ends = {number + share for number in sorted(found)[:2] for share in (0.9999, 1.9999)}
+    for end in sorted(end for end in ends if end > 1):
         reference, again = run_split(implam, folder / f"end_{end}", deck, [*settings, f"time%end={end * period!r}"])
         require_same(again, reference, f"end after {end} periods")
         histories.append(reference)
