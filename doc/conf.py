@@ -15,7 +15,7 @@ def declared_version():
 
 project = "Implam"
 author = "The Implam developers"
-copyright = author  # noqa: A001
+copyright = author
 release = version = declared_version()
 
 extensions = ["myst_parser"]
@@ -43,7 +43,10 @@ def bare_displays(_app, tree):
         node.replace_self(math_block("", rf"\[{node.astext().strip()}\]", **node.attributes))
 
 
-OUTSIDE = re.compile(r"(?<!!)\[([^\]]*)\]\(((?:\.\./)+(?!manual/|theory/|studies/|tutorial/)[\w./-]*|news/README)\.md(?:#[\w-]*)?\)")
+OUTSIDE = re.compile(
+    r"(?<!!)\[([^\]]*)\]"
+    r"\(((?:\.\./)+(?!manual/|theory/|studies/|tutorial/)[\w./-]*|news/README)\.md(?:#[\w-]*)?\)"
+)
 
 
 def drop_links_outside(app, name, source):

@@ -22,7 +22,7 @@ for ply, angle in enumerate(angles):
     axes.text(*at(-3.1, -2, (top + bottom) / 2), f"ply {ply + 1}: {angle}°", ha="right", va="center", fontsize=9)
 axes.add_patch(plt.Polygon([at(-3, -2, 0), at(3, -2, 0), at(3, 2, 0), at(-3, 2, 0)], facecolor="white", edgecolor=INK))
 for shift in (-1.2, -0.4, 0.4, 1.2):
-    axes.plot(*zip(at(-2.9, shift, 0), at(2.9, shift, 0)), color=GREY, lw=0.5, ls=":")
+    axes.plot(*zip(at(-2.9, shift, 0), at(2.9, shift, 0), strict=True), color=GREY, lw=0.5, ls=":")
 origin = at(0, 0, 0)
 arrow(axes, origin, at(1.8, 0, 0), BLUE)
 axes.text(*at(0.7, 0, 0.35), "x, u, 0° fibres", color=BLUE, va="center")

@@ -26,7 +26,7 @@ def column(x, title, texts):
     """Boxes below each other; returns the heights of their centres."""
     axes.text(x, 0.9, title, ha="center", weight="bold")
     heights = [-1.1 * k for k in range(len(texts))]
-    for k, (y, text) in enumerate(zip(heights, texts)):
+    for k, (y, text) in enumerate(zip(heights, texts, strict=True)):
         box(axes, (x, y), (7.0, 0.8), text, "#dff0e0" if k == len(texts) - 1 else LIGHT)
         if k:
             arrow(axes, (x, y + 0.75), (x, y + 0.35))

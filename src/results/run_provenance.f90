@@ -45,8 +45,8 @@ contains
     !> The program, and the paper whose method it extends
     character(len=:), allocatable :: citation
 
-    citation = 'The Implam developers: Implam '//version//', low-velocity impact on composite laminates. Method: '// &
-               'C. F. Li, N. Hu, Y. J. Yin, H. Sekine, H. Fukunaga, Composites Part A 33 (2002) 1055-1062.'
+    citation = 'The Implam developers: Implam '//version//', low-velocity impact on composite laminates. '// &
+               'Method: C. F. Li, N. Hu, Y. J. Yin, H. Sekine, H. Fukunaga, Composites Part A 33 (2002) 1055-1062.'
   end function citation_of
 
   !> Provenance of the run that is starting.

@@ -58,6 +58,7 @@ def check_slips(implam, folder):
     deck = folder / "small.nml"
     shutil.copy(HERE.parents[1] / "input" / "small" / "cohesive.nml", deck)
     version = answer(implam, "--version")
+    require("To cite: The Implam developers" in version, f"The version doesn't say how to cite: {version}")
     for word in ("version", "-v"):
         require(answer(implam, word) == version, f"{word} doesn't tell the version.")
     for words, meant in ((["chek", deck], "did you mean check?"), (["exlpain"], "did you mean explain?"),

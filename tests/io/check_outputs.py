@@ -32,6 +32,7 @@ KILLS = 6
 
 def check_h5(folder):
     with h5py.File(folder / "sample.h5") as file:
+        assert file["provenance/citation"][()].decode().startswith("The Implam developers"), "no word on how to cite"
         assert file["provenance/deck"][()].decode().startswith("&case"), "the deck isn't in the file"
         assert file["part"][()].decode() == "quarter"
         assert len(file["restarts"]) == 1

@@ -8,7 +8,7 @@ check_pages.py [ROOT] [--write] [--sentences]
 - doc/index.md lists every page of doc/, every key, column and field of the manual and every term of the glossary.
 - Pages say what holds now: the words of a diary ("as it was then") are refused outside CHANGELOG.md and doc/news/.
 - No sentence of the pages under doc/ and of README.md has more than 40 words.
-- Equations of a page of doc/theory/ are numbered without a gap, by one letter and a number, and equations referred to exist.
+- Equations of a page of doc/theory/ are numbered without a gap, by one letter and a number; those referred to exist.
 
 --write writes the lists of doc/index.md anew. --sentences counts the sentences of more than 30 words and prints them.
 Prints one line a breach, as file:line: sentence, and ends with code 1 if there is any.

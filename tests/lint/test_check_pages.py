@@ -130,7 +130,8 @@ class PagesTest(unittest.TestCase):
         """Gaps in the numbers of equations are found, and references to none."""
         good = "# Theory\n\n$$\na \\tag{A1}\n$$\n\n$$\nb \\tag{A2}\n$$\n\nBy (A1) and (A2).\n"
         self.assertEqual(self.said(theory=good)[0], 1)  # the index lacks the page
-        for text, sentence in ((good.replace("A2}", "A3}"), "without a gap"), (good.replace("(A2)", "(A4)"), "no equation (A4)")):
+        gap, none = good.replace("A2}", "A3}"), good.replace("(A2)", "(A4)")
+        for text, sentence in ((gap, "without a gap"), (none, "no equation (A4)")):
             self.assertIn(sentence, self.said(theory=text)[1])
         self.assertNotIn("equation", self.said(theory=good)[1])
 

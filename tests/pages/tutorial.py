@@ -1,5 +1,5 @@
-"""Runs the commands of the tutorial, page by page, as a reader would: the lines of blocks marked `sh`, in one folder that has the
-decks. Each command ends with code 0, and each picture of a page is drawn by one of them.
+"""Runs the commands of the tutorial, page by page, as a reader would: the lines of blocks marked `sh`, in one folder
+that has the decks. Each command ends with code 0, and each picture of a page is drawn by one of them.
 Usage: tutorial.py IMPLAM ROOT FOLDER [--keep]      (--keep puts the pictures into doc/tutorial/pictures)
 
 Ends with code 77 where the Python commands are not installed."""
@@ -35,7 +35,7 @@ def main(arguments):
     for name in ("tutorial", "small"):
         shutil.copytree(root / "input" / name, folder / "input" / name)
     environment = os.environ | {"PATH": f"{implam.parent}:{scripts}:{os.environ['PATH']}"}
-    wrong = []
+    wrong, drawn = [], []
     for path in sorted((root / "doc" / "tutorial").glob("*.md")):
         page = path.read_text(encoding="utf-8")
         for command in commands_of(page):
@@ -44,12 +44,17 @@ def main(arguments):
                                   check=False)
             print(f"{path.name}: {command}: {time.monotonic() - begun:.1f} s", flush=True)
             if done.returncode:
-                wrong.append(f"{path.name}: {command}: code {done.returncode}\n{done.stdout[-2000:]}{done.stderr[-2000:]}")
+                told = done.stdout[-2000:] + done.stderr[-2000:]
+                wrong.append(f"{path.name}: {command}: code {done.returncode}\n{told}")
         for picture in PICTURE.findall(page):
+            drawn.append(picture)
             if not (folder / "pictures" / picture).exists():
                 wrong.append(f"{path.name}: no command draws pictures/{picture}")
     if keep and not wrong:
-        shutil.copytree(folder / "pictures", root / "doc" / "tutorial" / "pictures", dirs_exist_ok=True)
+        kept = root / "doc" / "tutorial" / "pictures"
+        kept.mkdir(exist_ok=True)
+        for picture in drawn:
+            shutil.copy(folder / "pictures" / picture, kept)
     print("\n".join(wrong) if wrong else "The tutorial runs.")
     return 1 if wrong else 0
 

@@ -11,8 +11,9 @@ from pathlib import Path
 
 HEAD = """# Verification
 
-What the tests hold runs against: {cases} cases with {figures} figures, and {scripts} scripts. This page is written from the tests by
-`tests/pages/verification_report.py`; `ctest -R docs_verification` fails if it is not up to date. A row is met when its test passes:
+What the tests hold runs against: {cases} cases with {figures} figures, and {scripts} scripts. It is written from
+the tests by `tests/pages/verification_report.py`; `ctest -R docs_verification` fails if it is not up to date. A row is
+met when its test passes:
 `ctest --test-dir build -R NAME`, or all of them, `ctest --test-dir build -L verify`.
 
 A tolerance in % is relative; the others are in the unit of the figure. Units are SI.
@@ -33,7 +34,8 @@ KNOWN = ("quantity", "column", "value", "relative", "absolute", "against", "at")
 
 def first_sentence(text):
     """The first sentence of a comment or docstring."""
-    return re.split(r"(?<=[.!?;])\s|(?<=\w):\s", " ".join(text.split()), maxsplit=1)[0].rstrip(".:;").replace("|", "\\|")
+    text = re.split(r"(?<=[.!?;])\s|(?<=\w):\s", " ".join(text.split()), maxsplit=1)[0]
+    return text.rstrip(".:;").replace("|", "\\|")
 
 
 def comment(text):
@@ -65,9 +67,7 @@ def expected_of(row):
     """The value of a row, or its bounds."""
     if "value" in row:
         return f"{row['value']:.6g}"
-    bounds = [f"{word} {row[key]:.4g}" for key, word in (("min", "at least"), ("max", "at most"),
-                                                         ("at_least", "at least"), ("at_most", "at most")) if key in row]
-    return ", ".join(bounds) or "see file"
+    return "see file"
 
 
 def rows_of(path):

@@ -1,14 +1,16 @@
-"""Spack recipe of Implam. It lies in a repository of recipes as packages/implam/package.py."""
+"""Spack recipe of Implam. To use it: spack repo add CLONE/packaging/spack, then spack install implam."""
 
 from spack.package import *
 
 
 class Implam(CMakePackage):
-    """Low-velocity impact on composite laminates: an implicit finite-element program with damage of plies and
+    """Low-velocity impact on composite laminates: a finite-element program with damage of plies and
     interfaces, for laptops and queues."""
 
-    # Point it at the clone that this file lies in: spack develop --path CLONE implam@main
-    version("main", branch="main")
+    license("BSD-3-Clause")
+
+    # The source is the clone or unpacked archive that this file lies in: spack develop --path CLONE implam@0.1.0
+    version("0.1.0")
 
     variant("tests", default=False, description="Build the tests")
 
