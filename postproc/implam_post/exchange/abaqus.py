@@ -34,7 +34,7 @@ def abaqus_input(panel: Panel, source: str) -> Iterator[str]:
 
 
 def _elements(panel: Panel, mesh: ShellMesh, sections: Sequence[Section]) -> Iterator[str]:
-    """Return the elements, a set a section."""
+    """Return the elements, a set for each section."""
     members: dict[Section, list[int]] = {section: [] for section in sections}
     yield "*ELEMENT, TYPE=S8R, ELSET=ALL_SHELLS"
     for number, element in enumerate(mesh.elements, 1):

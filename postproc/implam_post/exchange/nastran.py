@@ -12,7 +12,7 @@ _SUPPORTS, _LOAD = 1, 1
 
 
 def nastran_deck(panel: Panel, source: str, with_z0: bool = False) -> Iterator[str]:
-    """Return the lines: CQUAD4 four a cell, a PCOMP a section, MAT8 or MAT1, SPC1, PLOAD2 if there is a pressure.
+    """Return the lines: CQUAD4 by fours, a PCOMP for each section, MAT8 or MAT1, SPC1, PLOAD2 if there is a pressure.
 
     Stacks beside the middle have ZOFFS on their elements, or Z0 on their PCOMP.
     """

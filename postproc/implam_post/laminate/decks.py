@@ -23,7 +23,7 @@ def plies_of(deck: Deck) -> list[Ply]:
         plies.append(Ply(materials[str(name).lower()], as_number(angle, f"{where} angles"),
                          as_number(thickness, f"{where} thicknesses")))
     if not plies:
-        raise deck.error("laminate", "angles are needed, one a ply.")
+        raise deck.error("laminate", "angles are needed, one for each ply.")
     if min(ply.thickness for ply in plies) <= 0:
         raise deck.error("laminate", "every thickness must be greater than zero.")
     return plies
@@ -37,7 +37,7 @@ def section_of_deck(deck: Deck) -> Section:
 
 
 def _stack(deck: Deck) -> tuple[list[Value], list[Value]]:
-    """Return angles, one a ply, and thicknesses, one a ply or one for all."""
+    """Return angles, one for each ply, and thicknesses, likewise or one for all."""
     if not (deck.values("laminate", "stacking") or deck.values("laminate", "ply_thickness")):
         return deck.values("laminate", "angles"), deck.values("laminate", "thicknesses")
     if deck.values("laminate", "angles") or deck.values("laminate", "thicknesses"):

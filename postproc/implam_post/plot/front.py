@@ -22,7 +22,7 @@ _PLAIN = Look()
 def front_figure(fields: Fields, times: Sequence[float] | None = None, look: Look = _PLAIN) -> Figure:
     """Draw each interface at the given times, or at some of those at which its front is loaded.
 
-    On the left G/G_c against the angle around the struck point, a line a time; on the right in plan, at that one of
+    On the left G/G_c against the angle around the struck point, a line for each time; on the right in plan, at that of
     these times at which G/G_c is largest.
     """
     interfaces = fields.snapshots[-1].mesh.interfaces

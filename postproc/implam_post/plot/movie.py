@@ -72,7 +72,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
                            "each time written (`fields_every` of &output), with the force of the history beside it.")
     parser.add_argument("fields", type=Path, metavar="NAME.h5")
     parser.add_argument("--save", type=Path, metavar="FILE", help="file, .gif, .webp or .png (default: NAME.gif)")
-    parser.add_argument("--rate", type=float, default=5.0, help="pictures a second (default: 5)")
+    parser.add_argument("--rate", type=float, default=5.0, help="pictures per second (default: 5)")
     add_options(parser)
     parser.set_defaults(dpi=80, format="png")
     return run(_command, parser, arguments)

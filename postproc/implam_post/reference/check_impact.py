@@ -111,7 +111,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
                         help="history to check (default: NAME_history.csv in the deck's output folder or here)")
     parser.add_argument("--output", type=Path, metavar="DIR", help="folder of the plot (default: beside the history)")
     parser.add_argument("--modes", type=count, metavar="N",
-                        help="odd half-wave numbers a side with inertia (default: two half waves a patch)")
+                        help="odd half-wave numbers along each side with inertia (default: two half waves in a patch)")
     parser.add_argument("--no-plot", action="store_true", help="only print")
     parser.add_argument("--tolerance", type=float, metavar="FRACTION",
                         help="exit with 1 if a difference exceeds this fraction of its scale")

@@ -59,7 +59,7 @@ def sinusoidal_deflection(plate: Plate, pressure: float) -> float:
 
 
 def uniform_deflection(plate: Plate, pressure: float, terms: int = 200) -> float:
-    """Return the centre's deflection under a uniform pressure, summed over `terms` half-wave numbers a side."""
+    """Return the centre's deflection under a uniform pressure, over `terms` half-wave numbers along each side."""
     m, n = odd_pairs(terms, terms)
     amplitude = 16 * pressure / (np.pi**2 * m * n)
     return float(np.sum(amplitude * centre_shape(m, n) * plate.compliance(m, n)))

@@ -17,7 +17,7 @@ from implam_post.reference.decks import Impactor, impactor_of, indentation_law_o
 from implam_post.reference.indentation import IndentationLaw
 from implam_post.reference.navier import Plate, centre_shape, odd_pairs, patch_shape
 
-# Half waves a patch side with inertia, and those that only add their static compliance.
+# Half waves along a side of the patch with inertia, and those that only add their static compliance.
 _DYNAMIC_HALF_WAVES, _STATIC_HALF_WAVES = 2, 20
 _STEPS_A_CONTACT, _FEWEST_STEPS, _MOST_STEPS = 1000, 2000, 40000
 _MODES_AT_ONCE = 8192
@@ -66,7 +66,7 @@ def semi_analytic(deck: Deck, modes: int | None = None, step: float | None = Non
     """Return the semi-analytic history of the impact that the deck describes.
 
     Its columns are those of the solver's history that it can fill, and `patch_deflection`. `modes` is the number of
-    odd half-wave numbers a side with inertia, `step` the distance between instants.
+    odd half-wave numbers along each side with inertia, `step` the distance between instants.
     """
     return respond(impact_case(deck), modes, step, deck.name)
 

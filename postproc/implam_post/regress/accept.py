@@ -27,7 +27,7 @@ _NUMBER = r"(\s*{key}\s*=\s*)([-+\w.]+)(.*)"
 
 
 def accept(expectations: Expectations, comparisons: Sequence[Sequence[Comparison]]) -> list[str]:
-    """Write what was found where it isn't within the tolerance; return what was changed, a line an entry.
+    """Write what was found where it isn't within the tolerance; return what was changed, a line for each entry.
 
     `comparisons` are those of each variant. Entries that were met, comments and everything else stay.
     """
@@ -42,7 +42,7 @@ def accept(expectations: Expectations, comparisons: Sequence[Sequence[Comparison
     changed = _change(text, {place: (found[place][0].expected, new) for place, new in changes.items()})
     if _all_entries(expectations.path, changed) != {
             place: changes.get(place, entries[0].expected) for place, entries in found.items()}:
-        raise FileError("its entries aren't [[expect]] tables with a line a key.")
+        raise FileError("its entries aren't [[expect]] tables with a line for each key.")
     write_text(expectations.path, changed)
     names = [variant.name for variant in expectations.variants]
     return [_change_text(found[place][0].expected, new, names[place[0]] if place[0] >= 0 and len(names) > 1 else "")

@@ -139,7 +139,7 @@ def _figures(summary: Mapping[str, Any], look: Look) -> list[tuple[str, ...]]:
     for name, key, dimension, at in _FIGURES:
         if key in summary and not (key == "work_external" and not summary[key]):
             value = _UNKNOWN.get(key, "-") if summary[key] is None else shown(look, dimension, summary[key])
-            when = f"{_WHEN.get(key, 'at')} {shown(look, _time(summary), summary[at])}" if at else ""
+            when = f"{_WHEN.get(key, 'at')} {shown(look, _time(summary), summary[at])}" if at in summary else ""
             rows.append((name, value, when))
     if summary.get("in_contact"):
         rows.append(("contact at the end", "yes", ""))

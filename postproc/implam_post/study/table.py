@@ -1,4 +1,4 @@
-"""The table of a study: a row a trial, with errors against its reference, what it cost, and whether it is on the front.
+"""The table of a study: a row for each trial, with errors against its reference, cost, and place on the front.
 
 Errors are parts of the reference's figure, with their sign, over the time that both last; that of the force history is
 a relative L2 norm.

@@ -71,7 +71,7 @@ class _Tables:
 
 
 def _write_array(sweep: Sweep, cases: Sequence[Case]) -> int:
-    """Write the decks still to run, and the commands that run them, one a line."""
+    """Write the decks still to run, and the commands that run them, one on each line."""
     decks, commands = sweep.plan.output / "decks.txt", sweep.plan.output / "array.txt"
     write_text(decks, "".join(f"{sweep.deck(case).absolute()}\n" for case in cases))
     write_text(commands, "".join(shlex.join(case_command(sweep.folder(case), sweep.program)) + "\n" for case in cases))

@@ -38,7 +38,7 @@ def statistics_text(plan: Plan, groups: Sequence[Group], look: Look) -> str:
 
 
 def variants_table(groups: Sequence[Group], look: Look) -> list[tuple[str, ...]]:
-    """Return a row a variant, the names of the figures above: mean and standard error of what variants are compared by.
+    """Return names, and below them a row for each variant: means and standard errors of the figures compared.
 
     A star stands where the difference from the first variant is larger than the scatter of its mean.
     """
@@ -73,7 +73,7 @@ def markdown(rows: Sequence[Sequence[str]]) -> str:
 
 def spread_rows(found: Mapping[str, Spread], dimensions: Mapping[str, str], look: Look,
                 names: Sequence[str]) -> Iterator[tuple[str, ...]]:
-    """Give a row a figure: mean, its standard deviation, that of the runs, points of 5 and 95 %, number of runs."""
+    """Give a row for each figure: mean, its standard error, deviation, 5 and 95 % points, number of runs."""
     for name in names:
         if name in found and found[name].number:
             one = found[name]
@@ -85,7 +85,7 @@ def spread_rows(found: Mapping[str, Spread], dimensions: Mapping[str, str], look
 
 def difference_rows(found: Mapping[str, Difference], dimensions: Mapping[str, str], look: Look,
                     names: Sequence[str]) -> Iterator[tuple[str, ...]]:
-    """Give a row a figure: mean of the first, difference, what of it is scatter, and whether it is larger than that."""
+    """Give a row for each figure: mean of the first, difference, the scatter of it, and whether it is larger."""
     for name in names:
         if name in found and found[name].number:
             one = found[name]
@@ -96,7 +96,7 @@ def difference_rows(found: Mapping[str, Difference], dimensions: Mapping[str, st
 
 
 def measured_rows(rows: Sequence[ComparedMean]) -> Iterator[tuple[str, ...]]:
-    """Give a row a measured figure: that, what is aimed at, the mean, how far it is off, and whether it is within."""
+    """Give a row for each measured figure: its value, the aim, the mean, their difference, and whether it is within."""
     for row in rows:
         expected, found = row.expected, row.found
         aim = f"{100 * expected.relative:.3g} %" if expected.relative is not None else f"{expected.absolute:.3g}"

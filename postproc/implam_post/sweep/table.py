@@ -1,4 +1,4 @@
-"""The table of a sweep: a row a case, with its swept values, the figures of its run, and how the run ended."""
+"""The table of a sweep: a row for each case, with its swept values, the figures of its run, and how the run ended."""
 
 import math
 from collections.abc import Callable, Iterable
@@ -99,7 +99,7 @@ def write_csv(table: Table, path: Path) -> None:
 
 
 def write_hdf5(table: Table, path: Path) -> None:
-    """Write the table as HDF5: a data set a column, with the file of the sweep and the deck of each case."""
+    """Write the table as HDF5: a data set for each column, with the file of the sweep and the deck of each case."""
     with replaced(path) as draft, h5py.File(draft, "w") as file:
         columns = file.create_group("table", track_order=True)
         for name, values in table.columns.items():

@@ -13,11 +13,23 @@ from pathlib import Path
 import numpy as np
 from matplotlib.image import imread
 
+from implam_post.io.start import run_deck
 from implam_post.report import command as report
 from tests.program import SMALL, implam, run_quietly
 from tests.program import run as run_module
 
 _WITHOUT_END = {"meta", "img", "br"}
+
+PRESSED = """
+&case name='pressed' units='SI' /
+&plate length=0.04, 0.04 edges='clamped' symmetry='quarter' /
+&mesh elements=4, 4 patch=5e-3 /
+&material name='i' density=1600 E=50e9 nu=0.3 /
+&laminate materials='i' angles=0 thicknesses=2e-3 /
+&impactor travel=1e-3 /
+&indentation law='hertz' k=1e9 /
+&static steps=2 /
+"""
 
 
 class Page(HTMLParser):
@@ -129,6 +141,15 @@ class ReportTest(unittest.TestCase):
         self.assertIn("load factor 1", page.text)
         self.assertNotIn("peak force", page.cells)
         self.assertNotIn("contact force against time", page.pictures)
+
+    def test_impactor_of_given_travel(self) -> None:
+        """In load steps the peak force has no time, and the page has it nevertheless."""
+        (self.folder / "pressed.nml").write_text(PRESSED, encoding="utf-8")
+        run = run_deck(self.folder / "pressed.nml", output=self.folder / "pressed", program=str(implam())).wait(100)
+        self.assertNotIn("peak_force_at", run.summary)
+        page = self.page(self.folder / "pressed" / "pressed_summary.json")
+        self.assertIn("peak force", page.cells)
+        self.assertIn("contact force against time", page.pictures)
 
     def test_folders_and_faults(self) -> None:
         """All summaries of a folder; a sentence for what is none."""
