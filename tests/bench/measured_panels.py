@@ -76,7 +76,7 @@ def history_error(rows):
 
 def softened_area(folder, plate_size):
     """Projected area, m2, in which an interface has lost half its stiffness at the end; process zones are in it."""
-    with h5py.File(next(folder.glob("*.h5"))) as file:
+    with h5py.File(next(path for path in folder.glob("*.h5") if not path.stem.endswith("_restart"))) as file:
         last = file["times"][max(file["times"])]
         mesh = file["meshes"][f"{last['mesh'][()]:08d}"]
         points, corners = mesh["coordinates"][:, :2], mesh["connectivity"][:]

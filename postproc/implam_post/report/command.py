@@ -38,6 +38,9 @@ _FIGURES = (
     ("matrix cracks, plies of elements", "matrix_cracks", "", None),
     ("matrix crushings, plies of elements", "matrix_crushings", "", None),
 )
+# Rows of the dent: label, member, remark.
+_DENT = (("depth of the dent", "dent_depth", "at the end of the run; meant for a plate at rest (&time settle)"),
+         ("part of it by the indentation law", "dent_indentation", ""))
 # Words before a time, and what a missing figure means.
 _WHEN = {"contact_duration": "until"}
 _UNKNOWN = {"energy_absorbed": "contact has not ended"}
@@ -96,6 +99,7 @@ def _resistance(results: Run, found: Mapping[str, Measured], look: Look) -> str:
             row("energy to the threshold", "energy_to_threshold"), row("energy to the peak force", "energy_to_peak"),
             ("absorbed energy", "contact has not ended" if summary["energy_absorbed"] is None
              else shown(look, "energy", summary["energy_absorbed"]), "")]
+    rows += [(name, shown(look, "length", summary[key]), remark) for name, key, remark in _DENT if key in summary]
     if results.fields is not None and "damage_diameter" in found:
         rows += _sizes(results, look)
     kinds = kinds_of_damage(summary)

@@ -103,8 +103,9 @@ class ReportTest(unittest.TestCase):
         summary, page = json.loads(path.read_text(encoding="utf-8")), self.page(path)
         for key, shown in (("peak_force", "{:.4g} kN"), ("largest_deflection", "{:.4g} mm"),
                            ("delaminated_area", "{:.4g} mm²"), ("projected_area", "{:.4g} mm²"),
+                           ("dent_depth", "{:.4g} µm"), ("dent_indentation", "{:.4g} µm"),
                            ("energy_strain", "{:.4g}"), ("energy_error", "{:.4g}")):
-            factor = {"kN": 1e-3, "mm": 1e3, "mm²": 1e6}.get(shown[7:], 1)
+            factor = {"kN": 1e-3, "mm": 1e3, "µm": 1e6, "mm²": 1e6}.get(shown[7:], 1)
             self.assertIn(shown.format(factor * summary[key]), page.cells, key)
         self.assertIn(str(summary["matrix_cracks"]), page.cells)
         self.assertIsNone(summary["energy_absorbed"])
@@ -112,6 +113,7 @@ class ReportTest(unittest.TestCase):
         self.assertIn("algorithmic dissipation", page.cells)
         self.assertIn("threshold: force where its curve first drops by damage, behind a low pass of 6 kHz", page.cells)
         self.assertIn("largest diameter of the projected damage", page.cells)
+        self.assertIn("depth of the dent", page.cells)
         self.assertIn("delamination below ply 2", page.cells)
         growth = summary["interfaces"][0]["first_growth"]
         self.assertIn(f"{growth['force'] / 1e3:.4g} kN at {1e3 * growth['at']:.4g} ms", page.cells)
