@@ -17,7 +17,7 @@ module crack_bands
   use plies, only: elasticity_t, elasticity_of
   use ply_damage_parameters, only: ply_damage_t, energy_modes, fibre_tension, fibre_compression, matrix_tension, &
                                    matrix_compression
-  use softening_falls, only: softening_t, fall_of, worse, damage_at, share_growth, least_ratio
+  use softening_falls, only: softening_t, fall_of, worse, damage_at, taken_by, least_ratio
   implicit none
   private
   public :: crack_band_t, band_state_t, band_strains_t, create_crack_band, strain_band, elasticity_left, onset_strain, &
@@ -126,7 +126,7 @@ contains
     type(band_state_t), intent(inout) :: new
     type(softening_t) :: signs(2, 2)
     type(left_t) :: left
-    real(wp) :: before(2), share(2)
+    real(wp) :: before(2), share(2), booked(energy_modes)
     integer :: round, i
 
     do round = 1, most_rounds
@@ -143,26 +143,16 @@ contains
     share = 0
     if (band%crack_closure) share = compressed_share(band%elasticity, strains, left)
     do i = 1, 2
-      if (new%damage(i) > old%damage(i)) call book(worse(signs(:, i)), 1 - share(i), old%damage(i), new%damage(i))
-      if (new%closed(i) > old%closed(i)) call book(signs(2, i), share(i), old%closed(i), new%closed(i))
+      booked = 0
+      booked(signs(2, i)%mode) = taken_by(signs(2, i), (1 - band%remainder)*share(i), old%closed(i), new%closed(i))
+      associate (fall => worse(signs(:, i)))
+        booked(fall%mode) = booked(fall%mode) &
+                            + taken_by(fall, (1 - band%remainder)*(1 - share(i)), old%damage(i), new%damage(i))
+      end associate
+      new%dissipated = new%dissipated + booked
     end do
     if (band%crack_closure) &
       new%recovered = find_recovered(band%elasticity, strains%mean, parts_left(band, strains, new))
-
-  contains
-
-    !> Books the energy of a damage that grows on a fall.
-    pure subroutine book(fall, share, from, to)
-      !> The fall
-      type(softening_t), intent(in) :: fall
-      !> Share of the energy that this damage releases
-      real(wp), intent(in) :: share
-      !> Damage before and after
-      real(wp), intent(in) :: from, to
-
-      new%dissipated(fall%mode) = new%dissipated(fall%mode) &
-                                  + (1 - band%remainder)*fall%energy*share*share_growth(fall%ratio, from, to)
-    end subroutine book
   end subroutine find_damage
 
   !> Energy per volume that permanent shear strains of a ply have taken.
