@@ -4,6 +4,7 @@ module compression_records
   use archives, only: archive_t
   use kinds, only: wp
   use output_clocks, only: shown_time
+  use text, only: to_text
   implicit none
   private
   public :: compression_record_t
@@ -13,6 +14,9 @@ module compression_records
   !> Part of its largest value below which the stress has to come for the plate to have failed: a test ends when the
   !> force has dropped by about 30 % (ASTM D7137).
   real(wp), parameter :: fallen = 0.7_wp
+  !> Part of its largest compression that a gauge has to lose under a rising load for the plate to have buckled (strain
+  !> reversal, J. Singer, J. Arbocz, T. Weller, Buckling Experiments 1, 1998); less than that may be vibration.
+  real(wp), parameter :: reversed = 0.1_wp
 
   !> The record.
   type :: compression_record_t
@@ -22,6 +26,10 @@ module compression_records
     real(wp) :: bending = 0
     !> True once the stress has fallen far below that
     logical :: failed = .false.
+    !> Nominal strain at which the first of two gauges back to back turned round under a rising load; 0: none did
+    real(wp) :: buckling = 0
+    !> Largest compression of both gauges, with the nominal strain and the stress then
+    real(wp), private :: pressed(3, 2) = 0
     !> Stress at the strains; 0: not reached
     real(wp), private :: stresses(2) = 0
     !> Strain and stress seen last
@@ -29,6 +37,8 @@ module compression_records
   contains
     !> Looks at a state.
     procedure :: observe
+    !> Looks at two gauges back to back.
+    procedure :: observe_gauges
     !> Effective modulus; 0: not known.
     procedure :: modulus
     !> Saves or loads.
@@ -64,6 +74,24 @@ contains
     end if
   end subroutine observe
 
+  !> Looks at two gauges back to back, after the state itself.
+  pure subroutine observe_gauges(self, gauges)
+    !> The record
+    class(compression_record_t), intent(inout) :: self
+    !> Strains on the front and on the back
+    real(wp), intent(in) :: gauges(2)
+    integer :: i
+
+    do i = 1, 2
+      if (-gauges(i) > self%pressed(1, i)) then
+        self%pressed(:, i) = [-gauges(i), self%strain, self%stress]
+      else if (.not. self%buckling > 0 .and. self%pressed(1, i) > strains(1)) then
+        if (-gauges(i) < (1 - reversed)*self%pressed(1, i) .and. self%stress > self%pressed(3, i)) &
+          self%buckling = self%pressed(2, i)
+      end if
+    end do
+  end subroutine observe_gauges
+
   !> Slope of the chord between both strains, if both were reached before the largest stress; 0: not known.
   pure real(wp) function modulus(self)
     !> The record
@@ -79,12 +107,19 @@ contains
     class(compression_record_t), intent(inout) :: self
     !> Where to or where from
     class(archive_t), intent(inout) :: archive
+    integer :: i
 
     call archive%item('compression/strength', self%strength)
     call archive%item('compression/at', self%at)
     call archive%item('compression/shortening', self%shortening)
     call archive%item('compression/bending', self%bending)
     call archive%item('compression/failed', self%failed)
+    call archive%item('compression/buckling', self%buckling)
+    do i = 1, 6
+      associate (place => [1 + mod(i - 1, 3), 1 + (i - 1)/3])
+        call archive%item('compression/pressed_'//to_text(i), self%pressed(place(1), place(2)))
+      end associate
+    end do
     call archive%item('compression/stresses_1', self%stresses(1))
     call archive%item('compression/stresses_2', self%stresses(2))
     call archive%item('compression/strain', self%strain)

@@ -29,7 +29,13 @@ contains
     else
       call json%put_null('effective_modulus')
     end if
-    if (all(back_to_back(gauges) > 0)) call json%put('percent_bending', record%bending)
+    if (.not. all(back_to_back(gauges) > 0)) return
+    call json%put('percent_bending', record%bending)
+    if (record%buckling > 0) then
+      call json%put('buckling_strain', record%buckling)
+    else
+      call json%put_null('buckling_strain')
+    end if
   end subroutine put_compression
 
   !> The same for the log.
@@ -42,6 +48,7 @@ contains
     text = rounded_text(record%strength)//' at a shortening of '//rounded_text(record%shortening)//', time '// &
            rounded_text(record%at)
     if (record%modulus() > 0) text = text//', effective modulus '//rounded_text(record%modulus())
+    if (record%buckling > 0) text = text//', buckled at a strain of '//rounded_text(record%buckling)
     if (.not. record%failed) text = text//'; the plate has not failed, so it is borne at least'
   end function compression_text
 end module compression_summary

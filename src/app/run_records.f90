@@ -136,6 +136,8 @@ contains
     bending = 0
     if (all(back_to_back(model%scene%gauges) > 0)) bending = percent_bending(strains(back_to_back(model%scene%gauges)))
     call self%compression%observe(now%time, ends(1), ends(2), ends(3), bending)
+    if (all(back_to_back(model%scene%gauges) > 0)) &
+      call self%compression%observe_gauges(strains(back_to_back(model%scene%gauges)))
   end subroutine look
 
   !> Time, contact force and deflection of a state.

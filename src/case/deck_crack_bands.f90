@@ -13,7 +13,7 @@ module deck_crack_bands
   use mesh_parameters, only: is_halved
   use plies, only: ply_t
   use ply_blocks, only: block_of
-  use ply_damage_deck, only: ply_damage_group, key_in_situ, key_permanent, keys_of_sudden_failure
+  use ply_damage_deck, only: ply_damage_group, key_closure, key_in_situ, key_permanent, keys_of_sudden_failure
   use short_numbers, only: short_text
   use stacking, only: stacked_plies
   use stepping_parameters, only: is_explicit
@@ -39,6 +39,8 @@ contains
       if (deck%ply_damage%in_situ) call refuse_in_situ(deck, problems)
       if (deck%ply_damage%permanent_shear) call tell(deck%settings, problems, ply_damage_group, key_permanent, &
         'belongs to plies with fracture energies; give G_ft, G_fc, G_mt and G_mc of every material, or leave it out.')
+      if (deck%ply_damage%crack_closure) call tell(deck%settings, problems, ply_damage_group, key_closure, &
+        'belongs to plies with fracture energies; give G_ft, G_fc, G_mt and G_mc of every material, or leave it out.')
       do i = 1, size(deck%materials)
         call remark_idle(deck%settings, problems, material_group, key_shear_strain, &
                          'has no effect without fracture energies.', i)
@@ -50,6 +52,9 @@ contains
       call check_shear(deck, i, problems)
     end do
     if (deck%ply_damage%permanent_shear) call check_permanent_shear(deck, problems)
+    if (deck%ply_damage%crack_closure .and. .not. (deck%has_time .and. is_explicit(deck%stepping))) &
+      call tell(deck%settings, problems, ply_damage_group, key_closure, 'implicit steps and load steps do not '// &
+                'close cracks; take integrator = ''central_difference'' of &time, or leave it out.')
     call remark_idle(deck%settings, problems, ply_damage_group, keys_of_sudden_failure, &
                      'has no effect on plies with fracture energies.')
     if (problems%errors() > 0) return

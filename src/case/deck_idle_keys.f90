@@ -8,6 +8,8 @@ module deck_idle_keys
   use impactor_deck, only: impactor_group, key_rise, key_travel
   use material_deck, only: material_group, key_expansion, key_shear_strain, toughness_keys
   use output_deck, only: output_group, key_force_filter
+  use plate_deck, only: key_imperfection, plate_group
+  use plate_options, only: kinematics_linear
   use ply_damage_deck, only: ply_damage_group
   use stepping_parameters, only: is_explicit
   use thermal_deck, only: thermal_group
@@ -33,6 +35,8 @@ contains
       if (.not. (deck%stepping%adapt%on .or. deck%has_static .or. is_explicit(deck%stepping)) .and. deck%has_time) &
         call remark_idle(s, problems, time_group, key_longest_step, 'has no effect without &'//adapt_group// &
                          ', as every step has the length of step.')
+      if (deck%kinematics == kinematics_linear) &
+        call remark_idle(s, problems, plate_group, key_imperfection, 'has no effect with kinematics = ''linear''.')
       if (deck%has_static) then
         call remark_idle(s, problems, impactor_group, key_rise, 'has no effect on a static analysis.')
         call remark_idle(s, problems, output_group, key_force_filter, 'has no effect on a static analysis.')

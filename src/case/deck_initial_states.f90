@@ -74,6 +74,8 @@ contains
     objection = ''
     if (any(differ(deck%plate%length, old%plate%length))) then
       objection = both('the plate''s length', short_list(deck%plate%length), short_list(old%plate%length))
+    else if (differ(deck%plate%imperfection, old%plate%imperfection)) then
+      objection = both('&plate imperfection', to_text(deck%plate%imperfection), to_text(old%plate%imperfection))
     else if (deck%plate%symmetry /= old%plate%symmetry .and. deck%plate%symmetry /= symmetry_none) then
       objection = both(key_symmetry, part_name(deck%plate%symmetry), part_name(old%plate%symmetry))// &
                   '; allowed: the same, or ''none'''

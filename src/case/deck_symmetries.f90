@@ -12,7 +12,8 @@ module deck_symmetries
   use line_deck, only: line_group
   use line_loads, only: along_x
   use laminate_parameters, only: shear_five_sixths
-  use mesh_parameters, only: is_halved, is_mirrored, symmetry_half_x, symmetry_half_y, symmetry_none, symmetry_point, &
+  use mesh_parameters, only: is_bent_alike, is_halved, is_mirrored, symmetry_half_x, symmetry_half_y, &
+                             symmetry_none, symmetry_point, &
                              symmetry_quarter
   use plate_deck, only: plate_group, key_symmetry
   use plies, only: ply_t, material_objection
@@ -146,7 +147,8 @@ contains
     suits = size(deck%lines) == 0 .and. .not. any_strip(deck) .and. &
             .not. any([(starter_aside(deck%delaminations(i), symmetry), i=1, size(deck%delaminations))]) .and. &
             all(alike .or. .not. is_halved(symmetry)) .and. (symmetry /= symmetry_point .or. all(alike)) .and. &
-            .not. struck_aside(deck, symmetry) .and. rigs_alike(deck, symmetry)
+            .not. struck_aside(deck, symmetry) .and. rigs_alike(deck, symmetry) .and. &
+            is_bent_alike(deck%plate, symmetry)
     if (.not. suits) return
     if (symmetry == symmetry_point) then
       suits = .not. any_front(deck)

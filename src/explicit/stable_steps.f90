@@ -5,7 +5,7 @@
 !> by power iteration. Interfaces, clamps and frames are implicit and set no limit.
 module stable_steps
   use batch_resultants, only: in_plane_resultants
-  use batch_strains, only: in_plane_strains
+  use batch_strains, only: strains_of_batch
   use element_batches, only: lanes
   use internal_forces, only: batch_force
   use kinds, only: long, wp
@@ -94,7 +94,7 @@ contains
     unused = 0
     do b = 1, model%elements%batches
       call gather(model%elements%points(:, :, b), motion, r)
-      call in_plane_strains(model%elements%inverse_jacobian(:, :, :, b), kinematics_von_karman, r, strains, slopes)
+      call strains_of_batch(model%elements, b, kinematics_von_karman, r, strains, slopes)
       call in_plane_resultants(stiffness(:, :, b), unit_area, strains, unused)
       associate (whole => model%elements%stiffness(:, :, b))
         added = geometric_stiffness(stiffness(:, :, b), slopes, strains)/max(tiny(added), whole(:, 1), whole(:, 4))

@@ -8,6 +8,7 @@
 !> (P. Maimi et al., Mechanics of Materials 39 (2007) 897-908, for the energy and its variables). Before the matrix
 !> cracks shear may take a part of G12 throughout the element, as Hahn and Tsai have it.
 module crack_bands
+  use crack_closures, only: band_strains_t, left_t, left_under, find_strain_alone, compressed_share, find_recovered
   use hahn_tsai, only: shear_loss, energy_of_loss, shear_flow, energy_of_flow
   use kinds, only: wp
   use mathematical_constants, only: pi
@@ -16,14 +17,13 @@ module crack_bands
   use plies, only: elasticity_t, elasticity_of
   use ply_damage_parameters, only: ply_damage_t, energy_modes, fibre_tension, fibre_compression, matrix_tension, &
                                    matrix_compression
-  use softening_falls, only: softening_t, fall_of, worse, damage_at, share_growth, weights_of_signs, least_ratio
+  use softening_falls, only: softening_t, fall_of, worse, damage_at, taken_by, least_ratio
   implicit none
   private
   public :: crack_band_t, band_state_t, band_strains_t, create_crack_band, strain_band, elasticity_left, onset_strain, &
             longest_element, energy_of_shear, is_touched, stiffness_lost
 
-  !> Rounds in which both damages find together, and the change at which they have. Poisson's coupling is weak, so that
-  !> five are usual.
+  !> Iterations in which both damages are found, five as a rule, and the change that ends them.
   integer, parameter :: most_rounds = 50
   real(wp), parameter :: settled = 1.0e-14_wp
 
@@ -43,6 +43,8 @@ module crack_bands
     real(wp) :: shear_beta = 0
     !> True: shear strain beyond s12/G12 is permanent
     logical :: permanent_shear = .false.
+    !> True: what tension has cracked bears compression
+    logical :: crack_closure = .false.
   end type crack_band_t
 
   !> What a ply of an element remembers.
@@ -55,17 +57,11 @@ module crack_bands
     real(wp) :: sheared = 0
     !> Permanent shear strain, and the sum of the sizes of its changes
     real(wp) :: permanent = 0, accumulated = 0
+    !> Part of the damage of fibres and matrix that stays when cracks close
+    real(wp) :: closed(2) = 0
+    !> Stresses that closed cracks bear, and half their product with the mean strains
+    real(wp) :: recovered(3) = 0
   end type band_state_t
-
-  !> Strains of a ply of an element in the ply's axes.
-  type :: band_strains_t
-    !> Means of the strains along and across the fibres
-    real(wp) :: mean(2) = 0
-    !> Means of their squares and of their product: 11, 22, 12; and of the square of the shear strain
-    real(wp) :: square(3) = 0, shear_square = 0
-    !> Mean of the shear strain
-    real(wp) :: shear_mean = 0
-  end type band_strains_t
 
 contains
 
@@ -84,6 +80,7 @@ contains
     band%toughness = material%toughness
     band%remainder = damage%e
     band%shear_beta = material%shear_beta
+    band%crack_closure = damage%crack_closure
     band%permanent_shear = damage%permanent_shear .and. material%shear_beta > 0
   end function create_crack_band
 
@@ -100,9 +97,6 @@ contains
     !> The ply with these strains
     type(band_state_t), intent(out) :: new
     type(band_strains_t) :: strains
-    type(softening_t) :: falls(2)
-    real(wp) :: before(2)
-    integer :: round, i
 
     new = old
     strains = total
@@ -115,20 +109,51 @@ contains
     else
       call shear_band(band, strains, old, new)
     end if
+    call find_damage(sheared_law(band, new%sheared), lengths, strains, old, new)
+  end subroutine strain_band
+
+  !> Damage of fibres and matrix under trial strains, both found together, and the energy that it dissipates.
+  pure subroutine find_damage(band, lengths, strains, old, new)
+    !> The law, with what shear has left of G12
+    type(crack_band_t), intent(in) :: band
+    !> Length of the element along and across the fibres
+    real(wp), intent(in) :: lengths(2)
+    !> Strains of the ply
+    type(band_strains_t), intent(in) :: strains
+    !> The ply in the last accepted state
+    type(band_state_t), intent(in) :: old
+    !> The ply with these strains
+    type(band_state_t), intent(inout) :: new
+    type(softening_t) :: signs(2, 2)
+    type(left_t) :: left
+    real(wp) :: before(2), share(2), booked(energy_modes)
+    integer :: round, i
+
     do round = 1, most_rounds
       before = new%damage
-      falls = softening_of(sheared_law(band, new%sheared), lengths, strains, new%damage)
+      left = parts_left(band, strains, new)
+      signs(:, 1) = fibre_falls(band, lengths(1), strains, left)
+      signs(:, 2) = matrix_falls(band, lengths(2), strains, left)
       do i = 1, 2
-        new%damage(i) = max(old%damage(i), damage_at(falls(i)))
+        new%damage(i) = max(old%damage(i), damage_at(worse(signs(:, i))))
+        if (band%crack_closure) new%closed(i) = max(old%closed(i), damage_at(signs(2, i)))
       end do
       if (all(abs(new%damage - before) <= settled)) exit
     end do
+    share = 0
+    if (band%crack_closure) share = compressed_share(band%elasticity, strains, left)
     do i = 1, 2
-      if (new%damage(i) > old%damage(i)) &
-        new%dissipated(falls(i)%mode) = new%dissipated(falls(i)%mode) + (1 - band%remainder)*falls(i)%energy* &
-                                        share_growth(falls(i)%ratio, old%damage(i), new%damage(i))
+      booked = 0
+      booked(signs(2, i)%mode) = taken_by(signs(2, i), (1 - band%remainder)*share(i), old%closed(i), new%closed(i))
+      associate (fall => worse(signs(:, i)))
+        booked(fall%mode) = booked(fall%mode) &
+                            + taken_by(fall, (1 - band%remainder)*(1 - share(i)), old%damage(i), new%damage(i))
+      end associate
+      new%dissipated = new%dissipated + booked
     end do
-  end subroutine strain_band
+    if (band%crack_closure) &
+      new%recovered = find_recovered(band%elasticity, strains%mean, parts_left(band, strains, new))
+  end subroutine find_damage
 
   !> Energy per volume that permanent shear strains of a ply have taken.
   elemental real(wp) function energy_of_shear(band, state) result(energy)
@@ -188,7 +213,7 @@ contains
       real(wp), intent(in) :: part
       type(softening_t) :: signs(2)
 
-      signs = matrix_falls(sheared_law(band, loss_at(part)), 1.0_wp, strains, stiffness_left(band, old%damage))
+      signs = matrix_falls(sheared_law(band, loss_at(part)), 1.0_wp, strains, parts_left(band, strains, old))
       cracks = part*maxval(signs%exposure) > 1
     end function cracks_at
   end subroutine shear_band
@@ -254,22 +279,21 @@ contains
     left = 1 - (1 - band%remainder)*damage
   end function stiffness_left
 
-  !> The falls on which fibres and matrix are: of tension and of compression that with the larger damage.
-  pure function softening_of(band, lengths, strains, damage) result(falls)
+  !> Parts of the stiffness that a state leaves under strains.
+  pure function parts_left(band, strains, state) result(left)
     !> The law
     type(crack_band_t), intent(in) :: band
-    !> Length of the element along and across the fibres
-    real(wp), intent(in) :: lengths(2)
     !> Strains of the ply
     type(band_strains_t), intent(in) :: strains
-    !> Damage of fibres and matrix
-    real(wp), intent(in) :: damage(2)
-    !> Of fibres and matrix
-    type(softening_t) :: falls(2)
+    !> The ply
+    type(band_state_t), intent(in) :: state
+    !> The parts
+    type(left_t) :: left
 
-    falls(1) = worse(fibre_falls(band, lengths(1), strains, stiffness_left(band, damage)))
-    falls(2) = worse(matrix_falls(band, lengths(2), strains, stiffness_left(band, damage)))
-  end function softening_of
+    left = left_t(stiffness_left(band, state%damage), stiffness_left(band, state%damage))
+    if (band%crack_closure) &
+      left = left_under(band%elasticity, strains%mean, left%open, stiffness_left(band, state%closed))
+  end function parts_left
 
   !> The falls of the fibres.
   pure function fibre_falls(band, length, strains, left) result(signs)
@@ -280,7 +304,7 @@ contains
     !> Strains of the ply
     type(band_strains_t), intent(in) :: strains
     !> Parts of the stiffness along and across the fibres that damage leaves
-    real(wp), intent(in) :: left(2)
+    type(left_t), intent(in) :: left
     !> Of tension and compression
     type(softening_t) :: signs(2)
     real(wp) :: size, weights(2), energy
@@ -302,7 +326,7 @@ contains
     !> Strains of the ply
     type(band_strains_t), intent(in) :: strains
     !> Parts of the stiffness along and across the fibres that damage leaves
-    real(wp), intent(in) :: left(2)
+    type(left_t), intent(in) :: left
     !> Of tension and compression
     type(softening_t) :: signs(2)
     real(wp) :: size, weights(2), shear_energy, energy, toughness, across, shear
@@ -323,29 +347,6 @@ contains
                          length, matrix_compression)
     end associate
   end function matrix_falls
-
-  !> Strain that s11 or s22 would have alone: e1 + part e2, e2 + part e1, over a common divisor.
-  pure subroutine find_strain_alone(elasticity, strains, left, direction, size, weights)
-    !> Constants without damage
-    type(elasticity_t), intent(in) :: elasticity
-    !> Strains of the ply
-    type(band_strains_t), intent(in) :: strains
-    !> Parts of the stiffness along and across the fibres that damage leaves
-    real(wp), intent(in) :: left(2)
-    !> 1: along the fibres, 2: across
-    integer, intent(in) :: direction
-    !> Its root mean square
-    real(wp), intent(out) :: size
-    !> Parts that tension and compression have in it
-    real(wp), intent(out) :: weights(2)
-    real(wp) :: part(2)
-
-    part = [left(2)*elasticity%nu12*elasticity%e2/elasticity%e1, left(1)*elasticity%nu12]
-    associate (m => strains%mean, s => strains%square, i => direction, j => 3 - direction)
-      size = sqrt(max(0.0_wp, s(i) + part(i)*(2*s(3) + part(i)*s(j))))/(1 - product(part))
-      weights = weights_of_signs((m(i) + part(i)*m(j))/(1 - product(part)), size)
-    end associate
-  end subroutine find_strain_alone
 
   !> A strain below which a ply can't begin to be damaged, whatever its direction: strains in its plane are measured by
   !> the root of e1**2 + e2**2 + g12**2/2, which a turn of the axes leaves as it is. Shear that is not linear takes its

@@ -11,7 +11,7 @@ module ply_damage_deck
 
   !> Names that checks across groups use.
   character(len=*), parameter, public :: ply_damage_group = 'ply_damage', key_in_situ = 'in_situ', &
-                                         key_permanent = 'permanent_shear'
+                                         key_permanent = 'permanent_shear', key_closure = 'crack_closure'
   !> Keys without effect on plies that soften by their fracture energies.
   character(len=*), parameter, public :: keys_of_sudden_failure = 'd stress'
   !> Row of the group.
@@ -30,7 +30,9 @@ module ply_damage_deck
     'ply_damage | in_situ | logical | 1 | - | .false. | .true. .false. | &
       &YT and S12 of each block of plies follow from its thickness, G_mt and G_mc (in-situ strengths).', &
     'ply_damage | permanent_shear | logical | 1 | - | .false. | .true. .false. | &
-      &Shear strain beyond s12/G12 stays when a ply with shear_failure_strain is unloaded, which leaves a dent.']
+      &Shear strain beyond s12/G12 stays when a ply with shear_failure_strain is unloaded, which leaves a dent.', &
+    'ply_damage | crack_closure | logical | 1 | - | .false. | .true. .false. | &
+      &What tension has cracked along or across the fibres bears compression again.']
 
 contains
 
@@ -49,5 +51,6 @@ contains
                             [stress_at_middle, stress_at_faces])
     damage%in_situ = settings%logical_of(ply_damage_group, key_in_situ)
     damage%permanent_shear = settings%logical_of(ply_damage_group, key_permanent)
+    damage%crack_closure = settings%logical_of(ply_damage_group, key_closure)
   end subroutine fill_ply_damage
 end module ply_damage_deck

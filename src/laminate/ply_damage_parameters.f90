@@ -19,8 +19,8 @@ module ply_damage_parameters
   integer, parameter, public :: stress_at_middle = 1, stress_at_faces = 2
 
   !> What two runs must have in common for one to begin with the damage of the other, by its names in the deck.
-  character(len=*), parameter, public :: damage_names(*) = [character(len=8) :: 'd', 'e', 'criteria', 'stress', &
-    'in_situ']
+  character(len=*), parameter, public :: damage_names(*) = [character(len=13) :: 'd', 'e', 'criteria', 'stress', &
+    'in_situ', 'crack_closure']
 
   !> When plies fail, and how a failed ply loses its stiffness (Table 2 of the paper).
   type :: ply_damage_t
@@ -36,6 +36,8 @@ module ply_damage_parameters
     logical :: in_situ = .false.
     !> True: shear strain beyond s12/G12 is permanent, otherwise shear unloads to the origin
     logical :: permanent_shear = .false.
+    !> True: what tension has cracked bears compression
+    logical :: crack_closure = .false.
   end type ply_damage_t
 
 contains
@@ -47,6 +49,7 @@ contains
     !> One a name
     real(wp) :: numbers(size(damage_names))
 
-    numbers = [damage%d, damage%e, real([damage%criteria, damage%stress, merge(1, 0, damage%in_situ)], wp)]
+    numbers = [damage%d, damage%e, real([damage%criteria, damage%stress, merge(1, 0, [damage%in_situ, &
+                                                                                   damage%crack_closure])], wp)]
   end function numbers_of
 end module ply_damage_parameters

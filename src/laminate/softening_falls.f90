@@ -4,7 +4,7 @@ module softening_falls
   use ply_damage_parameters, only: fibre_tension
   implicit none
   private
-  public :: softening_t, fall_of, worse, damage_at, share_growth, weights_of_signs
+  public :: softening_t, fall_of, worse, damage_at, taken_by, weights_of_signs
 
   !> Least strain at failure over that at the onset: a longer element would snap back.
   real(wp), parameter, public :: least_ratio = 1.25_wp
@@ -85,6 +85,19 @@ contains
       damage = min(1.0_wp, fall%ratio*(fall%exposure - 1)/(fall%exposure*(fall%ratio - 1)))
     end if
   end function damage_at
+
+  !> Energy per volume that damage takes as it grows on a fall; 0: it does not grow.
+  pure real(wp) function taken_by(fall, part, damage_from, damage_to) result(energy)
+    !> The fall
+    type(softening_t), intent(in) :: fall
+    !> Part of it that counts
+    real(wp), intent(in) :: part
+    !> Damage before and after
+    real(wp), intent(in) :: damage_from, damage_to
+
+    energy = 0
+    if (damage_to > damage_from) energy = part*fall%energy*share_growth(fall%ratio, damage_from, damage_to)
+  end function taken_by
 
   !> Growth of the dissipated part d/(N (1 - d) + d) with the damage, free of cancellation.
   pure real(wp) function share_growth(ratio, damage_from, damage_to) result(growth)

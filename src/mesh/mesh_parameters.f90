@@ -1,10 +1,11 @@
 !> Plate, supports and mesh, as the deck gives them.
 module mesh_parameters
   use kinds, only: wp
+  use mathematical_constants, only: pi
   use plate_options, only: shear_assumed, mass_consistent
   implicit none
   private
-  public :: plate_t, mesh_t, parts_of, is_halved, is_mirrored, add_lines
+  public :: plate_t, mesh_t, parts_of, is_halved, is_mirrored, is_bent_alike, initial_deflection, add_lines
 
   !> Supports of an edge.
   integer, parameter, public :: edge_free = 0, edge_simple = 1, edge_clamped = 2, edge_elastic = 3
@@ -26,6 +27,9 @@ module mesh_parameters
     real(wp) :: edge_stiffness(2) = 0
     !> True: supported edges hold the plate in its plane too
     logical :: in_plane_fixed = .true.
+    !> Amplitude of the shape without stress, and its half waves along x and y; 0: the plate is flat
+    real(wp) :: imperfection = 0
+    integer :: half_waves(2) = 1
     !> Part that is modelled, one of the constants above
     integer :: symmetry = symmetry_none
     !> Part that could stand for the whole where all is modelled and something may break; symmetry_none: no part could
@@ -71,6 +75,28 @@ contains
       lines = [lines(:place), further(i), lines(place + 1:)]
     end do
   end subroutine add_lines
+
+  !> Deflection of the plate without stress: half waves over its lengths.
+  pure real(wp) function initial_deflection(plate, at) result(deflection)
+    !> The plate
+    type(plate_t), intent(in) :: plate
+    !> The point, from its centre
+    real(wp), intent(in) :: at(2)
+
+    deflection = plate%imperfection*product(sin(plate%half_waves*pi*(at/plate%length + 0.5_wp)))
+  end function initial_deflection
+
+  !> True if the shape without stress is that of the whole plate where only a part is modelled.
+  pure logical function is_bent_alike(plate, symmetry) result(alike)
+    !> The plate
+    type(plate_t), intent(in) :: plate
+    !> The part
+    integer, intent(in) :: symmetry
+
+    alike = .not. any(is_mirrored(symmetry) .and. mod(plate%half_waves, 2) == 0)
+    if (symmetry == symmetry_point) alike = mod(sum(plate%half_waves), 2) == 0
+    alike = alike .or. .not. abs(plate%imperfection) > 0
+  end function is_bent_alike
 
   !> Number of models that make up the whole plate.
   pure integer function parts_of(symmetry) result(parts)

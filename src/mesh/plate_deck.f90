@@ -7,14 +7,16 @@ module plate_deck
   use deck_vocabulary, only: group_row_length, key_row_length
   use kinds, only: wp
   use mesh_parameters, only: plate_t, edge_free, edge_simple, edge_clamped, edge_elastic, symmetry_none, &
-                             symmetry_quarter, symmetry_half_x, symmetry_half_y, symmetry_point, is_halved
+                             symmetry_quarter, symmetry_half_x, symmetry_half_y, symmetry_point, is_bent_alike, &
+                             is_halved
   use text, only: line_t, lower_case, to_text
   implicit none
   private
   public :: fill_plate, check_plate, check_edges
 
   !> Names that checks across groups use.
-  character(len=*), parameter, public :: plate_group = 'plate', key_length = 'length', key_symmetry = 'symmetry'
+  character(len=*), parameter, public :: plate_group = 'plate', key_length = 'length', key_symmetry = 'symmetry', &
+                                         key_imperfection = 'imperfection', key_half_waves = 'half_waves'
   !> Row of the group.
   character(len=group_row_length), parameter, public :: plate_group_row = &
     'plate | required | The plate: size, supports and the part of it that is modelled.'
@@ -30,6 +32,10 @@ module plate_deck
       &Moment per length of an elastic edge and rotation about it; left out: it turns freely.', &
     'plate | in_plane | choice | 1 | - | ''fixed'' | fixed free | &
       &Whether the supported edges also hold the plate in its plane.', &
+    'plate | imperfection | real | 1 | length | none | any | &
+      &Amplitude of the deflection that the plate has without stress.', &
+    'plate | half_waves | integer | 2 | - | none | >= 1, <= 100 | &
+      &Half waves of that deflection over the lengths along x and y; left out: one along each.', &
     'plate | symmetry | choice | 1 | - | ''none'' | none quarter half_x half_y point | &
       &Part that is modelled: all, x >= 0 and y >= 0, x >= 0, y >= 0, or x >= 0 of one that a half turn leaves as is.']
 
@@ -60,6 +66,10 @@ contains
         plate%edge_stiffness(i) = settings%real_of(plate_group, stiffness_keys(i))
     end do
     plate%in_plane_fixed = lower_case(settings%text_of(plate_group, 'in_plane')) /= 'free'
+    if (settings%is_given(plate_group, key_imperfection)) &
+      plate%imperfection = settings%real_of(plate_group, key_imperfection)
+    if (settings%is_given(plate_group, key_half_waves)) &
+      plate%half_waves = settings%integers_of(plate_group, key_half_waves)
     plate%symmetry = code_of(settings%text_of(plate_group, key_symmetry), 'none quarter half_x half_y point', &
                              [symmetry_none, symmetry_quarter, symmetry_half_x, symmetry_half_y, symmetry_point])
   end subroutine fill_plate
@@ -84,6 +94,12 @@ contains
                          'has no effect without an elastic edge.')
       end do
     end if
+    if (.not. is_bent_alike(plate, plate%symmetry)) call tell(settings, problems, plate_group, key_half_waves, &
+      'this shape is not that of the whole plate with symmetry = '''// &
+      lower_case(settings%text_of(plate_group, key_symmetry))//'''; take odd half waves along x for ''half_x'', '// &
+      'along y for ''half_y'', along both for ''quarter'', an even sum for ''point'', or ''none''.')
+    if (.not. abs(plate%imperfection) > 0) call remark_idle(settings, problems, plate_group, key_half_waves, &
+                                                            'has no effect without '//key_imperfection//'.')
     ! A plate that is turned onto itself has all opposite edges alike.
     halved = is_halved(plate%symmetry) .or. plate%symmetry == symmetry_point
     if (settings%is_known(plate_group, key_length) .and. maxval(plate%length) > most_oblong*minval(plate%length)) &

@@ -4,11 +4,12 @@ module model_building
   use errors, only: error_t
   use communicators, only: communicator_t
   use element_batches, only: lanes, lane_of, batch_of
+  use batch_strains, only: set_initial_shape
   use free_strains, only: free_resultants
   use plate_options, only: kinematics_linear, mass_lumped
   use ply_shear, only: shear_shares_of
   use stacking, only: section_t, stacked_plies, section_of
-  use mesh_parameters, only: edge_free, symmetry_quarter
+  use mesh_parameters, only: edge_free, initial_deflection, symmetry_quarter
   use cell_grids, only: cell_edges
   use layered_meshes, only: zone_t, layered_mesh_t, create_mesh
   use layer_maps, only: create_layer_map
@@ -135,13 +136,16 @@ contains
     type(model_t), intent(inout) :: self
     !> Set if an element is ill-shaped
     type(error_t), allocatable, intent(inout) :: error
-    integer :: element, first, last
+    integer :: element, first, last, point
     type(section_t) :: section
 
     associate (mesh => self%mesh, share => self%distribution)
       call self%elements%create(mesh%node_coordinates(:, mesh%point_node(share%points)), share%connectivity, &
                                 self%scene%mesh%shear, error)
       if (allocated(error)) return
+      if (abs(self%scene%plate%imperfection) > 0) call set_initial_shape(self%elements, &
+        [(initial_deflection(self%scene%plate, mesh%node_coordinates(:, mesh%point_node(share%points(point)))), &
+          point=1, size(share%points))])
       if (self%scene%has_thermal) allocate (self%free(lanes, 7, self%elements%batches), source=0.0_wp)
       do element = 1, size(share%elements)
         first = mesh%element_plies(1, share%elements(element))

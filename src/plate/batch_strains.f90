@@ -3,14 +3,60 @@ module batch_strains
   use kinds, only: wp
   use plate_options, only: kinematics_von_karman, shear_assumed
   use element_batches, only: element_batches_t, lanes
-  use reference_fields, only: reference_gradient, add_gradient_forces
+  use reference_fields, only: gather, reference_gradient, add_gradient_forces
   use assumed_shear, only: assumed_shear_strains, add_assumed_shear_forces
   use integrated_shear, only: integrated_shear_strains, add_integrated_shear_forces
   implicit none
   private
-  public :: in_plane_strains, add_in_plane_forces, plane_strains, add_plane_forces, shear_strains, add_shear_forces
+  public :: set_initial_shape, strains_of_batch, in_plane_strains, add_in_plane_forces, plane_strains, &
+            add_plane_forces, shear_strains, add_shear_forces
 
 contains
+
+  !> Gives the plate a shape without stress.
+  subroutine set_initial_shape(batches, deflection)
+    !> The elements
+    type(element_batches_t), intent(inout) :: batches
+    !> Initial deflection of each point
+    real(wp), intent(in) :: deflection(:)
+    real(wp) :: u(5, size(deflection)), r(lanes, 9, 5), strains(lanes, 9, 6)
+    integer :: b
+
+    u = 0
+    u(3, :) = deflection
+    allocate (batches%initial_slopes(lanes, 9, 2, batches%batches))
+    do b = 1, batches%batches
+      call gather(batches%points(:, :, b), u, r)
+      call in_plane_strains(batches%inverse_jacobian(:, :, :, b), kinematics_von_karman, r, strains, &
+                            batches%initial_slopes(:, :, :, b))
+    end do
+  end subroutine set_initial_shape
+
+  !> Membrane strains and curvatures at the Gauss points of a batch, from the shape without stress on (K. Marguerre,
+  !> Proc. 5th Int. Congress of Applied Mechanics, 1938, 93-101): e = (grad(w0 + w)**2 - grad(w0)**2)/2.
+  pure subroutine strains_of_batch(batches, b, kinematics, r, strains, slopes)
+    !> The elements
+    type(element_batches_t), intent(in) :: batches
+    !> Number of the batch
+    integer, intent(in) :: b
+    !> One of the kinematics_* choices
+    integer, intent(in) :: kinematics
+    !> Unknowns of the nodes
+    real(wp), intent(in) :: r(lanes, 9, 5)
+    !> Strains exx, eyy, gxy, kxx, kyy, kxy (lane, point, component)
+    real(wp), intent(out) :: strains(lanes, 9, 6)
+    !> Slopes of w0 + w (lane, point, direction), set for von Karman's strains only
+    real(wp), intent(out) :: slopes(lanes, 9, 2)
+
+    call in_plane_strains(batches%inverse_jacobian(:, :, :, b), kinematics, r, strains, slopes)
+    if (kinematics /= kinematics_von_karman .or. .not. allocated(batches%initial_slopes)) return
+    associate (initial => batches%initial_slopes(:, :, :, b))
+      strains(:, :, 1) = strains(:, :, 1) + slopes(:, :, 1)*initial(:, :, 1)
+      strains(:, :, 2) = strains(:, :, 2) + slopes(:, :, 2)*initial(:, :, 2)
+      strains(:, :, 3) = strains(:, :, 3) + slopes(:, :, 1)*initial(:, :, 2) + slopes(:, :, 2)*initial(:, :, 1)
+      slopes = slopes + initial
+    end associate
+  end subroutine strains_of_batch
 
   !> Membrane strains and curvatures at the Gauss points of a batch.
   pure subroutine in_plane_strains(inverse, kinematics, r, strains, slopes)

@@ -45,6 +45,8 @@ module element_batches
     real(wp), allocatable :: stiffness(:, :, :)
     !> Section mass I0, I1, I2 (lanes, 3, batches)
     real(wp), allocatable :: mass(:, :, :)
+    !> Slopes w,x and w,y of the shape without stress (lanes, 9, 2, batches); unallocated: the plate is flat
+    real(wp), allocatable :: initial_slopes(:, :, :, :)
   contains
     !> Builds the batches from a mesh.
     procedure :: create

@@ -5,7 +5,7 @@ module element_tangents
   use plate_options, only: kinematics_von_karman
   use element_batches, only: element_batches_t, lanes
   use reference_fields, only: gather
-  use batch_strains, only: in_plane_strains
+  use batch_strains, only: strains_of_batch
   use batch_resultants, only: in_plane_resultants, take_free_resultants
   use slope_operators, only: slopes_and_values
   use geometric_tangents, only: add_geometric_tangent
@@ -46,7 +46,7 @@ contains
     if (kinematics == kinematics_von_karman) then
       energies = 0.0_wp
       call gather(batches%points(:, :, b), u, r)
-      call in_plane_strains(batches%inverse_jacobian(:, :, :, b), kinematics, r, strains, slopes)
+      call strains_of_batch(batches, b, kinematics, r, strains, slopes)
       call in_plane_resultants(c, batches%weight(:, :, b), strains, energies)
       if (present(free)) call take_free_resultants(stiffness_factor*free, batches%weight(:, :, b), strains)
       call add_geometric_tangent(c, batches%weight(:, :, b), x_slopes, y_slopes, slopes, strains, k)

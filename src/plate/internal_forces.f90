@@ -4,7 +4,7 @@ module internal_forces
   use plate_options, only: kinematics_linear, shear_assumed
   use element_batches, only: element_batches_t, lanes
   use reference_fields, only: gather, scatter
-  use batch_strains, only: in_plane_strains, add_in_plane_forces, shear_strains, add_shear_forces
+  use batch_strains, only: in_plane_strains, strains_of_batch, add_in_plane_forces, shear_strains, add_shear_forces
   use batch_resultants, only: in_plane_resultants, shear_resultants, add_free_energy, take_free_resultants
   use section_laws, only: section_law_t
   implicit none
@@ -41,7 +41,7 @@ contains
     stored = 0.0_wp
     do b = 1, batches%batches
       call gather(batches%points(:, :, b), u, r)
-      call in_plane_strains(batches%inverse_jacobian(:, :, :, b), kinematics, r, strains, slopes)
+      call strains_of_batch(batches, b, kinematics, r, strains, slopes)
       if (present(law)) then
         c = stiffness(:, :, b)
         if (present(free)) then
@@ -82,7 +82,7 @@ contains
     do b = 1, batches%batches
       if (.not. law%needs(b)) cycle
       call gather(batches%points(:, :, b), u, r)
-      call in_plane_strains(batches%inverse_jacobian(:, :, :, b), kinematics, r, strains, slopes)
+      call strains_of_batch(batches, b, kinematics, r, strains, slopes)
       call law%take(b, batches%weight(:, :, b), strains)
     end do
     call law%exchange()

@@ -6,7 +6,7 @@ module strain_recovery
   use plate_options, only: shear_selective
   use element_batches, only: element_batches_t, lanes
   use reference_fields, only: gather
-  use batch_strains, only: in_plane_strains, shear_strains
+  use batch_strains, only: strains_of_batch, shear_strains
   implicit none
   private
   public :: gauss_strains, nodal_strains, mean_strains
@@ -29,7 +29,7 @@ contains
     integer :: component
 
     call gather(batches%points(:, :, b), u, r)
-    call in_plane_strains(batches%inverse_jacobian(:, :, :, b), kinematics, r, strains(:, :, 1:6), slopes)
+    call strains_of_batch(batches, b, kinematics, r, strains(:, :, 1:6), slopes)
     if (batches%shear == shear_selective) then
       call shear_strains(batches, b, r, samples)
       do component = 1, 2

@@ -5,7 +5,7 @@ module tangent_forces
   use plate_options, only: kinematics_linear, kinematics_von_karman, shear_assumed
   use element_batches, only: element_batches_t, lanes
   use reference_fields, only: gather, scatter, add_gradient_forces
-  use batch_strains, only: in_plane_strains, add_in_plane_forces, shear_strains, add_shear_forces
+  use batch_strains, only: in_plane_strains, strains_of_batch, add_in_plane_forces, shear_strains, add_shear_forces
   use batch_resultants, only: in_plane_resultants, shear_resultants, take_free_resultants
   implicit none
   private
@@ -38,7 +38,7 @@ contains
         call gather(batches%points(:, :, b), v, r)
         if (kinematics == kinematics_von_karman) then
           call gather(batches%points(:, :, b), u, at)
-          call in_plane_strains(inverse, kinematics, at, forces, slopes)
+          call strains_of_batch(batches, b, kinematics, at, forces, slopes)
           call in_plane_resultants(stiffness(:, :, b), weight, forces, unused)
           if (present(free)) call take_free_resultants(free(:, :, b), weight, forces)
           call in_plane_strains(inverse, kinematics, r, strains, change)

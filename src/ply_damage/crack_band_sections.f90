@@ -5,6 +5,7 @@
 module crack_band_sections
   use archives, only: archive_t
   use band_archives, only: visit_bands
+  use crack_closures, only: closing_resultants
   use crack_bands, only: crack_band_t, band_state_t, create_crack_band, strain_band, elasticity_left, onset_strain, &
                          energy_of_shear, is_touched, stiffness_lost
   use element_batches, only: batch_of, first_element, lane_of, lanes
@@ -91,7 +92,7 @@ contains
     end do
     if (allocated(model%free)) then
       self%free = model%free
-    else if (model%scene%ply_damage%permanent_shear) then
+    else if (model%scene%ply_damage%permanent_shear .or. model%scene%ply_damage%crack_closure) then
       allocate (self%free(lanes, 7, model%elements%batches), source=0.0_wp)
     end if
     self%onset = minval([(onset_strain(self%bands(i)), i=1, size(self%bands))]) &
@@ -248,8 +249,7 @@ contains
     end do
   end subroutine hand_over
 
-  !> Energy that the trial dissipates in each mode beyond the accepted state, of this rank's elements, as exact sums,
-  !> whose totals do not depend on ranks.
+  !> Energy that the trial dissipates in each mode beyond the accepted state, of this rank's elements, as exact sums.
   pure function dissipation_sums(self) result(energies)
     !> The plies
     class(crack_band_sections_t), intent(in) :: self
@@ -376,6 +376,8 @@ contains
     associate (first => self%range(1, element), last => self%range(2, element))
       resultants = free_resultants(self%strained(first, last, element), &
                                    [(self%elasticity(ply, element), ply=first, last)])
+      if (self%bands(first)%crack_closure) resultants = resultants + closing_resultants( &
+        self%plies(first:last), reshape([(self%trial(ply, element)%recovered, ply=first, last)], [3, last - first + 1]))
     end associate
   end function free_resultants_of
 

@@ -6,6 +6,8 @@ again    from a checkpoint in the midst, without the impact's: bitwise
 ranks    on two ranks: bitwise
 whole    the whole plate from the half that was struck: to rounding until it fails
 buckling the elastic panel in the frame against the eigenvalue and the path beyond it of another program
+bent     the same panel with a shape without stress in place of the pressure
+closing  with cracks that close, also from a checkpoint: the ledger closes, and more is borne
 coupon   [0]8 fails at XC
 refused  another plate, a deck that cannot begin so, a checkpoint that is none: one sentence with both values each"""
 
@@ -34,6 +36,7 @@ AREA = 40e-3 * 2.4e-3
 SETTLE, LENGTH = 80e-6, 60e-3
 # Of all energy. Measured: 2e-10 before plies and interfaces break again, 3.6e-3 in the collapse on these coarse cells.
 CLOSED, CLOSED_IN_COLLAPSE = 1e-8, 1e-2
+CLOSED_BY_CLOSING = 1e-4
 # Of the largest value up to half of the run. Measured: 4e-15.
 ROUNDED = 1e-11
 # By CalculiX 2.20: see input/verify/framed_panel.nml.
@@ -148,6 +151,8 @@ def check_refused(implam, folder, _):
         (["delamination%G_Ic=250"], ["G_Ic", "250", "200"], EXIT_DECK),
         (["delamination%below_ply=1"], ["below plies", "1 here", "1 3 there"], EXIT_DECK),
         (["delamination%zone=20e-3,15e-3"], ["zone", "0.02 0.015", "larger"], EXIT_DECK),
+        (["ply_damage%crack_closure=.true."], ["crack_closure", "1 here", "0 there"], EXIT_DECK),
+        (["plate%imperfection=1e-4"], ["imperfection", "0.0001", "0 there"], EXIT_DECK),
         (["plate%length=60e-3, 41e-3"], ["0.06 0.041", "0.06 0.04 there"], EXIT_DECK),
         (["plate%symmetry='none'", "mesh%elements=22,16"], ["lines of the mesh along x", "lines_x"], EXIT_DECK),
         (["mesh%lines_y=14e-3"], ["lines of the mesh along y"], EXIT_DECK),
@@ -165,15 +170,20 @@ def check_refused(implam, folder, _):
         require(not list(folder.glob(f"{COMPRESSION}_*")), f"{settings}: something was written.")
 
 
-def check_buckling(implam, folder, _):
-    """Southwell's plot, the path beyond, and gauges back to back."""
-    rows = read_history(run_deck(implam, write_deck(folder, "framed_panel.nml")))
+def southwell(rows):
+    """Return the buckling stress by Southwell's plot."""
     # With a lateral load in proportion to the compression, load factor over deflection falls to zero in a line.
     first, last = (next(i for i, load in enumerate(rows["load_factor"]) if load > part) for part in (0.59, 0.79))
     loads = [rows["load_factor"][i] for i in (first, last)]
     ratios = [rows["load_factor"][i] / rows["deflection"][i] for i in (first, last)]
     critical = loads[1] + ratios[1] * (loads[1] - loads[0]) / (ratios[0] - ratios[1])
-    stress = critical * rows["far_field_stress"][first] / loads[0]
+    return critical * rows["far_field_stress"][first] / loads[0]
+
+
+def check_buckling(implam, folder, _):
+    """Southwell's plot, the path beyond, and gauges back to back."""
+    rows = read_history(run_deck(implam, write_deck(folder, "framed_panel.nml")))
+    stress = southwell(rows)
     end = rows["far_field_stress"][-1]
     print(f"buckles at {stress / 1e6:.1f} MPa, {100 * (stress / EIGENVALUE - 1):+.2f} %; bears {end / 1e6:.1f} MPa at "
           f"1.4 mm, {100 * (end / BEYOND - 1):+.2f} %")
@@ -191,6 +201,44 @@ def check_buckling(implam, folder, _):
     require(abs((front + back) / 2 + nominal) < 0.005 * nominal, "Gauges have another strain than the plate.")
 
 
+def check_bent(implam, folder, _):
+    """An initial deflection grows as the load nears buckling, by 1/(critical/load - 1) at first."""
+    settings = ["plate%imperfection=0.02e-3", "pressure%value=0"]
+    rows = read_history(run_deck(implam, write_deck(folder, "framed_panel.nml", settings)))
+    stress = southwell(rows)
+    print(f"buckles at {stress / 1e6:.1f} MPa, {100 * (stress / EIGENVALUE - 1):+.2f} %; bears "
+          f"{rows['far_field_stress'][-1] / 1e6:.1f} MPa at 1.4 mm")
+    require(abs(stress / EIGENVALUE - 1) < 0.02, "It buckles at another stress.")
+    require(abs(rows["far_field_stress"][-1] / BEYOND - 1) < 0.02, "It bears another stress beyond.")
+    summary = json.loads(next(folder.glob("*_summary.json")).read_text(encoding="utf-8"))
+    # The front turns round where the panel bends most, once bending outweighs the compression.
+    print(f"gauges turn round at {summary['buckling_strain']}")
+    strongest = max(rows["nominal_strain"])
+    require(0.5 * strongest < summary["buckling_strain"] < strongest, "Gauges turn round at another strain.")
+
+
+def check_closing(implam, folder, _):
+    """What the impact has torn bears compression."""
+    closing = ["ply_damage%crack_closure=.true."]
+    strike(implam, folder)
+    press(implam, folder)
+    summary = folder / f"{COMPRESSION}_summary.json"
+    without = json.loads(summary.read_text(encoding="utf-8"))["residual_strength"]
+    run([implam, deck_of(folder, IMPACT, closing)], folder=folder)
+    path = press(implam, folder, [*closing, "output%checkpoint_every=0.27e-3", "output%checkpoint_at_end=.false."])
+    rows = read_history(path)
+    total = max(sum(rows[f"energy_{name}"][i] for name in ENERGIES) for i in range(len(rows["time"])))
+    error = max(abs(value) for value, time in zip(rows["energy_error"], rows["time"], strict=True)
+                if time < 0.5 * rows["time"][-1]) / total
+    strength = json.loads(summary.read_text(encoding="utf-8"))["residual_strength"]
+    print(f"energy error {error:.1e}; strength {strength / 1e6:.1f} MPa, {without / 1e6:.1f} MPa with open cracks")
+    require(error < CLOSED_BY_CLOSING, "The ledger does not close.")
+    reference = folder / "reference.csv"
+    shutil.copy(path, reference)
+    run([implam, "restart", f"{COMPRESSION}_restart.h5"], folder=folder)
+    require(filecmp.cmp(path, reference, shallow=False), "The history differs from the uninterrupted one.")
+
+
 def check_coupon(implam, folder, _):
     """The strength of the fibres."""
     run_deck(implam, write_deck(folder, "coupon.nml"))
@@ -203,7 +251,7 @@ def check_coupon(implam, folder, _):
 def main(trial, implam, folder, launcher):
     """Run one trial."""
     trials = {"chain": check_chain, "again": check_again, "ranks": check_ranks, "whole": check_whole,
-              "buckling": check_buckling, "coupon": check_coupon, "refused": check_refused}
+              "buckling": check_buckling, "bent": check_bent, "closing": check_closing, "coupon": check_coupon, "refused": check_refused}
     trials[trial](implam, Path(folder).resolve(), launcher)
 
 
