@@ -251,7 +251,8 @@ def check_coupon(implam, folder, _):
 def main(trial, implam, folder, launcher):
     """Run one trial."""
     trials = {"chain": check_chain, "again": check_again, "ranks": check_ranks, "whole": check_whole,
-              "buckling": check_buckling, "bent": check_bent, "closing": check_closing, "coupon": check_coupon, "refused": check_refused}
+              "buckling": check_buckling, "bent": check_bent, "closing": check_closing, "coupon": check_coupon,
+              "refused": check_refused}
     trials[trial](implam, Path(folder).resolve(), launcher)
 
 
