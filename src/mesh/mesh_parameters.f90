@@ -27,8 +27,9 @@ module mesh_parameters
     real(wp) :: edge_stiffness(2) = 0
     !> True: supported edges hold the plate in its plane too
     logical :: in_plane_fixed = .true.
-    !> Amplitude of the shape without stress, and its half waves along x and y; 0: the plate is flat
+    !> Amplitude of the shape without stress; 0: the plate is flat
     real(wp) :: imperfection = 0
+    !> Half waves of this shape along x and y
     integer :: half_waves(2) = 1
     !> Part that is modelled, one of the constants above
     integer :: symmetry = symmetry_none
