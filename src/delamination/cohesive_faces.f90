@@ -28,8 +28,6 @@ module cohesive_faces
     procedure :: stored
     !> Derivative of the traction.
     procedure :: slopes
-    !> Slopes of a line through the origin and the traction: never below those of the tangent.
-    procedure :: secant
     !> Diagonal for a factored operator.
     procedure :: diagonal
     !> Most that friction bears.
@@ -88,23 +86,6 @@ contains
     if (jumps(3) < 0) slopes(3, 3) = closing_stiffness(self, old)
     if (self%friction > 0) slopes(:2, :2) = slopes(:2, :2) + sticking(self, jumps, old)
   end function slopes
-
-  !> Slopes of a line through the origin and the traction. As the law softens its energy lies below that of these
-  !> slopes, so steps made with them always descend.
-  pure function secant(self, jumps, old)
-    !> The faces
-    class(cohesive_faces_t), intent(in) :: self
-    !> Two shears and opening
-    real(wp), intent(in) :: jumps(3)
-    !> The point in the last accepted state
-    type(cohesive_point_t), intent(in) :: old
-    !> Pressure per jump
-    real(wp) :: secant(3)
-
-    secant = (1 - grown_damage(self%law, cohesive_reach(self%law, jumps, 0.0_wp), old))*stiffness_of(self%law)
-    if (jumps(3) < 0) secant(3) = closing_stiffness(self, old)
-    if (self%friction > 0) secant(:2) = secant(:2) + self%law%stiffness_shear
-  end function secant
 
   !> Diagonal for a factored operator, one value a class of point.
   pure function diagonal(self, jumps, old)

@@ -59,10 +59,5 @@ contains
     call model%spread_force(now%patch, now%patch_offset)
     if (.not. operator%ready) return
     call operator%find_response(model, error)
-    if (allocated(error)) return
-    operator%fresh_response = operator%response
-    if (operator%condenses) return
-    call operator%follow_changes(model, operator%response)
-    operator%compliance = model%patch_mean(operator%response)
   end subroutine take_contact
 end module contact_following

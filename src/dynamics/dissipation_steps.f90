@@ -13,7 +13,7 @@ module dissipation_steps
   use models, only: model_t
   use states, only: state_t
   use static_steps, only: static_step_t, new_static_step, part_taken
-  use skew_corrections, only: follow_skew
+  use static_tangents, only: solve_tangent
   use slow_impactors, only: push_plate, travel_for
   use tangent_operators, only: tangent_operator_t
   implicit none
@@ -33,7 +33,7 @@ module dissipation_steps
     procedure :: begin
     procedure :: find_residual
     procedure :: residual_norm
-    procedure :: improve
+    procedure :: complete_correction
   end type dissipation_step_t
 
 contains
@@ -122,18 +122,17 @@ contains
   end function residual_norm
 
   !> Turns the correction at a fixed load into one with the change of the load that brings the energy wanted.
-  subroutine improve(self, model, operator, old, new, residual, correction, error)
+  subroutine complete_correction(self, model, operator, old, new, correction, error)
     !> The problem
     class(dissipation_step_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    !> Mesh, numbering and interfaces of the plate
+    type(model_t), target, intent(in) :: model
     !> The factored operator
-    type(tangent_operator_t), intent(inout) :: operator
+    type(tangent_operator_t), target, intent(inout) :: operator
     !> State at the start
     type(state_t), intent(in) :: old
     !> State at the end, before the correction
     type(state_t), intent(inout) :: new
-    !> The residual at the owned points, (5, points)
-    real(wp), intent(in) :: residual(:, :)
     !> Correction of the displacement, (5, points)
     real(wp), intent(inout) :: correction(:, :)
     !> Set if the solver fails
@@ -150,9 +149,7 @@ contains
     else
       call model%load_slopes(loads)
     end if
-    call operator%correct(model, loads, answer, error)
-    if (.not. allocated(error)) call follow_skew(operator, model, new%interfaces%cohesive, answer, error)
-    if (.not. allocated(error)) call follow_skew(operator, model, new%interfaces%cohesive, correction, error)
+    call solve_tangent(operator, model, new%interfaces%cohesive, loads, answer, error)
     if (allocated(error)) return
     call new%interfaces%cohesive%add_dissipation_slopes(model, old%interfaces%cohesive, new%motion%displacement, slopes)
     sums = [model%product(slopes, correction), model%product(slopes, answer)]
@@ -170,6 +167,5 @@ contains
       new%load_factor = factor
     end if
     correction = part_taken(new%iterations)*(correction + change*answer)
-    call new%interfaces%faces%hold(model, correction)
-  end subroutine improve
+  end subroutine complete_correction
 end module dissipation_steps

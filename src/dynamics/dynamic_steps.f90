@@ -2,7 +2,7 @@
 !> equilibrium, from the compliance of impactor and plate.
 module dynamic_steps
   use kinds, only: wp
-  use errors, only: error_t
+  use errors, only: error_t, exit_convergence
   use impactor_integrators, only: advance
   use tan_sun_indentation, only: commit_indentation
   use stepping_parameters, only: equilibrium_t
@@ -14,9 +14,9 @@ module dynamic_steps
   use impact_coupling, only: impact_coupling_t, begin_coupling
   use tangent_operators, only: tangent_operator_t
   use residual_norms, only: relative_residual
-  use ply_rounds, only: ply_rounds_t
-  use softening_corrections, only: softening_memory_t
-  use condensed_steps, only: condense
+  use dynamic_tangents, only: find_tangent, add_force_slope
+  use krylov_corrections, only: find_krylov_correction
+  use tangent_products, only: tangent_product_t
   use energy_balance, only: book_step
   use line_motions, only: has_moved_lines, keep_lines, move_lines, line_displacement
   use motion_forces, only: weigh, weigh_start, weigh_rest
@@ -35,37 +35,32 @@ module dynamic_steps
   type, extends(step_problem_t) :: dynamic_step_t
     !> Time step
     real(wp) :: step = 0
-    !> Iterations after which the operator is renewed
+    !> Changed ties and contacts with which the operator is renewed
     integer :: renewal = huge(1)
-    !> How plies that soften follow
-    type(ply_rounds_t) :: rounds
+    !> True: the last correction took as many solves as a factorization costs
+    logical :: dear = .false.
     !> Integrator of the plate
     type(plate_integrator_t) :: integrator
     !> Displacement to start from, (5, points); unallocated: the motion goes on as it was
     real(wp), allocatable :: guess(:, :)
-    !> True: the first guess is the displacement of the start, so all of its forces are known; or it goes on with the
-    !> velocity of the start, so its inertia forces are
+    !> True: the first guess is the displacement of the start, whose forces are known; or it goes on with the velocity
+    !> of the start, so its inertia forces are
     logical :: stays = .false., coasts = .false.
     !> True: internal forces follow from the motion, as one correction solves the step
     logical :: spares = .false.
-    !> True: the operator was renewed on the way to an equilibrium, so how plies break next would hang on that way
-    logical :: renewed = .false.
     !> Square of the patch's shares, of this rank's points
     real(wp) :: patch_square = 0
     !> The impactor's side of the step
     type(impact_coupling_t) :: coupling
-    !> What corrections have found about softening points
-    type(softening_memory_t) :: memory
   contains
     !> True: one correction finds equilibrium.
     procedure, private :: is_solved_at_once
     procedure :: begin
     procedure :: find_residual
     procedure :: residual_norm
-    procedure :: soften
     procedure :: may_stop
-    procedure :: prepare_operator
-    procedure :: improve
+    procedure :: find_correction
+    procedure :: find_force
     procedure :: complete
     procedure :: finish
   end type dynamic_step_t
@@ -78,7 +73,7 @@ contains
     type(plate_integrator_t), intent(in) :: integrator
     !> Time step
     real(wp), intent(in) :: step
-    !> Iterations after which the operator is renewed
+    !> Changed ties and contacts with which the operator is renewed
     integer, intent(in) :: renewal
     !> The problem
     type(dynamic_step_t) :: self
@@ -124,15 +119,12 @@ contains
         call keep_lines(model, new%interfaces, new%time, line_displacement, new%motion%displacement)
     end if
     if (.not. self%coasts) call self%complete(old, new)
-    new%plies%lagging = model%scene%has_crack_bands()
-    self%rounds = ply_rounds_t()
     new%iterations = 0
     new%force_iterations = 0
     new%contact_iterations = 0
-    call operator%anderson%forget()
-    operator%switches = 0
-    self%renewed = .false.
-    call self%memory%forget()
+    self%dear = .false.
+    self%asks_elements = .false.
+    self%searches = allocated(new%interfaces%cohesive%cohesive)
   end subroutine begin
 
   !> True: forces are linear in the motion but for the impactor's, and the operator knows all of them.
@@ -252,31 +244,6 @@ contains
                                       new%largest_forces)
   end function residual_norm
 
-  !> Lets plies that soften follow. In a burst what comes then begins from the equilibrium reached alone: with answers
-  !> of the way there, rounding on that way would choose among several ends.
-  subroutine soften(self, model, equilibrium, norm, energy, old, new, softened)
-    !> The problem
-    class(dynamic_step_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
-    !> Convergence asked for
-    type(equilibrium_t), intent(in) :: equilibrium
-    !> Size of the residual
-    real(wp), intent(in) :: norm
-    !> Strain energy of this rank's elements
-    real(wp), intent(in) :: energy
-    !> State at the start
-    type(state_t), intent(in) :: old
-    !> State at the end
-    type(state_t), intent(inout) :: new
-    !> True: plies have changed
-    logical, intent(out) :: softened
-
-    call self%rounds%go_on(model, equilibrium, norm, energy, old, new, softened)
-    self%gives_up = self%shortens .and. self%rounds%hopeless
-    self%bursts = self%bursts .or. self%rounds%breaks .and. allocated(new%interfaces%cohesive%cohesive)
-    if (softened .and. self%bursts) call self%memory%forget()
-  end subroutine soften
-
   !> The force answers to the motion only within an iteration, so an impact needs one.
   pure logical function may_stop(self, model, new, pressures_new)
     !> The problem
@@ -290,66 +257,70 @@ contains
     may_stop = new%iterations > 0 .or. .not. model%scene%has_impactor
   end function may_stop
 
-  !> Makes the operator follow ties and contacts, or renews it where that or its age asks for it.
-  subroutine prepare_operator(self, model, operator, new, error)
+  !> Finds a correction by the tangent, and with it the impactor's force.
+  subroutine find_correction(self, model, operator, old, new, residual, tolerance, correction, falls, error)
     !> The problem
     class(dynamic_step_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    !> Mesh, numbering and interfaces of the plate
+    type(model_t), target, intent(in) :: model
     !> The factored operator
-    type(tangent_operator_t), intent(inout) :: operator
-    !> State at the end
-    type(state_t), intent(in) :: new
-    !> Set if the solver fails
-    type(error_t), allocatable, intent(inout) :: error
-    logical :: follows, first
-
-    first = new%iterations == self%begun
-    follows = modulo(new%iterations - self%begun + 1, self%renewal) > 0 .and. .not. self%memory%is_full(operator)
-    if (first) follows = follows .and. .not. (self%bursts .and. self%renewed)
-    if (operator%condenses) follows = follows .and. .not. self%stalls
-    if (follows) call operator%follow(model, new%interfaces, follows, error)
-    if (follows .or. allocated(error)) return
-    self%renewed = .not. first .and. operator%condenses .and. model%scene%has_crack_bands()
-    call operator%renew(model, new%plies%stiffness, new%interfaces, new%motion%displacement, &
-                        self%integrator%stiffness_factor(), self%integrator%mass_factor(self%step), error)
-  end subroutine prepare_operator
-
-  !> Turns the correction for the force assumed into one for the force that goes with it, and betters it by
-  !> what earlier iterations showed.
-  subroutine improve(self, model, operator, old, new, residual, correction, error)
-    !> The problem
-    class(dynamic_step_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
-    !> The factored operator, with its memory of iterations
-    type(tangent_operator_t), intent(inout) :: operator
+    type(tangent_operator_t), target, intent(inout) :: operator
     !> State at the start
     type(state_t), intent(in) :: old
     !> State at the end, before the correction
-    type(state_t), intent(inout) :: new
+    type(state_t), target, intent(inout) :: new
     !> The residual at the owned points, (5, points)
     real(wp), intent(in) :: residual(:, :)
+    !> Part of the residual that may be left
+    real(wp), intent(in) :: tolerance
     !> Correction of the displacement, (5, points)
     real(wp), intent(inout) :: correction(:, :)
-    !> Set if numbers are not finite
+    !> True: it goes along negative curvature of the tangent
+    logical, intent(out) :: falls
+    !> Set if a solve fails or numbers are not finite
     type(error_t), allocatable, intent(inout) :: error
+    type(tangent_product_t) :: tangent
+    real(wp), allocatable :: diagonal(:, :)
+    logical :: satisfied
 
-    if (operator%condenses) then
-      call condense(self%memory, self%begins_fresh, self%coupling, model, operator, old, new, residual, &
-                    correction, error)
-      self%bursts = self%bursts .or. self%memory%bursts
-    else if (model%scene%has_impactor) then
+    falls = .false.
+    call find_tangent(model, operator, old, new, [self%integrator%stiffness_factor(), &
+                      self%integrator%mass_factor(self%step)], self%dear, self%renewal, self%asks_elements, tangent, &
+                      diagonal, error)
+    if (allocated(error)) return
+    if (model%scene%has_impactor .and. .not. tangent%is_factored()) &
+      call add_force_slope(model, operator, self%coupling, old, new, tangent)
+    call find_krylov_correction(operator, model, tangent, diagonal, residual, tolerance, correction, error, falls, &
+                                satisfied)
+    if (allocated(error)) return
+    self%dear = .not. satisfied
+    if (model%scene%has_impactor) then
+      ! The correction holds the linear part of the force's change; the law asks for the rest.
+      self%coupling%unknown = self%coupling%unknown &
+                              - tangent%force_slope*model%patch_mean(correction)/self%coupling%share
       call self%coupling%solve(model, operator, old, new, correction, error)
+      if (allocated(error)) error%code = exit_convergence
     end if
     call new%interfaces%faces%hold(model, correction)
-    if (allocated(error)) return
-    call operator%anderson%accelerate(model%communicator, operator%diagonal(:, :model%distribution%owned), &
-                                      correction, self%coupling%unknown)
-    ! The law of the force is not linear: the force must be found for the displacement that it has become.
-    if (model%scene%has_impactor .and. operator%anderson%kept > 0) then
-      call self%coupling%solve(model, operator, old, new, correction, error)
-      call new%interfaces%faces%hold(model, correction)
-    end if
-  end subroutine improve
+  end subroutine find_correction
+
+  !> Finds the impactor's force for a displacement.
+  subroutine find_force(self, model, old, new)
+    !> The problem
+    class(dynamic_step_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> State at the start
+    type(state_t), intent(in) :: old
+    !> State at the end, its displacement known
+    type(state_t), intent(inout) :: new
+    type(error_t), allocatable :: error
+    integer :: iterations
+
+    if (.not. model%scene%has_impactor) return
+    new%patch_mean = model%contact_deflection(new%motion%displacement)
+    call self%coupling%find_force(model%scene%indentation, old%indentation, new%patch_mean, 0.0_wp, iterations, error)
+    new%force_iterations = new%force_iterations + iterations
+  end subroutine find_force
 
   !> Velocity and acceleration at the end of the step.
   subroutine complete(self, old, new)

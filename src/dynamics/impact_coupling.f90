@@ -35,7 +35,12 @@ module impact_coupling
     procedure :: solve
     !> Finds the force.
     procedure :: find_force
+    !> Fall of the load with the deflection of the plate.
+    procedure :: slope
   end type impact_coupling_t
+
+  !> Change of a deflection over the indentation at which the slope of the force is taken.
+  real(wp), parameter :: nudge = 1.0e-6_wp
 
 contains
 
@@ -105,6 +110,31 @@ contains
     correction = correction + (self%share*(self%unknown - before))*operator%response
     new%force_iterations = new%force_iterations + iterations
   end subroutine solve
+
+  !> Fall of the load with the deflection of the plate, the impactor moving as the force lets it.
+  real(wp) function slope(self, law, indentation, patch_mean)
+    !> The impactor's side of the step
+    class(impact_coupling_t), intent(in) :: self
+    !> Indentation law
+    type(indentation_law_t), intent(in) :: law
+    !> Memory of the indentation at the start of the step
+    type(indentation_t), intent(in) :: indentation
+    !> Mean deflection of the patch
+    real(wp), intent(in) :: patch_mean
+    type(impact_coupling_t) :: here, beyond
+    type(error_t), allocatable :: error
+    real(wp) :: step
+    integer :: iterations
+
+    slope = 0
+    step = nudge*abs(self%free_displacement - patch_mean)
+    if (.not. step > 0) return
+    here = self
+    beyond = self
+    call here%find_force(law, indentation, patch_mean, 0.0_wp, iterations, error)
+    call beyond%find_force(law, indentation, patch_mean + step, 0.0_wp, iterations, error)
+    if (.not. allocated(error)) slope = max(0.0_wp, (here%load() - beyond%load())/step)
+  end function slope
 
   !> Finds the impact force for a mean deflection of the patch, given what a force adds to it.
   subroutine find_force(self, law, indentation, patch_mean, patch_compliance, iterations, error)

@@ -6,7 +6,7 @@ module slow_impactors
   use impact_force, only: solve_impact_force
   use tan_sun_indentation, only: commit_indentation, indentation_force, indentation_of
   use models, only: model_t
-  use skew_corrections, only: follow_skew
+  use static_tangents, only: solve_tangent
   use states, only: state_t
   use tangent_operators, only: tangent_operator_t
   implicit none
@@ -29,9 +29,10 @@ contains
   !> Finds the force that goes with the travel and with the plate's response to it, and adds this response to a
   !> correction.
   subroutine find_push(model, operator, part, new, correction, error)
-    type(model_t), intent(in) :: model
-    !> The factored operator, with its response to a unit force
-    type(tangent_operator_t), intent(inout) :: operator
+    !> Mesh, numbering and interfaces of the plate
+    type(model_t), target, intent(in) :: model
+    !> The factored operator
+    type(tangent_operator_t), target, intent(inout) :: operator
     !> Part of the correction that will be taken
     real(wp), intent(in) :: part
     !> State at this load, before the correction; receives the force
@@ -40,12 +41,15 @@ contains
     real(wp), intent(inout) :: correction(:, :)
     !> Set if a solve fails or numbers are not finite
     type(error_t), allocatable, intent(inout) :: error
-    real(wp), allocatable :: response(:, :)
+    real(wp), allocatable :: response(:, :), push(:, :)
     real(wp) :: compliance, mean, force, alpha, force_end
     integer :: iterations
 
-    response = operator%response
-    call follow_skew(operator, model, new%interfaces%cohesive, response, error)
+    allocate (push, response, mold=correction)
+    push = 0
+    response = 0
+    call push_plate(model, 1.0_wp, push)
+    call solve_tangent(operator, model, new%interfaces%cohesive, push, response, error)
     if (allocated(error)) return
     compliance = model%patch_mean(response)
     mean = model%contact_deflection(new%motion%displacement) + model%patch_mean(correction)

@@ -2,7 +2,7 @@
 !> pressures.
 module static_steps
   use kinds, only: wp
-  use errors, only: error_t
+  use errors, only: error_t, exit_convergence
   use plate_options, only: kinematics_linear
   use delamination_parameters, only: contact_none, law_cohesive
   use stepping_parameters, only: equilibrium_t
@@ -11,7 +11,7 @@ module static_steps
   use step_problems, only: step_problem_t
   use residual_norms, only: relative_residual
   use slow_impactors, only: push_plate, find_push, push_unmet, follow_impactor
-  use skew_corrections, only: follow_skew
+  use static_tangents, only: solve_tangent
   use tangent_operators, only: tangent_operator_t
   implicit none
   private
@@ -34,8 +34,9 @@ module static_steps
     procedure :: find_residual
     procedure :: residual_norm
     procedure :: may_stop
-    procedure :: prepare_operator
-    procedure :: improve
+    procedure :: find_correction
+    !> Completes a correction at the load before: impactor, or change of the load.
+    procedure :: complete_correction
     procedure :: complete
     procedure :: finish
   end type static_step_t
@@ -134,22 +135,59 @@ contains
     may_stop = .not. pressures_new
   end function may_stop
 
-  !> A fresh tangent wherever it may have changed.
-  subroutine prepare_operator(self, model, operator, new, error)
+  !> Finds a correction by a fresh tangent wherever that may have changed.
+  subroutine find_correction(self, model, operator, old, new, residual, tolerance, correction, falls, error)
     !> The problem
     class(static_step_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    !> Mesh, numbering and interfaces of the plate
+    type(model_t), target, intent(in) :: model
     !> The factored operator
-    type(tangent_operator_t), intent(inout) :: operator
-    !> State at this load
-    type(state_t), intent(in) :: new
-    !> Set if the solver fails
+    type(tangent_operator_t), target, intent(inout) :: operator
+    !> State at the load before
+    type(state_t), intent(in) :: old
+    !> State at this load, before the correction
+    type(state_t), target, intent(inout) :: new
+    !> The residual at the owned points, (5, points)
+    real(wp), intent(in) :: residual(:, :)
+    !> Part of the residual that may be left
+    real(wp), intent(in) :: tolerance
+    !> Correction of the displacement, (5, points)
+    real(wp), intent(inout) :: correction(:, :)
+    !> True: it goes along negative curvature of the tangent
+    logical, intent(out) :: falls
+    !> Set if a solve fails
     type(error_t), allocatable, intent(inout) :: error
 
-    if (operator%ready .and. .not. changes(model, new%iterations)) return
-    call operator%renew(model, new%plies%stiffness, new%interfaces, new%motion%displacement, 1.0_wp, 0.0_wp, &
-                        error)
-  end subroutine prepare_operator
+    falls = .false.
+    if (.not. operator%ready .or. changes(model, new%iterations)) &
+      call operator%renew(model, new%plies%stiffness, new%interfaces, new%motion%displacement, 1.0_wp, 0.0_wp, error)
+    if (.not. allocated(error)) &
+      call solve_tangent(operator, model, new%interfaces%cohesive, residual, correction, error)
+    if (.not. allocated(error)) call self%complete_correction(model, operator, old, new, correction, error)
+    if (.not. allocated(error)) call new%interfaces%faces%hold(model, correction)
+  end subroutine find_correction
+
+  !> Adds the plate's response to the change of an impactor's force, and takes the part of the correction that goes on.
+  subroutine complete_correction(self, model, operator, old, new, correction, error)
+    !> The problem
+    class(static_step_t), intent(inout) :: self
+    !> Mesh, numbering and interfaces of the plate
+    type(model_t), target, intent(in) :: model
+    !> The factored operator
+    type(tangent_operator_t), target, intent(inout) :: operator
+    !> State at the load before
+    type(state_t), intent(in) :: old
+    !> State at this load, before the correction
+    type(state_t), intent(inout) :: new
+    !> Correction of the displacement, (5, points)
+    real(wp), intent(inout) :: correction(:, :)
+    !> Set if a solve fails
+    type(error_t), allocatable, intent(inout) :: error
+
+    if (model%scene%has_impactor) call find_push(model, operator, part_taken(new%iterations), new, correction, error)
+    if (allocated(error)) error%code = exit_convergence
+    correction = part_taken(new%iterations)*correction
+  end subroutine complete_correction
 
   !> True if the tangent may not be what it was at the iteration before.
   pure logical function changes(model, iterations)
@@ -165,31 +203,6 @@ contains
     if (changes .or. .not. model%map%layered) return
     changes = any(model%scene%delaminations%contact /= contact_none)
   end function changes
-
-  !> Keeps held jumps as they are, and minds that tangents are unsymmetric.
-  subroutine improve(self, model, operator, old, new, residual, correction, error)
-    !> The problem
-    class(static_step_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
-    !> The factored operator
-    type(tangent_operator_t), intent(inout) :: operator
-    !> State at the load before
-    type(state_t), intent(in) :: old
-    !> State at this load, before the correction
-    type(state_t), intent(inout) :: new
-    !> The residual at the owned points, (5, points)
-    real(wp), intent(in) :: residual(:, :)
-    !> Correction of the displacement, (5, points)
-    real(wp), intent(inout) :: correction(:, :)
-    !> Set if a solve fails
-    type(error_t), allocatable, intent(inout) :: error
-
-    call follow_skew(operator, model, new%interfaces%cohesive, correction, error)
-    if (model%scene%has_impactor .and. .not. allocated(error)) &
-      call find_push(model, operator, part_taken(new%iterations), new, correction, error)
-    call new%interfaces%faces%hold(model, correction)
-    correction = part_taken(new%iterations)*correction
-  end subroutine improve
 
   !> Part of a correction that is taken. Newton's iteration may go round between two sets of points whose damage grows;
   !> halving every other correction, once there have been more than it takes to converge, ends that.

@@ -6,6 +6,7 @@
 module step_problems
   use kinds, only: wp
   use errors, only: error_t, exit_convergence
+  use line_searches, only: line_search_t
   use models, only: model_t
   use states, only: state_t
   use stepping_parameters, only: equilibrium_t
@@ -14,13 +15,15 @@ module step_problems
   private
   public :: step_problem_t, solve_step
 
-  !> Rise of the residual by which an iteration has gone astray: near its tolerance rounding makes it rise a little.
-  real(wp), parameter :: astray = 2
-  !> Iterations that should bring the residual down to a part, or the iteration stalls.
-  integer, parameter :: watched = 4
-  real(wp), parameter :: most_left = 0.5_wp
-  !> Stalls in a row with which a step is too long: the last of them with an operator made where the iteration stood.
-  integer, parameter :: most_stalls = 2
+  !> What is left of the residual by a correction at most, and of the forces in play, and part of the square of the last
+  !> ratio of residuals that the next may leave (S. C. Eisenstat, H. F. Walker, SIAM J. Sci. Comput. 17 (1996) 16-32,
+  !> choice 2).
+  real(wp), parameter :: most_left = 1.0e-3_wp, left_of_square = 0.9_wp
+  !> What a correction by the factored operator may leave before the elements are asked for their tangents, each for a
+  !> fifth of a solve.
+  real(wp), parameter :: well_left = 1.0e-2_wp
+  !> Part of the tolerance to which the last correction goes: beyond it solves gain nothing.
+  real(wp), parameter :: spare = 0.3_wp
 
   !> One kind of step.
   type, abstract :: step_problem_t
@@ -28,21 +31,10 @@ module step_problems
     real(wp) :: contact_tolerance = 0
     !> True: a solver that fails may be cured by a shorter step
     logical :: curable = .true.
-    !> True: the operator with which the step begins is that of its start, so its end hangs on nothing before that
-    logical :: begins_fresh = .true.
-    !> True: there was a burst in the step, of which another operator may find another end
-    logical :: bursts = .false.
-    !> Iterations taken when plies followed last
-    integer :: begun = 0
-    !> True: the last iterations have not come nearer to equilibrium, so another operator is wanted
-    logical :: stalls = .false.
-    !> How often in a row they have not
-    integer :: stalled = 0
-    !> True: a shorter step may follow; one of the smallest length is taken as it is, as the energy watch tells what it
-    !> creates
-    logical :: shortens = .false.
-    !> True: a shorter step is wanted, whatever this one would find
-    logical :: gives_up = .false.
+    !> True: corrections by the factored operator have left too much, so the elements are asked for their tangents
+    logical :: asks_elements = .false.
+    !> True: a correction is searched for the part of it to take
+    logical :: searches = .false.
   contains
     !> First guess of the state at the end of the step.
     procedure(begin_step), deferred :: begin
@@ -50,14 +42,12 @@ module step_problems
     procedure(find_residual), deferred :: find_residual
     !> Size of a residual relative to the forces in play.
     procedure(residual_norm), deferred :: residual_norm
-    !> Lets plies that soften follow, where a kind of step has them wait.
-    procedure :: soften
     !> True if a residual within the tolerance is the end.
     procedure(may_stop), deferred :: may_stop
-    !> Makes the operator fit the state, by changes or by a factorization.
-    procedure(prepare_operator), deferred :: prepare_operator
-    !> Betters a correction: the impact force that goes with it, what earlier iterations showed.
-    procedure(improve), deferred :: improve
+    !> Finds a correction by the tangent, renewing the operator where that is due.
+    procedure(find_correction), deferred :: find_correction
+    !> Finds the impactor's force for a displacement, where there is one.
+    procedure :: find_force
     !> Completes the motion after a correction.
     procedure(complete), deferred :: complete
     !> Completes the state of a step that has converged, and its ledger.
@@ -71,7 +61,7 @@ module step_problems
       !> The problem
       class(step_problem_t), intent(inout) :: self
       type(model_t), intent(in) :: model
-      !> The factored operator, with its memory of iterations
+      !> The factored operator
       type(tangent_operator_t), intent(inout) :: operator
       !> State at the start
       type(state_t), intent(in) :: old
@@ -123,39 +113,30 @@ module step_problems
       logical, intent(in) :: pressures_new
     end function may_stop
 
-    !> Makes the operator fit the state, by changes or by a factorization.
-    subroutine prepare_operator(self, model, operator, new, error)
-      import :: step_problem_t, model_t, tangent_operator_t, state_t, error_t
-      !> The problem
-      class(step_problem_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
-      !> The factored operator
-      type(tangent_operator_t), intent(inout) :: operator
-      !> State at the end
-      type(state_t), intent(in) :: new
-      !> Set if the solver fails
-      type(error_t), allocatable, intent(inout) :: error
-    end subroutine prepare_operator
-
-    !> Betters a correction: the impact force that goes with it, what earlier iterations showed.
-    subroutine improve(self, model, operator, old, new, residual, correction, error)
+    !> Finds a correction by the tangent, renewing the operator where that is due.
+    subroutine find_correction(self, model, operator, old, new, residual, tolerance, correction, falls, error)
       import :: step_problem_t, model_t, tangent_operator_t, state_t, error_t, wp
       !> The problem
       class(step_problem_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
-      !> The factored operator, with its memory of iterations
-      type(tangent_operator_t), intent(inout) :: operator
+      !> Mesh, numbering and interfaces of the plate
+      type(model_t), target, intent(in) :: model
+      !> The factored operator
+      type(tangent_operator_t), target, intent(inout) :: operator
       !> State at the start
       type(state_t), intent(in) :: old
       !> State at the end, before the correction
-      type(state_t), intent(inout) :: new
+      type(state_t), target, intent(inout) :: new
       !> The residual at the owned points, (5, points)
       real(wp), intent(in) :: residual(:, :)
+      !> Part of the residual that may be left
+      real(wp), intent(in) :: tolerance
       !> Correction of the displacement, (5, points)
       real(wp), intent(inout) :: correction(:, :)
-      !> Set if numbers are not finite
+      !> True: it goes along negative curvature of the tangent
+      logical, intent(out) :: falls
+      !> Set if a solve fails or numbers are not finite
       type(error_t), allocatable, intent(inout) :: error
-    end subroutine improve
+    end subroutine find_correction
 
     !> Completes the motion after a correction.
     subroutine complete(self, old, new)
@@ -185,120 +166,79 @@ module step_problems
 
 contains
 
-  !> Plies have followed within the residual.
-  subroutine soften(self, model, equilibrium, norm, energy, old, new, softened)
+  !> There is no impactor.
+  subroutine find_force(self, model, old, new)
     !> The problem
     class(step_problem_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> Convergence asked for
-    type(equilibrium_t), intent(in) :: equilibrium
-    !> Size of the residual
-    real(wp), intent(in) :: norm
-    !> Strain energy of this rank's elements
-    real(wp), intent(in) :: energy
     !> State at the start
     type(state_t), intent(in) :: old
-    !> State at the end
+    !> State at the end, its displacement known
     type(state_t), intent(inout) :: new
-    !> True: plies have changed
-    logical, intent(out) :: softened
+  end subroutine find_force
 
-    softened = .false.
-  end subroutine soften
-
-  !> Tries a step. On return either `converged` and `new` is the state at its end, or nothing of it counts. A burst that
-  !> did not begin with the operator of its start does not converge: of several ends, the way there decides.
+  !> Tries a step. On return either `converged` and `new` is the state at its end, or nothing of it counts.
   subroutine solve_step(problem, model, equilibrium, operator, old, new, converged, error)
     !> The kind of step
     class(step_problem_t), intent(inout) :: problem
-    type(model_t), intent(in) :: model
+    !> Mesh, numbering and interfaces of the plate
+    type(model_t), target, intent(in) :: model
     !> Convergence asked for
     type(equilibrium_t), intent(in) :: equilibrium
     !> The factored operator; renewed on the way if convergence asks for it
-    type(tangent_operator_t), intent(inout) :: operator
+    type(tangent_operator_t), target, intent(inout) :: operator
     !> State at the start
     type(state_t), intent(in) :: old
     !> State at the end
-    type(state_t), intent(inout) :: new
+    type(state_t), target, intent(inout) :: new
     !> True if equilibrium was reached
     logical, intent(out) :: converged
     !> Set if the solver fails for good
     type(error_t), allocatable, intent(out) :: error
-    real(wp), allocatable :: residual(:, :), correction(:, :)
-    real(wp) :: norm, before, earlier, energy
-    logical :: pressures_new, softened, in_plane
+    real(wp), allocatable :: residual(:, :), smooth(:, :), correction(:, :)
+    type(line_search_t) :: search
+    real(wp) :: norm, before, energy
+    logical :: pressures_new, ends
 
     converged = .false.
     call new%start_from(model, old)
     allocate (residual, correction, mold=old%motion%displacement)
     pressures_new = .false.
-    in_plane = .false.
-    problem%begun = 0
-    before = huge(before)
-    earlier = before
+    before = 0
     call problem%begin(model, operator, old, new)
     do
-      call operator%timers%start('element forces')
-      call problem%find_residual(model, old, new, residual, energy)
-      call model%profile%enter('contact and ties')
-      call new%interfaces%act(model, new%motion%displacement, residual)
-      call model%profile%leave()
-      call operator%timers%stop('element forces')
+      call find_forces(problem, model, operator, old, new, residual, smooth, energy)
       norm = problem%residual_norm(model, equilibrium, operator, residual, new)
-      call problem%soften(model, equilibrium, norm, energy, old, new, softened)
-      if (problem%gives_up) return
-      if (softened) then
-        if (problem%bursts .and. .not. problem%begins_fresh) return
-        problem%begun = new%iterations
-        before = huge(before)
-        call operator%anderson%forget()
-        cycle
+      if (search%on .and. norm > equilibrium%tolerance) then
+        call search%judge(model, smooth, ends)
+        if (.not. ends) then
+          new%motion%displacement = search%start + search%share*search%direction
+          call problem%complete(old, new)
+          call problem%find_force(model, old, new)
+          cycle
+        end if
       end if
-      ! What it has seen of points on one side of a kink leads astray beyond it.
-      if (operator%condenses .and. norm/astray > before) call operator%anderson%forget()
-      before = norm
+      search%on = .false.
       converged = norm <= equilibrium%tolerance
       if (converged) converged = problem%may_stop(model, new, pressures_new)
       pressures_new = .false.
       if (converged) then
-        call model%profile%enter('contact and ties')
-        call new%interfaces%settle(model, new%motion%displacement, problem%contact_tolerance, &
-                                   new%contact_iterations, converged)
-        call model%profile%leave()
+        call settle(problem, model, new, converged)
         if (converged) exit
         pressures_new = .true.
-        call operator%anderson%pause()
+        before = 0
         if (new%contact_iterations < equilibrium%max_iterations) cycle
       end if
-      if (.not. norm <= huge(norm) .or. new%iterations - problem%begun >= equilibrium%max_iterations) exit
-      call watch(problem, new%iterations - problem%begun, norm, earlier)
-      if (operator%condenses .and. problem%shortens .and. problem%stalled >= most_stalls) exit
-      ! The impact force is found by the whole operator, and so is what a correction in the plane leaves.
-      if (allocated(operator%membrane) .and. new%iterations > 0) then
-        operator%membrane%fails = operator%membrane%fails .or. in_plane
-        in_plane = operator%membrane%suffices(model, operator%numbering, residual, norm, equilibrium%tolerance)
-      end if
-      if (in_plane) then
-        call operator%membrane%correct(model, operator%timers, residual, correction, error)
-        ! A correction by another operator is not to be compared with.
-        call operator%anderson%pause()
-      else
-        call problem%prepare_operator(model, operator, new, error)
-        ! Only a further iteration asks what the last one showed.
-        call operator%anderson%note(correction)
-        if (.not. allocated(error)) call operator%correct(model, residual, correction, error)
-      end if
-      if (allocated(error)) then
-        if (problem%curable .and. error%code == exit_convergence) deallocate (error)
-        return
-      end if
-      if (.not. in_plane) call problem%improve(model, operator, old, new, residual, correction, error)
+      if (.not. norm <= huge(norm) .or. new%iterations >= equilibrium%max_iterations) exit
+      problem%asks_elements = problem%asks_elements .or. before > 0 .and. norm > well_left*before
+      call correct(problem, model, operator, old, new, residual, smooth, forcing_term(equilibrium, norm, before), &
+                   correction, search, error)
       if (allocated(error)) then
         ! Numbers have run away, or the operator is not positive: a shorter step may cure it.
-        deallocate (error)
+        if ((problem%curable .or. model%scene%has_impactor) .and. error%code == exit_convergence) deallocate (error)
         return
       end if
-      if (problem%bursts .and. .not. problem%begins_fresh) return
+      before = norm
       new%motion%displacement = new%motion%displacement + correction
       call problem%complete(old, new)
       new%iterations = new%iterations + 1
@@ -306,21 +246,94 @@ contains
     if (converged) call problem%finish(model, old, energy, new)
   end subroutine solve_step
 
-  !> Notes before a correction whether the iteration stalls.
-  pure subroutine watch(problem, iterations, norm, earlier)
-    !> The problem
-    class(step_problem_t), intent(inout) :: problem
-    !> Iterations since plies followed last
-    integer, intent(in) :: iterations
-    !> Size of the residual
-    real(wp), intent(in) :: norm
-    !> The same when it was looked at last
-    real(wp), intent(inout) :: earlier
+  !> Part of the residual that a correction may leave.
+  pure real(wp) function forcing_term(equilibrium, norm, before) result(left)
+    !> Convergence asked for
+    type(equilibrium_t), intent(in) :: equilibrium
+    !> Size of the residual, and of that before the last correction; 0: there was none
+    real(wp), intent(in) :: norm, before
 
-    problem%stalls = .false.
-    if (modulo(iterations, watched) > 0) return
-    problem%stalls = iterations > 0 .and. norm > most_left*earlier
-    problem%stalled = merge(problem%stalled + 1, 0, problem%stalls)
-    earlier = norm
-  end subroutine watch
+    ! Faces that a correction has pressed into each other push with a thousandfold of all forces in play.
+    left = most_left*min(1.0_wp, 1/norm)
+    if (before > 0) left = min(left, left_of_square*(norm/before)**2)
+    left = max(left, spare*equilibrium%tolerance/norm)
+  end function forcing_term
+
+  !> Residual, and what it is without ties and contacts.
+  subroutine find_forces(problem, model, operator, old, new, residual, smooth, energy)
+    !> The kind of step
+    class(step_problem_t), intent(inout) :: problem
+    type(model_t), intent(in) :: model
+    !> Keeps the time
+    type(tangent_operator_t), intent(inout) :: operator
+    !> State at the start
+    type(state_t), intent(in) :: old
+    !> State at the end
+    type(state_t), intent(inout) :: new
+    !> The residual at the owned points, (5, points)
+    real(wp), intent(inout) :: residual(:, :)
+    !> Without ties and contacts; allocated where corrections are searched
+    real(wp), allocatable, intent(inout) :: smooth(:, :)
+    !> Strain energy of this rank's elements
+    real(wp), intent(out) :: energy
+
+    call operator%timers%start('element forces')
+    call problem%find_residual(model, old, new, residual, energy)
+    if (problem%searches) smooth = residual
+    call model%profile%enter('contact and ties')
+    call new%interfaces%act(model, new%motion%displacement, residual)
+    call model%profile%leave()
+    call operator%timers%stop('element forces')
+  end subroutine find_forces
+
+  !> Takes the pressures found as the next estimates.
+  subroutine settle(problem, model, new, settled)
+    !> The kind of step
+    class(step_problem_t), intent(in) :: problem
+    type(model_t), intent(in) :: model
+    !> State at the end
+    type(state_t), intent(inout) :: new
+    !> True if they have settled
+    logical, intent(out) :: settled
+
+    call model%profile%enter('contact and ties')
+    call new%interfaces%settle(model, new%motion%displacement, problem%contact_tolerance, new%contact_iterations, &
+                               settled)
+    call model%profile%leave()
+  end subroutine settle
+
+  !> Finds a correction, and begins to search it.
+  subroutine correct(problem, model, operator, old, new, residual, smooth, tolerance, correction, search, error)
+    !> The kind of step
+    class(step_problem_t), intent(inout) :: problem
+    !> Mesh, numbering and interfaces of the plate
+    type(model_t), target, intent(in) :: model
+    !> The factored operator
+    type(tangent_operator_t), target, intent(inout) :: operator
+    !> State at the start
+    type(state_t), intent(in) :: old
+    !> State at the end
+    type(state_t), target, intent(inout) :: new
+    !> Residual at the owned points, (5, points)
+    real(wp), intent(in) :: residual(:, :)
+    !> Without ties and contacts; allocated where corrections are searched
+    real(wp), allocatable, intent(in) :: smooth(:, :)
+    !> Part of it that may be left
+    real(wp), intent(in) :: tolerance
+    !> Correction of the displacement, (5, points)
+    real(wp), intent(inout) :: correction(:, :)
+    !> The search
+    type(line_search_t), intent(inout) :: search
+    !> Set if a solve fails or numbers are not finite
+    type(error_t), allocatable, intent(inout) :: error
+    real(wp), allocatable :: stiffness(:, :)
+    logical :: falls
+
+    call problem%find_correction(model, operator, old, new, residual, tolerance, correction, falls, error)
+    if (allocated(error) .or. .not. problem%searches) return
+    allocate (stiffness(3, size(correction, 2)))
+    call new%interfaces%faces%added_stiffness(model, operator%diagonal, stiffness)
+    call new%interfaces%rig%add_stiffness(model, 0.0_wp, stiffness)
+    call search%begin(model, new%motion%displacement, correction, residual, smooth, stiffness, falls)
+  end subroutine correct
 end module step_problems

@@ -33,10 +33,6 @@ module time_stepping
 
   !> Largest energy that a step dissipates, over that of the step before: from it the first guess is made.
   real(wp), parameter :: most_growth = 4
-  !> Answers to unit forces on cohesive points with which the operator goes into a step: more make each iteration dearer
-  !> than a factorization, into which those go that have failed.
-  integer, parameter :: most_answers = 400
-
   !> All that evolves during a run.
   type :: time_stepper_t
     !> The state reached
@@ -116,7 +112,6 @@ contains
     if (.not. allocated(error)) call find_initial_equilibrium(model, self%operator, self%now, error)
     if (allocated(error) .or. model%scene%has_static) return
     self%integrator = plate_integrator(self%stepping%time)
-    self%operator%condenses = allocated(self%now%interfaces%cohesive%cohesive)
     self%controller%wanted = self%stepping%time%step
     if (follows_error(stepping%adapt)) call self%step_error%start(model, stepping%time%step)
     if (allocated(model%pressure) .or. size(model%lines) > 0) &
@@ -222,7 +217,7 @@ contains
     step = merge(1.0_wp/(1024*self%stepping%static_steps), self%stepping%time%step_min, model%scene%has_static)
   end function smallest_step
 
-  !> Tries one time step. After a failure, a burst or a renewal on the way it begins with the operator of its start.
+  !> Tries one time step.
   subroutine try_step(self, model, event, step, converged, error)
     !> The time stepper
     class(time_stepper_t), intent(inout) :: self
@@ -242,30 +237,25 @@ contains
     step = self%controller%propose(event - self%now%time, impactor_limit(model, self%now, self%controller%wanted), &
                                    growth_limit(model, self%stepping%adapt, self%controller))
     mass_factor = self%integrator%mass_factor(step)
-    due = .not. self%operator%ready .or. self%operator%changes%kept > most_answers .and. self%operator%condenses
+    due = .not. self%operator%ready
     if (.not. due) &
       due = self%controller%renewal_due(self%stepping%adapt, model%scene%kinematics == kinematics_von_karman, &
         mass_factor/self%operator%mass_factor, self%now%deflection - self%operator%deflection, model%thickness)
-    do
-      if (due) call self%operator%renew(model, self%now%plies%stiffness, self%now%interfaces, &
-        self%now%motion%displacement, self%integrator%stiffness_factor(), mass_factor, error)
+    if (due) then
+      call self%operator%renew(model, self%now%plies%stiffness, self%now%interfaces, self%now%motion%displacement, &
+                               self%integrator%stiffness_factor(), mass_factor, error)
       if (allocated(error)) return
-      if (due) call self%controller%renewed()
-      self%factorizations_begun = self%operator%factorizations
-      self%solves_begun = self%operator%solves
-      problem = new_dynamic_step(self%integrator, step, self%stepping%adapt%iterations)
-      problem%begins_fresh = due
-      problem%shortens = step > self%smallest_step(model)*(1 + 1.0e-9_wp)
-      call solve_step(problem, model, self%stepping%equilibrium, self%operator, self%now, self%trial, converged, error)
-      if (converged .and. model%map%layered) &
-        call grow_in_step(problem, model, self%stepping%equilibrium, self%operator, self%now, self%trial, converged, &
-                          error)
-      if (converged .or. due .or. problem%gives_up .or. allocated(error)) exit
-      due = .true.
-    end do
-    if (problem%bursts .or. problem%renewed) self%operator%ready = .false.
-    self%haste = max(problem%rounds%haste, self%trial%plies%haste)
-    if (converged .and. self%haste > 1) converged = .not. problem%shortens
+      call self%controller%renewed()
+    end if
+    self%factorizations_begun = self%operator%factorizations
+    self%solves_begun = self%operator%solves
+    problem = new_dynamic_step(self%integrator, step, self%stepping%adapt%iterations)
+    call solve_step(problem, model, self%stepping%equilibrium, self%operator, self%now, self%trial, converged, error)
+    if (converged .and. model%map%layered) &
+      call grow_in_step(problem, model, self%stepping%equilibrium, self%operator, self%now, self%trial, converged, &
+                        error)
+    self%haste = self%trial%plies%haste
+    if (converged .and. self%haste > 1) converged = .not. step > self%smallest_step(model)*(1 + 1.0e-9_wp)
   end subroutine try_step
 
   !> Tries one load step.
@@ -360,9 +350,8 @@ contains
     if (model%scene%has_static) then
       self%controller%wanted = 1.0_wp/self%stepping%static_steps
     else
-      lasting = merge(self%operator%solves - self%solves_begun, self%now%iterations, &
-                      self%operator%condenses .or. allocated(self%operator%membrane))
-      call self%controller%accept(self%stepping, step, self%now%iterations, lasting - self%operator%switches, change)
+      lasting = self%operator%solves - self%solves_begun
+      call self%controller%accept(self%stepping, step, self%now%iterations, lasting, change)
       if (model%scene%has_crack_bands()) call self%controller%heed_plies(self%stepping, self%haste)
       if (follows_error(self%stepping%adapt)) &
         call self%controller%follow_error(self%stepping, step, self%error, self%stepping%time%end - self%now%time, &

@@ -33,6 +33,8 @@ module cohesive_interfaces
   contains
     !> Adds the forces of the tractions on the jumps.
     procedure :: add_forces
+    !> Consistent tangents of the forces.
+    procedure :: tangents_at
     !> Energy dissipated since an earlier state.
     procedure :: dissipation
     !> Derivative of that energy.
@@ -50,8 +52,6 @@ module cohesive_interfaces
     !> Faces of an interface, and law of a point.
     procedure :: faces_of
     procedure :: law_at
-    !> How wrong the operator is about the forces of points.
-    procedure :: mismatch
     !> Saves or loads.
     procedure :: visit
   end type cohesive_interfaces_t
@@ -117,6 +117,32 @@ contains
       end associate
     end do
   end subroutine add_forces
+
+  !> Derivatives of the forces by the jumps at this rank's points, unsymmetric where damage grows in a mixed mode.
+  pure function tangents_at(self, model, old, displacement) result(tangents)
+    !> The interfaces
+    class(cohesive_interfaces_t), intent(in) :: self
+    type(model_t), intent(in) :: model
+    !> The interfaces in the last accepted state
+    type(cohesive_interfaces_t), intent(in) :: old
+    !> Unknowns, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> Force per jump, (3, 3, owned points); zero where there is no cohesive law
+    real(wp), allocatable :: tangents(:, :, :)
+    type(cohesive_faces_t) :: faces
+    type(cohesive_point_t) :: start
+    integer :: i
+
+    allocate (tangents(3, 3, model%distribution%owned), source=0.0_wp)
+    if (.not. allocated(self%cohesive)) return
+    do i = 1, model%distribution%owned
+      if (.not. self%cohesive(i)) cycle
+      faces = self%faces_of(model, model%zone(i), self%strength(i))
+      start = old%points(i)
+      start%sliding%limit = self%points(i)%sliding%limit
+      tangents(:, :, i) = model%contact_area(i)*faces%slopes(displacement(1:3, i), start)
+    end do
+  end function tangents_at
 
   !> Takes a consistent tangent for the operator.
   pure subroutine take_tangent(self, i, tangent)
@@ -333,38 +359,6 @@ contains
     faces%closing = holds_closed(model, zone)
     faces%friction = model%scene%delaminations(zone)%friction
   end function faces_of
-
-  !> How wrong the operator is about the change of the forces with a correction of the displacement: the error of each
-  !> jump's force over the force at the point's strength.
-  pure subroutine mismatch(self, model, stiffness_factor, present, displacement, correction, error)
-    !> The interfaces in the last accepted state
-    class(cohesive_interfaces_t), intent(in) :: self
-    type(model_t), intent(in) :: model
-    !> Factor of internal forces in the operator
-    real(wp), intent(in) :: stiffness_factor
-    !> Stiffness of the jumps in the operator, (3, points)
-    real(wp), intent(in) :: present(:, :)
-    !> Displacement before the correction, and the correction, (5, points)
-    real(wp), intent(in) :: displacement(:, :), correction(:, :)
-    !> The error, (3, owned points); zero where there is no cohesive law
-    real(wp), intent(out) :: error(:, :)
-    type(cohesive_faces_t) :: faces
-    type(cohesive_point_t) :: new
-    real(wp) :: before(3), after(3)
-    integer :: i
-
-    error = 0
-    do i = 1, model%distribution%owned
-      if (.not. self%cohesive(i)) cycle
-      faces = self%faces_of(model, model%zone(i), self%strength(i))
-      call faces%traction(displacement(1:3, i), self%points(i), before, new)
-      call faces%traction(displacement(1:3, i) + correction(1:3, i), self%points(i), after, new)
-      associate (area => stiffness_factor*model%contact_area(i))
-        error(:, i) = abs(area*(after - before) - present(:, i)*correction(1:3, i)) &
-                      /(area*min(faces%law%strength_opening, faces%law%strength_shear))
-      end associate
-    end do
-  end subroutine mismatch
 
   !> Saves or loads.
   subroutine visit(self, archive, model)

@@ -40,17 +40,13 @@ module ply_failures
     real(wp) :: permanent_shear = 0
     !> Energy that the last step missed as it followed plies that soften, over the most that it may
     real(wp) :: haste = 0
-    !> True while plies that soften keep their stiffness until they are told to follow
+    !> True while plies that soften keep their stiffness, as a state is carried over to other layers
     logical :: lagging = .false.
-    !> Strain energy of this rank's elements when forces were found last
-    real(wp), private :: energy = 0
   contains
     !> Internal forces of the plate, with the stiffness that softening leaves under this displacement.
     procedure :: find_forces
     !> Forces of the elements on the layers, with plies that soften as they are strained.
     procedure :: add_layer_forces
-    !> Lets plies that lag follow a displacement.
-    procedure :: follow
     !> Books what softening dissipates in a step, and judges whether the step has followed it.
     procedure :: book
     procedure :: judge
@@ -110,7 +106,6 @@ contains
     else
       call model%internal(self%stiffness, displacement, force, energy, free=self%free)
     end if
-    self%energy = energy
   end subroutine find_forces
 
   !> Adds the forces of the elements on the layers, with plies that soften as they are strained; what they remember is
@@ -136,31 +131,6 @@ contains
                               free=self%free, energies=energies)
     end if
   end subroutine add_layer_forces
-
-  !> Lets plies that lag follow the displacement at which forces were found last. Collective.
-  subroutine follow(self, model, displacement, lost, excess)
-    !> The failures
-    class(ply_failure_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
-    !> The displacement, ghosts up to date, (5, points)
-    real(wp), intent(in) :: displacement(:, :)
-    !> Strain energy that goes, and what of it is not dissipated, of the whole plate, the same on every rank
-    real(wp), intent(out) :: lost, excess
-    real(wp), allocatable :: force(:, :)
-    real(wp) :: energies(2), energy
-
-    allocate (force, mold=displacement)
-    energies = [self%energy, sum(totals_of(model%communicator, self%bands%dissipation_sums()))]
-    call model%communicator%sum(energies(1))
-    self%lagging = .false.
-    call self%find_forces(model, displacement, force, energy)
-    self%lagging = .true.
-    call model%communicator%sum(energy)
-    energies = [energies(1) - energy, &
-                sum(totals_of(model%communicator, self%bands%dissipation_sums())) - energies(2)]
-    lost = energies(1)*model%mesh%multiplicity
-    excess = lost - energies(2)*model%mesh%multiplicity
-  end subroutine follow
 
   !> Books what softening dissipates in a step. Collective.
   subroutine book(self, model, energy)
@@ -286,11 +256,10 @@ contains
     integer :: element
 
     if (allocated(self%bands)) then
-      self%softened = self%lagging
-      self%lagging = .false.
       call self%bands%commit()
+      return
     end if
-    if (.not. model%scene%has_ply_damage .or. allocated(self%bands)) return
+    if (.not. model%scene%has_ply_damage) return
     call self%modes%find(model, self%stiffness, displacement, failing)
     self%softened = model%communicator%any(any(failing))
     if (.not. self%softened) return

@@ -9,22 +9,11 @@ module tangent_operators
   use numberings, only: numbering_t, number_equations
   use models, only: model_t
   use interface_states, only: interface_state_t
-  use anderson_acceleration, only: anderson_t
   use operator_assembly, only: assemble_elements, assemble_diagonal, assemble_tangents
-  use membrane_operators, only: membrane_operator_t, create_membrane_operator
   use operator_solvers, only: set_solver_up, solve_field
-  use woodbury_updates, only: woodbury_updates_t, list_changes
   implicit none
   private
   public :: tangent_operator_t
-
-  !> Changes that are followed before a factorization is cheaper: each adds to every correction.
-  integer, parameter :: most_changes = 500
-  !> Columns kept since a factorization, and numbers in all of them together: 0.8 GB however large the model.
-  integer, parameter :: most_columns = 800
-  real(wp), parameter :: most_numbers = 1.0e8_wp
-  !> Columns found at once: more no longer are found faster, and ask for memory that is new to the process each time.
-  integer, parameter :: columns_at_once = 64
 
   !> A factor of `stiffness_factor*tangent + mass_factor*mass`, with many components because it keeps what made it.
   type :: tangent_operator_t
@@ -42,24 +31,14 @@ module tangent_operators
     real(wp), allocatable :: stiffness(:, :, :)
     !> Diagonal of the operator, (5, points)
     real(wp), allocatable :: diagonal(:, :)
-    !> Displacement under a unit force of the impactor, and without the changes since the factorization, (5, points)
-    real(wp), allocatable :: response(:, :), fresh_response(:, :)
-    !> Stiffness added to the three jumps of each point when factored, and with the changes since then, (3, points)
-    real(wp), allocatable :: added(:, :), present(:, :)
-    !> Changes of ties and contacts since then
-    type(woodbury_updates_t) :: changes
-    !> The operator of the motion in the plane alone, where that is worth having
-    type(membrane_operator_t), allocatable :: membrane
-    !> What the iterations of the present step have shown
-    type(anderson_t) :: anderson
+    !> Displacement under a unit force of the impactor, (5, points), and its rows of this rank
+    real(wp), allocatable :: response(:, :), response_rows(:)
+    !> Stiffness added to the three jumps of each point, (3, points)
+    real(wp), allocatable :: added(:, :)
     !> Deflection of the struck point at which the tangent was taken
     real(wp) :: deflection = 0
     !> Mean deflection of the patch under that force
     real(wp) :: compliance = 0
-    !> True: condensed corrections take the place of Woodbury's
-    logical :: condenses = .false.
-    !> Iterations of the present step before which ties or contacts had changed
-    integer :: switches = 0
     !> Factorizations, and corrections solved for, so far
     integer :: factorizations = 0, solves = 0
     !> Time spent in the parts of a step
@@ -69,17 +48,18 @@ module tangent_operators
     procedure :: create
     !> Assembles and factors the operator at a displacement.
     procedure :: renew
-    !> Follows changes of ties and contacts without a factorization.
-    procedure :: follow
     !> Correction of the displacement for a residual.
     procedure :: correct
-    !> Answers to unit forces, and to one of the impactor, and what changes since the factorization make of an answer.
-    procedure :: find_columns
+    !> Displacement under a unit force of the impactor.
     procedure :: find_response
-    procedure :: follow_changes
-    !> Factors what has been assembled, and puts changes since then in force.
+    !> Rows of this rank under forces.
+    procedure :: solve_rows
+    !> Rows of this rank from a field.
+    procedure :: rows_of
+    !> True if ties and contacts have changed too much.
+    procedure :: has_left
+    !> Factors what has been assembled.
     procedure :: factorize
-    procedure :: put_in_force
     !> Frees the factors.
     procedure :: release
   end type tangent_operator_t
@@ -100,7 +80,6 @@ contains
     self%response = self%displacement
     self%diagonal = self%displacement
     self%added = self%displacement(:3, :)
-    self%present = self%added
     self%stiffness = model%elements%stiffness
     call number_equations(model%mesh, model%distribution, model%held, self%numbering, model%images)
     self%timers%profile = model%profile
@@ -108,7 +87,7 @@ contains
     if (allocated(error)) return
     ! The solver has its own copy of this large list.
     deallocate (self%numbering%columns)
-    call create_membrane_operator(model, factorization, self%membrane, error)
+    allocate (self%response_rows(self%numbering%rows), source=0.0_wp)
   end subroutine create
 
   !> Assembles and factors the operator at a displacement, and finds the response to a unit force.
@@ -139,7 +118,6 @@ contains
     if (allocated(interfaces%cohesive%tangents)) &
       call assemble_tangents(model, self%numbering, interfaces%cohesive%tangents, self%solver)
     call interfaces%added_stiffness(model, self%diagonal, stiffness_factor, self%added)
-    self%present = self%added
     call self%timers%stop('assembly')
     call self%factorize(model, error)
   end subroutine renew
@@ -157,18 +135,13 @@ contains
     call self%solver%finish_assembly(error)
     call self%timers%start('factorization')
     if (.not. allocated(error)) call self%solver%factorize(error)
-    if (allocated(self%membrane) .and. .not. allocated(error)) &
-      call self%membrane%renew(model, self%stiffness, self%displacement, self%stiffness_factor, self%mass_factor, error)
     call self%timers%stop('factorization')
     self%ready = .not. allocated(error)
     if (.not. self%ready) return
     self%factorizations = self%factorizations + 1
-    call self%changes%clear()
-    call self%anderson%forget()
     self%response = 0
     self%compliance = 0
     if (model%scene%has_impactor) call self%find_response(model, error)
-    self%fresh_response = self%response
   end subroutine factorize
 
   !> Finds the response to a unit force of the impactor.
@@ -178,109 +151,71 @@ contains
     type(model_t), intent(in) :: model
     !> Set if the solve fails
     type(error_t), allocatable, intent(inout) :: error
-    real(wp), allocatable :: force(:, :)
+    real(wp), allocatable :: force(:, :), rows(:)
 
     allocate (force, mold=self%response)
     force = 0
     force(3, :) = model%patch/model%mesh%multiplicity
-    call solve_field(model, self%numbering, self%solver, self%timers, 'solve', force, self%response, error)
+    allocate (rows(self%numbering%rows))
+    call self%numbering%gather(force, rows)
+    call self%solve_rows(rows, self%response_rows, error)
+    if (allocated(error)) return
+    call self%numbering%scatter(self%response_rows, self%response)
+    call model%halo%update(self%response)
     self%compliance = model%patch_mean(self%response)
   end subroutine find_response
 
-  !> Follows changes of ties and contacts since the factorization.
-  subroutine follow(self, model, interfaces, possible, error)
+  !> Rows of this rank under forces, by the factor as it is.
+  subroutine solve_rows(self, forces, motion, error)
     !> The operator
     class(tangent_operator_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
-    !> Ties, contacts and cohesive laws now
-    type(interface_state_t), intent(in) :: interfaces
-    !> False: they are too many, the operator has to be renewed
-    logical, intent(out) :: possible
-    !> Set if a solve fails
+    !> Forces on the rows
+    real(wp), intent(in) :: forces(:)
+    !> Their motion
+    real(wp), intent(out) :: motion(:)
+    !> Set if the solution is not finite
     type(error_t), allocatable, intent(inout) :: error
-    real(wp), allocatable :: wanted(:, :), stiffness(:)
-    integer, allocatable :: equations(:)
-    integer :: k
 
-    possible = .true.
-    if (.not. model%has_bonds) return
-    allocate (wanted, mold=self%added)
-    call interfaces%added_stiffness(model, self%diagonal, self%stiffness_factor, wanted)
-    if (self%condenses) where (spread(interfaces%cohesive%cohesive, 1, 3)) wanted = self%present
-    call list_changes(model%communicator, self%numbering, self%diagonal, self%added, wanted, equations, stiffness)
-    possible = size(equations) <= most_changes .and. &
-               self%changes%kept + count([(self%changes%column_of(equations(k)) == 0, k=1, size(equations))]) &
-               <= min(most_columns, int(most_numbers/self%numbering%total))
-    if (.not. possible .or. self%changes%same(equations, stiffness)) return
-    call self%put_in_force(model, equations, stiffness, error)
-    if (allocated(error)) return
-    self%switches = self%switches + 1
-    call self%anderson%forget()
-  end subroutine follow
+    call self%timers%start('solve')
+    call self%solver%solve(forces, motion, error)
+    call self%timers%stop('solve')
+  end subroutine solve_rows
 
-  !> Puts changes in force, after finding the columns that they lack, and finds the response to a unit force anew.
-  subroutine put_in_force(self, model, equations, stiffness, error)
+  !> Rows of this rank from a field of motions, or of the leading points' values.
+  pure function rows_of(self, field) result(rows)
     !> The operator
-    class(tangent_operator_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
-    !> Equations changed, the same on every rank, ascending
-    integer, intent(in) :: equations(:)
-    !> Stiffness added to their diagonals, none zero
-    real(wp), intent(in) :: stiffness(:)
-    !> Set if a solve fails
-    type(error_t), allocatable, intent(inout) :: error
-    integer :: k, first
+    class(tangent_operator_t), intent(in) :: self
+    !> (5, points)
+    real(wp), intent(in) :: field(:, :)
+    !> (rows)
+    real(wp) :: rows(self%numbering%rows)
+    integer :: row, point, component
 
-    associate (wanting => pack(equations, [(self%changes%column_of(equations(k)) == 0, k=1, size(equations))]))
-      do first = 1, size(wanting), columns_at_once
-        call find_columns(self, model, wanting(first:min(first + columns_at_once - 1, size(wanting))), error)
-        if (allocated(error)) return
-      end do
-    end associate
-    call self%changes%set(equations, stiffness)
-    call self%changes%spread_out(self%numbering, self%present)
-    self%present = self%added + self%present
-    if (self%condenses) return
-    self%response = self%fresh_response
-    call self%follow_changes(model, self%response)
-    self%compliance = model%patch_mean(self%response)
-  end subroutine put_in_force
-
-  !> Finds columns together.
-  subroutine find_columns(self, model, equations, error)
-    !> The operator
-    class(tangent_operator_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
-    !> Equations wanted, none of which has its column yet, the same on every rank
-    integer, intent(in) :: equations(:)
-    !> Set if a solve fails
-    type(error_t), allocatable, intent(inout) :: error
-    real(wp), allocatable :: forces(:, :), values(:, :), fields(:, :, :)
-    integer :: begin, number, k
-
-    if (size(equations) == 0) return
-    number = min(columns_at_once, size(equations))
-    allocate (forces(self%numbering%rows, number), values(self%numbering%rows, number))
-    allocate (fields(5, size(self%response, 2), size(equations)), source=0.0_wp)
-    do begin = 0, size(equations) - 1, columns_at_once
-      number = min(columns_at_once, size(equations) - begin)
-      forces = 0
-      do k = 1, number
-        associate (equation => equations(begin + k))
-          if (self%numbering%owns(equation)) forces(equation - self%numbering%first_row + 1, k) = 1
-        end associate
-      end do
-      call self%timers%start('solve', part='answers to unit forces')
-      call self%solver%solve_many(forces(:, :number), values(:, :number), error)
-      call self%timers%stop('solve')
-      if (allocated(error)) return
-      do k = 1, number
-        call self%numbering%scatter(values(:, k), fields(:, :, begin + k))
-        call model%halo%update(fields(:, :, begin + k))
-      end do
+    do row = 1, size(rows)
+      call self%numbering%place_of(self%numbering%first_row + row - 1, point, component)
+      rows(row) = field(component, point)
     end do
-    call self%changes%keep(model%communicator, self%numbering, equations, fields)
-  end subroutine find_columns
+  end function rows_of
+
+  !> True if ties and contacts have changed at more equations than a factorization takes solves: each takes a direction
+  !> of its own in a Krylov space. Collective.
+  logical function has_left(self, model, wanted, most)
+    !> The operator
+    class(tangent_operator_t), intent(in) :: self
+    type(model_t), intent(in) :: model
+    !> Stiffness added to the jumps now, (3, points)
+    real(wp), intent(in) :: wanted(:, :)
+    !> Changes that may be left to the iteration
+    integer, intent(in) :: most
+    real(wp) :: changed
+
+    associate (owned => model%distribution%owned)
+      changed = count(abs(wanted(:, :owned) - self%added(:, :owned)) > self%diagonal(:3, :owned) &
+                      .and. self%numbering%equation(:3, :owned) >= 0)
+    end associate
+    call model%communicator%sum(changed)
+    has_left = changed > most
+  end function has_left
 
   !> Correction of the displacement for a residual, ghosts included.
   subroutine correct(self, model, residual, correction, error)
@@ -296,21 +231,7 @@ contains
 
     call solve_field(model, self%numbering, self%solver, self%timers, 'solve', residual, correction, error)
     self%solves = self%solves + 1
-    if (.not. (allocated(error) .or. self%condenses)) call self%follow_changes(model, correction)
   end subroutine correct
-
-  !> Turns a solution of the operator as it was factored into one of the operator as it is now.
-  subroutine follow_changes(self, model, solution)
-    !> The operator
-    class(tangent_operator_t), intent(in) :: self
-    type(model_t), intent(in) :: model
-    !> Solution, ghosts included, (5, points)
-    real(wp), intent(inout) :: solution(:, :)
-
-    if (size(self%changes%equations) == 0) return
-    call self%changes%correct(model%communicator, self%numbering, solution)
-    call model%halo%update(solution)
-  end subroutine follow_changes
 
   !> Frees the factors.
   subroutine release(self)
@@ -318,6 +239,5 @@ contains
     class(tangent_operator_t), intent(inout) :: self
 
     if (allocated(self%solver)) call self%solver%release()
-    if (allocated(self%membrane)) call self%membrane%release()
   end subroutine release
 end module tangent_operators

@@ -8,7 +8,6 @@ steps       the same with starter, steps of 20, 10 and 5 us
 crossply    the force when the area of reference/crossply_cohesive_2mm.nml passes a value, cells of 2 and 1 mm
 impact      input/crossply_threshold.nml, from nothing: cells of 2.5 and 1.25 mm, steps of 20 and 10 us, other strengths
 strips      pure end moments on strips of two arms, shear and opening, fine and coarse cells: moment over the exact one
-answers     share of the time that answers to unit forces take: thresholds, cross-plies and the peanut, several cells
 
 Fields are read with h5py."""
 
@@ -17,7 +16,6 @@ import itertools
 import math
 import os
 import pathlib
-import re
 import subprocess
 import sys
 import tempfile
@@ -175,26 +173,7 @@ def strips(program):
                   f'{max(grown):.4f} |', flush=True)
 
 
-def answers(program):
-    """Share of one part of the time, read from the profile in the log."""
-    print('| deck | cells, mm | unknowns | s | answers to unit forces |\n' + '|---'*5 + '|')
-    scenes = [(THRESHOLD, cell, [f'mesh%elements={number}, {number}', f'mesh%cell={cell}e-3'])
-              for cell, number in ((2, 15), (1.4, 19), (1.1, 24), (1, 26), (0.93, 27), (0.88, 29), (0.5, 50))]
-    scenes += [(CROSSPLY, 2, []), (CROSSPLY, 1, ['mesh%elements=50, 50'])]
-    scenes += [(ROOT/'input/peanut.nml', cell, [f'mesh%cell={cell}e-3', f'mesh%elements={along}, {across}'])
-               for cell, along, across in ((1.2, 23, 14), (0.8, 31, 17), (0.48, 48, 24))]
-    for deck, cell, settings in scenes:
-        with tempfile.TemporaryDirectory() as folder:
-            text = deck.read_text(encoding='utf-8').replace('mass_scaling=6', 'step=16e-6')
-            run(program, change_deck(text, [*settings, "time%integrator='generalized_alpha'"]), folder, '--profile')
-            log = next(pathlib.Path(folder).glob('*.log')).read_text(encoding='utf-8')
-        unknowns = re.search(r'(\d+) unknowns', log)[1]
-        part, total = (float(re.search(rf'^{name}.* ([0-9.]+) s', log, re.MULTILINE)[1])
-                       for name in ('answers to unit forces', 'all of this rank'))
-        print(f'| {deck.stem} | {cell:g} | {unknowns} | {total:.1f} | {100*part/total:.0f} % |', flush=True)
-
-
-STUDIES = {study.__name__: study for study in (thresholds, steps, crossply, impact, strips, answers)}
+STUDIES = {study.__name__: study for study in (thresholds, steps, crossply, impact, strips)}
 
 
 def main(program, *studies):

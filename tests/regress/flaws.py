@@ -24,10 +24,11 @@ from solver_runs import (
 DECK = "../small/cohesive.nml"
 CRACKS = ["ply_damage%d=100", "material%XT=1517e6", "material%XC=1590e6", "material%YC=253e6", "material%Sf=500e6",
           "material%Sm23=105e6", "material%YT=46e6", "material%S12=105e6"]
-# Settings with cracks, the key by which they are flaws, and time at which a checkpoint is written.
+# Settings with cracks, the key by which they are flaws, and time at which a checkpoint is written. Steps are short enough
+# that none is rejected: whether a longer one finds equilibrium is within rounding while cracks open.
 WAYS = {"cracks_as_flaws": ([*CRACKS, "delamination%strength_opening=27e6", "delamination%strength_shear=60e6",
-                             "time%end=200e-6"], 160e-6),
-        "shear_cracks": ([*CRACKS, "time%end=280e-6"], 240e-6)}
+                             "time%end=200e-6", "time%step=2.5e-6", "solver%tolerance=1e-8"], 160e-6),
+        "shear_cracks": ([*CRACKS, "time%end=280e-6", "time%step=2.5e-6", "solver%tolerance=1e-8"], 240e-6)}
 PARTS = {"quarter": "6, 6", "half_x": "6, 12", "point": "6, 12", "none": "12, 12"}
 
 
@@ -69,7 +70,7 @@ def check_restart(implam, folder, key, _):
     cracks, time = WAYS[key]
     settings = [*cracks, f"delamination%{key}=.true.", f"output%checkpoint_every={time}"]
     area = check_goes_on(implam, folder, DECK, settings)["delaminated_area"]
-    require(area[-1] > area[-4] > 0, "Nothing grows after the checkpoint.")
+    require(area[-1] > area[-16] > 0, "Nothing grows after the checkpoint.")
 
 
 def trial(kind, implam, folder, *launcher):

@@ -162,7 +162,7 @@ def split_next_to_rejections(implam, folder, deck, settings, period, periods):
         raise TrialError(f"No number of iterations rejects steps and yet reaches the end: {failure}") from None
     before, after, histories = 0, 0, []
     # Half a period after a checkpoint would not show a forgotten step: the halved one and the full one both fit in.
-    for end in sorted({number + share for number in sorted(found)[:2] for share in (0.99, 1.99) if number + share > 1}):
+    for end in sorted({number + share for number in sorted(found)[:2] for share in (0.9999, 1.9999) if number + share > 1}):
         reference, again = run_split(implam, folder / f"end_{end}", deck, [*settings, f"time%end={end * period!r}"])
         require_same(again, reference, f"end after {end} periods")
         histories.append(reference)
@@ -174,14 +174,16 @@ def split_next_to_rejections(implam, folder, deck, settings, period, periods):
 
 def check_next_to_rejections(implam, folder, deck, settings, period, periods):
     """The last checkpoint just before and just after rejected steps, of runs that may take fewer and fewer iterations
-    until there are both; return the histories."""
+    until there have been both; return all histories."""
     settings = [*settings, f"output%checkpoint_every={period!r}"]
+    before, after, histories = 0, 0, []
     for most in FEW_ITERATIONS:
         few = [*settings, f"solver%max_iterations={most}"]
-        histories, before, after = split_next_to_rejections(implam, folder / f"iterations_{most}", deck, few, period,
-                                                            periods)
+        found, just_before, just_after = split_next_to_rejections(implam, folder / f"iterations_{most}", deck, few,
+                                                                  period, periods)
+        before, after, histories = before + just_before, after + just_after, histories + found
         if before and after:
-            print(f"With at most {most} iterations, checkpoints just before a rejected step: {before}, just after: "
+            print(f"Down to {most} iterations at most, checkpoints just before a rejected step: {before}, just after: "
                   f"{after}; the same to the last bit")
             return histories
     raise TrialError("No checkpoint was next to a rejected step: the trial proves nothing.")

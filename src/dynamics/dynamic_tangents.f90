@@ -1,0 +1,93 @@
+!> The tangent of a step in time where its iteration has come to, beside the factored operator that is its
+!> preconditioner.
+module dynamic_tangents
+  use errors, only: error_t
+  use impact_coupling, only: impact_coupling_t
+  use kinds, only: wp
+  use models, only: model_t
+  use plate_options, only: kinematics_von_karman
+  use states, only: state_t
+  use tangent_operators, only: tangent_operator_t
+  use tangent_products, only: tangent_product_t
+  implicit none
+  private
+  public :: find_tangent, add_force_slope
+
+contains
+
+  !> The tangent, but for the impactor's force, after the operator was renewed if that is due: where it is told so, or
+  !> where ties and contacts have left it.
+  subroutine find_tangent(model, operator, old, new, factors, told, most_changes, asks_elements, tangent, diagonal, &
+                          error)
+    !> Mesh, numbering and interfaces of the plate
+    type(model_t), target, intent(in) :: model
+    !> The factored operator
+    type(tangent_operator_t), target, intent(inout) :: operator
+    !> State at the start
+    type(state_t), intent(in) :: old
+    !> State at the end
+    type(state_t), target, intent(in) :: new
+    !> Factors of stiffness and mass
+    real(wp), intent(in) :: factors(2)
+    !> True: renewed in any case
+    logical, intent(in) :: told
+    !> Changes of ties and contacts that are left to the iteration
+    integer, intent(in) :: most_changes
+    !> True: the factor has left too much of the forces, so elements are asked also where they change slowly
+    logical, intent(in) :: asks_elements
+    !> The tangent
+    type(tangent_product_t), intent(out) :: tangent
+    !> Its diagonal, (5, points); unallocated: the tangent is the factored operator
+    real(wp), allocatable, intent(out) :: diagonal(:, :)
+    !> Set if the operator is singular
+    type(error_t), allocatable, intent(inout) :: error
+    real(wp), allocatable :: wanted(:, :)
+    logical :: due
+
+    due = told
+    if (model%has_bonds) then
+      allocate (wanted, mold=operator%added)
+      call new%interfaces%added_stiffness(model, operator%diagonal, factors(1), wanted)
+      if (.not. due) due = operator%has_left(model, wanted, most_changes)
+    end if
+    if (due) call operator%renew(model, new%plies%stiffness, new%interfaces, new%motion%displacement, factors(1), &
+                                 factors(2), error)
+    if (allocated(error)) return
+    tangent%model => model
+    tangent%numbering => operator%numbering
+    tangent%displacement => new%motion%displacement
+    tangent%stiffness => new%plies%stiffness
+    if (allocated(new%plies%free)) tangent%free => new%plies%free
+    tangent%stiffness_factor = factors(1)
+    tangent%mass_factor = factors(2)
+    tangent%mass_change = factors(2) - operator%mass_factor
+    tangent%elements = model%scene%kinematics == kinematics_von_karman .and. (asks_elements .or. model%has_bonds)
+    tangent%elements = .not. due .and. (model%scene%has_ply_damage .or. tangent%elements)
+    if (model%has_bonds) &
+      call tangent%take_jumps(operator%added, wanted, new%interfaces%cohesive%cohesive, factors(1)* &
+        new%interfaces%cohesive%tangents_at(model, old%interfaces%cohesive, new%motion%displacement))
+    if (tangent%is_factored()) return
+    diagonal = operator%diagonal
+    if (model%has_bonds) diagonal(:3, :) = diagonal(:3, :) + wanted
+  end subroutine find_tangent
+  !> Adds the slope of the impactor's force to a tangent.
+  subroutine add_force_slope(model, operator, coupling, old, new, tangent)
+    type(model_t), intent(in) :: model
+    !> Knows the equations
+    type(tangent_operator_t), intent(in) :: operator
+    !> The impactor's side of the step
+    type(impact_coupling_t), intent(in) :: coupling
+    !> State at the start, and at the end
+    type(state_t), intent(in) :: old, new
+    !> The tangent
+    type(tangent_product_t), intent(inout) :: tangent
+    real(wp), allocatable :: push(:, :)
+
+    allocate (push(5, size(model%patch)), source=0.0_wp)
+    push(3, :) = model%patch/model%mesh%multiplicity
+    allocate (tangent%pattern(operator%numbering%rows))
+    call operator%numbering%gather(push, tangent%pattern)
+    tangent%force_slope = coupling%slope(model%scene%indentation, old%indentation, &
+                                         model%contact_deflection(new%motion%displacement))
+  end subroutine add_force_slope
+end module dynamic_tangents

@@ -1,0 +1,119 @@
+!> The tangent stiffness of the plate times a motion: the derivative of its internal force along that motion, evaluated
+!> without any matrix.
+module tangent_forces
+  use kinds, only: wp
+  use plate_options, only: kinematics_linear, kinematics_von_karman, shear_assumed
+  use element_batches, only: element_batches_t, lanes
+  use reference_fields, only: gather, scatter, add_gradient_forces
+  use batch_strains, only: in_plane_strains, add_in_plane_forces, shear_strains, add_shear_forces
+  use batch_resultants, only: in_plane_resultants, shear_resultants, take_free_resultants
+  implicit none
+  private
+  public :: add_tangent_force
+
+contains
+
+  !> Adds the tangent stiffness at a displacement times a motion to the forces on the points.
+  subroutine add_tangent_force(batches, stiffness, kinematics, u, v, f, free)
+    !> The elements
+    type(element_batches_t), intent(in) :: batches
+    !> Section stiffness left, as in the batches (lanes, 21, batches)
+    real(wp), contiguous, intent(in) :: stiffness(:, :, :)
+    !> One of the kinematics_* choices
+    integer, intent(in) :: kinematics
+    !> Unknowns at which the tangent is taken, and the motion (5, points)
+    real(wp), contiguous, intent(in) :: u(:, :), v(:, :)
+    !> Forces (5, columns that the batches add to)
+    real(wp), contiguous, intent(inout) :: f(:, :)
+    !> Resultants Nxx to Mxy of strains that go without stress, and their energy per area, (lanes, 7, batches)
+    real(wp), contiguous, intent(in), optional :: free(:, :, :)
+    real(wp) :: at(lanes, 9, 5), r(lanes, 9, 5), forces(lanes, 9, 6), strains(lanes, 9, 6)
+    real(wp) :: slopes(lanes, 9, 2), change(lanes, 9, 2), unused(lanes)
+    integer :: b
+
+    unused = 0
+    slopes = 0
+    do b = 1, batches%batches
+      associate (inverse => batches%inverse_jacobian(:, :, :, b), weight => batches%weight(:, :, b))
+        call gather(batches%points(:, :, b), v, r)
+        if (kinematics == kinematics_von_karman) then
+          call gather(batches%points(:, :, b), u, at)
+          call in_plane_strains(inverse, kinematics, at, forces, slopes)
+          call in_plane_resultants(stiffness(:, :, b), weight, forces, unused)
+          if (present(free)) call take_free_resultants(free(:, :, b), weight, forces)
+          call in_plane_strains(inverse, kinematics, r, strains, change)
+          ! Strains of the motion alone have half the square of its slopes; their derivative has what follows instead.
+          call change_strains(slopes, change, strains)
+        else
+          call in_plane_strains(inverse, kinematics_linear, r, strains, change)
+        end if
+        call turn_into_forces(batches, b, stiffness(:, :, b), kinematics, slopes, strains, r)
+        if (kinematics == kinematics_von_karman) call add_turned_forces(inverse, forces, change, r(:, :, 3))
+        call scatter(batches%targets(:, :, b), r, f)
+      end associate
+    end do
+  end subroutine add_tangent_force
+
+  !> Turns von Karman's strains of a motion into the change of the strains that it makes.
+  pure subroutine change_strains(slopes, change, strains)
+    !> Slopes w,x and w,y, and their change (lane, point, direction)
+    real(wp), intent(in) :: slopes(lanes, 9, 2), change(lanes, 9, 2)
+    !> Strains of the motion on entry, change of the strains on return (lane, point, component)
+    real(wp), intent(inout) :: strains(lanes, 9, 6)
+
+    strains(:, :, 1) = strains(:, :, 1) + (slopes(:, :, 1) - 0.5_wp*change(:, :, 1))*change(:, :, 1)
+    strains(:, :, 2) = strains(:, :, 2) + (slopes(:, :, 2) - 0.5_wp*change(:, :, 2))*change(:, :, 2)
+    strains(:, :, 3) = strains(:, :, 3) + slopes(:, :, 1)*change(:, :, 2) + slopes(:, :, 2)*change(:, :, 1) &
+                       - change(:, :, 1)*change(:, :, 2)
+  end subroutine change_strains
+
+  !> Turns a motion of a batch, whose change of in-plane strains is known, into its nodal forces.
+  pure subroutine turn_into_forces(batches, b, c, kinematics, slopes, strains, r)
+    !> The elements
+    type(element_batches_t), intent(in) :: batches
+    !> Number of the batch
+    integer, intent(in) :: b
+    !> Section stiffness
+    real(wp), intent(in) :: c(lanes, 21)
+    !> One of the kinematics_* choices
+    integer, intent(in) :: kinematics
+    !> Slopes w,x and w,y (lane, point, direction)
+    real(wp), intent(in) :: slopes(lanes, 9, 2)
+    !> Change of the in-plane strains on entry, of their resultants on return (lane, point, component)
+    real(wp), intent(inout) :: strains(lanes, 9, 6)
+    !> Motion of the nodes on entry, forces on them on return
+    real(wp), intent(inout) :: r(lanes, 9, 5)
+    real(wp) :: shear(lanes, batches%shear_points, 2), unused(lanes)
+
+    unused = 0
+    call shear_strains(batches, b, r, shear)
+    call in_plane_resultants(c, batches%weight(:, :, b), strains, unused)
+    if (batches%shear == shear_assumed) then
+      call shear_resultants(9, c, batches%weight(:, :, b), shear, unused)
+    else
+      call shear_resultants(batches%shear_points, c, batches%shear_weight(:, :, b), shear, unused)
+    end if
+    r = 0.0_wp
+    call add_in_plane_forces(batches%inverse_jacobian(:, :, :, b), kinematics, strains, slopes, r)
+    call add_shear_forces(batches, b, shear, r)
+  end subroutine turn_into_forces
+
+  !> Adds the forces on w of membrane forces that turn with the slopes.
+  pure subroutine add_turned_forces(inverse, forces, change, f)
+    !> Derivatives xi,x eta,x xi,y eta,y at the Gauss points
+    real(wp), intent(in) :: inverse(lanes, 9, 4)
+    !> Membrane forces Nxx, Nyy, Nxy and moments, times the areas of the points
+    real(wp), intent(in) :: forces(lanes, 9, 6)
+    !> Change of the slopes (lane, point, direction)
+    real(wp), intent(in) :: change(lanes, 9, 2)
+    !> Nodal forces on w
+    real(wp), intent(inout) :: f(lanes, 9)
+    real(wp) :: along(lanes, 9, 2), x_force(lanes, 9), y_force(lanes, 9)
+
+    x_force = forces(:, :, 1)*change(:, :, 1) + forces(:, :, 3)*change(:, :, 2)
+    y_force = forces(:, :, 3)*change(:, :, 1) + forces(:, :, 2)*change(:, :, 2)
+    along(:, :, 1) = inverse(:, :, 1)*x_force + inverse(:, :, 3)*y_force
+    along(:, :, 2) = inverse(:, :, 2)*x_force + inverse(:, :, 4)*y_force
+    call add_gradient_forces(along, f)
+  end subroutine add_turned_forces
+end module tangent_forces

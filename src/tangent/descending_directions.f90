@@ -1,0 +1,58 @@
+!> A direction that descends where the tangent of a step is not positive definite: Newton's, with the sizes of the
+!> eigenvalues in a small space of motions (J. Nocedal, S. J. Wright, Numerical Optimization, 2006, section 3.4; Y. N.
+!> Dauphin et al., Advances in Neural Information Processing Systems 27 (2014) 2933-2941).
+module descending_directions
+  use kinds, only: wp
+  implicit none
+  private
+  public :: find_descending
+
+  !> Size of an eigenvalue over the largest below which it counts as that: what lies along it is unknown by rounding.
+  real(wp), parameter :: least_eigenvalue = 1.0e-10_wp
+
+  interface
+    !> LAPACK: eigenvalues and eigenvectors of A x = lambda B x.
+    subroutine dsygv(itype, jobz, uplo, n, a, lda, b, ldb, w, work, lwork, info)
+      import :: wp
+      !> 1: this problem; order, leading dimensions, size of the room to work in
+      integer, intent(in) :: itype, n, lda, ldb, lwork
+      !> 'V': eigenvectors too; 'L': lower triangles are given
+      character, intent(in) :: jobz, uplo
+      !> A, overwritten by the eigenvectors, and B, positive definite, overwritten by its factor
+      real(wp), intent(inout) :: a(lda, *), b(ldb, *)
+      !> Eigenvalues, ascending; room to work in
+      real(wp), intent(out) :: w(*), work(*)
+      !> Not 0: they were not found
+      integer, intent(out) :: info
+    end subroutine dsygv
+  end interface
+
+contains
+
+  !> Shares of motions in a direction that descends, if the tangent has negative curvature along any of them.
+  subroutine find_descending(tangent, metric, forces, shares, negative)
+    !> Work of the tangent's forces on the motions, (motions, motions); its symmetric part counts
+    real(wp), intent(in) :: tangent(:, :)
+    !> The same of a positive operator that is near to it
+    real(wp), intent(in) :: metric(:, :)
+    !> Work of the forces out of balance on the motions, (motions)
+    real(wp), intent(in) :: forces(:)
+    !> Shares of the motions, left alone without negative curvature, (motions)
+    real(wp), intent(inout) :: shares(:)
+    !> True: there is negative curvature
+    logical, intent(out) :: negative
+    real(wp) :: vectors(size(forces), size(forces)), factor(size(forces), size(forces)), values(size(forces))
+    real(wp) :: work(max(1, 34*size(forces)))
+    integer :: info
+
+    vectors = (tangent + transpose(tangent))/2
+    factor = (metric + transpose(metric))/2
+    call dsygv(1, 'V', 'L', size(forces), vectors, size(forces), factor, size(forces), values, work, size(work), info)
+    negative = .false.
+    if (info /= 0) return
+    negative = values(1) < -least_eigenvalue*maxval(abs(values))
+    if (.not. negative) return
+    values = abs(values)
+    shares = matmul(vectors, matmul(forces, vectors)/max(values, least_eigenvalue*maxval(values)))
+  end subroutine find_descending
+end module descending_directions

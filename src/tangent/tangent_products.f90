@@ -1,0 +1,226 @@
+!> The tangent of a step where its iteration has come to, times a motion. It needs no matrix: the elements are asked for
+!> the derivative of their forces, or what has changed since the factored operator was made is added to what that knows.
+module tangent_products
+  use kinds, only: wp
+  use models, only: model_t
+  use numberings, only: numbering_t
+  use tangent_forces, only: add_tangent_force
+  implicit none
+  private
+  public :: tangent_product_t
+
+  !> The tangent.
+  type :: tangent_product_t
+    !> Mesh, numbering and interfaces of the plate
+    type(model_t), pointer :: model => null()
+    !> Its equations
+    type(numbering_t), pointer :: numbering => null()
+    !> Factors of stiffness and mass, and what the latter has more than in the factored operator
+    real(wp) :: stiffness_factor = 0, mass_factor = 0, mass_change = 0
+    !> True: the elements are not those of the factored operator
+    logical :: elements = .false.
+    !> Displacement at which it is taken, ghosts up to date, (5, points), where elements are asked
+    real(wp), pointer, contiguous :: displacement(:, :) => null()
+    !> Section stiffness of the elements, (lanes, 21, batches), and resultants of strains that go without stress
+    real(wp), pointer, contiguous :: stiffness(:, :, :) => null(), free(:, :, :) => null()
+    !> Stiffness of the jumps of each point, all of it where elements are asked, else what it has more than in the
+    !> factored operator, (3, 3, points); unallocated: none
+    real(wp), allocatable :: jumps(:, :, :)
+    !> True: cohesive points soften, so it may be indefinite
+    logical :: softens = .false.
+    !> What the impactor's force loses per mean deflection of the patch
+    real(wp) :: force_slope = 0
+    !> How a unit of that force is spread over the rows
+    real(wp), allocatable :: pattern(:)
+  contains
+    !> The tangent times a motion.
+    procedure :: multiply
+    !> True: it is the factored operator.
+    procedure :: is_factored
+    !> Mean deflection of the patch.
+    procedure :: mean
+    !> Takes the stiffness of the jumps.
+    procedure :: take_jumps
+    !> Takes the skew parts of the tangents of cohesive laws.
+    procedure :: take_skew
+    procedure, private :: add_elements
+    procedure, private :: add_jumps
+  end type tangent_product_t
+
+contains
+
+  !> True: it is the factored operator, but for the impactor's force.
+  pure logical function is_factored(self)
+    !> The tangent
+    class(tangent_product_t), intent(in) :: self
+
+    is_factored = .not. (self%elements .or. allocated(self%jumps) .or. abs(self%mass_change) > 0)
+  end function is_factored
+
+  !> The tangent times a motion. Collective.
+  subroutine multiply(self, motion, known, product)
+    !> The tangent
+    class(tangent_product_t), intent(in) :: self
+    !> Motion of this rank's rows
+    real(wp), intent(in) :: motion(:)
+    !> The factored operator times that motion
+    real(wp), intent(in) :: known(:)
+    !> Force of this rank's rows
+    real(wp), intent(out) :: product(:)
+    real(wp), allocatable :: field(:, :), force(:, :), inertia(:, :)
+    real(wp) :: factor
+
+    if (self%is_factored()) then
+      product = known
+    else
+      allocate (field, force, inertia, mold=self%displacement)
+      field = 0
+      call self%numbering%scatter(motion, field)
+      call self%model%halo%update(field)
+      force = 0
+      if (self%elements) call self%add_elements(field, force)
+      factor = merge(self%mass_factor, self%mass_change, self%elements)
+      if (abs(factor) > 0) then
+        call self%model%inertia(field, inertia)
+        force = force + factor*inertia
+      end if
+      if (allocated(self%jumps)) call self%add_jumps(field, force)
+      call self%numbering%gather(force, product)
+      if (.not. self%elements) product = product + known
+    end if
+    if (self%force_slope > 0) product = product + self%force_slope*self%mean(motion)*self%pattern
+  end subroutine multiply
+
+  !> Mean deflection of the patch in a motion. Collective.
+  real(wp) function mean(self, motion)
+    !> The tangent
+    class(tangent_product_t), intent(in) :: self
+    !> Motion of this rank's rows
+    real(wp), intent(in) :: motion(:)
+
+    mean = self%model%mesh%multiplicity*dot_product(self%pattern, motion)
+    call self%model%communicator%sum(mean)
+  end function mean
+
+  !> Takes the stiffness of the jumps: what ties, contacts and frames add to diagonals, and the tangents of cohesive
+  !> laws. Collective.
+  subroutine take_jumps(self, factored, now, cohesive, tangents)
+    !> The tangent, whose elements are known
+    class(tangent_product_t), intent(inout) :: self
+    !> Diagonals in the factored operator, and now, (3, points)
+    real(wp), intent(in) :: factored(:, :), now(:, :)
+    !> Points that a cohesive law holds; unallocated: none
+    logical, allocatable, intent(in) :: cohesive(:)
+    !> Their tangents times the factor of stiffness, (3, 3, points); read with `cohesive` only
+    real(wp), intent(in) :: tangents(:, :, :)
+    real(wp) :: some
+    integer :: i, k
+
+    allocate (self%jumps(3, 3, self%numbering%owned), source=0.0_wp)
+    do i = 1, self%numbering%owned
+      do k = 1, 3
+        self%jumps(k, k, i) = now(k, i)
+      end do
+      if (allocated(cohesive)) then
+        if (cohesive(i)) then
+          self%jumps(:, :, i) = tangents(:, :, i)
+          self%softens = self%softens .or. softens(tangents(:, :, i))
+        end if
+      end if
+      if (self%elements) cycle
+      do k = 1, 3
+        self%jumps(k, k, i) = self%jumps(k, k, i) - factored(k, i)
+      end do
+    end do
+    call keep_if_any(self)
+    some = merge(1.0_wp, 0.0_wp, self%softens)
+    call self%model%communicator%maximum(some)
+    self%softens = some > 0
+  end subroutine take_jumps
+
+  !> Takes the skew parts of the tangents of cohesive laws. Collective.
+  subroutine take_skew(self, tangents)
+    !> The tangent
+    class(tangent_product_t), intent(inout) :: self
+    !> Force per jump, (3, 3, points)
+    real(wp), intent(in) :: tangents(:, :, :)
+    integer :: i
+
+    allocate (self%jumps(3, 3, self%numbering%owned), source=0.0_wp)
+    do i = 1, self%numbering%owned
+      if (self%model%zone(i) > 0) self%jumps(:, :, i) = (tangents(:, :, i) - transpose(tangents(:, :, i)))/2
+    end do
+    call keep_if_any(self)
+  end subroutine take_skew
+
+  !> Keeps the stiffness of jumps only if there is any. Collective.
+  subroutine keep_if_any(self)
+    !> The tangent
+    type(tangent_product_t), intent(inout) :: self
+    real(wp) :: largest
+
+    largest = maxval([0.0_wp, abs(self%jumps)])
+    call self%model%communicator%maximum(largest)
+    if (.not. largest > 0) deallocate (self%jumps)
+  end subroutine keep_if_any
+
+  !> True where a point's damage grows: its tangent then falls along the jump.
+  pure logical function softens(tangent)
+    !> Force per jump
+    real(wp), intent(in) :: tangent(3, 3)
+
+    softens = any([tangent(1, 1), tangent(2, 2), tangent(3, 3)] < 0) &
+              .or. any(abs([tangent(1, 2), tangent(1, 3), tangent(2, 3)]) > 0)
+  end function softens
+
+  !> Adds the forces of elements, and of what holds lines.
+  subroutine add_elements(self, motion, force)
+    !> The tangent
+    class(tangent_product_t), intent(in) :: self
+    !> The motion, ghosts up to date, (5, points)
+    real(wp), intent(in) :: motion(:, :)
+    !> Forces at the owned points, (5, points); overwritten
+    real(wp), intent(inout) :: force(:, :)
+    real(wp), allocatable :: columns(:, :), lines(:, :), still(:, :)
+    real(wp) :: energy
+
+    associate (model => self%model)
+      allocate (columns(5, max(size(force, 2), model%borders%columns)), source=0.0_wp)
+      if (associated(self%free)) then
+        call add_tangent_force(model%elements, self%stiffness, model%scene%kinematics, &
+                               model%motion_of(self%displacement), model%motion_of(motion), columns, self%free)
+      else
+        call add_tangent_force(model%elements, self%stiffness, model%scene%kinematics, &
+                               model%motion_of(self%displacement), model%motion_of(motion), columns)
+      end if
+      call model%borders%add(columns)
+      force = columns(:, :size(force, 2))
+      if (model%map%layered) call model%map%to_unknowns(force)
+      energy = 0
+      call model%rig%add_line_forces(motion, force, energy)
+      force = self%stiffness_factor*force
+      if (size(model%lines) == 0) return
+      allocate (lines, still, mold=force)
+      still = 0
+      call model%line_forces(still, 0.0_wp, lines, prescribed=.true.)
+      force = force + lines
+      call model%line_forces(motion, 0.0_wp, lines, prescribed=.true.)
+      force = force - lines
+    end associate
+  end subroutine add_elements
+
+  !> Adds the forces on jumps.
+  pure subroutine add_jumps(self, motion, force)
+    !> The tangent
+    class(tangent_product_t), intent(in) :: self
+    !> The motion, (5, points)
+    real(wp), intent(in) :: motion(:, :)
+    !> Forces at the owned points, (5, points)
+    real(wp), intent(inout) :: force(:, :)
+    integer :: i
+
+    do i = 1, self%numbering%owned
+      force(1:3, i) = force(1:3, i) + matmul(self%jumps(:, :, i), motion(1:3, i))
+    end do
+  end subroutine add_jumps
+end module tangent_products
