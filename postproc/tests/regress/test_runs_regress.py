@@ -140,7 +140,7 @@ class RegressTest(unittest.TestCase):
                                  for key, value in entry.items()) + "}"
         variants = '[[variant]]\nname = "slow"\n[[variant]]\nname = "fast"\nset = ["impactor%velocity=3"]\n'
         both = '[[expect]]\nquantity = "peak_force"\nvalue = 800\nrelative = 1e-3\n' + variants
-        for text, told in ((both, r"differs between the variants"), (f"expect = [{inline}]", r"a line a key")):
+        for text, told in ((both, r"differs between the variants"), (f"expect = [{inline}]", r"a line for each key")):
             self.expect.write_text(text)
             code, said = self.regress("--accept")
             self.assertEqual((code, self.expect.read_text()), (1, text), said)
