@@ -13,7 +13,7 @@ module compression_records
   real(wp), parameter :: strains(2) = [1.0e-3_wp, 3.0e-3_wp]
   !> Part of its largest value below which the stress has to come for the plate to have failed: a test ends when the
   !> force has dropped by about 30 % (ASTM D7137).
-  real(wp), parameter :: fallen = 0.7_wp
+  real(wp), parameter :: failure_ratio = 0.7_wp
   !> Part of its largest compression that a gauge has to lose under a rising load for the plate to have buckled (strain
   !> reversal, J. Singer, J. Arbocz, T. Weller, Buckling Experiments 1, 1998); less than that may be vibration.
   real(wp), parameter :: reversed = 0.1_wp
@@ -69,7 +69,7 @@ contains
       self%shortening = shortening
       self%bending = bending
       self%failed = .false.
-    else if (stress < fallen*self%strength) then
+    else if (stress < failure_ratio*self%strength) then
       self%failed = .true.
     end if
   end subroutine observe
@@ -105,7 +105,7 @@ contains
   subroutine visit(self, archive)
     !> The record
     class(compression_record_t), intent(inout) :: self
-    !> Where to or where from
+    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     integer :: i
 

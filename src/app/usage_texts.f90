@@ -1,4 +1,5 @@
-!> What the program tells of its use: one table of commands, options and exit codes, for --help, the manual page of Unix
+!> What the program reports of its use: one table of commands, options and exit codes, for --help, the manual page of
+!> Unix
 !> and the completions of shells.
 module usage_texts
   use text, only: line_t, append, words_of
@@ -31,12 +32,12 @@ module usage_texts
   character(len=text_length), parameter, public :: option_rows(2, 12) = reshape([character(len=text_length) :: &
     '--rig d7136', 'the deck that new writes is that of a rig: a drop-weight test after ASTM D7136', &
     '--output DIR', 'folder of the results, instead of the deck''s', &
-    '--wall-limit SECONDS', 'end with a checkpoint before so many seconds have passed on the wall', &
-    '--verify', 'run the deck, then once more with half the elements'' sides and half the steps, and tell what &
+    '--wall-limit SECONDS', 'end with a checkpoint before so many wall-clock seconds have passed', &
+    '--verify', 'run the deck, then once more with half the elements'' sides and half the steps, and report what &
       &figures change by; the same command goes on where it was stopped', &
     '--profile', 'tell in log and summary where time and memory of the run went, part by part', &
     '--ranks N', 'ranks of the job that queue writes, instead of what the deck''s size suggests', &
-    '--time H:MM:SS', 'its limit on the wall; a day without', &
+    '--time H:MM:SS', 'its wall-clock limit; a day without', &
     '--chain', 'it comes again, from its checkpoint, until the run has ended', &
     '--markdown', 'explain as a table for the manual', &
     '-v, --version', 'version, commit, compiler and PETSc, and how to cite', &
@@ -45,7 +46,7 @@ module usage_texts
   !> Exit codes.
   character(len=text_length), parameter, public :: code_rows(2, 7) = reshape([character(len=text_length) :: &
     '0', 'done', '1', 'usage', '2', 'deck', '3', 'no convergence at the smallest step', '4', 'files', '5', 'internal', &
-    '75', 'stopped by a signal of the queue or the time on the wall, with a checkpoint written: restart goes &
+    '75', 'stopped by a signal of the queue or the wall-clock time, with a checkpoint written: restart goes &
       &on'], [2, 7])
   !> Paragraphs on ranks and signals.
   character(len=text_length), parameter, public :: notes(2) = [character(len=text_length) :: &

@@ -20,7 +20,7 @@ module deck_process_zones
   use stacking, only: stacked_plies, section_stiffness
   implicit none
   private
-  public :: check_process_zones, settle_flaws
+  public :: check_process_zones, set_flaws
 
 contains
 
@@ -42,8 +42,8 @@ contains
     end do
   end subroutine check_process_zones
 
-  !> Finds what strength interfaces have beside cracks, and tells where cracks make no difference.
-  subroutine settle_flaws(deck, problems)
+  !> Finds what strength interfaces have beside cracks, and reports where cracks make no difference.
+  subroutine set_flaws(deck, problems)
     !> The deck, filled and checked; its interfaces receive that strength
     type(deck_t), intent(inout) :: deck
     !> Receives the remarks
@@ -66,9 +66,9 @@ contains
         end if
       end associate
     end do
-  end subroutine settle_flaws
+  end subroutine set_flaws
 
-  !> Tells where cracks of the plies by transverse shear make no difference.
+  !> Reports where cracks of the plies by transverse shear make no difference.
   subroutine remark_shear_cracks(deck, delamination, problems)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -85,8 +85,8 @@ contains
       least = minval([(shear_across_strength(crack_strengths(plies, ply, deck%materials, deck%ply_damage)), &
                        ply=delamination%below_ply, delamination%below_ply + 1)])
       if (least < delamination%strength_shear) return
-      call remark_idle(deck%settings, problems, delamination_group, key_shear_cracks, 'has no effect as the plies '// &
-                       'bear more transverse shear than the interface.', delamination%group)
+      call remark_idle(deck%settings, problems, delamination_group, key_shear_cracks, &
+        'has no effect, as the shear strength of the plies exceeds that of the interface.', delamination%group)
     else
       call remark_idle(deck%settings, problems, delamination_group, key_shear_cracks, 'has no effect without '// &
                        '&ply_damage.', delamination%group)

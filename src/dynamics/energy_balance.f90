@@ -13,7 +13,7 @@ module energy_balance
   public :: book_step, book_failures
 
   !> Numbers whose products are summed together: a multiple of what the processor takes at once, as in residual_norms
-  integer, parameter :: together = 8
+  integer, parameter :: block_length = 8
 
   !> Products of the step's fields that the energies are made of, summed over the modelled part.
   type :: products_t
@@ -53,7 +53,7 @@ contains
     real(wp) :: amplitudes(2), gain, impactor, taken, fracture, heat, damage
 
     call find_products(model, integrator, old, step, energy, new, products)
-    amplitudes = model%scene%pressure%amplitude([old%time, new%time])
+    amplitudes = model%setup%pressure%amplitude([old%time, new%time])
     new%ledger%kinetic = products%kinetic/2
     new%ledger%strain = products%strain
     new%ledger%contact = old%ledger%contact - products%faces
@@ -68,7 +68,8 @@ contains
     heat = new%interfaces%friction_heat(model, old%interfaces)
     new%ledger%friction = new%ledger%friction + heat
     new%ledger%algorithmic = new%ledger%algorithmic - (damage + fracture + heat)
-    call new%plies%judge(damage, products%strain - old%ledger%strain - products%mean_internal - products%cohesive, &
+    call new%plies%measure_lag(damage, products%strain - old%ledger%strain - products%mean_internal &
+                               - products%cohesive, &
                          max(new%ledger%initial + new%ledger%external_work, products%strain))
     if (model%map%layered) then
       ! What fracture takes has been booked, and taken off here, when the ties were released.
@@ -76,8 +77,8 @@ contains
                                     new%motion%displacement - old%motion%displacement, taken)
       new%ledger%algorithmic = new%ledger%algorithmic + taken
     end if
-    if (.not. model%scene%has_impactor) return
-    impactor = impactor_energy(model%scene%impactor, new%impactor)
+    if (.not. model%setup%has_impactor) return
+    impactor = impactor_energy(model%setup%impactor, new%impactor)
     new%ledger%impactor = impactor
     new%ledger%indentation = new%indentation%work
     new%ledger%algorithmic = new%ledger%algorithmic - (force*(new%patch_mean - old%patch_mean) &
@@ -128,7 +129,7 @@ contains
     end associate
   end function integrator_gain
 
-  !> Products of the step's fields, of the whole plate.
+  !> Products of the step's fields, of the full plate.
   subroutine find_products(model, integrator, old, step, energy, new, products)
     type(model_t), intent(in) :: model
     !> Integrator of the plate
@@ -153,7 +154,7 @@ contains
     if (model%has_bonds) sums(10) = new%interfaces%contact_work(model, new%motion%displacement, &
                                                                 new%motion%displacement - old%motion%displacement)
     if (size(model%lines) > 0) sums(11:12) = line_products(model, old, new)
-    if (model%scene%has_crack_bands()) &
+    if (model%setup%has_crack_bands()) &
       sums(13) = stored_beyond_work(new%interfaces%cohesive, model, old%interfaces%cohesive, old%motion%displacement, &
                                     new%motion%displacement)
     call model%communicator%sum(sums)
@@ -200,7 +201,7 @@ contains
     type(motion_t), intent(inout) :: new
     !> The products
     real(wp), intent(out) :: sums(7)
-    real(wp) :: works(together, 4), jerks(together, 3)
+    real(wp) :: works(block_length, 4), jerks(block_length, 3)
 
     works = 0
     call add_works(5*owned, step*[1 - integrator%gamma, integrator%gamma], old%displacement, old%internal, &
@@ -226,11 +227,11 @@ contains
     !> Mass times velocity at the end
     real(wp), intent(inout) :: p_new(number)
     !> Sums of the four products
-    real(wp), intent(inout) :: sums(together, 4)
+    real(wp), intent(inout) :: sums(block_length, 4)
     integer :: start, k, n
 
-    do start = 0, number - 1, together
-      do k = 1, min(together, number - start)
+    do start = 0, number - 1, block_length
+      do k = 1, min(block_length, number - start)
         n = start + k
         p_new(n) = p(n) + (weights(1)*i(n) + weights(2)*i_new(n))
         sums(k, 1) = sums(k, 1) + v_new(n)*p_new(n)
@@ -250,11 +251,11 @@ contains
     !> The same at the end
     real(wp), intent(in) :: a_new(number), i_new(number)
     !> Sums of the three products
-    real(wp), intent(inout) :: sums(together, 3)
+    real(wp), intent(inout) :: sums(block_length, 3)
     integer :: start, k, n
 
-    do start = 0, number - 1, together
-      do k = 1, min(together, number - start)
+    do start = 0, number - 1, block_length
+      do k = 1, min(block_length, number - start)
         n = start + k
         sums(k, 1) = sums(k, 1) + a_new(n)*i_new(n)
         sums(k, 2) = sums(k, 2) + a(n)*i(n)

@@ -1,4 +1,4 @@
-!> What the history tells of lines that hold, move or press on the plate.
+!> What the history reports of lines that hold, move or press on the plate.
 module line_columns
   use kinds, only: wp
   use line_loads, only: line_load_t
@@ -23,7 +23,7 @@ module line_columns
   character(len=result_row_length), parameter, public :: end_rows(*) = [character(len=result_row_length) :: &
     'far_field_stress | real | pressure | Load over the width and thickness of the plate, positive in compression, the &
       &mean of the ends that lines move; only with lines that move ends of the plate in its plane.', &
-    'shortening | real | length | How much closer to each other the ends of the plate are than at the start.', &
+    'shortening | real | length | Reduction of the distance between the ends of the plate.', &
     'nominal_strain | real | - | Shortening over the length of the plate.']
 
 contains
@@ -33,7 +33,7 @@ contains
     type(model_t), intent(in) :: model
     !> The state reached
     type(state_t), intent(in) :: now
-    !> A value a column, the same on every rank; none without lines
+    !> One value per column, the same on every rank; none without lines
     real(wp), allocatable :: values(:)
     integer :: i
 
@@ -83,14 +83,14 @@ contains
     type(model_t), intent(in) :: model
     !> Load factor, then force and displacement of every line
     real(wp), intent(in) :: values(:)
-    !> A value a column; none without such lines
+    !> One value per column; none without such lines
     real(wp), allocatable :: ends(:)
     real(wp) :: sides(size(model%lines))
     logical :: on(size(model%lines)), halved(2)
     integer :: i, along
 
     allocate (ends(0))
-    associate (plate => model%scene%plate, lines => model%lines%load)
+    associate (plate => model%setup%plate, lines => model%lines%load)
       on = on_ends(plate, lines)
       if (.not. any(on)) return
       along = lines(findloc(on, .true., dim=1))%component

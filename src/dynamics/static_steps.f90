@@ -1,4 +1,4 @@
-!> A load step of a static analysis: Newton's iteration with a fresh tangent, around it that of the contact
+!> A load step of a static analysis: Newton's iteration with a new tangent, around it that of the contact
 !> pressures.
 module static_steps
   use kinds, only: wp
@@ -10,17 +10,17 @@ module static_steps
   use states, only: state_t
   use step_problems, only: step_problem_t
   use residual_norms, only: relative_residual
-  use slow_impactors, only: push_plate, find_push, push_unmet, follow_impactor
+  use slow_impactors, only: add_impactor_force, find_force_change, force_mismatch, move_slow_impactor
   use static_tangents, only: solve_tangent
   use tangent_operators, only: tangent_operator_t
   implicit none
   private
-  public :: static_step_t, new_static_step, part_taken
+  public :: static_step_t, new_static_step, correction_factor
 
-  !> Distance of pressures and gaps from contact (complementarity) at which they have settled.
+  !> Distance of pressures and gaps from contact (complementarity) at which they have converged.
   real(wp), parameter :: contact_tolerance = 5.0e-10_wp
 
-  !> Iterations in which a step with the consistent tangent converges unless it goes round.
+  !> Iterations in which a step with the consistent tangent converges unless it alternates.
   integer, parameter :: usual_iterations = 8
 
   !> A load step.
@@ -54,12 +54,12 @@ contains
     type(static_step_t) :: self
 
     self%contact_tolerance = contact_tolerance
-    self%curable = model%scene%kinematics /= kinematics_linear
+    self%retries_shorter = model%setup%kinematics /= kinematics_linear
     self%time = time
     self%load_factor = load_factor
   end function new_static_step
 
-  !> First guess: the state before.
+  !> Predictor: the state before.
   subroutine begin(self, model, operator, old, new)
     !> The problem
     class(static_step_t), intent(inout) :: self
@@ -93,7 +93,7 @@ contains
 
     call new%find_internal(model, old, energy)
     call model%static_loads(new%motion%displacement, new%load_factor, residual)
-    call push_plate(model, new%force, residual)
+    call add_impactor_force(model, new%force, residual)
     residual = residual - new%motion%internal
   end subroutine find_residual
 
@@ -102,7 +102,7 @@ contains
     !> The problem
     class(static_step_t), intent(in) :: self
     type(model_t), intent(in) :: model
-    !> Convergence asked for
+    !> Required convergence
     type(equilibrium_t), intent(in) :: equilibrium
     !> The factored operator
     type(tangent_operator_t), intent(in) :: operator
@@ -114,12 +114,12 @@ contains
 
     allocate (loads, mold=residual)
     call model%static_loads(new%motion%displacement, new%load_factor, loads)
-    call push_plate(model, new%force, loads)
+    call add_impactor_force(model, new%force, loads)
     ! What rounding leaves of the first solution a second one takes away, so it is asked for.
     residual_norm = relative_residual(model%communicator, operator%numbering, residual, new%motion%internal, loads, &
                                       0.0_wp, operator%diagonal, new%motion%displacement, new%iterations > 1, &
                                       equilibrium%tolerance, model%thickness, new%largest_forces)
-    if (model%scene%has_impactor) residual_norm = max(residual_norm, push_unmet(model, new))
+    if (model%setup%has_impactor) residual_norm = max(residual_norm, force_mismatch(model, new))
   end function residual_norm
 
   !> New pressures may be too little a change for the tolerance; only a correction can make them fit the gaps.
@@ -135,8 +135,9 @@ contains
     may_stop = .not. pressures_new
   end function may_stop
 
-  !> Finds a correction by a fresh tangent wherever that may have changed.
-  subroutine find_correction(self, model, operator, old, new, residual, tolerance, correction, falls, error)
+  !> Finds a correction by a new tangent wherever that may have changed.
+  subroutine find_correction(self, model, operator, old, new, residual, tolerance, correction, negative_curvature, &
+                             error)
     !> The problem
     class(static_step_t), intent(inout) :: self
     !> Mesh, numbering and interfaces of the plate
@@ -154,12 +155,12 @@ contains
     !> Correction of the displacement, (5, points)
     real(wp), intent(inout) :: correction(:, :)
     !> True: it goes along negative curvature of the tangent
-    logical, intent(out) :: falls
+    logical, intent(out) :: negative_curvature
     !> Set if a solve fails
     type(error_t), allocatable, intent(inout) :: error
 
-    falls = .false.
-    if (.not. operator%ready .or. changes(model, new%iterations)) &
+    negative_curvature = .false.
+    if (.not. operator%ready .or. tangent_changes(model, new%iterations)) &
       call operator%renew(model, new%plies%stiffness, new%interfaces, new%motion%displacement, 1.0_wp, 0.0_wp, error)
     if (.not. allocated(error)) &
       call solve_tangent(operator, model, new%interfaces%cohesive, residual, correction, error)
@@ -184,35 +185,37 @@ contains
     !> Set if a solve fails
     type(error_t), allocatable, intent(inout) :: error
 
-    if (model%scene%has_impactor) call find_push(model, operator, part_taken(new%iterations), new, correction, error)
+    if (model%setup%has_impactor) call find_force_change(model, operator, correction_factor(new%iterations), new, &
+                                                         correction, error)
     if (allocated(error)) error%code = exit_convergence
-    correction = part_taken(new%iterations)*correction
+    correction = correction_factor(new%iterations)*correction
   end subroutine complete_correction
 
   !> True if the tangent may not be what it was at the iteration before.
-  pure logical function changes(model, iterations)
+  pure logical function tangent_changes(model, iterations)
     type(model_t), intent(in) :: model
     !> Iterations of this step so far
     integer, intent(in) :: iterations
 
-    changes = model%scene%kinematics /= kinematics_linear .or. model%rig%unilateral
-    if (model%map%layered) changes = changes .or. any(model%scene%delaminations%law == law_cohesive)
+    tangent_changes = model%setup%kinematics /= kinematics_linear .or. model%rig%unilateral
+    if (model%map%layered) tangent_changes = tangent_changes .or. any(model%setup%delaminations%law == law_cohesive)
     ! Plies may have failed since the step before; later only contacts change.
-    if (.not. changes) changes = iterations == 0 .and. (model%scene%has_ply_damage .or. model%map%layered)
-    changes = changes .or. model%scene%has_crack_bands()
-    if (changes .or. .not. model%map%layered) return
-    changes = any(model%scene%delaminations%contact /= contact_none)
-  end function changes
+    if (.not. tangent_changes) tangent_changes = iterations == 0 .and. (model%setup%has_ply_damage &
+                                                                        .or. model%map%layered)
+    tangent_changes = tangent_changes .or. model%setup%has_crack_bands()
+    if (tangent_changes .or. .not. model%map%layered) return
+    tangent_changes = any(model%setup%delaminations%contact /= contact_none)
+  end function tangent_changes
 
-  !> Part of a correction that is taken. Newton's iteration may go round between two sets of points whose damage grows;
+  !> Part of a correction that is taken. Newton iterations may alternate between two sets of points whose damage grows;
   !> halving every other correction, once there have been more than it takes to converge, ends that.
-  elemental real(wp) function part_taken(iterations) result(part)
+  elemental real(wp) function correction_factor(iterations) result(part)
     !> Iterations of the step so far
     integer, intent(in) :: iterations
 
     part = 1
     if (iterations >= usual_iterations .and. modulo(iterations, 2) == 0) part = 0.5_wp
-  end function part_taken
+  end function correction_factor
 
   !> Nothing moves.
   subroutine complete(self, old, new)
@@ -252,10 +255,10 @@ contains
       sums(5) = faces/2
     end if
     ! Plies that failed, and a nose that presses elsewhere from now on, left the state before out of equilibrium. What
-    ! that sets free would go into motion.
-    call push_plate(model, old%force, loads_before)
+    ! that releases would go into motion.
+    call add_impactor_force(model, old%force, loads_before)
     sums(5) = sums(5) + model%product(change, loads_before - old%motion%internal)/2
-    if (.not. (model%scene%has_ply_damage .or. allocated(model%nose))) sums(5) = 0
+    if (.not. (model%setup%has_ply_damage .or. allocated(model%nose))) sums(5) = 0
     call model%communicator%sum(sums)
     sums = sums*model%mesh%multiplicity
     call new%count_step(old)
@@ -267,7 +270,7 @@ contains
     fracture = new%interfaces%cohesive%dissipation(model, old%interfaces%cohesive)
     heat = new%interfaces%friction_heat(model, old%interfaces)
     new%ledger%friction = old%ledger%friction + heat
-    if (model%scene%has_impactor) call follow_impactor(model, old, new)
+    if (model%setup%has_impactor) call move_slow_impactor(model, old, new)
     call new%plies%book(model, damage)
     new%ledger%ply_damage = old%ledger%ply_damage + damage
     new%ledger%delamination = old%ledger%delamination + fracture

@@ -1,4 +1,4 @@
-!> What the history tells of an accepted step: motion, energies, the step itself and its iterations. The energies are
+!> What the history reports of an accepted step: motion, energies, the step itself and its iterations. The energies are
 !> defined in doc/manual/energy_ledger.md.
 module step_columns
   use kinds, only: wp
@@ -17,25 +17,23 @@ module step_columns
     'force | real | force | Contact force between impactor and plate, positive where they press on each other.', &
     'indentation | real | length | Displacement of the impactor less the mean deflection of the patch; &
       &negative: a gap.', &
-    'impactor_displacement | real | length | Displacement of the impactor towards the plate since first touch.', &
+    'impactor_displacement | real | length | Displacement of the impactor towards the plate since first contact.', &
     'impactor_velocity | real | length/time | Velocity of the impactor, positive towards the plate.', &
     'deflection | real | length | Deflection of the struck point on the struck side, positive along the impact.']
 
   !> The energy ledger. These columns and their order are the public interface.
   character(len=result_row_length), parameter, public :: ledger_rows(*) = [character(len=result_row_length) :: &
-    'energy_impactor | real | energy | Kinetic energy of the impactor and its potential in gravity; the latter is 0 at &
-      &first touch.', &
+    'energy_impactor | real | energy | Kinetic energy of the impactor and its potential in gravity; the latter is 0 at first contact.', &
     'energy_kinetic | real | energy | Kinetic energy of the plate.', &
-    'energy_strain | real | energy | Strain energy of the plate with the stiffness that failures have left.', &
+    'energy_strain | real | energy | Strain energy of the plate with its damaged stiffness.', &
     'energy_indentation | real | energy | Work of the contact force on the indentation so far, stored and lost.', &
     'energy_delamination | real | energy | Fracture energy of the delaminated cells: critical energy release &
       &rate times area.', &
     'energy_ply_damage | real | energy | Strain energy lost as failures of plies took stiffness away.', &
     'energy_contact | real | energy | Work done against contact of separated faces and penalty ties, and what &
       &faces and frame lose as they meet.', &
-    'energy_algorithmic | real | energy | Algorithmic dissipation: energy that time integrators, implicit &
-      &interfaces and fading ties took out of the motion, less energy_delamination.', &
-    'energy_error | real | energy | What the ledger fails to account for: the sum of the eight energies before, &
+    'energy_algorithmic | real | energy | Algorithmic dissipation: energy that time integrators, implicit interfaces and released ties took out of the motion, less energy_delamination.', &
+    'energy_error | real | energy | Energy imbalance: the sum of the eight energies before, &
       &energy_friction, energy_layers and energy_damping, less work_external and the energy at the start.']
 
   !> The rest of the state and the length of the step.
@@ -53,12 +51,12 @@ module step_columns
       &computation.', &
     'force_iterations | integer | - | Newton and bisection steps for the contact force in the step, &
       &counted likewise.', &
-    'contact_iterations | integer | - | Rounds of contact pressures in the step that had something to &
+    'contact_iterations | integer | - | Updates of contact pressures in the step that had something to &
       &settle, counted likewise.', &
     'total_iterations | integer | - | Sum of iterations over the accepted steps.', &
     'total_force_iterations | integer | - | Sum of force_iterations over the accepted steps.', &
     'total_contact_iterations | integer | - | Sum of contact_iterations over the accepted steps.', &
-    'rejected | integer | - | Steps tried in vain so far; each was tried again with half its length.']
+    'rejected | integer | - | Rejected steps so far; each was repeated with half its length.']
 
   !> What joined the ledger later.
   character(len=result_row_length), parameter, public :: heat_rows(*) = [character(len=result_row_length) :: &
@@ -72,8 +70,7 @@ module step_columns
 
   !> Contact with the impactor.
   character(len=result_row_length), parameter, public :: contact_rows(*) = [character(len=result_row_length) :: &
-    'contact_area | real | area | Area that the impactor presses on when it does: the patch, and what its nose has &
-      &come to touch beside it.']
+    'contact_area | real | area | Contact area of the impactor: the patch, and the area around it that its nose touches.']
 
 contains
 
@@ -81,7 +78,7 @@ contains
   pure function motion_values(now) result(values)
     !> The state reached
     type(state_t), intent(in) :: now
-    !> A value a column
+    !> One value per column
     real(wp) :: values(size(motion_rows))
 
     values = [now%time, real(now%step, wp), now%force, now%indentation%alpha, now%impactor%displacement, &
@@ -92,7 +89,7 @@ contains
   pure function ledger_values(ledger) result(values)
     !> The ledger
     type(ledger_t), intent(in) :: ledger
-    !> A value a column
+    !> One value per column
     real(wp) :: values(size(ledger_rows))
 
     values = [ledger%impactor, ledger%kinetic, ledger%strain, ledger%indentation, ledger%delamination, &
@@ -103,7 +100,7 @@ contains
   pure function heat_values(ledger) result(values)
     !> The ledger
     type(ledger_t), intent(in) :: ledger
-    !> A value a column
+    !> One value per column
     real(wp) :: values(size(heat_rows))
 
     values = [ledger%friction, ledger%layers]
@@ -115,7 +112,7 @@ contains
     type(state_t), intent(in) :: now
     !> Length of the last step
     real(wp), intent(in) :: length
-    !> A value a column
+    !> One value per column
     real(wp) :: values(size(step_rows))
 
     values = [now%patch_mean, now%ledger%external_work, shown_time(length), now%stress]
@@ -125,9 +122,9 @@ contains
   pure function iteration_values(now, rejected) result(values)
     !> The state reached
     type(state_t), intent(in) :: now
-    !> Steps tried in vain
+    !> Rejected steps
     integer, intent(in) :: rejected
-    !> A value a column
+    !> One value per column
     real(wp) :: values(size(iteration_rows))
 
     values = real([now%iterations, now%force_iterations, now%contact_iterations, now%all_iterations, &

@@ -46,7 +46,7 @@ contains
       u(1:3, p) = jump
       stacks%forces(:, p) = forces(:, j)
       stacks%change(:, p) = change
-      if (k(1)*(jump(1)**2 + jump(2)**2) + k(3)*max(jump(3), 0.0_wp)**2 < stacks%least_onset(p)) cycle
+      if (k(1)*(jump(1)**2 + jump(2)**2) + k(3)*max(jump(3), 0.0_wp)**2 < stacks%min_onset(p)) cycle
       cohesive%points(p)%sliding%slip = u(1:2, p)
       call damage_point(stacks, model, p, u(1:3, p), 0.0_wp, cohesive)
       if (cohesive%points(p)%damage > 0) stacks%damaged(i) = .true.
@@ -67,7 +67,7 @@ contains
     integer, intent(in) :: p
     !> Its jumps at the end of the step
     real(wp), intent(in) :: jumps(3)
-    !> Most that friction bears, force per area
+    !> Friction limit, force per area
     real(wp), intent(in) :: limit
     !> The interfaces
     type(cohesive_interfaces_t), intent(inout) :: cohesive
@@ -117,7 +117,7 @@ contains
     type(model_t), intent(in) :: model
     !> The step and the one before
     type(step_lengths_t), intent(in) :: steps
-    !> Most that friction bears, force, (n)
+    !> Friction limit, force, (n)
     real(wp), intent(in) :: limit(:)
     !> Forces on the jumps, (3, n)
     real(wp), intent(in) :: forces(:, :)

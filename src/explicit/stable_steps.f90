@@ -39,7 +39,7 @@ contains
   !> Highest angular frequency of any element of all ranks, and the element of the mesh that has it. Collective.
   subroutine highest_element_frequency(model, stiffness, scaling, omega, element, of_elements)
     type(model_t), intent(in) :: model
-    !> Section stiffness left in the elements, (lanes, 21, batches)
+    !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     !> Factor of in-plane and rotary inertia
     real(wp), intent(in) :: scaling
@@ -78,7 +78,7 @@ contains
   !> larger of A_xx and A_yy of the undamaged section. Collective.
   real(wp) function stiffened_frequency(model, stiffness, of_elements, scaling, motion) result(omega)
     type(model_t), intent(in) :: model
-    !> Section stiffness left in the elements, (lanes, 21, batches)
+    !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), contiguous, intent(in) :: stiffness(:, :, :)
     !> Square of the highest frequency of each element without motion, (lanes, batches)
     real(wp), contiguous, intent(in) :: of_elements(:, :)
@@ -186,13 +186,13 @@ contains
     real(wp), intent(in) :: r(lanes, 9, 5)
     !> (lane)
     real(wp) :: squares(lanes)
-    real(wp) :: force(lanes, 9, 5), answer(lanes, 9, 5)
+    real(wp) :: force(lanes, 9, 5), response(lanes, 9, 5)
 
     force = r
     call batch_force(model%elements, b, stiffness, force)
-    answer = force
-    call divide(inverse, answer)
-    squares = sum(sum(force*answer, 3), 2)/max(tiny(squares), sum(sum(force*r, 3), 2))
+    response = force
+    call divide(inverse, response)
+    squares = sum(sum(force*response, 3), 2)/max(tiny(squares), sum(sum(force*r, 3), 2))
   end function squares_of
 
   !> Turns forces into accelerations.

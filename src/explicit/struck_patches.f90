@@ -30,11 +30,11 @@ module struck_patches
   contains
     !> Deflections of the points.
     procedure :: find_deflections
-    !> Takes over the inverse inertia of the points.
+    !> Takes the inverse inertia of the points.
     procedure :: gather
     !> Deflection under the impactor.
     procedure :: mean
-    !> Spreads the force anew.
+    !> Distributes the force again.
     procedure :: spread
     !> Adds the nodal forces of a force.
     procedure :: push
@@ -108,7 +108,7 @@ contains
     struck = list(size(list))
   end subroutine find_deflections
 
-  !> Takes over the inverse inertia of the points from the ranks that have them. Collective.
+  !> Takes the inverse inertia of the points from the ranks that have them. Collective.
   subroutine gather(self, model, inverse)
     !> The points
     class(struck_patch_t), intent(inout) :: self
@@ -193,7 +193,7 @@ contains
   subroutine visit(self, archive)
     !> The points
     class(struck_patch_t), intent(inout) :: self
-    !> Where to or where from
+    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
 
     call archive%item('explicit/patch_weights', self%weights)

@@ -1,6 +1,6 @@
-!> Ties that have been released: their forces fade, and what the faces set free meanwhile is added up.
+!> Ties that have been released: their forces fade, and what the faces released meanwhile is added up.
 !>
-!> A tie that vanished at once would be a blow: the energy that it set free would stay in the motion and, the shorter
+!> A tie that vanished at once would be a blow: the energy that it released would stay in the motion and, the shorter
 !> the steps, the less of it would show as work against the tie. Its force therefore fades, in proportion to time,
 !> while waves of shear cross a few elements; where a step is longer than that it is gone at the end of the step. The
 !> work against the fading force is the energy that is really released.
@@ -13,7 +13,7 @@ module tie_release
   private
   public :: tie_release_t, new_tie_release
 
-  !> Forces of released ties, and the energy that they set free.
+  !> Forces of released ties, and the energy that they release.
   type :: tie_release_t
     !> Forces on the jumps when the ties were released, (3, local points)
     real(wp), allocatable :: force(:, :)
@@ -21,17 +21,17 @@ module tie_release
     real(wp), allocatable :: share(:)
     !> Time in which they fade, (zones)
     real(wp), allocatable :: duration(:)
-    !> Energy that released faces set free, whole plate, (zones)
+    !> Energy that released faces released, full plate, (zones)
     real(wp), allocatable :: set_free(:)
     !> Time until the last of them is gone, the same on every rank
     real(wp) :: left = 0
   contains
     !> Releases ties.
     procedure :: release
-    !> Energy that ties just released set free as they first open.
+    !> Energy that ties just released released as they first open.
     procedure :: first_opening
     !> Fades the forces over a step.
-    procedure :: fade
+    procedure :: ramp_down
     !> Adds the forces to a residual.
     procedure :: act
     !> Books the work against the forces in a step.
@@ -47,7 +47,7 @@ contains
     type(model_t), intent(in) :: model
     !> The ties
     type(tie_release_t) :: self
-    !> Elements that waves of shear cross while a tie fades. With 10 the energy set free is the same to some percent
+    !> Elements that waves of shear cross while a tie fades. With 10 the energy released is the same to some percent
     !> for all shorter steps.
     real(wp), parameter :: elements_crossed = 10
     real(wp) :: slowness
@@ -79,13 +79,13 @@ contains
     do i = 1, model%distribution%owned
       if (free_before(i) .or. .not. free(i)) cycle
       self%force(:, i) = forces(:, i)
-      if (model%scene%delaminations(model%zone(i))%contact /= contact_none) self%force(3, i) = min(0.0_wp, forces(3, i))
+      if (model%setup%delaminations(model%zone(i))%contact /= contact_none) self%force(3, i) = min(0.0_wp, forces(3, i))
       self%share(i) = 1
     end do
     self%left = maxval(self%duration)
   end subroutine release
 
-  !> Energy that ties just released set free as they first open, once the step has been computed again without them.
+  !> Energy that ties just released released as they first open, once the step has been computed again without them.
   !> What cells released later in the same step make of the opening is theirs.
   function first_opening(self, model, free_before, free, opening) result(energy)
     !> The ties at the end of the step
@@ -95,7 +95,7 @@ contains
     logical, intent(in) :: free_before(:), free(:)
     !> Jumps, (5, points)
     real(wp), intent(in) :: opening(:, :)
-    !> The energy, of the whole plate, (zones)
+    !> The energy, of the full plate, (zones)
     real(wp) :: energy(size(self%set_free))
     integer :: i
 
@@ -111,7 +111,7 @@ contains
   end function first_opening
 
   !> Fades the forces over a step.
-  pure subroutine fade(self, model, step)
+  pure subroutine ramp_down(self, model, step)
     !> The ties
     class(tie_release_t), intent(inout) :: self
     type(model_t), intent(in) :: model
@@ -132,7 +132,7 @@ contains
     end do
     self%left = max(0.0_wp, self%left - step)
     if (.not. self%left > 0) self%share = 0
-  end subroutine fade
+  end subroutine ramp_down
 
   !> Adds the forces to a residual.
   pure subroutine act(self, model, residual)
@@ -150,7 +150,7 @@ contains
   end subroutine act
 
   !> Books the work against the forces in a step: as the step had it, the force at its end acting throughout, and as
-  !> what is set free has it, with the mean of the forces at its start and end. Of ties released in this step the
+  !> the energy released has it, with the mean of the forces at its start and end. Of ties released in this step the
   !> difference is that of `first_opening`.
   subroutine book(self, model, old, change, taken)
     !> The ties at the end of the step
@@ -160,7 +160,7 @@ contains
     type(tie_release_t), intent(in) :: old
     !> Change of the unknowns, (5, points)
     real(wp), intent(in) :: change(:, :)
-    !> Energy that the forces took from the whole plate
+    !> Energy that the forces took from the full plate
     real(wp), intent(out) :: taken
     real(wp) :: sums(size(self%set_free) + 1), work, mean
     integer :: i
@@ -186,7 +186,7 @@ contains
   subroutine visit(self, archive, model)
     !> The ties
     class(tie_release_t), intent(inout) :: self
-    !> Where to or where from
+    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
     real(wp), allocatable :: fields(:, :)

@@ -1,10 +1,10 @@
-!> Energy release rates along a front by Eq. 11 with its sign put right, from the states on both sides of it.
+!> Energy release rates along a front by Eq. 11 with its sign corrected, from the states on both sides of it.
 !>
 !> The steps are those of section 3.3.3 of the paper: strains are carried to the nodes of the front from inside the
 !> cells on either side of it; they are smoothed along the front, never across it; the smooth states give G at the
 !> nodes, and the mean of its three nodes is a segment's. To smooth G in place of the states would take what differs
 !> between neighbours for released: where a front turns around an intact cell its legs have unlike states, and on discs
-!> that grow cell by cell the rates would add up to 1.32 of the energy set free, 1.18 with smooth states.
+!> that grow cell by cell the rates would add up to 1.32 of the energy released, 1.18 with smooth states.
 !>
 !> Where plies have cracked on one side only, the strains across the front jump there without any delamination. The
 !> states are then compared in the stiffness of the stiffer side, to which they are carried by the forces across the
@@ -27,7 +27,7 @@ contains
   !> Rates of the segments of a front.
   function two_state_rates(model, section_stiffness, motion, zone, segments) result(modes)
     type(model_t), intent(in) :: model
-    !> Section stiffness left in the elements, (lanes, 21, batches)
+    !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: section_stiffness(:, :, :)
     !> Motion
     type(motion_t), intent(in) :: motion
@@ -104,7 +104,7 @@ contains
     if (sum(stiffness(diagonal, 2)) > sum(common(diagonal))) common = stiffness(:, 2)
   end function common_stiffness
 
-  !> Strains without those that vanish on a line of symmetry. Along the front of the whole plate their mean from both
+  !> Strains without those that vanish on a line of symmetry. Along the front of the full plate their mean from both
   !> sides of the line does that.
   pure function symmetric(model, node, strains)
     type(model_t), intent(in) :: model
@@ -179,7 +179,7 @@ contains
   !> rank has the element. Every batch is computed once.
   subroutine front_states(model, section_stiffness, field, segments, elements, strains, stiffness)
     type(model_t), intent(in) :: model
-    !> Section stiffness left in the elements, (lanes, 21, batches)
+    !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: section_stiffness(:, :, :)
     !> Motion of every layer, (5, points)
     real(wp), intent(in) :: field(:, :)
@@ -197,7 +197,7 @@ contains
     batches = merge(batch_of(elements), 0, elements > 0)
     do e = 1, size(elements)
       if (batches(e) == 0 .or. any(batches(:e - 1) == batches(e))) cycle
-      call nodal_strains(model%elements, batches(e), model%scene%kinematics, field, at_nodes)
+      call nodal_strains(model%elements, batches(e), model%setup%kinematics, field, at_nodes)
       do same = e, size(elements)
         if (batches(same) /= batches(e)) cycle
         s = 1 + (same - 1)/4

@@ -17,15 +17,15 @@ module crack_bands
   use plies, only: elasticity_t, elasticity_of
   use ply_damage_parameters, only: ply_damage_t, energy_modes, fibre_tension, fibre_compression, matrix_tension, &
                                    matrix_compression
-  use softening_falls, only: softening_t, fall_of, worse, damage_at, taken_by, least_ratio
+  use linear_softening, only: softening_t, linear_softening_of, more_damaged, damage_at, taken_by, min_ratio
   implicit none
   private
   public :: crack_band_t, band_state_t, band_strains_t, create_crack_band, strain_band, elasticity_left, onset_strain, &
             longest_element, energy_of_shear, is_touched, stiffness_lost
 
   !> Iterations in which both damages are found, five as a rule, and the change that ends them.
-  integer, parameter :: most_rounds = 50
-  real(wp), parameter :: settled = 1.0e-14_wp
+  integer, parameter :: max_iterations = 50
+  real(wp), parameter :: damage_tolerance = 1.0e-14_wp
 
   !> The law of a ply.
   type :: crack_band_t
@@ -129,23 +129,23 @@ contains
     real(wp) :: before(2), share(2), booked(energy_modes)
     integer :: round, i
 
-    do round = 1, most_rounds
+    do round = 1, max_iterations
       before = new%damage
       left = parts_left(band, strains, new)
-      signs(:, 1) = fibre_falls(band, lengths(1), strains, left)
-      signs(:, 2) = matrix_falls(band, lengths(2), strains, left)
+      signs(:, 1) = fibre_softening(band, lengths(1), strains, left)
+      signs(:, 2) = matrix_softening(band, lengths(2), strains, left)
       do i = 1, 2
-        new%damage(i) = max(old%damage(i), damage_at(worse(signs(:, i))))
+        new%damage(i) = max(old%damage(i), damage_at(more_damaged(signs(:, i))))
         if (band%crack_closure) new%closed(i) = max(old%closed(i), damage_at(signs(2, i)))
       end do
-      if (all(abs(new%damage - before) <= settled)) exit
+      if (all(abs(new%damage - before) <= damage_tolerance)) exit
     end do
     share = 0
     if (band%crack_closure) share = compressed_share(band%elasticity, strains, left)
     do i = 1, 2
       booked = 0
       booked(signs(2, i)%mode) = taken_by(signs(2, i), (1 - band%remainder)*share(i), old%closed(i), new%closed(i))
-      associate (fall => worse(signs(:, i)))
+      associate (fall => more_damaged(signs(:, i)))
         booked(fall%mode) = booked(fall%mode) &
                             + taken_by(fall, (1 - band%remainder)*(1 - share(i)), old%damage(i), new%damage(i))
       end associate
@@ -213,7 +213,7 @@ contains
       real(wp), intent(in) :: part
       type(softening_t) :: signs(2)
 
-      signs = matrix_falls(sheared_law(band, loss_at(part)), 1.0_wp, strains, parts_left(band, strains, old))
+      signs = matrix_softening(sheared_law(band, loss_at(part)), 1.0_wp, strains, parts_left(band, strains, old))
       cracks = part*maxval(signs%exposure) > 1
     end function cracks_at
   end subroutine shear_band
@@ -296,7 +296,7 @@ contains
   end function parts_left
 
   !> The falls of the fibres.
-  pure function fibre_falls(band, length, strains, left) result(signs)
+  pure function fibre_softening(band, length, strains, left) result(signs)
     !> The law
     type(crack_band_t), intent(in) :: band
     !> Length of the element along the fibres
@@ -312,13 +312,15 @@ contains
     associate (c => band%elasticity, g => band%toughness)
       call find_strain_alone(c, strains, left, 1, size, weights)
       energy = c%e1*size**2/2
-      signs(1) = fall_of(weights(1)*c%e1*size/band%along(1), energy, g(fibre_tension), length, fibre_tension)
-      signs(2) = fall_of(weights(2)*c%e1*size/band%along(2), energy, g(fibre_compression), length, fibre_compression)
+      signs(1) = linear_softening_of(weights(1)*c%e1*size/band%along(1), energy, g(fibre_tension), length, &
+                                     fibre_tension)
+      signs(2) = linear_softening_of(weights(2)*c%e1*size/band%along(2), energy, g(fibre_compression), length, &
+                                     fibre_compression)
     end associate
-  end function fibre_falls
+  end function fibre_softening
 
   !> The falls of the matrix.
-  pure function matrix_falls(band, length, strains, left) result(signs)
+  pure function matrix_softening(band, length, strains, left) result(signs)
     !> The law
     type(crack_band_t), intent(in) :: band
     !> Length of the element across the fibres
@@ -341,12 +343,14 @@ contains
         toughness = energy/((energy - shear_energy)/g(matrix_tension) + shear_energy/g(matrix_compression))
       across = c%e2*size
       shear = c%g12*sqrt(strains%shear_square)
-      signs(1) = fall_of(weights(1)*matrix_exposure(band%matrix, across, shear), energy, toughness, length, &
+      signs(1) = linear_softening_of(weights(1)*matrix_exposure(band%matrix, across, shear), energy, toughness, &
+                                     length, &
                          matrix_tension)
-      signs(2) = fall_of(weights(2)*matrix_exposure(band%matrix, -across, shear), energy, g(matrix_compression), &
+      signs(2) = linear_softening_of(weights(2)*matrix_exposure(band%matrix, -across, shear), energy, &
+                                     g(matrix_compression), &
                          length, matrix_compression)
     end associate
-  end function matrix_falls
+  end function matrix_softening
 
   !> A strain below which a ply can't begin to be damaged, whatever its direction: strains in its plane are measured by
   !> the root of e1**2 + e2**2 + g12**2/2, which a turn of the axes leaves as it is. Shear that is not linear takes its
@@ -386,6 +390,6 @@ contains
       energies(matrix_compression) = max(m%compression**2/(2*c%e2), m%shear**2/(2*c%g12) + &
                                                                     band%shear_beta*m%shear**4/2)
     end associate
-    lengths = band%toughness/(least_ratio*energies)
+    lengths = band%toughness/(min_ratio*energies)
   end function longest_element
 end module crack_bands

@@ -8,7 +8,7 @@
 module crack_closures
   use kinds, only: wp
   use plies, only: elasticity_t, ply_t
-  use softening_falls, only: weights_of_signs
+  use linear_softening, only: weights_of_signs
   implicit none
   private
   public :: band_strains_t, left_t, left_under, find_strain_alone, compressed_share, find_recovered, closing_resultants

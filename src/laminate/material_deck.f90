@@ -1,7 +1,7 @@
 !> Materials of the deck: rows of its table, filling, and the checks that decide what a material is.
 module material_deck
   use deck_problems, only: problems_t
-  use deck_remarks, only: tell, are_clear
+  use deck_remarks, only: report, are_clear
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
   use hahn_tsai, only: shear_coefficient
@@ -36,52 +36,52 @@ module material_deck
     'material | E1 | real | 1 | pressure | none | > 0 | &
       &Young''s modulus along the fibres.', &
     'material | E2 | real | 1 | pressure | none | > 0 | &
-      &Young''s modulus across the fibres.', &
+      &Transverse Young''s modulus.', &
     'material | G12 | real | 1 | pressure | none | > 0 | &
-      &Shear modulus in the plane of the ply.', &
+      &In-plane shear modulus.', &
     'material | G13 | real | 1 | pressure | = G12 | > 0 | &
       &Shear modulus between the fibres and the normal.', &
     'material | G23 | real | 1 | pressure | none | > 0 | &
-      &Shear modulus across the fibres.', &
+      &Transverse shear modulus.', &
     'material | nu12 | real | 1 | - | none | > -10, < 10 | &
-      &Contraction across per extension along the fibres; its size stays below sqrt(E1/E2).', &
+      &Major Poisson''s ratio; its magnitude is below sqrt(E1/E2).', &
     'material | nu23 | real | 1 | - | 0 | > -1, < 1 | &
-      &Poisson''s ratio across the fibres; plane stress does without it.', &
+      &Transverse Poisson''s ratio; not needed in plane stress.', &
     'material | XT | real | 1 | pressure | none | > 0 | &
       &Tensile strength along the fibres.', &
     'material | XC | real | 1 | pressure | none | > 0 | &
-      &Compressive strength along the fibres, a positive number; left out: XT serves.', &
+      &Compressive strength along the fibres, a positive number; left out: XT is used.', &
     'material | YT | real | 1 | pressure | none | > 0 | &
-      &Tensile strength across the fibres.', &
+      &Transverse tensile strength.', &
     'material | YC | real | 1 | pressure | none | > 0 | &
-      &Compressive strength across the fibres, a positive number.', &
+      &Transverse compressive strength, a positive number.', &
     'material | S12 | real | 1 | pressure | none | > 0 | &
-      &Shear strength in the plane of the ply.', &
+      &In-plane shear strength.', &
     'material | Sf | real | 1 | pressure | none | > 0 | &
-      &Shear strength that counts in fibre failure.', &
+      &Shear strength in the criterion of fibre failure.', &
     'material | Sm23 | real | 1 | pressure | none | > 0 | &
-      &Shear strength in the 2-3 plane that counts in matrix failure.', &
+      &Shear strength in the 2-3 plane in the criterion of matrix failure.', &
     'material | G_ft | real | 1 | energy/area | none | > 0 | &
-      &Energy that breaking fibres in tension takes per area of crack; with G_fc, G_mt and G_mc plies soften by it.', &
+      &Fracture energy of fibres in tension; with G_fc, G_mt and G_mc plies soften.', &
     'material | G_fc | real | 1 | energy/area | none | > 0 | &
-      &Energy that breaking fibres in compression takes per area of crack.', &
+      &Fracture energy of fibres in compression.', &
     'material | G_mt | real | 1 | energy/area | none | > 0 | &
-      &Energy that cracking the matrix by tension across the fibres takes per area of crack.', &
+      &Fracture energy of the matrix in transverse tension.', &
     'material | G_mc | real | 1 | energy/area | none | > 0 | &
-      &Energy that failing the matrix by shear or by compression across the fibres takes per area of crack.', &
+      &Fracture energy of the matrix in shear or transverse compression.', &
     'material | shear_failure_strain | real | 1 | - | none | > 0 | &
       &Shear strain in the plane at S12; left out: S12/G12, shear is linear.', &
     'material | alpha1 | real | 1 | 1/temperature | 0 | any | &
       &Thermal expansion along the fibres.', &
     'material | alpha2 | real | 1 | 1/temperature | 0 | any | &
-      &Thermal expansion across the fibres.']
+      &Transverse thermal expansion.']
   !> Keys of the fracture energies in the order of the modes.
   character(len=*), parameter, public :: toughness_keys(4) = [character(len=4) :: 'G_ft', 'G_fc', 'G_mt', 'G_mc']
 
   !> Keys of an orthotropic material that have to be there, and all of them.
   character(len=*), parameter :: needed_keys = 'E1 E2 G12 G23 nu12', orthotropic_keys = needed_keys//' G13 nu23'
-  !> Largest ratio of two moduli of a material; rounding spoils the answer beyond.
-  real(wp), parameter :: most_contrast = 1.0e6_wp
+  !> Largest ratio of two moduli of a material; rounding spoils the result beyond.
+  real(wp), parameter :: max_contrast = 1.0e6_wp
 
 contains
 
@@ -100,7 +100,7 @@ contains
       call fill_material(settings, i, materials(i), problems)
       do j = 1, i - 1
         if (materials(i)%name /= materials(j)%name .or. materials(i)%name == '') cycle
-        call tell(settings, problems, material_group, 'name', 'another material has this name; give each its own.', i)
+        call report(settings, problems, material_group, 'name', 'another material has this name; give each its own.', i)
         exit
       end do
     end do
@@ -133,7 +133,7 @@ contains
     do mode = 1, size(toughness_keys)
       material%toughness(mode) = settings%real_of(material_group, toughness_keys(mode), place)
     end do
-    call judge_completeness(settings, place, problems, complete)
+    call check_completeness(settings, place, problems, complete)
     if (.not. complete) return
     if (settings%is_given(material_group, 'E', place)) then
       call fill_isotropic(settings, place, material)
@@ -141,10 +141,10 @@ contains
       call fill_orthotropic(settings, place, material)
     end if
     if (material_objection(material) /= '') then
-      call tell(settings, problems, material_group, '', material_objection(material)//'.', place)
-    else if (contrast(material) > most_contrast) then
-      call tell(settings, problems, material_group, '', 'its moduli differ by more than a factor of '// &
-                to_text(most_contrast)//', where rounding spoils the answer.', place)
+      call report(settings, problems, material_group, '', material_objection(material)//'.', place)
+    else if (contrast(material) > max_contrast) then
+      call report(settings, problems, material_group, '', 'its moduli differ by more than a factor of '// &
+                to_text(max_contrast)//', where rounding spoils the result.', place)
     end if
     material%shear_beta = shear_coefficient(material%g12, material%s12, &
                                             settings%real_of(material_group, key_shear_strain, place))
@@ -160,8 +160,8 @@ contains
     contrast = maxval(moduli)/minval(moduli)
   end function contrast
 
-  !> Whether the elastic constants are all there and sound; tells what is missing.
-  subroutine judge_completeness(settings, place, problems, complete)
+  !> Whether the elastic constants are all there and sound; reports what is missing.
+  subroutine check_completeness(settings, place, problems, complete)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> Index of the material
@@ -178,7 +178,8 @@ contains
     if (settings%is_given(material_group, 'E', place) .or. settings%is_given(material_group, 'nu', place)) then
       missing = words_with(settings, place, 'E nu', .false.)
       if (size(given) > 0) then
-        call tell(settings, problems, material_group, given(1)%text, 'the material has E or nu too; give either E '// &
+        call report(settings, problems, material_group, given(1)%text, &
+                    'the material has E or nu too; give either E '// &
                   'and nu (isotropic) or E1, E2, G12, G23, nu12 (orthotropic).', place)
         return
       end if
@@ -190,12 +191,12 @@ contains
       end if
     end if
     if (size(missing) > 0) then
-      if (.not. is_misspelt(missing, place, problems)) call tell(settings, problems, material_group, '', &
+      if (.not. is_misspelt(missing, place, problems)) call report(settings, problems, material_group, '', &
         joined(missing, ', ')//' must be given too.', place)
       return
     end if
     complete = are_clear(settings, problems, material_group, 'E nu '//orthotropic_keys, place)
-  end subroutine judge_completeness
+  end subroutine check_completeness
 
   !> Those of some keys that the deck gives, or those that it doesn't.
   function words_with(settings, place, keys, given) result(words)
@@ -219,7 +220,7 @@ contains
     end do
   end function words_with
 
-  !> True: one of the missing keys is there under a wrong name, which was told already.
+  !> True: one of the missing keys is there under a wrong name, which was reported already.
   logical function is_misspelt(missing, place, problems)
     !> Names of keys
     type(line_t), intent(in) :: missing(:)
@@ -281,7 +282,7 @@ contains
     do i = 1, settings%groups_named(material_group)
       if (settings%is_given(material_group, 'density', i)) cycle
       if (.not. are_clear(settings, problems, material_group, 'density '//key_library, i)) cycle
-      call tell(settings, problems, material_group, 'density', 'is missing; a run in time needs a density > 0.', i)
+      call report(settings, problems, material_group, 'density', 'is missing; a run in time needs a density > 0.', i)
     end do
   end subroutine require_densities
 

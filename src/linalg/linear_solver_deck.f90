@@ -3,7 +3,7 @@
 module linear_solver_deck
   use deck_choices, only: code_of
   use deck_problems, only: problems_t
-  use deck_remarks, only: tell
+  use deck_remarks, only: report
   use deck_settings, only: settings_t
   use deck_vocabulary, only: key_row_length
   use linear_solver_parameters, only: linear_solver_parameters_t, factorization_mumps, factorization_cholmod, &
@@ -19,7 +19,7 @@ module linear_solver_deck
     'solver | factorization | choice | 1 | - | ''automatic'' | automatic mumps cholmod | &
       &Direct solver; automatic takes cholmod where no load step buckles or softens and ranks share no large model.', &
     'solver | petsc_options | text | 1 | - | '''' | any text | &
-      &Options handed to PETSc as they are.']
+      &Options passed to PETSc.']
 
   !> What options for PETSc begin with in a deck.
   character(len=*), parameter :: beginnings(*) = [character(len=16) :: '-ksp_', '-pc_', '-mat_', '-indefinite_ksp_', &
@@ -54,7 +54,7 @@ contains
     words = words_of(solver%petsc_options, ' ')
     do i = 1, size(words)
       if (is_allowed(words(i)%text)) cycle
-      call tell(settings, problems, group, 'petsc_options', words(i)%text//' might write files or more; allowed: '// &
+      call report(settings, problems, group, 'petsc_options', words(i)%text//' might write files or more; allowed: '// &
                 '-log_view and options that begin with -ksp_, -pc_ or -mat_, and words without : and /; give '// &
                 'others on the command line.')
       return

@@ -17,7 +17,7 @@ module mesh_parameters
   !> Distance of two lines, over that from the centre, that is none.
   real(wp), parameter :: same_line = 1.0e-9_wp
 
-  !> The plate; lengths are of the whole plate, also under symmetry.
+  !> The plate; lengths are of the full plate, also under symmetry.
   type :: plate_t
     !> Lengths along x and y
     real(wp) :: length(2) = 0
@@ -87,7 +87,7 @@ contains
     deflection = plate%imperfection*product(sin(plate%half_waves*pi*(at/plate%length + 0.5_wp)))
   end function initial_deflection
 
-  !> True if the shape without stress is that of the whole plate where only a part is modelled.
+  !> True if the shape without stress is that of the full plate where only a part is modelled.
   pure logical function is_bent_alike(plate, symmetry) result(alike)
     !> The plate
     type(plate_t), intent(in) :: plate
@@ -99,7 +99,7 @@ contains
     alike = alike .or. .not. abs(plate%imperfection) > 0
   end function is_bent_alike
 
-  !> Number of models that make up the whole plate.
+  !> Number of models that make up the full plate.
   pure integer function parts_of(symmetry) result(parts)
     !> Part that is modelled
     integer, intent(in) :: symmetry

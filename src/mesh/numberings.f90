@@ -2,7 +2,7 @@
 !> matrix that couples them. Renewed as a whole when unknowns are released.
 !>
 !> Points that follow others have the equations of these, but for signs: on the line at which a turned plate is cut, and
-!> on all of a whole plate that keeps its symmetry. So a vector holds every free motion once, and a field all of it.
+!> on all of a full plate that keeps its symmetry. So a vector holds every free motion once, and a field all of it.
 module numberings
   use kinds, only: wp
   use layered_meshes, only: layered_mesh_t
@@ -47,7 +47,7 @@ module numberings
 
 contains
 
-  !> Numbers the unknowns that are not held and finds the pattern of this rank's rows.
+  !> Numbers the unconstrained unknowns and finds the pattern of this rank's rows.
   subroutine number_equations(mesh, distribution, held, self, images)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
@@ -204,7 +204,8 @@ contains
     end do
   end subroutine gather
 
-  !> Field of motion over the owned points from the rows of this rank; held unknowns become zero, ghosts are left alone.
+  !> Field of motion over the owned points from the rows of this rank; constrained unknowns become zero, ghosts are left
+  !> alone.
   pure subroutine scatter(self, vector, field)
     !> The numbering
     class(numbering_t), intent(in) :: self

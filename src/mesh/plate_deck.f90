@@ -2,7 +2,7 @@
 module plate_deck
   use deck_choices, only: code_of
   use deck_problems, only: problems_t
-  use deck_remarks, only: remark_idle, tell
+  use deck_remarks, only: remark_idle, report
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
   use kinds, only: wp
@@ -23,26 +23,26 @@ module plate_deck
   !> Rows of the keys.
   character(len=key_row_length), parameter, public :: plate_rows(*) = [character(len=key_row_length) :: &
     'plate | length | real | 2 | length | required | > 0 | &
-      &Lengths of the whole plate along x and y, also under symmetry.', &
+      &Lengths of the full plate along x and y, also under symmetry.', &
     'plate | edges | choice | 1 or 4 | - | required | clamped simple free elastic | &
       &Supports at x-min, x-max, y-min, y-max; one value serves all.', &
     'plate | edge_stiffness | real | 1 | pressure | none | > 0 | &
       &Force per length of an elastic edge and deflection of it; left out: it holds the deflection.', &
     'plate | edge_rotation_stiffness | real | 1 | force | none | > 0 | &
-      &Moment per length of an elastic edge and rotation about it; left out: it turns freely.', &
+      &Moment per length of an elastic edge and rotation about it; left out: it rotates freely.', &
     'plate | in_plane | choice | 1 | - | ''fixed'' | fixed free | &
-      &Whether the supported edges also hold the plate in its plane.', &
+      &Whether the supported edges also fix in-plane motion.', &
     'plate | imperfection | real | 1 | length | none | any | &
       &Amplitude of the deflection that the plate has without stress.', &
     'plate | half_waves | integer | 2 | - | none | >= 1, <= 100 | &
       &Half waves of that deflection over the lengths along x and y; left out: one along each.', &
     'plate | symmetry | choice | 1 | - | ''none'' | none quarter half_x half_y point | &
-      &Part that is modelled: all, x >= 0 and y >= 0, x >= 0, y >= 0, or x >= 0 of one that a half turn leaves as is.']
+      &Part that is modelled: all, x >= 0 and y >= 0, x >= 0, y >= 0, or x >= 0 of a plate with point symmetry.']
 
   !> What elastic edges need, against deflection and against rotation.
   character(len=*), parameter :: stiffness_keys(2) = [character(len=23) :: 'edge_stiffness', 'edge_rotation_stiffness']
   !> Largest ratio of the plate's sides.
-  real(wp), parameter :: most_oblong = 1.0e3_wp
+  real(wp), parameter :: max_aspect_ratio = 1.0e3_wp
 
 contains
 
@@ -86,7 +86,7 @@ contains
     integer :: i
 
     if (any(plate%edges == edge_elastic) .and. all(plate%edge_stiffness <= 0)) &
-      call tell(settings, problems, plate_group, 'edges', 'an elastic edge needs edge_stiffness, '// &
+      call report(settings, problems, plate_group, 'edges', 'an elastic edge needs edge_stiffness, '// &
                 'edge_rotation_stiffness or both.')
     if (all(plate%edges /= edge_elastic)) then
       do i = 1, size(stiffness_keys)
@@ -94,19 +94,19 @@ contains
                          'has no effect without an elastic edge.')
       end do
     end if
-    if (.not. is_bent_alike(plate, plate%symmetry)) call tell(settings, problems, plate_group, key_half_waves, &
-      'this shape is not that of the whole plate with symmetry = '''// &
+    if (.not. is_bent_alike(plate, plate%symmetry)) call report(settings, problems, plate_group, key_half_waves, &
+      'this shape is not that of the full plate with symmetry = '''// &
       lower_case(settings%text_of(plate_group, key_symmetry))//'''; take odd half waves along x for ''half_x'', '// &
       'along y for ''half_y'', along both for ''quarter'', an even sum for ''point'', or ''none''.')
     if (.not. abs(plate%imperfection) > 0) call remark_idle(settings, problems, plate_group, key_half_waves, &
                                                             'has no effect without '//key_imperfection//'.')
     ! A plate that is turned onto itself has all opposite edges alike.
     halved = is_halved(plate%symmetry) .or. plate%symmetry == symmetry_point
-    if (settings%is_known(plate_group, key_length) .and. maxval(plate%length) > most_oblong*minval(plate%length)) &
-      call tell(settings, problems, plate_group, key_length, 'one side is more than '//to_text(most_oblong)// &
+    if (settings%is_known(plate_group, key_length) .and. maxval(plate%length) > max_aspect_ratio*minval(plate%length)) &
+      call report(settings, problems, plate_group, key_length, 'one side is more than '//to_text(max_aspect_ratio)// &
                 ' times the other; such a strip is no plate.')
     if (plate%edges(1) /= plate%edges(2) .and. halved(1) .or. plate%edges(3) /= plate%edges(4) .and. halved(2)) &
-      call tell(settings, problems, plate_group, 'edges', 'symmetry = '''// &
+      call report(settings, problems, plate_group, 'edges', 'symmetry = '''// &
                 lower_case(settings%text_of(plate_group, key_symmetry))//''' needs the same support at opposite edges.')
   end subroutine check_plate
 
@@ -121,11 +121,11 @@ contains
 
     if (.not. settings%is_known(plate_group, 'edges')) return
     if (all(plate%edges == edge_free)) then
-      call tell(settings, problems, plate_group, 'edges', &
+      call report(settings, problems, plate_group, 'edges', &
                 'nothing holds the plate in a static analysis; support an edge.')
     else if (count(plate%edges /= edge_free) == 1 .and. all(plate%edges /= edge_clamped) .and. &
              .not. plate%edge_stiffness(2) > 0) then
-      call tell(settings, problems, plate_group, 'edges', 'in a static analysis the plate turns about its one '// &
+      call report(settings, problems, plate_group, 'edges', 'in a static analysis the plate turns about its one '// &
                 'simply supported edge; clamp it or support another one.')
     end if
   end subroutine check_edges

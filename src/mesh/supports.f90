@@ -1,5 +1,5 @@
 !> Which unknowns of the points are held: by supports, by symmetry, because the layers are still
-!> joined, or because the scene never moves them.
+!> joined, or because the setup never moves them.
 module supports
   use kinds, only: wp
   use mesh_parameters, only: plate_t, edge_free, edge_clamped, edge_elastic
@@ -87,7 +87,7 @@ contains
     type(layered_mesh_t), intent(in) :: mesh
     !> Those to be held: along x, along y, turning
     logical, intent(in) :: motions(3)
-    !> Table of held unknowns
+    !> Table of constrained unknowns
     logical, intent(inout) :: held(:, :)
     integer :: node
     logical :: left(3)

@@ -1,4 +1,4 @@
-!> A scene made ready for steps: mesh, supports, loads, and who computes what; and the forces that follow from a motion.
+!> A setup made ready for steps: mesh, supports, loads, and who computes what; and the forces that follow from a motion.
 !> In a run only layers and the places where the impactor presses change, between steps.
 module models
   use kinds, only: wp
@@ -22,17 +22,17 @@ module models
   use distributions, only: distribution_t
   use placed_lines, only: placed_line_t
   use rig_models, only: rig_model_t
-  use scenes, only: scene_t
+  use setups, only: setup_t
   use symmetry_images, only: symmetry_images_t
   implicit none
   private
   public :: model_t
 
-  !> A scene made ready for computing on this rank's share of the mesh. It has many components because all that steps
+  !> A setup made ready for computing on this rank's share of the mesh. It has many components because all that steps
   !> share is found once, before them.
   type :: model_t
     !> What the deck asked for
-    type(scene_t) :: scene
+    type(setup_t) :: setup
     !> The ranks
     type(communicator_t) :: communicator
     !> Mesh of the modelled part, whole on every rank
@@ -61,7 +61,7 @@ module models
     real(wp), allocatable :: free(:, :, :)
     !> Held unknowns of every point of the mesh, (5, points of the mesh)
     logical, allocatable :: held(:, :)
-    !> Images of the points, where a whole plate is to keep its symmetry as it breaks
+    !> Images of the points, where a full plate is to keep its symmetry as it breaks
     type(symmetry_images_t) :: images
     !> Weights whose product with w is the mean deflection of the patch, (local points); ghosts zero
     real(wp), allocatable :: patch(:)
@@ -121,7 +121,7 @@ module models
     procedure :: inertia
     !> Mean deflection of the patch, and nodal forces of a force on it.
     procedure :: patch_mean
-    procedure :: push_patch
+    procedure :: add_contact_force
     !> Deflection under the impactor, the area that it presses on, and how its force is spread from now on.
     procedure :: contact_deflection
     procedure :: pressed_area
@@ -149,7 +149,7 @@ contains
   !> Internal forces at the owned points and this rank's share of the strain energy.
   subroutine internal(self, stiffness, displacement, force, energy, law, free)
     class(model_t), intent(in) :: self
-    !> Section stiffness left in the elements, (lanes, 21, batches)
+    !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), contiguous, intent(in) :: stiffness(:, :, :)
     !> Displacement, ghosts up to date, (5, points)
     real(wp), contiguous, intent(in) :: displacement(:, :)
@@ -181,7 +181,7 @@ contains
   !> Adds the internal forces of this rank's elements on the motion of their layers.
   subroutine add_elements(self, stiffness, displacement, field, energy, law, free)
     class(model_t), intent(in) :: self
-    !> Section stiffness left in the elements, (lanes, 21, batches)
+    !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), contiguous, intent(in) :: stiffness(:, :, :)
     !> Displacement, ghosts up to date, (5, points)
     real(wp), contiguous, intent(in) :: displacement(:, :)
@@ -195,12 +195,12 @@ contains
     real(wp), contiguous, intent(in), optional :: free(:, :, :)
 
     if (self%map%layered) then
-      call add_internal_force(self%elements, stiffness, self%scene%kinematics, self%motion_of(displacement), field, &
+      call add_internal_force(self%elements, stiffness, self%setup%kinematics, self%motion_of(displacement), field, &
                               energy, law, free)
     else if (self%membrane_idle) then
       call add_bending_force(self%elements, stiffness, displacement, field, energy)
     else
-      call add_internal_force(self%elements, stiffness, self%scene%kinematics, displacement, field, energy, law, free)
+      call add_internal_force(self%elements, stiffness, self%setup%kinematics, displacement, field, energy, law, free)
     end if
   end subroutine add_elements
 
@@ -336,11 +336,11 @@ contains
     w = self%patch_mean(displacement) + self%patch_offset
   end function contact_deflection
 
-  !> Area of the whole plate that the impactor presses on, the same on every rank.
+  !> Area of the full plate that the impactor presses on, the same on every rank.
   real(wp) function pressed_area(self) result(area)
     class(model_t), intent(in) :: self
 
-    area = self%scene%mesh%patch**2
+    area = self%setup%mesh%patch**2
     if (allocated(self%nose)) area = self%nose%touched(self%communicator, self%patch)*self%mesh%multiplicity
   end function pressed_area
 
@@ -358,8 +358,8 @@ contains
     self%patch_offset = offset
   end subroutine spread_force
 
-  !> Adds the nodal forces of a force on the whole plate's patch.
-  pure subroutine push_patch(self, force, forces)
+  !> Adds the nodal forces of a force on the full plate's patch.
+  pure subroutine add_contact_force(self, force, forces)
     class(model_t), intent(in) :: self
     !> The force
     real(wp), intent(in) :: force
@@ -372,7 +372,7 @@ contains
         forces(3, point) = forces(3, point) + force/self%mesh%multiplicity*self%patch(point)
       end associate
     end do
-  end subroutine push_patch
+  end subroutine add_contact_force
 
   !> Deflection at the struck point, the same on every rank.
   real(wp) function deflection(self, displacement) result(w)

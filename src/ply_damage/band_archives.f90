@@ -1,4 +1,4 @@
-!> Saves and loads what plies that soften remember.
+!> Saves and loads what softening plies store as history variables.
 module band_archives
   use archives, only: archive_t
   use crack_bands, only: band_state_t
@@ -13,7 +13,7 @@ contains
 
   !> Saves or loads the states of all plies. Collective.
   subroutine visit_bands(archive, model, range, states)
-    !> Where to or where from
+    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
     !> First and last ply of each element, (2, elements)
@@ -33,9 +33,9 @@ contains
       closed(:, element) = [(states(ply, element)%closed, ply=1, size(states, 1))]
     end do
     call archive%field('ply_failure/crack_bands', model%distribution%elements, model%mesh%elements(), table)
-    if (model%scene%ply_damage%permanent_shear) &
+    if (model%setup%ply_damage%permanent_shear) &
       call archive%field('ply_failure/permanent_shear', model%distribution%elements, model%mesh%elements(), strains)
-    if (model%scene%ply_damage%crack_closure) &
+    if (model%setup%ply_damage%crack_closure) &
       call archive%field('ply_failure/closed_cracks', model%distribution%elements, model%mesh%elements(), closed)
     if (.not. archive%loading) return
     do element = 1, size(states, 2)

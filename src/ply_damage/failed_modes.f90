@@ -37,7 +37,7 @@ contains
     !> The modes
     type(failed_modes_t) :: self
 
-    if (.not. model%scene%has_ply_damage) return
+    if (.not. model%setup%has_ply_damage) return
     allocate (self%occurred(failure_modes, size(model%plies), model%elements%elements), source=.false.)
   end function new_failed_modes
 
@@ -46,7 +46,7 @@ contains
     !> The modes
     class(failed_modes_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> Section stiffness left in the elements, (lanes, 21, batches)
+    !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     !> Displacement, ghosts up to date, (5, points)
     real(wp), intent(in) :: displacement(:, :)
@@ -84,7 +84,7 @@ contains
 
     elasticity = model%plies(ply)%elasticity
     if (allocated(self%occurred)) &
-      elasticity = degraded(elasticity, self%occurred(:, ply, element), model%scene%ply_damage)
+      elasticity = degraded(elasticity, self%occurred(:, ply, element), model%setup%ply_damage)
   end function elasticity
 
   !> Elastic constants left in the plies of an element.
@@ -122,7 +122,7 @@ contains
   subroutine visit(self, archive, model)
     !> The modes
     class(failed_modes_t), intent(inout) :: self
-    !> Where to or where from
+    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
     real(wp), allocatable :: table(:, :)

@@ -1,4 +1,4 @@
-!> What the history tells of failed plies.
+!> What the history reports of failed plies.
 module ply_columns
   use kinds, only: wp
   use models, only: model_t
@@ -10,19 +10,17 @@ module ply_columns
 
   !> Failures in each mode, a ply counting once in each element, and the energies of plies that soften.
   character(len=result_row_length), parameter, public :: ply_rows(*) = [character(len=result_row_length) :: &
-    'fibre_failures | integer | - | Plies of elements whose fibres have failed, counted over the whole plate.', &
-    'matrix_cracks | integer | - | Plies of elements whose matrix has cracked, counted over the whole plate.', &
-    'matrix_crushings | integer | - | Plies of elements whose matrix was crushed, counted over the whole plate.', &
-    'energy_fibre_tension | real | energy | Part of energy_ply_damage that breaking fibres in tension took.', &
-    'energy_fibre_compression | real | energy | Part of energy_ply_damage that breaking fibres in compression took.', &
-    'energy_matrix_cracking | real | energy | Part of energy_ply_damage that cracking took, where tension acts across &
-      &the fibres.', &
-    'energy_matrix_crushing | real | energy | Part of energy_ply_damage that failure of the matrix took, where &
-      &compression acts across the fibres.']
+    'fibre_failures | integer | - | Plies of elements whose fibres have failed, counted over the full plate.', &
+    'matrix_cracks | integer | - | Plies of elements whose matrix has cracked, counted over the full plate.', &
+    'matrix_crushings | integer | - | Plies of elements whose matrix was crushed, counted over the full plate.', &
+    'energy_fibre_tension | real | energy | Part of energy_ply_damage by fibre failure in tension.', &
+    'energy_fibre_compression | real | energy | Part of energy_ply_damage by fibre failure in compression.', &
+    'energy_matrix_cracking | real | energy | Part of energy_ply_damage by matrix cracking in transverse tension.', &
+    'energy_matrix_crushing | real | energy | Part of energy_ply_damage by matrix failure in transverse compression.']
 
   !> Permanent strains of plies that soften.
   character(len=result_row_length), parameter, public :: permanent_rows(*) = [character(len=result_row_length) :: &
-    'energy_permanent_shear | real | energy | Part of energy_ply_damage that permanent shear strains of plies took.']
+    'energy_permanent_shear | real | energy | Part of energy_ply_damage by permanent shear strains of plies.']
 
 contains
 
@@ -31,7 +29,7 @@ contains
     type(model_t), intent(in) :: model
     !> Failures of the plies
     type(ply_failure_t), intent(in) :: plies
-    !> A value a column, the same on every rank
+    !> One value per column, the same on every rank
     real(wp) :: values(size(ply_rows))
 
     values = [real(plies%counts(model), wp), plies%dissipated]
@@ -41,7 +39,7 @@ contains
   pure function permanent_values(plies) result(values)
     !> Failures of the plies
     type(ply_failure_t), intent(in) :: plies
-    !> A value a column
+    !> One value per column
     real(wp) :: values(size(permanent_rows))
 
     values = [plies%permanent_shear]

@@ -1,4 +1,4 @@
-!> NAME.xdmf: tells ParaView and the like what lies where in NAME.h5.
+!> NAME.xdmf: describes to ParaView and the like what lies where in NAME.h5.
 module fields_file_xdmf
   use errors, only: error_t, exit_files, fail
   use files, only: rename_file
@@ -35,7 +35,7 @@ contains
     shape_of_cells = stored_shape(file, mesh//'/connectivity')
     shape_of_points = stored_shape(file, mesh//'/coordinates')
     grid = ''
-    if (.not. file%well()) return
+    if (.not. file%succeeded()) return
     grid = line(2, '<Grid Name="plate" GridType="Uniform">') &
       //line(3, '<Time Value="'//to_text(time(1))//'"/>') &
       //line(3, '<Information Name="step" Value="'//to_text(step(1))//'"/>') &
@@ -157,7 +157,7 @@ contains
   pure function escaped(name)
     !> The name
     character(len=*), intent(in) :: name
-    !> As XML wants it
+    !> As XML requires it
     character(len=:), allocatable :: escaped
     integer :: i
 

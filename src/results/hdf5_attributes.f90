@@ -23,7 +23,7 @@ contains
     integer(hid_t) :: dataset
     integer :: statuses(2), status
 
-    if (.not. file%well()) return
+    if (.not. file%succeeded()) return
     statuses = 0
     call h5dopen_f(file%id, name, dataset, status)
     if (status >= 0) then
@@ -31,7 +31,7 @@ contains
       call write_attribute(dataset, 'meaning', meaning, statuses(2))
       call h5dclose_f(dataset, status)
     end if
-    call file%settle(min(status, minval(statuses)), name//' could not be given its unit and meaning')
+    call file%check_status(min(status, minval(statuses)), name//' could not be given its unit and meaning')
   end subroutine write_unit_and_meaning
 
   !> Gives an open dataset an attribute.

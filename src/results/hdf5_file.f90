@@ -22,7 +22,7 @@ module hdf5_file
   !> An open file.
   type :: hdf5_file_t
     !> What could not be done; unallocated while all is well
-    character(len=:), allocatable :: trouble
+    character(len=:), allocatable :: failure
     !> The ranks that share the file
     type(communicator_t) :: communicator
     !> Handle of the file
@@ -43,8 +43,8 @@ module hdf5_file
     procedure, private :: hold_reserve
     procedure, private :: give_up_reserve
     procedure :: close
-    procedure :: settle
-    procedure :: well
+    procedure :: check_status
+    procedure :: succeeded
     procedure :: exists
     procedure :: make_group
     procedure :: remove
@@ -69,7 +69,7 @@ contains
 
     call start_over(self, communicator)
     call self%hold_reserve(path)
-    if (allocated(self%trouble)) return
+    if (allocated(self%failure)) return
     call prepare(self, access_list)
     call h5pcreate_f(h5p_file_create_f, creation_list, status)
     call h5pset_userblock_f(creation_list, int(head, hsize_t), status)
@@ -77,7 +77,7 @@ contains
     self%is_open = status == 0
     call h5pclose_f(creation_list, closed)
     call h5pclose_f(access_list, closed)
-    call self%settle(status, 'the file could not be created')
+    call self%check_status(status, 'the file could not be created')
   end subroutine create
 
   !> Opens a file that is there.
@@ -95,12 +95,12 @@ contains
 
     call start_over(self, communicator)
     if (writable) call self%hold_reserve(path)
-    if (allocated(self%trouble)) return
+    if (allocated(self%failure)) return
     call prepare(self, access_list)
     call h5fopen_f(path, merge(h5f_acc_rdwr_f, h5f_acc_rdonly_f, writable), self%id, status, access_list)
     self%is_open = status == 0
     call h5pclose_f(access_list, closed)
-    call self%settle(status, 'the file could not be opened')
+    call self%check_status(status, 'the file could not be opened')
   end subroutine open
 
   !> Forgets the file before.
@@ -110,7 +110,7 @@ contains
     !> The ranks that share the file
     type(communicator_t), intent(in) :: communicator
 
-    if (allocated(self%trouble)) deallocate (self%trouble)
+    if (allocated(self%failure)) deallocate (self%failure)
     self%communicator = communicator
   end subroutine start_over
 
@@ -128,8 +128,8 @@ contains
       call stream%put(repeat('.', reserved_bytes))
       call stream%close()
     end if
-    call self%settle(merge(-1, 0, stream%failed), 'the folder cannot be written to or the disk is full')
-    if (allocated(self%trouble)) call self%give_up_reserve()
+    call self%check_status(merge(-1, 0, stream%failed), 'the folder cannot be written to or the disk is full')
+    if (allocated(self%failure)) call self%give_up_reserve()
   end subroutine hold_reserve
 
   !> Removes the reserve.
@@ -209,7 +209,7 @@ contains
     call h5pclose_f(self%with_groups, closed)
     call h5pclose_f(self%undated, closed)
     self%together = -1
-    call self%settle(status, 'the file could not be closed')
+    call self%check_status(status, 'the file could not be closed')
   end subroutine close
 
   !> Whether the library still holds a file on this rank: it could not close it, and crashes when it tries again at its
@@ -233,25 +233,25 @@ contains
   end function files_left_open
 
   !> Agrees on whether the last step failed on any rank.
-  subroutine settle(self, status, trouble)
+  subroutine check_status(self, status, failure)
     !> The file
     class(hdf5_file_t), intent(inout) :: self
     !> Status the library returned on this rank; negative means failed
     integer, intent(in) :: status
     !> What could not be done, if it failed; equal on all ranks
-    character(len=*), intent(in) :: trouble
+    character(len=*), intent(in) :: failure
 
-    if (allocated(self%trouble)) return
-    if (self%communicator%any(status < 0)) self%trouble = trouble
-  end subroutine settle
+    if (allocated(self%failure)) return
+    if (self%communicator%any(status < 0)) self%failure = failure
+  end subroutine check_status
 
   !> Whether nothing has failed so far.
-  pure logical function well(self)
+  pure logical function succeeded(self)
     !> The file
     class(hdf5_file_t), intent(in) :: self
 
-    well = self%is_open .and. .not. allocated(self%trouble)
-  end function well
+    succeeded = self%is_open .and. .not. allocated(self%failure)
+  end function succeeded
 
   !> Whether there is a group or dataset of that path.
   logical function exists(self, path)
@@ -262,7 +262,7 @@ contains
     integer :: status
 
     exists = .false.
-    if (.not. self%well()) return
+    if (.not. self%succeeded()) return
     call h5lexists_f(self%id, path, exists, status)
     exists = exists .and. status == 0
   end function exists
@@ -276,10 +276,10 @@ contains
     integer(hid_t) :: group
     integer :: status
 
-    if (.not. self%well()) return
+    if (.not. self%succeeded()) return
     call h5gcreate_f(self%id, path, group, status, lcpl_id=self%with_groups)
     if (status == 0) call h5gclose_f(group, status)
-    call self%settle(status, 'group '//path//' could not be made')
+    call self%check_status(status, 'group '//path//' could not be made')
   end subroutine make_group
 
   !> Removes a group with all that is in it, or a dataset.
@@ -290,9 +290,9 @@ contains
     character(len=*), intent(in) :: path
     integer :: status
 
-    if (.not. self%well()) return
+    if (.not. self%succeeded()) return
     call h5ldelete_f(self%id, path, status)
-    call self%settle(status, path//' could not be removed')
+    call self%check_status(status, path//' could not be removed')
   end subroutine remove
 
   !> Removes a group after there was trouble with it, so that what is left can be closed.
@@ -322,13 +322,13 @@ contains
     if (self%exists(path)) then
       call h5gn_members_f(self%id, path, count, status)
       if (status < 0) count = 0
-      call self%settle(status, 'group '//path//' could not be listed')
+      call self%check_status(status, 'group '//path//' could not be listed')
     end if
     allocate (names(count))
     do i = 1, count
       call h5gget_obj_info_idx_f(self%id, path, i - 1, name, kind, status)
       names(i)%text = trim(name)
-      call self%settle(status, 'group '//path//' could not be listed')
+      call self%check_status(status, 'group '//path//' could not be listed')
     end do
   end subroutine members
 end module hdf5_file

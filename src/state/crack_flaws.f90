@@ -18,7 +18,8 @@ module crack_flaws
 
 contains
 
-  !> Weakens interfaces within a block's thickness of where the ply above or below has cracked across its fibres.
+  !> Reduces the strength of interfaces within a block's thickness of where the ply above or below has cracked across
+  !> its fibres.
   !> Collective.
   subroutine note_flaws(model, plies, displacement, interfaces)
     type(model_t), intent(in) :: model
@@ -31,10 +32,10 @@ contains
     real(wp), allocatable :: strains(:, :)
     integer :: zone, ply
 
-    if (.not. (model%map%layered .and. model%scene%has_ply_damage)) return
-    if (any(model%scene%delaminations%shear_cracks)) strains = element_strains(model, plies, displacement)
+    if (.not. (model%map%layered .and. model%setup%has_ply_damage)) return
+    if (any(model%setup%delaminations%shear_cracks)) strains = element_strains(model, plies, displacement)
     do zone = 1, size(model%mesh%zones)
-      associate (delamination => model%scene%delaminations(zone), below => model%mesh%zones(zone)%below_ply)
+      associate (delamination => model%setup%delaminations(zone), below => model%mesh%zones(zone)%below_ply)
         if (delamination%law /= law_cohesive) cycle
         do ply = below, below + 1
           associate (reach => block_thickness(model%plies, ply))
@@ -49,7 +50,8 @@ contains
     end do
   end subroutine note_flaws
 
-  !> Weakens an interface beside cracks of transverse shear in a ply: what bears no more shear cannot hand it on, so its
+  !> Reduces the strength of an interface beside cracks of transverse shear in a ply: what bears no more shear cannot
+  !> hand it on, so its
   !> strength is that of the ply to transverse shear. Collective.
   subroutine weaken_by_shear(model, plies, strains, zone, ply, reach, interfaces)
     type(model_t), intent(in) :: model
@@ -66,9 +68,9 @@ contains
     type(matrix_strengths_t) :: strengths
     real(wp) :: part
 
-    associate (scene => model%scene)
-      strengths = crack_strengths(model%plies, ply, scene%materials, scene%ply_damage)
-      part = shear_across_strength(strengths)/scene%delaminations(zone)%strength_shear
+    associate (setup => model%setup)
+      strengths = crack_strengths(model%plies, ply, setup%materials, setup%ply_damage)
+      part = shear_across_strength(strengths)/setup%delaminations(zone)%strength_shear
     end associate
     if (part < 1) call weaken_beside(interfaces%cohesive, model, zone, &
                                      sheared_cells(model, plies, strains, zone, ply, reach, strengths), &

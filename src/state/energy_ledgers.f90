@@ -1,4 +1,4 @@
-!> Where the energy is. Every entry is of the whole plate, also under symmetry.
+!> Where the energy is. Every entry is of the full plate, also under symmetry.
 module energy_ledgers
   use kinds, only: wp
   use archives, only: archive_t
@@ -53,7 +53,7 @@ contains
   subroutine visit(self, archive)
     !> The ledger
     class(ledger_t), intent(inout) :: self
-    !> Where to or where from
+    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
 
     call archive%item('ledger/impactor', self%impactor)

@@ -28,7 +28,7 @@ module states
     type(load_path_t) :: path
     !> The impactor
     type(impactor_t) :: impactor
-    !> Memory of the indentation
+    !> History variables of the indentation
     type(indentation_t) :: indentation
     !> The interfaces
     type(interface_state_t) :: interfaces
@@ -50,7 +50,7 @@ module states
     integer :: iterations = 0, force_iterations = 0, contact_iterations = 0
     !> Their sums over all steps
     integer :: all_iterations = 0, all_force_iterations = 0, all_contact_iterations = 0
-    !> Largest forces so far, by which a residual is judged when forces fade: translations, rotations
+    !> Largest forces so far, the reference of the residual when forces are small: translations, rotations
     real(wp) :: largest_forces(2) = 0
   end type small_state_t
 
@@ -61,12 +61,12 @@ module states
     !> Failures of the plies and the stiffness they have left
     type(ply_failure_t) :: plies
   contains
-    !> Becomes the state from which a step starts, but for what the step finds anew.
+    !> Becomes the state from which a step starts, but for what the step computes again.
     procedure :: start_from
     !> Internal forces and the energy that goes with them.
     procedure :: find_internal
     !> True once plies have failed or delaminations have grown.
-    procedure :: has_broken
+    procedure :: has_failures
     !> Counts a step and its iterations.
     procedure :: count_step
     !> Notes how a load step went.
@@ -77,7 +77,7 @@ module states
 
 contains
 
-  !> The plate at rest, the impactor at first touch.
+  !> The plate at rest, the impactor at first contact.
   function new_state(model) result(self)
     type(model_t), intent(in) :: model
     !> The state
@@ -95,25 +95,25 @@ contains
     energy = 0
     call self%interfaces%rig%add_springs(model, self%motion%displacement, self%motion%internal, energy)
     if (allocated(model%nose)) self%patch = model%patch
-    if (.not. model%scene%has_impactor .or. model%scene%has_static) return
-    self%impactor = new_impactor(model%scene%impactor)
-    self%ledger%impactor = impactor_energy(model%scene%impactor, self%impactor)
+    if (.not. model%setup%has_impactor .or. model%setup%has_static) return
+    self%impactor = new_impactor(model%setup%impactor)
+    self%ledger%impactor = impactor_energy(model%setup%impactor, self%impactor)
     self%ledger%initial = self%ledger%impactor
   end function new_state
 
   !> Becomes the state from which a step starts. Of the motion that is the displacement: velocity, acceleration and
-  !> forces are found anew.
+  !> forces are computed again.
   pure subroutine start_from(self, model, old)
     !> The state
     class(state_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> The state that is taken over
+    !> The state that is taken
     type(state_t), intent(in) :: old
 
     self%small_state_t = old%small_state_t
     self%motion%displacement = old%motion%displacement
     ! Without damage no step changes them.
-    if (model%scene%has_ply_damage) self%plies = old%plies
+    if (model%setup%has_ply_damage) self%plies = old%plies
   end subroutine start_from
 
   !> Internal forces of layers and cohesive interfaces, and this rank's share of the energy that they store.
@@ -137,12 +137,12 @@ contains
   end subroutine find_internal
 
   !> True once plies have failed or delaminations have grown.
-  pure logical function has_broken(self)
+  pure logical function has_failures(self)
     !> The state
     class(state_t), intent(in) :: self
 
-    has_broken = self%ledger%ply_damage > 0 .or. self%ledger%delamination > 0
-  end function has_broken
+    has_failures = self%ledger%ply_damage > 0 .or. self%ledger%delamination > 0
+  end function has_failures
 
   !> Counts a step and its iterations.
   pure subroutine count_step(self, old)
@@ -178,7 +178,7 @@ contains
   subroutine visit(self, archive, model)
     !> The state
     class(state_t), intent(inout) :: self
-    !> Where to or where from
+    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
 
@@ -212,7 +212,7 @@ contains
   subroutine visit_patch(self, archive, model)
     !> The state
     type(state_t), intent(inout) :: self
-    !> Where to or where from
+    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
     real(wp), allocatable :: weights(:, :)
@@ -230,7 +230,7 @@ contains
   subroutine visit_motion(motion, archive, model)
     !> The motion
     type(motion_t), intent(inout) :: motion
-    !> Where to or where from
+    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
     integer :: points

@@ -19,7 +19,7 @@ import sys
 from pathlib import Path
 
 # Words of a sentence: as a habit, and at most.
-LONGEST, MOST = 30, 40
+LONGEST, LIMIT = 30, 40
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 CODE = re.compile(r"`([^`\n]+)`")
 HEADING = re.compile(r"^(#+) +(.*?) *#*$")
@@ -172,7 +172,7 @@ def first_missing(quote, lines):
 
 
 def check_diary(page, root):
-    """Breaches of pages that tell what was."""
+    """Breaches of pages that report what was."""
     if page == root / "CHANGELOG.md" or page.parent == root / "doc" / "news":
         return
     for line, number in prose(page):
@@ -280,18 +280,18 @@ def paragraphs(page):
             text += " " + re.sub(r"^(?:[-*>]+|\d+\.) +", "", stripped)
 
 
-def long_sentences(page, most=LONGEST):
+def long_sentences(page, limit=LONGEST):
     """The sentences of a page that are too long."""
     for sentence, number in sentences(page):
         words = [word for word in sentence.split() if re.search(r"\w", word)]
-        if len(words) > most:
+        if len(words) > limit:
             yield number, len(words), sentence.strip()
 
 
 def check_sentences(page, root):
     """Breaches of sentences of far too many words."""
     if page.is_relative_to(root / "doc") or page == root / "README.md":
-        for number, words, text in long_sentences(page, MOST):
+        for number, words, text in long_sentences(page, LIMIT):
             yield f"{page}:{number}: a sentence of {words} words: {' '.join(text.split()[:8])} ..."
 
 

@@ -44,8 +44,8 @@ def main(arguments):
                                   check=False)
             print(f"{path.name}: {command}: {time.monotonic() - begun:.1f} s", flush=True)
             if done.returncode:
-                told = done.stdout[-2000:] + done.stderr[-2000:]
-                wrong.append(f"{path.name}: {command}: code {done.returncode}\n{told}")
+                printed = done.stdout[-2000:] + done.stderr[-2000:]
+                wrong.append(f"{path.name}: {command}: code {done.returncode}\n{printed}")
         for picture in PICTURE.findall(page):
             drawn.append(picture)
             if not (folder / "pictures" / picture).exists():

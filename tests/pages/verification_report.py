@@ -86,8 +86,8 @@ def scripts_of(folder):
     """Registered scripts with the first sentence of their docstrings."""
     listed = (folder / "CMakeLists.txt").read_text(encoding="utf-8")
     for test, label, script in re.findall(r"implam_add_script\((\w+) ([\w-]+) (\w+\.py)", listed):
-        told = ast.get_docstring(ast.parse((folder / script).read_text(encoding="utf-8"))) or ""
-        yield f"`{test}`", label, first_sentence(told)
+        printed = ast.get_docstring(ast.parse((folder / script).read_text(encoding="utf-8"))) or ""
+        yield f"`{test}`", label, first_sentence(printed)
 
 
 def page_of(root):

@@ -48,13 +48,13 @@ def check_whole(implam, folder, key, _):
         for name in ("force", "delaminated_area", "energy_delamination", "energy_ply_damage"):
             expected = found["none"][name]
             worst = max(abs(a - b) for a, b in zip(history[name], expected, strict=True))/max(expected)
-            require(worst <= 1e-6, f"{name} of '{symmetry}' differs from the whole plate's by {worst:.2g}.")
+            require(worst <= 1e-6, f"{name} of '{symmetry}' differs from the full plate's by {worst:.2g}.")
 
 
 def check_ranks(implam, folder, key, launcher):
     """One rank and two."""
     cracks, end = WAYS[key]
-    # Cracks of one rank have the other's points beside them only in the middle of a whole plate.
+    # Cracks of one rank have the other's points beside them only in the middle of a full plate.
     settings = [*cracks, f"delamination%{key}=.true.", "plate%symmetry='none'", "mesh%elements=12, 12",
                 f"time%end={end}"]
     one, two = (read_history(run_deck(implam, write_deck(folder / name, DECK, settings), launch))

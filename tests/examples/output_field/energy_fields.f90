@@ -22,7 +22,7 @@ contains
   subroutine write_energy_fields(model, stiffness, displacement, output, fields, error)
     !> The model
     type(model_t), intent(in) :: model
-    !> Section stiffness left in the elements, (lanes, 21, batches)
+    !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     !> Displacement, ghosts up to date, (5, points)
     real(wp), intent(in) :: displacement(:, :)
@@ -33,7 +33,7 @@ contains
     !> Set if the file cannot be written
     type(error_t), allocatable, intent(inout) :: error
 
-    if (output%wants('energy')) call fields%write_cell_field( &
+    if (output%requests('energy')) call fields%write_cell_field( &
       'strain_energy_density', strain_energy_density(model, stiffness, displacement), error)
   end subroutine write_energy_fields
 
@@ -41,7 +41,7 @@ contains
   function strain_energy_density(model, stiffness, displacement) result(density)
     !> The model
     type(model_t), intent(in) :: model
-    !> Section stiffness left in the elements, (lanes, 21, batches)
+    !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     !> Displacement, ghosts up to date, (5, points)
     real(wp), intent(in) :: displacement(:, :)
@@ -54,7 +54,7 @@ contains
     allocate (density(1, model%elements%elements), source=0.0_wp)
     motion = model%motion_of(displacement)
     do b = 1, model%elements%batches
-      call gauss_strains(model%elements, b, model%scene%kinematics, motion, strains)
+      call gauss_strains(model%elements, b, model%setup%kinematics, motion, strains)
       do lane = 1, model%elements%lanes_used(b)
         energy = 0
         do point = 1, 9
