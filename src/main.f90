@@ -3,10 +3,10 @@ program implam
   use programs, only: run_program
   implicit none
   integer :: code
-  logical :: broken
+  logical :: close_failed
 
-  call run_program(code, broken)
-  if (broken) call leave_at_once(code)
+  call run_program(code, close_failed)
+  if (close_failed) call leave_at_once(code)
   if (code /= 0) call quit(code)
 
 contains

@@ -20,10 +20,10 @@ def main():
     lines = []
     for case in ElementTree.parse(Path(sys.argv[1])).getroot().iter("testcase"):
         whole = case.get("status") == "notrun"
-        told = reasons(case.findtext("system-out") or "")
-        if whole and not told:
-            told = ["without a reason"]
-        lines += [f"  {case.get('name')}{'' if whole else ', a part of it'}: {reason}" for reason in told]
+        printed = reasons(case.findtext("system-out") or "")
+        if whole and not printed:
+            printed = ["without a reason"]
+        lines += [f"  {case.get('name')}{'' if whole else ', a part of it'}: {reason}" for reason in printed]
     print("\n".join(["Skipped:", *lines]) if lines else "No test was skipped.")
 
 

@@ -23,19 +23,19 @@ module command_lines
     character(len=:), allocatable :: target
     !> Folder that overrides the deck's; unallocated: the deck's
     character(len=:), allocatable :: output
-    !> Seconds on the wall that override the deck's; 0: the deck's
+    !> Wall-clock seconds that override the deck's; 0: the deck's
     real(wp) :: wall_limit = 0
     !> Rig whose deck is written; empty: none
     character(len=:), allocatable :: rig
     !> slurm or pbs
     character(len=:), allocatable :: queue
-    !> Ranks of a job, and its seconds on the wall; 0: left to the deck, and a day
+    !> Ranks of a job, and its wall-clock seconds; 0: left to the deck, and a day
     integer :: ranks = 0, seconds = 0
     !> True: jobs follow each other
     logical :: chain = .false.
-    !> True: the scene is run once more on a finer mesh with shorter steps
+    !> True: the setup is run once more on a finer mesh with shorter steps
     logical :: verify = .false.
-    !> True: the log and the summary tell where time and memory went
+    !> True: the log and the summary report where time and memory went
     logical :: profile = .false.
     !> Arguments for PETSc, in one string
     character(len=:), allocatable :: petsc_options
@@ -305,7 +305,8 @@ contains
     if (command%target /= '') return
     select case (command%verb)
     case (verb_run, verb_check)
-      call fail(error, exit_usage, 'No deck given; `implam new` writes one to start from, `implam help` tells more.')
+      call fail(error, exit_usage, &
+                'No deck given; `implam new` writes one to start from, `implam help` lists the commands.')
     case (verb_queue)
       ! The only deck of this folder, if there is one only.
       command%target = file_by_age('.', '.nml', 0)

@@ -1,5 +1,5 @@
-!> A companion of a run: the same scene with half the elements along each side and twice the step, about an eighth of
-!> the work. What the two differ by tells how far the run may be off.
+!> A companion of a run: the same setup with half the elements along each side and twice the step, about an eighth of
+!> the work. What the two differ by shows how far the run may be off.
 module companion_runs
   use communicators, only: communicator_t
   use deck_contents, only: deck_t
@@ -11,7 +11,7 @@ module companion_runs
   use queue_signals, only: stop_signal
   use run_records, only: run_record_t, new_run_record
   use stepping_parameters, only: end_of_run
-  use step_intervals, only: steps_between_looks, steps_between_stages
+  use step_intervals, only: steps_between_checks, steps_between_stages
   use time_stepping, only: time_stepper_t
   implicit none
   private
@@ -44,19 +44,19 @@ contains
     type(interface_figures_t), allocatable :: figures(:)
     type(time_stepper_t) :: stepper
     type(error_t), allocatable :: error
-    integer :: looks
+    integer :: checks
 
     coarse = coarser_deck(deck)
-    call create_model(coarse%scene_t, communicator, model, error)
+    call create_model(coarse%setup_t, communicator, model, error)
     if (.not. allocated(error)) call stepper%start(model, coarse%stepping, coarse%linear_solver, .false., error)
     if (allocated(error)) return
     companion%record = new_run_record(model)
-    looks = steps_between_looks(coarse%stepping, model%mesh%elements())
+    checks = steps_between_checks(coarse%stepping, model%mesh%elements())
     do while (stepper%now%time < end_of_run(coarse%stepping, companion%record%contact_end))
       call stepper%advance(model, end_of_run(coarse%stepping, companion%record%contact_end), error)
       if (allocated(error)) exit
       call companion%record%observe(model, stepper%now, steps_between_stages(coarse%stepping))
-      if (modulo(stepper%now%step, looks) > 0) cycle
+      if (modulo(stepper%now%step, checks) > 0) cycle
       if (communicator%any(stop_signal() /= 0)) exit
     end do
     companion%done = .not. (stepper%now%time < end_of_run(coarse%stepping, companion%record%contact_end))
@@ -70,7 +70,7 @@ contains
   pure function coarser_deck(deck) result(coarse)
     !> The deck of the run
     type(deck_t), intent(in) :: deck
-    !> The same scene, coarser
+    !> The same setup, coarser
     type(deck_t) :: coarse
 
     coarse = deck

@@ -12,7 +12,7 @@ module compression_records
   real(wp), parameter :: strains(2) = [1.0e-3_wp, 3.0e-3_wp]
   !> Part of its largest value below which the stress has to come for the plate to have failed: a test ends when the
   !> force has dropped by about 30 % (ASTM D7137).
-  real(wp), parameter :: fallen = 0.7_wp
+  real(wp), parameter :: failure_ratio = 0.7_wp
 
   !> The record.
   type :: compression_record_t
@@ -59,7 +59,7 @@ contains
       self%shortening = shortening
       self%bending = bending
       self%failed = .false.
-    else if (stress < fallen*self%strength) then
+    else if (stress < failure_ratio*self%strength) then
       self%failed = .true.
     end if
   end subroutine observe

@@ -13,14 +13,14 @@ module computations
   use errors, only: error_t, exit_done, exit_files, exit_stopped, exit_usage, fail
   use files, only: is_directory
   use initial_states, only: fit_initial_state
-  use layer_following, only: visit_zones
+  use adaptive_zones, only: visit_zones
   use petsc_session, only: start_petsc, finish_petsc
   use queue_signals, only: announce_stop_signals
   use root_output, only: print_lines
   use simulations, only: simulation_t
   use text, only: line_t
   use profiles, only: new_profile, profile_t
-  use verifications, only: stage_done, stage_stopped, stage_of, tell_changes
+  use verifications, only: stage_done, stage_stopped, stage_of, print_changes
   implicit none
   private
   public :: compute, read_deck_everywhere
@@ -60,7 +60,7 @@ contains
     call profile%leave()
     if (code /= exit_done .or. allocated(error)) return
     if (command%verify .and. deck%refine > 0) then
-      call fail(error, exit_usage, '--verify refines the scene itself; take refine out of &case.')
+      call fail(error, exit_usage, '--verify refines the setup itself; take refine out of &case.')
       return
     end if
     if (command%verify .and. deck%inherits) then
@@ -82,7 +82,7 @@ contains
     call profile%release()
   end subroutine compute
 
-  !> Tells what is wrong with a deck, and sets what the command line overrides.
+  !> Reports what is wrong with a deck, and sets what the command line overrides.
   subroutine accept_deck(command, communicator, deck, problems, code)
     !> What is asked
     type(command_t), intent(in) :: command
@@ -101,7 +101,7 @@ contains
     if (command%wall_limit > 0) deck%stepping%time%wall_limit = command%wall_limit
   end subroutine accept_deck
 
-  !> Runs the deck's scene to its end.
+  !> Runs the deck's setup to its end.
   subroutine simulate(deck, communicator, profile, checkpoint, error)
     !> The deck, checked
     type(deck_t), intent(in) :: deck
@@ -128,7 +128,7 @@ contains
     call simulation%log%close()
   end subroutine simulate
 
-  !> Runs a scene as it is and once more finer, and tells what its figures change by. What an earlier command has done
+  !> Runs a setup as it is and once more finer, and reports what its figures change by. What an earlier command has done
   !> of that isn't done again.
   subroutine verify(command, communicator, deck, profile, code, error)
     !> What is asked
@@ -156,10 +156,10 @@ contains
         error%message = error%message//', or do all that is left with the same command.'
       return
     end if
-    call tell_changes(deck, finer, communicator, error)
+    call print_changes(deck, finer, communicator, error)
   end subroutine verify
 
-  !> Runs a deck's scene from where an earlier command has left it.
+  !> Runs a deck's setup from where an earlier command has left it.
   subroutine go_on(deck, communicator, profile, error)
     !> The deck
     type(deck_t), intent(in) :: deck

@@ -1,4 +1,4 @@
-!> Where the results of a deck come from: program, deck, and the values in effect that neither tells.
+!> Where the results of a deck come from: program, deck, and the values in effect that neither gives.
 module deck_provenance
   use build_information, only: this_build
   use deck_contents, only: deck_t

@@ -9,7 +9,7 @@ module energy_watches
   public :: energy_watch_t
 
   !> Part of the energy that must not have been created, taken or lost sight of.
-  real(wp), parameter, public :: much = 0.01_wp
+  real(wp), parameter, public :: energy_tolerance = 0.01_wp
   !> Part of the energy of residual stresses below which energies are not judged. The equilibrium that they start from
   !> leaves 1e-6 of the forces (`tolerance` of &solver), whose work is up to 1e-6 of this energy: 1 % of what is judged.
   real(wp), parameter :: fine = 1.0e-4_wp
@@ -24,7 +24,7 @@ module energy_watches
     !> Too much had been created after the step before
     logical, private :: doubtful = .false.
   contains
-    procedure :: look
+    procedure :: check
     !> Saves or loads what was seen.
     procedure :: visit
   end type energy_watch_t
@@ -34,7 +34,7 @@ contains
   !> What is more than 1 % of the energy: created by the integrators or by the indentation, whose work can't be
   !> negative; taken; not accounted for. What an integrator creates in the first step of a load that is there at once it
   !> takes out in the next: of steps in time two in a row must say that energy was created.
-  function look(self, ledger, deficit, amplitude, static) result(alarms)
+  function check(self, ledger, deficit, amplitude, static) result(alarms)
     !> The watch
     class(energy_watch_t), intent(inout) :: self
     !> The ledger after an accepted step
@@ -53,12 +53,12 @@ contains
     before = self%doubtful .or. static
     self%largest = max(self%largest, ledger%initial - ledger%residual, &
                        ledger%kinetic + ledger%strain - ledger%residual, ledger%external_work, fine*ledger%residual)
-    most = much*self%largest
+    most = energy_tolerance*self%largest
     self%doubtful = (-ledger%algorithmic - deficit)*amplitude**2 > most .or. -ledger%indentation > most
     alarms(energy_created) = self%doubtful .and. before
     alarms(energy_taken) = ledger%algorithmic*amplitude**2 > most
     alarms(energy_unaccounted) = abs(ledger%error())*amplitude**2 > most
-  end function look
+  end function check
 
   !> Saves or loads what was seen.
   subroutine visit(self, archive)

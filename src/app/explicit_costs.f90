@@ -6,11 +6,11 @@ module explicit_costs
   use model_sizes, only: model_size_t
   use delamination_parameters, only: law_cohesive
   use plate_options, only: kinematics_von_karman
-  use scene_scales, only: free_span
+  use setup_scales, only: free_span
   use text, only: rounded_text, to_text
   implicit none
   private
-  public :: explicit_sentence, spoken
+  public :: explicit_sentence, duration_text
 
   !> Seconds of one processor for an element of one layer in a step, what its interfaces add where they are cohesive,
   !> and what plies add that soften, in the mean over an impact that breaks many of them. Measured on one core of an AMD
@@ -37,7 +37,7 @@ contains
     if (any(deck%delaminations%follows)) bound = 'at most '
     sentence = 'About '//rounded_text(steps)//' steps of '//rounded_text(step)//' for '// &
                bound//rounded_text(model_size%elements)//' elements of all layers: '// &
-               spoken(seconds_of_element(deck)*steps*model_size%elements)//' of one processor.'
+               duration_text(seconds_of_element(deck)*steps*model_size%elements)//' of one processor.'
   end function explicit_sentence
 
   !> Ratio of the stable step of the flat plate to that of the deflected one: slopes theta and the strain theta**2/4 of
@@ -49,7 +49,7 @@ contains
 
     ratio = 1
     if (deck%kinematics /= kinematics_von_karman) return
-    slope = pi*deck%stepping%outlook%deflection/minval(free_span(deck%scene_t))
+    slope = pi*deck%stepping%expected%deflection/minval(free_span(deck%setup_t))
     ratio = sqrt(1 + deck%stepping%central%mass_scaling*1.25_wp*slope**2)
   end function shortened
 
@@ -64,7 +64,7 @@ contains
   end function seconds_of_element
 
   !> A time as people say it.
-  pure function spoken(seconds) result(words)
+  pure function duration_text(seconds) result(words)
     !> The time in seconds
     real(wp), intent(in) :: seconds
     !> In seconds, minutes or hours
@@ -77,5 +77,5 @@ contains
     else
       words = to_text(nint(min(seconds/3600, 1.0e9_wp)))//' h'
     end if
-  end function spoken
+  end function duration_text
 end module explicit_costs

@@ -12,7 +12,7 @@ module initial_states
   use inherited_starts, only: begin_inherited
   use inherited_states, only: visit_inheritance
   use initial_state_deck, only: initial_state_group
-  use layer_following, only: visit_zones
+  use adaptive_zones, only: visit_zones
   use layer_transfers, only: layer_transfer_t
   use logger, only: log_t
   use model_building, only: create_model
@@ -110,7 +110,7 @@ contains
     call open_checkpoint(deck%initial%from, model%communicator, archive, old, error)
     if (allocated(error)) return
     allocate (old_model)
-    call create_model(old%scene_t, model%communicator, old_model, error)
+    call create_model(old%setup_t, model%communicator, old_model, error)
     if (allocated(error)) return
     allocate (state, source=new_state(old_model))
     call visit_inheritance(state, archive, old_model)

@@ -37,19 +37,19 @@ module programs
 contains
 
   !> Does what the command line asks. Without a launcher MPI starts only when there is something to compute: what
-  !> reads or explains decks then answers at once, also on machines where MPI must not start.
-  subroutine run_program(code, broken)
+  !> reads or explains decks then returns at once, also on machines where MPI must not start.
+  subroutine run_program(code, close_failed)
     !> Exit code
     integer, intent(out) :: code
     !> True: a file could not be closed and the libraries' own ends, MPI's too, would crash on it; leave without them
-    logical, intent(out) :: broken
+    logical, intent(out) :: close_failed
     type(command_t) :: command
     type(communicator_t) :: communicator
     type(error_t), allocatable :: error
 
     code = exit_done
     if (launched()) call start_mpi(communicator)
-    if (command_argument_count() == 0) call tell_usage(communicator)
+    if (command_argument_count() == 0) call print_usage(communicator)
     call read_command_line(command, error)
     if (.not. allocated(error)) then
       if (all(command%verb /= [verb_run, verb_restart])) call release_stop_signals()
@@ -59,14 +59,14 @@ contains
                          [line_t('Implam '//version//' ('//commit//'), '//compiler//', PETSc '//petsc_version)])
       case (verb_help)
         if (command%target == '') then
-          call tell_usage(communicator)
+          call print_usage(communicator)
         else
           call explain_topic(command, communicator, error)
         end if
       case (verb_explain)
         call explain_topic(command, communicator, error)
       case (verb_completion, verb_man)
-        call tell_page(command, communicator, error)
+        call print_page(command, communicator, error)
       case (verb_new)
         call start_deck(command, communicator, error)
       case (verb_queue)
@@ -82,23 +82,23 @@ contains
       code = error%code
       if (communicator%is_root()) write (error_unit, '(2a)') 'implam: ', error%message
     end if
-    broken = .false.
-    if (code == exit_files) broken = communicator%any(files_left_open())
-    if (.not. broken) call finish_mpi()
+    close_failed = .false.
+    if (code == exit_files) close_failed = communicator%any(files_left_open())
+    if (.not. close_failed) call finish_mpi()
   end subroutine run_program
 
   !> Prints how the program is used.
-  subroutine tell_usage(communicator)
+  subroutine print_usage(communicator)
     !> The ranks
     type(communicator_t), intent(in) :: communicator
     type(line_t), allocatable :: lines(:)
 
     call usage_lines(lines)
     call print_lines(communicator, lines)
-  end subroutine tell_usage
+  end subroutine print_usage
 
   !> Prints the manual page, or what a shell completes.
-  subroutine tell_page(command, communicator, error)
+  subroutine print_page(command, communicator, error)
     !> What is asked
     type(command_t), intent(in) :: command
     !> The ranks
@@ -115,7 +115,7 @@ contains
       call completion(command%target, vocabulary, lines, error)
     end if
     if (.not. allocated(error)) call print_lines(communicator, lines)
-  end subroutine tell_page
+  end subroutine print_page
 
   !> Writes a deck to start from.
   subroutine start_deck(command, communicator, error)
@@ -227,7 +227,7 @@ contains
     call print_lines(communicator, [line_t(command%target//': no errors.')])
     if (symmetry_sentence(deck) /= '') call print_lines(communicator, [line_t(symmetry_sentence(deck))])
     call print_lines(communicator, [scale_lines(deck), strength_lines(deck)])
-    model_size = size_of_model(deck%scene_t, is_explicit(deck%stepping))
+    model_size = size_of_model(deck%setup_t, is_explicit(deck%stepping))
     call print_lines(communicator, [line_t(model_size%sentence()), cost_lines(deck, model_size)])
   end subroutine check
 end module programs

@@ -16,10 +16,10 @@ module queue_scripts
 
   !> Memory asked for over the estimate: plies that crack and fronts that grow keep more than the first factor.
   real(wp), parameter :: spare_memory = 1.5_wp
-  !> Seconds on the wall that a job gets without `--time`, and most of them that are kept for the checkpoint.
-  integer, parameter :: usual_seconds = 86400, most_kept = 600
+  !> Wall-clock seconds that a job gets without `--time`, and most of them that are kept for the checkpoint.
+  integer, parameter :: usual_seconds = 86400, max_kept = 600
   !> Parts of a chain, lest one that never moves on goes on for ever.
-  integer, parameter :: most_parts = 100
+  integer, parameter :: max_parts = 100
 
   !> What a script is to say.
   type, public :: queue_job_t
@@ -31,7 +31,7 @@ module queue_scripts
     character(len=:), allocatable :: program
     !> Ranks; 0: as the deck's size suggests
     integer :: ranks = 0
-    !> Seconds on the wall; 0: a day
+    !> Wall-clock seconds; 0: a day
     integer :: seconds = 0
     !> True: a job that is stopped by its limit comes again until the run has ended
     logical :: chain = .false.
@@ -45,11 +45,11 @@ module queue_scripts
 
 contains
 
-  !> Writes the script beside the caller and tells what to do with it.
+  !> Writes the script beside the caller and prints what to do with it.
   subroutine write_queue_script(job, lines, error)
     !> What it is to say
     type(queue_job_t), intent(inout) :: job
-    !> What to tell the user
+    !> What to print for the user
     type(line_t), allocatable, intent(out) :: lines(:)
     !> Raised if the deck or list has faults, or the script is there already
     type(error_t), allocatable, intent(inout) :: error
@@ -94,9 +94,9 @@ contains
     type(deck_t) :: deck
     type(model_size_t) :: found
 
-    call read_sound_deck(job%target, deck, error)
+    call read_valid_deck(job%target, deck, error)
     if (allocated(error)) return
-    found = size_of_model(deck%scene_t, is_explicit(deck%stepping))
+    found = size_of_model(deck%setup_t, is_explicit(deck%stepping))
     job%name = deck%name
     job%checkpoint = deck%output%directory//'/'//deck%name//'_restart.h5'
     if (job%ranks == 0) job%ranks = found%ranks
@@ -121,9 +121,9 @@ contains
       read (unit, '(a)', iostat=status) path
       if (status /= 0) exit
       job%tasks = job%tasks + 1
-      call read_sound_deck(trim(path), deck, error)
+      call read_valid_deck(trim(path), deck, error)
       if (allocated(error)) exit
-      found = size_of_model(deck%scene_t, is_explicit(deck%stepping))
+      found = size_of_model(deck%setup_t, is_explicit(deck%stepping))
       ! What `--program` of the sweep says decides on the ranks: one without it.
       if (job%ranks == 0) job%ranks = 1
       job%megabytes = max(job%megabytes, ceiling(spare_memory*found%megabytes_a_rank(job%ranks)))
@@ -134,7 +134,7 @@ contains
   end subroutine size_array
 
   !> Reads a deck that must have no faults.
-  subroutine read_sound_deck(path, deck, error)
+  subroutine read_valid_deck(path, deck, error)
     !> Its path
     character(len=*), intent(in) :: path
     !> The deck
@@ -145,7 +145,7 @@ contains
 
     call read_deck(path, deck, problems)
     if (problems%errors() > 0) call fail(error, exit_deck, path//' has faults, which `implam check` lists.')
-  end subroutine read_sound_deck
+  end subroutine read_valid_deck
 
   !> What Slurm is asked for. It may send the signal up to a minute early.
   subroutine head_of_slurm(job, script)
@@ -220,16 +220,16 @@ contains
       call append(script, '  command+=('//quoted(job%target)//')')
       call append(script, 'fi')
     end if
-    call append(script, 'told= run=')
-    call append(script, 'stop() { told=yes; if [[ $run ]]; then kill -USR1 "$run"; fi; }')
+    call append(script, 'signalled= run=')
+    call append(script, 'stop() { signalled=yes; if [[ $run ]]; then kill -USR1 "$run"; fi; }')
     call append(script, 'trap stop USR1 TERM')
     call append(script, '"${in_time[@]}" "${command[@]}" & run=$!')
-    call append(script, 'if [[ $told ]]; then kill -USR1 "$run"; fi')
+    call append(script, 'if [[ $signalled ]]; then kill -USR1 "$run"; fi')
     call append(script, 'wait "$run"; code=$?')
-    call append(script, 'while [[ $told ]]; do told=; wait "$run"; code=$?; done  # a signal ends wait, not the run')
-    call append(script, 'if ((code == 138)); then code=75; fi  # told before the program could hear it')
+    call append(script, 'while [[ $signalled ]]; do signalled=; wait "$run"; code=$?; done  # signals end wait only')
+    call append(script, 'if ((code == 138)); then code=75; fi  # stopped before the program could handle it')
     if (job%chain) then
-      call append(script, 'if ((code == 75 && parts < '//to_text(most_parts)//')); then again; fi')
+      call append(script, 'if ((code == 75 && parts < '//to_text(max_parts)//')); then again; fi')
     else
       call append(script, 'if ((code == 75)); then echo "Stopped in time, with a checkpoint. To go on: '//go_on(job)// &
                   '"; fi')
@@ -254,7 +254,7 @@ contains
     !> The job
     type(queue_job_t), intent(in) :: job
 
-    kept = min(most_kept, job%seconds/2)
+    kept = min(max_kept, job%seconds/2)
   end function kept
 
   !> Seconds as hours, minutes and seconds.

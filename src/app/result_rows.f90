@@ -24,7 +24,7 @@ module result_rows
 
   !> What the run has warned of.
   character(len=result_row_length), parameter :: limit_rows(*) = [character(len=result_row_length) :: &
-    'limits_passed | integer | - | Limits of the model that the run has passed so far; log and summary tell which, &
+    'limits_passed | integer | - | Limits of the model that the run has passed so far; log and summary name which, &
       &and when.']
   !> What a low pass leaves of the force.
   character(len=result_row_length), parameter :: filter_rows(*) = [character(len=result_row_length) :: &
@@ -128,11 +128,11 @@ contains
     real(wp), allocatable :: loads(:, :)
 
     allocate (loads, mold=now%motion%displacement)
-    if (model%scene%has_static) then
+    if (model%setup%has_static) then
       call model%static_loads(now%motion%displacement, now%load_factor, loads)
     else
       call model%line_forces(now%motion%displacement, now%load_factor, loads)
-      if (allocated(model%pressure)) loads = loads + model%scene%pressure%amplitude(now%time)*model%pressure
+      if (allocated(model%pressure)) loads = loads + model%setup%pressure%amplitude(now%time)*model%pressure
     end if
   end function loads_on
 

@@ -1,11 +1,11 @@
 !> What a run costs, for `implam check`: its steps and the processor time to expect.
 module run_costs
   use deck_contents, only: deck_t
-  use explicit_costs, only: explicit_sentence, spoken
+  use explicit_costs, only: explicit_sentence, duration_text
   use kinds, only: wp
   use model_sizes, only: model_size_t
   use plate_options, only: kinematics_linear
-  use stepping_parameters, only: follows_error, is_explicit
+  use stepping_parameters, only: is_error_controlled, is_explicit
   use text, only: line_t, append, rounded_text, to_text
   implicit none
   private
@@ -32,7 +32,7 @@ contains
 
     allocate (lines(0))
     if (deck%has_static) then
-      call append(lines, to_text(deck%stepping%static_steps)//' load steps'//least_time(deck, model_size, &
+      call append(lines, to_text(deck%stepping%static_steps)//' load steps'//min_time(deck, model_size, &
         deck%stepping%static_steps*tangents_of_load_step*factor_over_solve, &
         deck%stepping%static_steps*tangents_of_load_step))
     else if (.not. deck%stepping%time%step > 0) then
@@ -57,12 +57,12 @@ contains
     steps = deck%stepping%time%end/deck%stepping%time%step
     solves = merge(1.0_wp, solves_if_curved, deck%kinematics == kinematics_linear)
     sentence = 'About '//rounded_text(steps)//' steps of '//rounded_text(deck%stepping%time%step)
-    if (follows_error(deck%stepping%adapt)) sentence = sentence//', fewer as they grow'
-    sentence = sentence//least_time(deck, model_size, steps*solves + factor_over_solve, steps*solves)
+    if (is_error_controlled(deck%stepping%adapt)) sentence = sentence//', fewer as they grow'
+    sentence = sentence//min_time(deck, model_size, steps*solves + factor_over_solve, steps*solves)
   end function implicit_sentence
 
   !> The time that an undamaged plate takes.
-  function least_time(deck, model_size, solves, residuals) result(clause)
+  function min_time(deck, model_size, solves, residuals) result(clause)
     !> The deck
     type(deck_t), intent(in) :: deck
     !> Size of its model
@@ -76,9 +76,9 @@ contains
     seconds = seconds_per_unknown*model_size%unknowns*residuals + seconds_per_megabyte*model_size%megabytes*solves
     clause = ': about '
     if (seconds > 1) clause = ': at least '
-    clause = clause//spoken(seconds)//' of one processor'
+    clause = clause//duration_text(seconds)//' of one processor'
     if (deck%has_ply_damage .or. size(deck%delaminations) > 0) clause = clause// &
       ' while nothing breaks, many times that where it does'
     clause = clause//'.'
-  end function least_time
+  end function min_time
 end module run_costs

@@ -24,8 +24,8 @@ module run_errors
     real(wp) :: area = -1
   end type run_errors_t
 
-  !> Part of the largest force by which run and pilot, linear and undamaged, may differ and still be of one scene.
-  real(wp), parameter :: same_scene = 0.1_wp
+  !> Part of the largest force by which run and pilot, linear and undamaged, may differ and still be of one setup.
+  real(wp), parameter :: same_setup = 0.1_wp
 
 contains
 
@@ -39,7 +39,7 @@ contains
     !> The errors
     type(run_errors_t) :: errors
 
-    if (abs(record%peak_force - deck%outlook%force) > same_scene*deck%outlook%force) return
+    if (abs(record%peak_force - deck%expected%force) > same_setup*deck%expected%force) return
     errors = pilot_errors(deck)
     if (errors%peak_force >= 0) errors%source = 'pilot'
   end function errors_by_pilot
@@ -52,7 +52,7 @@ contains
     !> The errors
     type(run_errors_t) :: errors
 
-    associate (o => deck%outlook)
+    associate (o => deck%expected)
       if (.not. o%of_impact .or. any(o%figure_error < 0) .or. deck%stepping%adapt%on) return
       errors%peak_force = o%figure_error(1)
       errors%peak_time = max(o%figure_error(2), deck%stepping%time%step/2)
@@ -62,9 +62,9 @@ contains
     end associate
   end function pilot_errors
 
-  !> Errors by a run of the same scene with half the elements and twice the step. It errs four times as much by the step
+  !> Errors by a run of the same setup with half the elements and twice the step. It errs four times as much by the step
   !> and more by the mesh, so a third of the difference is the estimate. The two may cancel in a difference, and peaks
-  !> of waves that neither resolves differ by chance: what the pilot tells of the linear, undamaged plate on the same
+  !> of waves that neither resolves differ by chance: what the pilot gives for the linear, undamaged plate on the same
   !> mesh holds as the least, as a part of the force.
   pure function errors_by_companion(deck, record, velocity, area, companion) result(errors)
     !> The deck
@@ -79,7 +79,7 @@ contains
     type(run_errors_t) :: errors
 
     errors = pilot_errors(deck)
-    if (errors%peak_force >= 0) errors%peak_force = errors%peak_force*record%peak_force/deck%outlook%force
+    if (errors%peak_force >= 0) errors%peak_force = errors%peak_force*record%peak_force/deck%expected%force
     errors%source = 'companion'
     errors%peak_force = max(errors%peak_force, abs(record%peak_force - companion%record%peak_force)/3)
     errors%peak_time = max(errors%peak_time, abs(record%peak_time - companion%record%peak_time)/3, &

@@ -24,7 +24,7 @@ module run_figures
     character(len=:), allocatable :: message
   end type ending_t
 
-  !> Figures of the state that a run has reached, of the whole plate.
+  !> Figures of the state that a run has reached, of the full plate.
   type :: run_figures_t
     !> Each interface
     type(interface_figures_t), allocatable :: interfaces(:)
@@ -63,11 +63,11 @@ contains
     bending = effective_bending_stiffness(model%section%stiffness)
     allocate (figures%threshold(zones))
     do zone = 1, zones
-      toughness = toughnesses(model%scene%delaminations(zone))
+      toughness = toughnesses(model%setup%delaminations(zone))
       figures%threshold(zone) = threshold_force(bending, toughness(2), zones)
     end do
     if (zones /= 1) return
-    associate (starter => model%scene%delaminations(1)%starter, patch => model%scene%mesh%patch)
+    associate (starter => model%setup%delaminations(1)%starter, patch => model%setup%mesh%patch)
       if (starter > 0) figures%starter_threshold = figures%threshold(1)*patch_factor(patch, starter**2)
     end associate
   end subroutine find_figures

@@ -15,8 +15,8 @@ module run_records
   public :: run_record_t, new_run_record
 
   !> Kinds of warnings that a run gives: a delamination has reached the border of its zone; integrators have created or
-  !> taken energy; an indentation over the thickness; slopes beyond small rotations; a clamped plate with broken fibres,
-  !> stretched far; a hole; layers that follow their damage out of the core; steps that err too much and get no shorter;
+  !> taken energy; an indentation over the thickness; slopes beyond small rotations; a clamped plate with failed fibres,
+  !> stretched far; a hole; adaptive layers out of the core; steps that err too much and get no shorter;
   !> energy that the ledger does not account for; kinetic energy in slow motion, and of motions with scaled inertia.
   integer, parameter, public :: warning_border = 1, warning_energy = 2, warning_loss = 3, warning_indentation = 4, &
                                 warning_slopes = 5, warning_torn = 6, warning_hole = 7, warning_core = 8, &
@@ -55,7 +55,7 @@ module run_records
     !> Looks at an accepted step.
     procedure :: observe
     !> Looks at a state that is complete.
-    procedure :: look
+    procedure :: observe_reactions
     !> Notes the energy in motions whose inertia is scaled.
     procedure :: note_scaled
     !> Their largest share of the energy.
@@ -107,20 +107,20 @@ contains
       self%deflection = now%deflection
       self%deflection_time = now%time
     end if
-    call follow_contact(self, now%time, now%force)
+    call count_contacts(self, now%time, now%force)
     self%time = now%time
     self%force = now%force
     if (all(self%stage == stage_grown) .or. modulo(now%step, between_stages) > 0) return
     stages = stages_of(model, now%interfaces)
     do zone = 1, size(stages)
-      if (self%stage(zone) < stage_damaged .and. stages(zone) >= stage_damaged) self%onset(:, zone) = seen(now)
-      if (self%stage(zone) < stage_grown .and. stages(zone) >= stage_grown) self%growth(:, zone) = seen(now)
+      if (self%stage(zone) < stage_damaged .and. stages(zone) >= stage_damaged) self%onset(:, zone) = figures_at(now)
+      if (self%stage(zone) < stage_grown .and. stages(zone) >= stage_grown) self%growth(:, zone) = figures_at(now)
     end do
     self%stage = max(self%stage, stages)
   end subroutine observe
 
   !> Looks at a state that is complete: with reactions, which central differences find from time to time. Collective.
-  subroutine look(self, model, now)
+  subroutine observe_reactions(self, model, now)
     !> The record
     class(run_record_t), intent(inout) :: self
     type(model_t), intent(in) :: model
@@ -134,23 +134,23 @@ contains
     if (size(ends) == 0) return
     strains = gauge_strains(model, now%motion%displacement)
     bending = 0
-    if (all(back_to_back(model%scene%gauges) > 0)) bending = percent_bending(strains(back_to_back(model%scene%gauges)))
+    if (all(back_to_back(model%setup%gauges) > 0)) bending = percent_bending(strains(back_to_back(model%setup%gauges)))
     call self%compression%observe(now%time, ends(1), ends(2), ends(3), bending)
-  end subroutine look
+  end subroutine observe_reactions
 
   !> Time, contact force and deflection of a state.
-  pure function seen(now)
+  pure function figures_at(now)
     !> The state
     type(state_t), intent(in) :: now
     !> Its three figures
-    real(wp) :: seen(3)
+    real(wp) :: figures_at(3)
 
-    seen = [shown_time(now%time), now%force, now%deflection]
-  end function seen
+    figures_at = [shown_time(now%time), now%force, now%deflection]
+  end function figures_at
 
   !> Counts contacts and their time. A contact that begins or ends within a step is taken to do so in its middle; that
   !> of the start begins with the run.
-  pure subroutine follow_contact(self, time, force)
+  pure subroutine count_contacts(self, time, force)
     !> The record, of the step before
     type(run_record_t), intent(inout) :: self
     !> Time and contact force at the end of the step
@@ -167,7 +167,7 @@ contains
     if (.not. force > 0) to = (self%time + time)/2
     self%contact_duration = self%contact_duration + (to - from)
     self%contact_end = to
-  end subroutine follow_contact
+  end subroutine count_contacts
 
   !> Notes the energy in motions whose inertia is scaled.
   pure subroutine note_scaled(self, scaled, energy)

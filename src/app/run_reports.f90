@@ -1,4 +1,4 @@
-!> What a run tells of itself in its log: the keys in effect at its start, what it took at its end.
+!> What a run reports of itself in its log: the keys in effect at its start, what it took at its end.
 module run_reports
   use text, only: line_t, rounded_text, to_text
   use logger, only: log_t
@@ -100,7 +100,7 @@ contains
     integer :: i, k
 
     if (size(rows) == 0) return
-    call log%detail('Profile: each part without those inside it     calls    on the wall    memory')
+    call log%detail('Profile: each part without those inside it     calls    wall clock     memory')
     left = .true.
     do k = 1, size(rows)
       i = maxloc(rows%seconds, 1, left)
@@ -131,7 +131,7 @@ contains
                       to_text(matrix_entries)//' numbers on this rank.')
     end if
     associate (lines => [timers%lines(), operator%timers%lines()])
-      call log%detail(repeat(' ', 37)//'times    on the wall      processor')
+      call log%detail(repeat(' ', 37)//'times    wall clock       processor')
       do i = 1, size(lines)
         call log%detail(lines(i))
       end do

@@ -4,24 +4,24 @@ module run_steps
   use deck_slow_motion, only: slow_motion_advice
   use errors, only: error_t, exit_convergence
   use kinds, only: wp
-  use layer_following, only: advance
+  use adaptive_zones, only: advance
   use logger, only: log_t
   use models, only: model_t
   use output_parameters, only: output_t
   use run_records, only: run_record_t
-  use step_intervals, only: steps_between_looks, steps_between_stages
+  use step_intervals, only: steps_between_checks, steps_between_stages
   use time_stepping, only: time_stepper_t
   implicit none
   private
-  public :: advance_to_look, row_is_due
+  public :: advance_to_output, row_is_due
 
 contains
 
   !> Takes steps up to the next one whose results are due or looked at: each implicit one. Collective.
-  subroutine advance_to_look(deck, model, stepper, record, event, log, error)
+  subroutine advance_to_output(deck, model, stepper, record, event, log, error)
     !> The deck
     type(deck_t), intent(in) :: deck
-    !> The model; layers may follow their damage
+    !> The model; layers may grow with the damage
     type(model_t), intent(inout) :: model
     !> What evolves
     type(time_stepper_t), intent(inout) :: stepper
@@ -35,7 +35,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     integer :: steps
 
-    steps = steps_between_looks(deck%stepping, model%mesh%elements())
+    steps = steps_between_checks(deck%stepping, model%mesh%elements())
     do
       call advance(deck, model, stepper, event, log, error)
       if (allocated(error)) then
@@ -46,7 +46,7 @@ contains
       if (modulo(stepper%now%step, steps) == 0 .or. stepper%now%time >= event) return
       if (row_is_due(deck%output, stepper%now%step)) return
     end do
-  end subroutine advance_to_look
+  end subroutine advance_to_output
 
   !> True: a row of the history is due by the number of steps.
   pure logical function row_is_due(output, step)

@@ -1,6 +1,6 @@
-!> The end of a run in words and figures: found once, told in the log and written to NAME_summary.json.
+!> The end of a run in words and figures: found once, printed in the log and written to NAME_summary.json.
 module run_summaries
-  use case_deck, only: wants_companion
+  use case_deck, only: needs_companion
   use companion_runs, only: companion_t, run_companion
   use deck_contents, only: deck_t
   use errors, only: error_t
@@ -21,14 +21,14 @@ module run_summaries
 
   !> Why errors are not known, or not as was asked.
   character(len=*), parameter :: &
-    unasked = 'not known; a coarser run, about an eighth of the work, tells them with &case error_estimate=.true.', &
-    cut = 'not known; the coarser run that tells them has not come to its end', &
-    pilots = 'those of the pilot; the coarser run that tells better ones has not come to its end'
+    unasked = 'not known; a coarser run, about an eighth of the work, gives them with &case error_estimate=.true.', &
+    cut = 'not known; the coarser run that gives them has not come to its end', &
+    pilots = 'those of the pilot; the coarser run that gives more accurate ones has not come to its end'
 
 contains
 
   !> Says what a run has come to, also one that has been stopped or has failed. A companion runs first if the deck asks
-  !> for one, or for an accuracy that nothing else tells; the run's own factor has been released by then. Collective.
+  !> for one, or for an accuracy that nothing else gives; the run's own factor has been released by then. Collective.
   subroutine summarise(deck, model, stepper, record, provenance, seconds, path, log, error)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -39,7 +39,7 @@ contains
     type(run_record_t), intent(in) :: record
     !> Version, deck and machine
     type(provenance_t), intent(in) :: provenance
-    !> Time on the wall since this process began
+    !> Wall-clock time since this process began
     real(wp), intent(in) :: seconds
     !> Path of the file
     character(len=*), intent(in) :: path
@@ -52,25 +52,25 @@ contains
     type(companion_t) :: companion
     type(error_t), allocatable :: fault
     type(line_t), allocatable :: lines(:)
-    character(len=:), allocatable :: untold
+    character(len=:), allocatable :: unknown_because
     logical :: ended, wanted
     integer :: i
 
     call find_figures(model, stepper%now, figures)
     if (.not. allocated(error)) errors = errors_by_pilot(deck, record)
     ended = .not. (allocated(error) .or. deck%has_static .or. deck%inherits)
-    wanted = ended .and. wants_companion(deck%settings, errors%source /= 'none')
+    wanted = ended .and. needs_companion(deck%settings, errors%source /= 'none')
     if (wanted) call run_companion(deck, model%communicator, companion)
     if (companion%done) errors = errors_by_companion(deck, record, stepper%now%impactor%velocity, &
                                                      sum(figures%interfaces%area), companion)
-    untold = ''
+    unknown_because = ''
     if (wanted .and. .not. companion%done) then
-      untold = cut
-      if (errors%source == 'pilot') untold = pilots
+      unknown_because = cut
+      if (errors%source == 'pilot') unknown_because = pilots
     else if (ended .and. errors%source == 'none') then
-      untold = unasked
+      unknown_because = unasked
     end if
-    lines = lines_of_summary(deck, stepper%now, record, figures, errors, untold)
+    lines = lines_of_summary(deck, stepper%now, record, figures, errors, unknown_because)
     do i = 1, size(lines)
       call log%note(lines(i)%text)
     end do

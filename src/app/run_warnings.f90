@@ -4,7 +4,7 @@ module run_warnings
   use failed_plies_areas, only: failed_areas
   use deck_contents, only: deck_t
   use delamination_parameters, only: delamination_t
-  use energy_watches, only: energy_watch_t, energy_created, energy_taken, energy_unaccounted, much
+  use energy_watches, only: energy_watch_t, energy_created, energy_taken, energy_unaccounted, energy_tolerance
   use errors, only: error_t, exit_convergence, fail
   use kinds, only: wp
   use layer_extents, only: cells_ahead, cells_at_once, thicknesses_ahead
@@ -18,7 +18,7 @@ module run_warnings
                          warning_slopes, &
                          warning_steps, warning_torn
   use run_moments, only: moment
-  use scene_scales, only: has_blow
+  use setup_scales, only: has_impact_velocity
   use short_numbers, only: short_text
   use states, only: state_t
   use stepping_parameters, only: is_explicit
@@ -37,11 +37,11 @@ module run_warnings
 
   !> Share of the work that the kinetic energy of a slow motion may be, a few per cent, and part of the run from
   !> which on it is looked at: by then the velocity is constant, and the work no longer that of the start alone.
-  real(wp), parameter :: most_kinetic = 0.05_wp, slow_start = 0.25_wp
+  real(wp), parameter :: max_kinetic = 0.05_wp, slow_start = 0.25_wp
   !> Share of the energy that may be kinetic energy of motions whose inertia is scaled. Forces and velocities go by the
   !> root of energies: 2 % of these is 1 % of them, the error that the default factor may make. On decks of input/ it
   !> is .02 to 1 % (input/peanut.nml to input/small/breaking_bursts.nml).
-  real(wp), parameter :: most_scaled = 0.02_wp
+  real(wp), parameter :: max_scaled = 0.02_wp
 
 contains
 
@@ -52,29 +52,29 @@ contains
     type(model_t), intent(in) :: model
     !> What has been reached
     type(time_stepper_t), intent(in) :: stepper
-    !> Receives what is told
+    !> Receives what is reported
     type(run_record_t), intent(inout) :: record
     !> Looks after the energy that integrators create
     type(energy_watch_t), intent(inout) :: watch
-    !> Where it is told
+    !> Where it is reported
     type(log_t), intent(inout) :: log
     !> Set if the run is strict and has passed a limit of the model
     type(error_t), allocatable, intent(out) :: error
-    type(line_t), allocatable :: told(:)
+    type(line_t), allocatable :: warnings(:)
     integer :: i
 
-    call find_warnings(deck, model, stepper%now, stepper%errs, record, watch, told)
-    do i = 1, size(told)
+    call find_warnings(deck, model, stepper%now, stepper%errs, record, watch, warnings)
+    do i = 1, size(warnings)
       if (deck%strict) then
-        call fail(error, exit_convergence, told(i)%text)
+        call fail(error, exit_convergence, warnings(i)%text)
       else
-        call log%warning(told(i)%text)
+        call log%warning(warnings(i)%text)
       end if
     end do
   end subroutine give_warnings
 
   !> Finds the warnings that an accepted step calls for and notes them. Collective.
-  subroutine find_warnings(deck, model, now, step_errs, record, watch, told)
+  subroutine find_warnings(deck, model, now, step_errs, record, watch, warnings)
     !> The deck
     type(deck_t), intent(in) :: deck
     type(model_t), intent(in) :: model
@@ -82,33 +82,33 @@ contains
     type(state_t), intent(in) :: now
     !> True: the step to it errs beyond the tolerance of those that follow their error, and none is to be shorter
     logical, intent(in) :: step_errs
-    !> Receives what is told
+    !> Receives what is reported
     type(run_record_t), intent(inout) :: record
     !> Looks after the energy that integrators create
     type(energy_watch_t), intent(inout) :: watch
     !> One sentence each; empty: nothing new
-    type(line_t), allocatable, intent(out) :: told(:)
+    type(line_t), allocatable, intent(out) :: warnings(:)
     real(wp) :: amplitude, thickness
     integer :: zone
     logical :: alarms(3)
 
-    allocate (told(0))
-    thickness = deck%outlook%scales%thickness
+    allocate (warnings(0))
+    thickness = deck%expected%scales%thickness
     do zone = 1, size(now%interfaces%border_reached)
-      if (now%interfaces%border_reached(zone)) call tell(warning_border, zone)
-      if (leaves_core(deck, model%scene%delaminations(zone))) call tell(warning_core, zone)
+      if (now%interfaces%border_reached(zone)) call add_warning(warning_border, zone)
+      if (leaves_core(deck, model%setup%delaminations(zone))) call add_warning(warning_core, zone)
     end do
-    if (now%indentation%alpha > thickness) call tell(warning_indentation, 0)
-    if (step_errs) call tell(warning_steps, 0)
+    if (now%indentation%alpha > thickness) call add_warning(warning_indentation, 0)
+    if (step_errs) call add_warning(warning_steps, 0)
     if (.not. record%has_warned(warning_slopes, 0)) then
-      if (is_steep(model, now)) call tell(warning_slopes, 0)
+      if (is_steep(model, now)) call add_warning(warning_slopes, 0)
     end if
     if (.not. record%has_warned(warning_torn, 0) .and. abs(now%deflection) > deepest*thickness) then
-      if (is_torn(deck, model, now)) call tell(warning_torn, 0)
+      if (is_torn(deck, model, now)) call add_warning(warning_torn, 0)
     end if
     ! Once the impactor has left, what it pressed on says nothing.
     if (.not. record%has_warned(warning_hole, 0) .and. deck%has_ply_damage .and. now%force > 0) then
-      if (has_hole(model, now)) call tell(warning_hole, 0)
+      if (has_hole(model, now)) call add_warning(warning_hole, 0)
     end if
     amplitude = 1
     if (deck%has_static) then
@@ -116,29 +116,29 @@ contains
     else if (deck%has_pressure .and. .not. deck%has_impactor) then
       amplitude = deck%pressure%amplitude(now%time)
     end if
-    alarms = watch%look(now%ledger, now%interfaces%unreleased(model), amplitude, deck%has_static)
+    alarms = watch%check(now%ledger, now%interfaces%unreleased(model), amplitude, deck%has_static)
     call record%note_scaled(now%ledger%scaled, watch%largest)
-    if (has_blow(deck%scene_t) .or. now%time > slow_start*deck%stepping%time%end) then
-      if (record%scaled_energy > most_scaled*watch%largest) call tell(warning_scaled, 0)
+    if (has_impact_velocity(deck%setup_t) .or. now%time > slow_start*deck%stepping%time%end) then
+      if (record%scaled_energy > max_scaled*watch%largest) call add_warning(warning_scaled, 0)
     end if
     if (is_slow_motion(deck) .and. now%time > slow_start*deck%stepping%time%end) then
-      if (now%ledger%kinetic > most_kinetic*abs(now%ledger%external_work)) call tell(warning_kinetic, 0)
+      if (now%ledger%kinetic > max_kinetic*abs(now%ledger%external_work)) call add_warning(warning_kinetic, 0)
     end if
-    if (alarms(energy_created)) call tell(warning_energy, 0)
-    if (alarms(energy_taken)) call tell(warning_loss, 0)
-    if (alarms(energy_unaccounted)) call tell(warning_ledger, 0)
+    if (alarms(energy_created)) call add_warning(warning_energy, 0)
+    if (alarms(energy_taken)) call add_warning(warning_loss, 0)
+    if (alarms(energy_unaccounted)) call add_warning(warning_ledger, 0)
 
   contains
 
-    !> Tells a limit that is passed for the first time.
-    subroutine tell(kind, zone)
+    !> Reports a limit that is passed for the first time.
+    subroutine add_warning(kind, zone)
       !> Its kind, and the zone that it concerns
       integer, intent(in) :: kind, zone
 
       if (record%has_warned(kind, zone)) return
       call record%note_warning(kind, zone, now%time)
-      call append(told, warning_text(kind, zone, moment(deck, now%time), deck))
-    end subroutine tell
+      call append(warnings, warning_text(kind, zone, moment(deck, now%time), deck))
+    end subroutine add_warning
   end subroutine find_warnings
 
   !> True: only prescribed motions in time load the plate, as in a quasi-static test.
@@ -147,13 +147,13 @@ contains
     type(deck_t), intent(in) :: deck
 
     is_slow_motion = .false.
-    if (deck%has_static .or. deck%has_pressure .or. has_blow(deck%scene_t)) return
+    if (deck%has_static .or. deck%has_pressure .or. has_impact_velocity(deck%setup_t)) return
     is_slow_motion = deck%impactor%travel > 0
     if (allocated(deck%lines)) is_slow_motion = is_slow_motion .or. &
       any(deck%lines%prescribed .and. deck%lines%history == line_ramp .and. abs(deck%lines%value) > 0)
   end function is_slow_motion
 
-  !> True: layers that follow their damage reach so far beyond the core that what they follow does too.
+  !> True: adaptive layers reach so far beyond the core that what they follow does too.
   pure logical function leaves_core(deck, interface) result(leaves)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -162,7 +162,7 @@ contains
 
     leaves = interface%follows .and. deck%mesh%cell > 0 .and. &
              any(interface%zone > deck%mesh%core + 2*((cells_ahead + cells_at_once)*deck%mesh%cell + &
-                                                      thicknesses_ahead*deck%outlook%scales%thickness))
+                                                      thicknesses_ahead*deck%expected%scales%thickness))
   end function leaves_core
 
   !> True: somewhere the plate's section turns beyond small rotations. Collective.
@@ -174,7 +174,7 @@ contains
     is_steep = model%communicator%any(maxval(abs(now%motion%displacement(4:5, :))) > steepest)
   end function is_steep
 
-  !> True: fibres of every ply have broken over an area as large as the contact, so nothing bears what presses on it any
+  !> True: fibres of every ply have failed over an area as large as the contact, so nothing bears what presses on it any
   !> more. Collective.
   logical function has_hole(model, now)
     type(model_t), intent(in) :: model
@@ -185,7 +185,7 @@ contains
 
     has_hole = .false.
     counts = now%plies%counts(model)
-    if (counts(fibre_failure) < size(model%scene%laminate%angle)) return
+    if (counts(fibre_failure) < size(model%setup%laminate%angle)) return
     areas = failed_areas(model, now%plies)
     has_hole = all(areas(fibre_failure, :) >= model%pressed_area()*(1 - rounded_off))
   end function has_hole
@@ -226,7 +226,7 @@ contains
              ' and cannot grow on there: if it would, make the zone larger.'
     case (warning_core)
       text = 'The layers below ply '//to_text(deck%delaminations(zone)%below_ply)// &
-             ' follow their damage beyond the core of the mesh since '//at// &
+             ' grow with the damage beyond the core of the mesh since '//at// &
              ', where its cells grow: make the core larger.'
     case (warning_energy)
       text = energy_text('created', 'take smaller steps, &impactor integrator=''conserving'', or more damping '// &
@@ -234,14 +234,14 @@ contains
     case (warning_loss)
       text = energy_text('taken', 'take smaller steps, or less damping (rho_inf).', 'take a smaller step_factor.')
     case (warning_ledger)
-      text = 'More than '//short_text(100*much)//' % of the energy is not accounted for since '//at// &
+      text = 'More than '//short_text(100*energy_tolerance)//' % of the energy is not accounted for since '//at// &
              ' (energy_error): take a smaller '//trim(merge('step_factor.         ', 'tolerance of &solver.', &
                                                                           is_explicit(deck%stepping)))
     case (warning_kinetic)
-      text = 'The plate''s kinetic energy is more than '//short_text(100*most_kinetic)//' % of the work since '// &
+      text = 'The plate''s kinetic energy is more than '//short_text(100*max_kinetic)//' % of the work since '// &
              at//': the motion is too fast to stand for a quasi-static test; take a longer end, or a longer rise.'
     case (warning_scaled)
-      text = 'Motions whose inertia mass_scaling raises have held more than '//short_text(100*most_scaled)// &
+      text = 'Motions whose inertia mass_scaling raises have held more than '//short_text(100*max_scaled)// &
              ' % of the energy since '//at//': take a smaller mass_scaling, or compare with 1.'
     case (warning_indentation)
       text = 'The indentation is deeper than the laminate is thick since '//at// &
@@ -255,10 +255,10 @@ contains
              'them and shows what that changes.'
     case (warning_torn)
       text = 'The clamped plate deflects by more than '//to_text(deepest)// &
-             ' thicknesses with broken fibres since '//at// &
+             ' thicknesses with failed fibres since '//at// &
              ': membrane forces carry it, and the model tears no plies; distrust what follows.'
     case (warning_hole)
-      text = 'The fibres of every ply are broken over an area as large as the contact since '//at// &
+      text = 'The fibres of every ply have failed over an area as large as the contact since '//at// &
              ': the impactor perforates the plate, and the model has no hole; distrust what follows.'
     end select
 
@@ -274,13 +274,16 @@ contains
       character(len=:), allocatable :: words
 
       if (deck%has_static) then
-        words = 'Load steps have '//what//' more than '//short_text(100*much)//' % of the energy by '//at// &
+        words = 'Load steps have '//what//' more than '//short_text(100*energy_tolerance)//' % of the energy by '// &
+          at// &
                 ' (energy_algorithmic): take more steps, unless failures or snaps set it free, as motion takes that.'
       else if (is_explicit(deck%stepping)) then
-        words = 'Central differences have '//what//' more than '//short_text(100*much)//' % of the energy by '//at &
+        words = 'Central differences have '//what//' more than '//short_text(100*energy_tolerance)// &
+          ' % of the energy by '//at &
                 //' (energy_algorithmic): '//explicit_cure
       else
-        words = 'The time integrators have '//what//' more than '//short_text(100*much)//' % of the energy by '//at &
+        words = 'The time integrators have '//what//' more than '//short_text(100*energy_tolerance)// &
+          ' % of the energy by '//at &
                 //': '//cure
       end if
     end function energy_text

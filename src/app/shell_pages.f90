@@ -134,7 +134,7 @@ contains
       call append(lines, '# Completion of implam for zsh, written by `implam completion zsh`.')
       call append(lines, 'autoload -U +X bashcompinit && bashcompinit')
       call append_words(lines, topics)
-      ! The file is first read when a word is to be completed: zsh then waits for an answer.
+      ! The file is first read when a word is to be completed: zsh then waits for a response.
       call append(lines, 'if [[ ${zsh_eval_context[-1]} == loadautofunc ]]; then _bash_complete -F _implam; fi')
     case default
       call fail(error, exit_usage, 'implam completion knows bash and zsh.')

@@ -20,7 +20,7 @@ module simulations
   use run_progress, only: progress_t
   use run_records, only: run_record_t, new_run_record
   use run_reports, only: log_echo, log_model, log_costs, summary
-  use run_steps, only: advance_to_look, row_is_due
+  use run_steps, only: advance_to_output, row_is_due
   use run_warnings, only: give_warnings
   use stepping_parameters, only: end_of_run
   use run_summaries, only: summarise
@@ -33,7 +33,7 @@ module simulations
   use output_clocks, only: clock_t, next_event, shown_time
   use energy_watches, only: energy_watch_t
   use initial_states, only: take_initial_state
-  use layer_following, only: visit_evolving
+  use adaptive_zones, only: visit_evolving
   use result_rows, only: row_of, column_names, column_whole
   use field_results, only: field_rows, part_of, write_fields, write_mesh
   implicit none
@@ -64,11 +64,11 @@ module simulations
     type(fields_file_t) :: fields
     !> Clocks of history, fields and checkpoints
     type(clock_t) :: history_clock, fields_clock, checkpoint_clock
-    !> Time granted on the wall
+    !> Wall-clock time granted
     type(wall_limit_t), private :: wall_limit
     !> What the summary needs of the run's course
     type(run_record_t), private :: record
-    !> The run has been set up: it can tell what it has reached
+    !> The run has been set up: it can report what it has reached
     logical, private :: is_ready = .false.
     !> Looks after the energy that integrators create
     type(energy_watch_t), private :: energy_watch
@@ -118,7 +118,7 @@ contains
     if (.not. allocated(error)) call make_ready(self)
   end subroutine initialize
 
-  !> From now on the run can tell what it has come to, and what one before it did no longer holds.
+  !> From now on the run can report what it has reached, and what one before it did no longer holds.
   subroutine make_ready(self)
     !> The run
     class(simulation_t), intent(inout) :: self
@@ -163,7 +163,7 @@ contains
     call self%provenance%report(self%log)
     call log_echo(deck, self%log)
     call self%timers%start('model')
-    call create_model(deck%scene_t, communicator, self%model, error)
+    call create_model(deck%setup_t, communicator, self%model, error)
     call self%timers%stop('model')
     self%model%profile = profile
     if (allocated(error)) return
@@ -248,7 +248,7 @@ contains
     if (.not. self%deck%has_static) end_of = end_of_run(self%deck%stepping, self%record%contact_end)
   end function end_of
 
-  !> Steps until the end, or until a queue's signal or the time on the wall ends the run.
+  !> Steps until the end, or until a queue's signal or the wall-clock time ends the run.
   subroutine run(self, error)
     !> The run
     class(simulation_t), intent(inout) :: self
@@ -262,7 +262,7 @@ contains
       event = next_event([self%history_clock, self%fields_clock, self%checkpoint_clock], end_of(self), closest)
       begun = wall_time()
       call self%timers%start('steps')
-      call advance_to_look(self%deck, self%model, self%stepper, self%record, event, self%log, error)
+      call advance_to_output(self%deck, self%model, self%stepper, self%record, event, self%log, error)
       call self%timers%stop('steps')
       if (allocated(error)) return
       call self%timers%start('results')
@@ -270,7 +270,7 @@ contains
       call self%timers%stop('results')
       if (allocated(error)) return
       call show_progress(self%progress, self%deck, self%stepper, end_of(self), self%log)
-      call self%wall_limit%learn(wall_time() - begun)
+      call self%wall_limit%note_step(wall_time() - begun)
       call stop_if_due(self, error)
       if (allocated(error)) return
     end do
@@ -282,7 +282,7 @@ contains
     class(simulation_t), intent(inout) :: self
     !> Set if the run ends
     type(error_t), allocatable, intent(out) :: error
-    character(len=*), parameter :: causes(*) = ['as the time on the wall is up', 'by a signal                  ']
+    character(len=*), parameter :: causes(*) = ['as the wall-clock time is up', 'by a signal                  ']
     logical :: signalled, late
 
     signalled = self%communicator%any(stop_signal() /= 0)
@@ -306,9 +306,9 @@ contains
     real(wp) :: closest
     logical :: row_due, fields_due, checkpoint_due
 
-    call self%stepper%look(self%model, error)
+    call self%stepper%complete_state(self%model, error)
     if (allocated(error)) return
-    call self%record%look(self%model, self%stepper%now)
+    call self%record%observe_reactions(self%model, self%stepper%now)
     call give_warnings(self%deck, self%model, self%stepper, self%record, self%energy_watch, self%log, error)
     row_due = row_is_due(self%deck%output, self%stepper%now%step) .or. self%stepper%now%time >= end_of(self)
     fields_due = .false.

@@ -15,7 +15,7 @@ module starter_decks
   character(len=105), parameter :: lines(*) = [character(len=105) :: &
     '! A drop weight strikes the middle of a composite plate. Lengths are in m, masses in kg, times in s,', &
     '! so forces are in N, energies in J, stresses in Pa; any other units that go together will do.', &
-    '! `implam explain GROUP` tells all keys of a group, with their defaults.', &
+    '! `implam explain GROUP` lists all keys of a group, with their defaults.', &
     '', &
     '&plate        length=0.10, 0.10        ! sides along x and y', &
     '              edges=''clamped''          ! or ''simple'', ''free''; four values: x-min, x-max, y-min, y-max', &

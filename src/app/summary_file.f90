@@ -47,7 +47,7 @@ contains
     type(ending_t), intent(in) :: ending
     !> Version, deck and machine
     type(provenance_t), intent(in) :: provenance
-    !> Time on the wall since this process began
+    !> Wall-clock time since this process began
     real(wp), intent(in) :: seconds
     !> The text
     character(len=:), allocatable :: content
@@ -182,14 +182,14 @@ contains
     type(deck_t), intent(in) :: deck
     !> The state reached
     type(state_t), intent(in) :: now
-    real(wp) :: brought
+    real(wp) :: energy_input
 
-    brought = impactor_energy(deck%impactor, new_impactor(deck%impactor))
-    call json%put('energy_impact', brought)
+    energy_input = impactor_energy(deck%impactor, new_impactor(deck%impactor))
+    call json%put('energy_impact', energy_input)
     if (now%force > 0) then
       call json%put_null('energy_absorbed')
     else
-      call json%put('energy_absorbed', brought - now%ledger%impactor)
+      call json%put('energy_absorbed', energy_input - now%ledger%impactor)
     end if
     call json%put('energy_impactor', now%ledger%impactor)
   end subroutine put_impact_energies
@@ -327,7 +327,7 @@ contains
     type(json_t), intent(inout) :: json
     !> What the run has stepped with
     type(time_stepper_t), intent(in) :: stepper
-    !> Time on the wall since this process began
+    !> Wall-clock time since this process began
     real(wp), intent(in) :: seconds
 
     call json%open_object('costs')

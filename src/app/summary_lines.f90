@@ -22,7 +22,7 @@ module summary_lines
 contains
 
   !> The summary as lines of the log.
-  function lines_of_summary(deck, now, record, figures, errors, untold) result(lines)
+  function lines_of_summary(deck, now, record, figures, errors, unknown_because) result(lines)
     !> The deck
     type(deck_t), intent(in) :: deck
     !> The state reached
@@ -33,8 +33,8 @@ contains
     type(run_figures_t), intent(in) :: figures
     !> How far they may be off
     type(run_errors_t), intent(in) :: errors
-    !> Why that is not known; empty: it is, or isn't to be told
-    character(len=*), intent(in) :: untold
+    !> Why that is not known; empty: it is, or isn't to be reported
+    character(len=*), intent(in) :: unknown_because
     !> The lines
     type(line_t), allocatable :: lines(:)
     logical :: struck
@@ -43,41 +43,41 @@ contains
     if (deck%units == '') call append(lines, 'Summary, in the units of the deck:')
     if (deck%units /= '') call append(lines, 'Summary, in the units of the deck, '//deck%units//':')
     if (struck) then
-      call tell_impact(lines, now, record, errors)
+      call add_impact(lines, now, record, errors)
     else if (deck%has_impactor) then
-      call tell(lines, 'peak force', rounded_text(record%peak_force)//' at '//moment(deck, record%peak_time))
+      call add_figure(lines, 'peak force', rounded_text(record%peak_force)//' at '//moment(deck, record%peak_time))
     end if
-    call tell(lines, 'largest deflection', rounded_text(record%deflection)//' at '// &
+    call add_figure(lines, 'largest deflection', rounded_text(record%deflection)//' at '// &
               moment(deck, record%deflection_time)//within(errors%deflection, record%deflection))
     if (record%compression%strength > 0) &
-      call tell(lines, 'residual strength', compression_text(record%compression))
-    if (struck) call tell_impact_energy(lines, deck, now)
-    if (struck .and. .not. now%force > 0) call tell_dent(lines, figures)
-    call tell_energies(lines, now%ledger)
-    if (record%scaled_energy > 0) call tell(lines, 'scaled inertia', 'motions with it held at most '// &
+      call add_figure(lines, 'residual strength', compression_text(record%compression))
+    if (struck) call add_impact_energy(lines, deck, now)
+    if (struck .and. .not. now%force > 0) call add_dent(lines, figures)
+    call add_energies(lines, now%ledger)
+    if (record%scaled_energy > 0) call add_figure(lines, 'scaled inertia', 'motions with it held at most '// &
                                             rounded_text(100*record%scaled_share(), 2)//' % of the energy')
-    if (size(figures%interfaces) > 0) call tell_interfaces(lines, deck, record, figures, errors)
-    if (deck%has_ply_damage) call tell(lines, 'failed plies', 'fibres '//to_text(figures%failures(1))// &
+    if (size(figures%interfaces) > 0) call add_interfaces(lines, deck, record, figures, errors)
+    if (deck%has_ply_damage) call add_figure(lines, 'failed plies', 'fibres '//to_text(figures%failures(1))// &
       ', matrix cracked '//to_text(figures%failures(2))//', crushed '//to_text(figures%failures(3))// &
       ' (counted in each element)')
-    if (len(untold) > 0) call tell(lines, 'errors', untold)
-    call tell_warnings(lines, deck, record)
+    if (len(unknown_because) > 0) call add_figure(lines, 'errors', unknown_because)
+    call add_warnings(lines, deck, record)
   end function lines_of_summary
 
   !> Adds a line.
-  subroutine tell(lines, label, figures)
+  subroutine add_figure(lines, label, figures)
     !> The lines
     type(line_t), allocatable, intent(inout) :: lines(:)
-    !> What is told; empty goes on with the line before
+    !> What is reported; empty goes on with the line before
     character(len=*), intent(in) :: label
     !> Its figures
     character(len=*), intent(in) :: figures
 
     call append(lines, '  '//label//repeat(' ', max(1, label_width - len(label)))//figures)
-  end subroutine tell
+  end subroutine add_figure
 
   !> Force, contact and rebound.
-  subroutine tell_impact(lines, now, record, errors)
+  subroutine add_impact(lines, now, record, errors)
     !> The lines
     type(line_t), allocatable, intent(inout) :: lines(:)
     !> The state reached
@@ -87,46 +87,48 @@ contains
     !> How far the figures may be off
     type(run_errors_t), intent(in) :: errors
 
-    call tell(lines, 'peak force', rounded_text(record%peak_force)//' at time '//rounded_text(record%peak_time)// &
+    call add_figure(lines, 'peak force', rounded_text(record%peak_force)//' at time '// &
+                    rounded_text(record%peak_time)// &
               within(errors%peak_force, record%peak_force)//within(errors%peak_time))
     if (record%filter%frequency > 0) &
-      call tell(lines, 'filtered', rounded_text(record%peak_filtered)//' at time '// &
+      call add_figure(lines, 'filtered', rounded_text(record%peak_filtered)//' at time '// &
                 rounded_text(record%peak_filtered_time)//' behind the low pass of '// &
                 rounded_text(record%filter%frequency))
     if (now%force > 0) then
-      call tell(lines, 'time in contact', rounded_text(record%contact_duration)//repeated(record%contacts)// &
+      call add_figure(lines, 'time in contact', rounded_text(record%contact_duration)//repeated(record%contacts)// &
                 ', and still at the end'//within(errors%contact_duration))
     else
-      call tell(lines, 'time in contact', rounded_text(record%contact_duration)//repeated(record%contacts)// &
+      call add_figure(lines, 'time in contact', rounded_text(record%contact_duration)//repeated(record%contacts)// &
                 ', until '//rounded_text(record%contact_end)//within(errors%contact_duration))
     end if
     if (now%force > 0) then
-      call tell(lines, 'velocity at the end', rounded_text(now%impactor%velocity)//within(errors%velocity))
+      call add_figure(lines, 'velocity at the end', rounded_text(now%impactor%velocity)//within(errors%velocity))
     else if (now%impactor%velocity < 0) then
-      call tell(lines, 'rebound velocity', rounded_text(-now%impactor%velocity)//within(errors%velocity))
+      call add_figure(lines, 'rebound velocity', rounded_text(-now%impactor%velocity)//within(errors%velocity))
     end if
-  end subroutine tell_impact
+  end subroutine add_impact
 
   !> Depth of the dent.
-  subroutine tell_dent(lines, figures)
+  subroutine add_dent(lines, figures)
     !> The lines
     type(line_t), allocatable, intent(inout) :: lines(:)
     !> Figures of the state
     type(run_figures_t), intent(in) :: figures
 
     if (figures%dent(1) > figures%dent(2)) then
-      call tell(lines, 'dent', rounded_text(figures%dent(1))//' below the surface around it, of that indentation '// &
+      call add_figure(lines, 'dent', rounded_text(figures%dent(1))// &
+                      ' below the surface around it, of that indentation '// &
                 rounded_text(figures%dent(2)))
     else
-      call tell(lines, 'dent', rounded_text(figures%dent(2))//', the indentation''s')
+      call add_figure(lines, 'dent', rounded_text(figures%dent(2))//', the indentation''s')
     end if
-  end subroutine tell_dent
+  end subroutine add_dent
 
   !> How far a figure may be off.
   pure function within(error, figure) result(clause)
     !> Its error; negative: not known
     real(wp), intent(in) :: error
-    !> The figure that it is told as a part of; left out: it is told in its unit
+    !> The figure that it is given as a part of; left out: it is given in its unit
     real(wp), intent(in), optional :: figure
     !> Such as (+-0.4 %); empty if it isn't known
     character(len=:), allocatable :: clause
@@ -151,7 +153,7 @@ contains
   end function repeated
 
   !> What the impactor brought, and has lost: absorbed is what it has not got back once contact has ended.
-  subroutine tell_impact_energy(lines, deck, now)
+  subroutine add_impact_energy(lines, deck, now)
     !> The lines
     type(line_t), allocatable, intent(inout) :: lines(:)
     !> The deck
@@ -159,19 +161,19 @@ contains
     !> The state reached
     type(state_t), intent(in) :: now
     character(len=:), allocatable :: clause
-    real(wp) :: brought, lost
+    real(wp) :: energy_input, lost
 
-    brought = impactor_energy(deck%impactor, new_impactor(deck%impactor))
-    lost = brought - now%ledger%impactor
+    energy_input = impactor_energy(deck%impactor, new_impactor(deck%impactor))
+    lost = energy_input - now%ledger%impactor
     clause = ', absorbed '
     if (now%force > 0) clause = ', contact lasts, transferred so far '
-    clause = rounded_text(brought)//clause//rounded_text(lost)
-    if (brought > 0) clause = clause//' ('//rounded_text(100*lost/brought, 3)//' %)'
-    call tell(lines, 'impact energy', clause)
-  end subroutine tell_impact_energy
+    clause = rounded_text(energy_input)//clause//rounded_text(lost)
+    if (energy_input > 0) clause = clause//' ('//rounded_text(100*lost/energy_input, 3)//' %)'
+    call add_figure(lines, 'impact energy', clause)
+  end subroutine add_impact_energy
 
   !> Where the energy is, under the names of the columns.
-  subroutine tell_energies(lines, ledger)
+  subroutine add_energies(lines, ledger)
     !> The lines
     type(line_t), allocatable, intent(inout) :: lines(:)
     !> The ledger
@@ -180,17 +182,19 @@ contains
 
     damping = ''
     if (ledger%damping > 0) damping = ', damping '//rounded_text(ledger%damping)
-    if (ledger%external_work /= 0) call tell(lines, 'work of the load', rounded_text(ledger%external_work))
-    call tell(lines, 'of it', 'kinetic '//rounded_text(ledger%kinetic)//', strain '//rounded_text(ledger%strain)// &
+    if (ledger%external_work /= 0) call add_figure(lines, 'work of the load', rounded_text(ledger%external_work))
+    call add_figure(lines, 'of it', 'kinetic '//rounded_text(ledger%kinetic)//', strain '// &
+                    rounded_text(ledger%strain)// &
               ', indentation '//rounded_text(ledger%indentation)//', delamination '// &
               rounded_text(ledger%delamination)//', ply damage '//rounded_text(ledger%ply_damage))
-    call tell(lines, '', 'contact '//rounded_text(ledger%contact)//', friction '//rounded_text(ledger%friction)// &
+    call add_figure(lines, '', 'contact '//rounded_text(ledger%contact)//', friction '// &
+                    rounded_text(ledger%friction)// &
               ', layers '//rounded_text(ledger%layers)//damping//', algorithmic dissipation '// &
               rounded_text(ledger%algorithmic)//', not accounted for '//rounded_text(ledger%error(), 2))
-  end subroutine tell_energies
+  end subroutine add_energies
 
   !> What has delaminated.
-  subroutine tell_interfaces(lines, deck, record, figures, errors)
+  subroutine add_interfaces(lines, deck, record, figures, errors)
     !> The lines
     type(line_t), allocatable, intent(inout) :: lines(:)
     !> The deck
@@ -203,16 +207,17 @@ contains
     type(run_errors_t), intent(in) :: errors
     integer :: zone
 
-    call tell(lines, 'delaminated area', rounded_text(sum(figures%interfaces%area))// &
+    call add_figure(lines, 'delaminated area', rounded_text(sum(figures%interfaces%area))// &
               ' of all interfaces, projected '//rounded_text(figures%projected_area)//within(errors%area))
     do zone = 1, size(figures%interfaces)
       associate (figure => figures%interfaces(zone))
-        call tell(lines, '  below ply '//to_text(deck%delaminations(zone)%below_ply), 'area '// &
+        call add_figure(lines, '  below ply '//to_text(deck%delaminations(zone)%below_ply), 'area '// &
                   rounded_text(figure%area)//', x '//range_of(figure%bounds(:, 1))//', y '// &
                   range_of(figure%bounds(:, 2))//', energy '//rounded_text(figure%energy))
-        call tell_event('onset', record%onset(:, zone))
-        call tell_event('first growth', record%growth(:, zone))
-        if (deck%has_impactor) call tell(lines, '', 'closed form '//rounded_text(figures%threshold(zone))//' for '// &
+        call add_event('onset', record%onset(:, zone))
+        call add_event('first growth', record%growth(:, zone))
+        if (deck%has_impactor) call add_figure(lines, '', 'closed form '//rounded_text(figures%threshold(zone))// &
+                                               ' for '// &
           to_text(size(figures%interfaces))//' equal circular delaminations'//of_starter(figures%starter_threshold))
       end associate
     end do
@@ -220,21 +225,21 @@ contains
   contains
 
     !> When something was first seen, if it was.
-    subroutine tell_event(name, event)
+    subroutine add_event(name, event)
       !> What
       character(len=*), intent(in) :: name
       !> Time, contact force, deflection; time 0: never
       real(wp), intent(in) :: event(3)
 
       if (.not. event(1) > 0) then
-        call tell(lines, '', 'no '//name)
+        call add_figure(lines, '', 'no '//name)
       else if (deck%has_impactor) then
-        call tell(lines, '', name//' under '//rounded_text(event(2))//' at '//moment(deck, event(1)))
+        call add_figure(lines, '', name//' under '//rounded_text(event(2))//' at '//moment(deck, event(1)))
       else
-        call tell(lines, '', name//' at '//moment(deck, event(1)))
+        call add_figure(lines, '', name//' at '//moment(deck, event(1)))
       end if
-    end subroutine tell_event
-  end subroutine tell_interfaces
+    end subroutine add_event
+  end subroutine add_interfaces
 
   !> Least and greatest.
   pure function range_of(bounds) result(words)
@@ -258,7 +263,7 @@ contains
   end function of_starter
 
   !> Warnings on the deck and those of the run.
-  subroutine tell_warnings(lines, deck, record)
+  subroutine add_warnings(lines, deck, record)
     !> The lines
     type(line_t), allocatable, intent(inout) :: lines(:)
     !> The deck
@@ -269,12 +274,12 @@ contains
     integer :: i
 
     given = warnings_given(record, deck)
-    if (size(deck%remarks) + size(given) == 0) call tell(lines, 'warnings', 'none')
+    if (size(deck%remarks) + size(given) == 0) call add_figure(lines, 'warnings', 'none')
     do i = 1, size(deck%remarks)
-      call tell(lines, 'warning', deck%remarks(i)%text)
+      call add_figure(lines, 'warning', deck%remarks(i)%text)
     end do
     do i = 1, size(given)
-      call tell(lines, 'warning', given(i)%text)
+      call add_figure(lines, 'warning', given(i)%text)
     end do
-  end subroutine tell_warnings
+  end subroutine add_warnings
 end module summary_lines

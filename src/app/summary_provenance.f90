@@ -1,4 +1,4 @@
-!> What the summary tells of where its result comes from.
+!> What the summary reports of where its result comes from.
 module summary_provenance
   use json_text, only: json_t
   use run_provenance, only: provenance_t

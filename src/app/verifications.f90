@@ -1,4 +1,4 @@
-!> What a scene's figures change by on a finer mesh with shorter steps, from the summaries of both runs.
+!> What a setup's figures change by on a finer mesh with shorter steps, from the summaries of both runs.
 module verifications
   use checkpoints, only: checkpoint_archive_t, checkpoint_ending
   use communicators, only: communicator_t
@@ -12,14 +12,14 @@ module verifications
   use text, only: line_t, append, rounded_text
   implicit none
   private
-  public :: stage_of, tell_changes
+  public :: stage_of, print_changes
 
   !> How far an earlier command has come with a run.
   integer, parameter, public :: stage_none = 0, stage_stopped = 1, stage_done = 2
   !> Ending of the file's name.
   character(len=*), parameter :: verification_ending = '_verification.json'
   !> Largest summary read.
-  integer, parameter :: most_bytes = 10000000
+  integer, parameter :: max_bytes = 10000000
   !> Figures compared, members of the summary, and what they are called.
   character(len=*), parameter :: figures(2, 10) = reshape([character(len=24) :: &
     'peak_force', 'peak force', 'peak_force_at', '  its time', 'contact_duration', 'time in contact', &
@@ -68,7 +68,7 @@ contains
     character(len=:), allocatable, intent(out) :: summary
     type(error_t), allocatable :: error
 
-    call read_whole_file(base//summary_ending, most_bytes, summary, error)
+    call read_whole_file(base//summary_ending, max_bytes, summary, error)
   end subroutine read_summary
 
   !> True: a summary has a member of this name and text.
@@ -89,7 +89,7 @@ contains
   end function holds
 
   !> Prints what the figures change by, and writes it to NAME_verification.json. Collective.
-  subroutine tell_changes(deck, finer, communicator, error)
+  subroutine print_changes(deck, finer, communicator, error)
     !> The deck, and the same refined
     type(deck_t), intent(in) :: deck, finer
     !> The ranks
@@ -105,7 +105,7 @@ contains
       call write_summary(deck%output%directory//'/'//deck%name//verification_ending, content, error)
     end if
     call communicator%agree(error)
-  end subroutine tell_changes
+  end subroutine print_changes
 
   !> The changes as a table and as JSON.
   subroutine compare_summaries(deck, finer, lines, content)

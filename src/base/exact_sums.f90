@@ -23,7 +23,7 @@ module exact_sums
   !> a real has 53, and one more decides a tie
   integer, parameter :: leading_bits = 62
   !> Terms after which carries are due: each adds less than 2^32 to a chunk that bears 2^63
-  integer, parameter :: most_terms = 2**30
+  integer, parameter :: max_terms = 2**30
   !> Largest number in a place, and fraction, as masks
   integer(long), parameter :: place_mask = 2_long**place_bits - 1, fraction_mask = 2_long**fraction_bits - 1
 
@@ -77,7 +77,7 @@ contains
     self%chunks(place + 1) = self%chunks(place + 1) + ieor(iand(upper, place_mask), sign) - sign
     self%chunks(place + 2) = self%chunks(place + 2) + ieor(shiftr(upper, place_bits), sign) - sign
     self%terms = self%terms + 1
-    if (self%terms == most_terms) call self%carry()
+    if (self%terms == max_terms) call self%carry()
   end subroutine add_value
 
   !> Adds a list of terms.

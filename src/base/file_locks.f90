@@ -1,11 +1,11 @@
-!> A lock that tells other runs that a file is being written. It ends with the process, however that ends.
+!> A lock that shows other runs that a file is being written. It ends with the process, however that ends.
 module file_locks
   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char
   implicit none
   private
   public :: file_lock_t
 
-  !> What the C side answers if another process holds the lock.
+  !> What the C side returns if another process holds the lock.
   integer(c_int), parameter :: taken_by_another = -2
 
   !> A lock on one file.

@@ -36,7 +36,7 @@ module files
       integer(c_int), value :: mode
     end function c_mkdir
 
-    !> C library: tells whether a file may be used in a certain way.
+    !> C library: whether a file may be used in a certain way.
     integer(c_int) function c_access(path, mode) bind(c, name='access')
       import :: c_char, c_int
       !> Zero-terminated path
@@ -124,7 +124,7 @@ contains
     call fail(error, exit_files, "Can't rename "//from//' to '//to//'.')
   end subroutine rename_file
 
-  !> Removes a file if it is there. One that can't be removed stays: whoever writes it anew will tell.
+  !> Removes a file if it is there. One that can't be removed stays: whoever writes it anew will report it.
   subroutine remove_file(path)
     !> Its path
     character(len=*), intent(in) :: path
@@ -150,11 +150,11 @@ contains
   end subroutine make_directory
 
   !> Reads a file whole, byte by byte as it is.
-  subroutine read_whole_file(path, most_bytes, content, error)
+  subroutine read_whole_file(path, max_bytes, content, error)
     !> Its path
     character(len=*), intent(in) :: path
     !> Largest size accepted
-    integer, intent(in) :: most_bytes
+    integer, intent(in) :: max_bytes
     !> The bytes; empty if there was an error
     character(len=:), allocatable, intent(out) :: content
     !> Raised if the file is missing, a folder, unreadable or too large
@@ -171,11 +171,11 @@ contains
       call fail(error, exit_files, path//": can't be opened.")
       return
     end if
-    allocate (buffer(most_bytes + 1))
-    bytes = int(c_fread(c_loc(buffer), 1_c_size_t, int(most_bytes + 1, c_size_t), stream))
+    allocate (buffer(max_bytes + 1))
+    bytes = int(c_fread(c_loc(buffer), 1_c_size_t, int(max_bytes + 1, c_size_t), stream))
     i = c_fclose(stream)
-    if (bytes > most_bytes) then
-      call fail(error, exit_files, path//': has more than '//to_text(most_bytes)//' bytes.')
+    if (bytes > max_bytes) then
+      call fail(error, exit_files, path//': has more than '//to_text(max_bytes)//' bytes.')
       return
     end if
     deallocate (content)

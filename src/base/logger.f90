@@ -49,7 +49,7 @@ module logger
   end type log_t
 
   interface
-    !> C library: tells whether a file descriptor is a terminal.
+    !> C library: whether a file descriptor is a terminal.
     integer(c_int) function c_isatty(descriptor) bind(c, name='isatty')
       import :: c_int
       !> The descriptor
@@ -111,7 +111,7 @@ contains
     call self%to_file('warning: '//text, at_once=.true.)
   end subroutine warning
 
-  !> Tells how the run goes.
+  !> Shows the progress of the run.
   subroutine note(self, text)
     !> The log
     class(log_t), intent(inout) :: self
@@ -122,7 +122,7 @@ contains
     call self%to_file(text, at_once=.true.)
   end subroutine note
 
-  !> Tells what only the file need know.
+  !> Records what only the file need know.
   subroutine detail(self, text)
     !> The log
     class(log_t), intent(inout) :: self
@@ -174,7 +174,7 @@ contains
     flush (unit, iostat=ignored)
   end subroutine to_terminal
 
-  !> Writes a line to the file. If it can't be written the file is given up, and the terminal told.
+  !> Writes a line to the file. If it can't be written the file is given up, and the terminal informed.
   subroutine to_file(self, line, at_once)
     !> The log
     class(log_t), intent(inout) :: self

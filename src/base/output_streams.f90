@@ -1,4 +1,4 @@
-!> Text files written through the C library, because Fortran's `flush` and `close` do not tell when the disk is full.
+!> Text files written through the C library, because Fortran's `flush` and `close` do not report when the disk is full.
 module output_streams
   use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_int, c_null_char, c_null_ptr, c_ptr, c_size_t
   implicit none

@@ -1,4 +1,5 @@
-!> The fewest decimal digits that tell a double from all others, in a twentieth of the time that writing and reading it
+!> The fewest decimal digits that distinguish a double from all others, in a twentieth of the time that writing and
+!> reading it
 !> takes. Where double the precision can't decide, it says so.
 module shortest_digits
   use, intrinsic :: iso_fortran_env, only: real128

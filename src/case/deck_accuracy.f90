@@ -12,8 +12,8 @@ module deck_accuracy
   use mesh_parameters, only: symmetry_quarter
   use output_deck, only: output_group, key_fields_every
   use pilot_impacts, only: pilot_t
-  use scene_pilots, only: scene_pilot_t, start_pilot, contact_end, largest_step, largest_cell
-  use scene_scales, only: scene_scales_t, scales_of, contact_side, has_blow
+  use setup_pilots, only: setup_pilot_t, start_pilot, contact_end, largest_step, largest_cell
+  use setup_scales, only: setup_scales_t, scales_of, contact_side, has_impact_velocity
   use short_numbers, only: short_text
   use stepping_parameters, only: is_explicit, past_contact
   use text, only: line_t, append, to_text
@@ -24,17 +24,17 @@ module deck_accuracy
 
   !> Error of the history allowed over that of the peak: 3 % and 1 %. Mesh and step get half of both each.
   real(wp), parameter :: history_over_peak = 3, share = 0.5_wp
-  !> Most elements along one direction of the part modelled, twice that of a whole plate: more take hours.
-  integer, parameter :: most_along = 100
+  !> Most elements along one direction of the part modelled, twice that of a full plate: more take hours.
+  integer, parameter :: max_along = 100
   !> Waves of first contact on either side of the patch that have the elements asked for, where they are too many for
-  !> the plate. On random scene 9 of `tests/bench/elastic_scenes.py` the first peak is 2.9 % off without, 0.3 % with one
+  !> the plate. On random setup 9 of `tests/bench/elastic_scenes.py` the first peak is 2.9 % off without, 0.3 % with one
   !> wave, 0.03 % with two.
   real(wp), parameter :: core_waves = 2
   !> Elements across the smaller side of the zone of an interface that may delaminate.
   integer, parameter :: zone_elements = 24
   !> Fields written in a run, and the largest accuracy, %, with which they are: they cost a draft half its time.
   integer, parameter :: fields_written = 10
-  real(wp), parameter :: most_with_fields = 2
+  real(wp), parameter :: max_with_fields = 2
   !> Parts of the plate's shorter side that elements have without an impactor, at an error of 1 %, and of its first
   !> period that steps have. The element's error falls with the fourth power of its side, the step's with the square.
   real(wp), parameter :: part_of_side = 1.0_wp/16, part_of_period = 1.0_wp/40
@@ -63,7 +63,7 @@ contains
 
   contains
 
-    !> Tells a key that is missing.
+    !> Reports a key that is missing.
     subroutine require(group, key, allowed)
       !> Names of group and key
       character(len=*), intent(in) :: group, key
@@ -82,12 +82,12 @@ contains
     type(deck_t), intent(inout) :: deck
     !> Faults so far
     type(problems_t), intent(inout) :: problems
-    type(scene_scales_t) :: scales
+    type(setup_scales_t) :: scales
 
     if (problems%errors() > 0) return
     if (.not. allocated(deck%reasons)) allocate (deck%reasons(0))
-    scales = scales_of(deck%scene_t)
-    if (has_blow(deck%scene_t) .and. scales%area_mass > 0) then
+    scales = scales_of(deck%setup_t)
+    if (has_impact_velocity(deck%setup_t) .and. scales%area_mass > 0) then
       call choose_for_impact(deck, scales, problems)
     else
       call choose_for_pressure(deck, scales, problems)
@@ -99,26 +99,26 @@ contains
   subroutine choose_for_impact(deck, scales, problems)
     !> The deck
     type(deck_t), intent(inout) :: deck
-    !> Scales of its scene
-    type(scene_scales_t), intent(in) :: scales
+    !> Scales of its setup
+    type(setup_scales_t), intent(in) :: scales
     !> Remarks are added
     type(problems_t), intent(inout) :: problems
-    type(scene_pilot_t) :: pilot
+    type(setup_pilot_t) :: pilot
     type(pilot_t) :: first
     real(wp) :: end, step, bounds(2), error(2)
     logical :: follows
 
     bounds = share*deck%accuracy/100*[1.0_wp, history_over_peak]
     end = deck%settings%real_of(time_group, key_end)
-    pilot = start_pilot(deck%scene_t, scales)
+    pilot = start_pilot(deck%setup_t, scales)
     first = contact_end(pilot, end)
     if (.not. deck%mesh%patch > 0) then
-      call choose_one(deck, mesh_group, key_patch, min(contact_side(deck%scene_t, first%indentation), &
+      call choose_one(deck, mesh_group, key_patch, min(contact_side(deck%setup_t, first%indentation), &
                                                        minval(deck%plate%length)/4))
       deck%mesh%patch = deck%settings%real_of(mesh_group, key_patch)
       call append(deck%reasons, 'Patch '//short_text(deck%mesh%patch)//': the circle of contact at an indentation '// &
                   'of '//short_text(first%indentation)//', spread over the thickness.')
-      pilot = start_pilot(deck%scene_t, scales)
+      pilot = start_pilot(deck%setup_t, scales)
       first = contact_end(pilot, end)
     end if
     deck%stepping%time%follows_contact = is_explicit(deck%stepping) .and. .not. end > 0
@@ -160,8 +160,8 @@ contains
   subroutine choose_for_pressure(deck, scales, problems)
     !> The deck
     type(deck_t), intent(inout) :: deck
-    !> Scales of its scene
-    type(scene_scales_t), intent(in) :: scales
+    !> Scales of its setup
+    type(setup_scales_t), intent(in) :: scales
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
 
@@ -182,8 +182,8 @@ contains
     type(deck_t), intent(inout) :: deck
     !> Largest side wanted
     real(wp), intent(in) :: side
-    !> Scales of its scene
-    type(scene_scales_t), intent(in) :: scales
+    !> Scales of its setup
+    type(setup_scales_t), intent(in) :: scales
     !> Remarks are added
     type(problems_t), intent(inout) :: problems
     real(wp) :: half(2), cell
@@ -198,12 +198,12 @@ contains
     number = max(2, ceiling(min(half/cell, 1.0e6_wp) - 0.01_wp))
     if (deck%mesh%patch > 0) number = max(number, 1 + max(1, ceiling(min((half - deck%mesh%patch/2)/cell, 1.0e6_wp) &
                                                                      - 0.01_wp)))
-    if (any(number > most_along)) then
-      call remark(deck%settings, problems, case_group, key_accuracy, 'asks for more than '//to_text(most_along)// &
+    if (any(number > max_along)) then
+      call remark(deck%settings, problems, case_group, key_accuracy, 'requires more than '//to_text(max_along)// &
                   ' elements from the struck point to an edge, which are not chosen; expect larger errors.')
       call choose_core(deck, cell, scales%wave_length)
     end if
-    number = min(number, most_along)*parts
+    number = min(number, max_along)*parts
     allocate (words(0))
     call append(words, to_text(number(1)))
     call append(words, to_text(number(2)))
@@ -266,7 +266,7 @@ contains
     !> Step and end of the run
     real(wp), intent(in) :: step, end
 
-    if (deck%settings%is_given(output_group, key_fields_every) .or. deck%accuracy > most_with_fields) return
+    if (deck%settings%is_given(output_group, key_fields_every) .or. deck%accuracy > max_with_fields) return
     call deck%settings%choose(output_group, key_fields_every, &
                               [line_t(to_text(step*max(1, nint(end/step/fields_written))))])
   end subroutine choose_clocks

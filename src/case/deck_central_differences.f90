@@ -3,7 +3,7 @@
 module deck_central_differences
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
-  use deck_remarks, only: tell
+  use deck_remarks, only: report
   use element_steps, only: smallest_element_step
   use impact_parameters, only: integrator_central
   use impactor_deck, only: impactor_group, key_integrator
@@ -14,22 +14,22 @@ module deck_central_differences
   use output_deck, only: output_group, key_history_every
   use pilot_impacts, only: pilot_t
   use plate_options, only: mass_lumped
-  use scene_pilots, only: contact_end, start_pilot
-  use scene_scales, only: has_blow, scales_of, scene_scales_t
+  use setup_pilots, only: contact_end, start_pilot
+  use setup_scales, only: has_impact_velocity, scales_of, setup_scales_t
   use short_numbers, only: short_text
   use stepping_parameters, only: past_contact
   use text, only: append, to_text
-  use time_deck, only: key_end, key_mass_scaling, key_step, most_steps, time_group
+  use time_deck, only: key_end, key_mass_scaling, key_step, max_steps, time_group
   implicit none
   private
   public :: choose_for_central_differences, find_stable_step
 
   !> Largest factor of in-plane and rotary inertia that is chosen. It slows membrane waves too, which no estimate here
   !> knows, by its root.
-  real(wp), parameter :: most_scaling = 10
+  real(wp), parameter :: max_scaling = 10
   !> Error of a bending wave's frequency up to which inertia is scaled. By s times the rotary inertia a wave of number k
   !> in a plate of thickness h is slower by (s - 1) (k h)**2/24: rho h**3/12 k**2 beside rho h, halved by the root.
-  !> The history of the force errs by up to 2.7 times as much, in the relative L2 norm over twenty random scenes
+  !> The history of the force errs by up to 2.7 times as much, in the relative L2 norm over twenty random setups
   !> (tests/bench/explicit_table.py elastic): so it errs by less than 1 %.
   real(wp), parameter :: frequency_error = 0.0035_wp
   !> Rows of a history, about: as many as a plot shows. They are written at whole steps, which none is cut for.
@@ -37,13 +37,13 @@ module deck_central_differences
 
 contains
 
-  !> Chooses what follows from the scene: end and scaling. The rest goes by the method.
+  !> Chooses what follows from the setup: end and scaling. The rest goes by the method.
   subroutine choose_for_central_differences(deck, problems)
     !> The deck, its bodies and loads filled
     type(deck_t), intent(inout) :: deck
     !> Faults so far; faults found are added
     type(problems_t), intent(inout) :: problems
-    type(scene_scales_t) :: scales
+    type(setup_scales_t) :: scales
 
     if (.not. deck%settings%is_given(mesh_group, key_mass)) &
       call deck%settings%derive(mesh_group, key_mass, 'lumped', .true.)
@@ -54,7 +54,7 @@ contains
     end if
     if (problems%errors() > 0) return
     if (.not. allocated(deck%reasons)) allocate (deck%reasons(0))
-    scales = scales_of(deck%scene_t)
+    scales = scales_of(deck%setup_t)
     if (.not. deck%settings%is_given(time_group, key_end)) call choose_end(deck, scales, problems)
     if (.not. deck%settings%is_given(time_group, key_mass_scaling)) call choose_scaling(deck, scales)
   end subroutine choose_for_central_differences
@@ -64,22 +64,22 @@ contains
   subroutine choose_end(deck, scales, problems)
     !> The deck
     type(deck_t), intent(inout) :: deck
-    !> Scales of its scene
-    type(scene_scales_t), intent(in) :: scales
+    !> Scales of its setup
+    type(setup_scales_t), intent(in) :: scales
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
     type(pilot_t) :: pilot
 
     deck%stepping%time%follows_contact = .true.
     if (deck%settings%is_known(time_group, key_end)) return
-    if (.not. (has_blow(deck%scene_t) .and. scales%area_mass > 0)) then
+    if (.not. (has_impact_velocity(deck%setup_t) .and. scales%area_mass > 0)) then
       if (.not. problems%concern(time_group, key_end)) &
         call problems%error(deck%settings%line_of_group(time_group), time_group, key_end, '&'//time_group//' '// &
                             key_end//' is missing; it follows from the contact only where an impactor comes with a '// &
                             'velocity.', 1)
       return
     end if
-    pilot = contact_end(start_pilot(deck%scene_t, scales), 0.0_wp)
+    pilot = contact_end(start_pilot(deck%setup_t, scales), 0.0_wp)
     call deck%settings%derive(time_group, key_end, short_text(past_contact*pilot%last_contact), .false.)
     call append(deck%reasons, 'End '//short_text(past_contact*pilot%last_contact)//': the contact of an undamaged '// &
                 'plate is over at '//short_text(pilot%last_contact)//' in a pilot calculation by modes; while it '// &
@@ -90,13 +90,13 @@ contains
   subroutine choose_scaling(deck, scales)
     !> The deck
     type(deck_t), intent(inout) :: deck
-    !> Scales of its scene
-    type(scene_scales_t), intent(in) :: scales
+    !> Scales of its setup
+    type(setup_scales_t), intent(in) :: scales
     real(wp) :: scaling, slowed
 
     if (scales%wave_length > 0) then
       slowed = (2*pi*scales%thickness/scales%wave_length)**2/24
-      scaling = min(most_scaling, 1 + frequency_error/slowed)
+      scaling = min(max_scaling, 1 + frequency_error/slowed)
       call append(deck%reasons, 'Mass scaling '//short_text(scaling)//': it slows the bending waves of first '// &
                   'contact, '//short_text(scales%wave_length)//' long, by '// &
                   short_text(100*(scaling - 1)*slowed)//' %.')
@@ -119,9 +119,9 @@ contains
     if (.not. allocated(deck%reasons)) allocate (deck%reasons(0))
     step = deck%stepping%central%step_factor*smallest_element_step(deck, deck%stepping%central%mass_scaling)
     if (.not. step > 0) return
-    if (deck%stepping%time%end > most_steps*step) then
-      call tell(deck%settings, problems, time_group, key_end, 'takes more than '//to_text(most_steps)//' stable '// &
-                'steps of '//short_text(step)//'; allowed: up to '//short_text(most_steps*step)//'.')
+    if (deck%stepping%time%end > max_steps*step) then
+      call report(deck%settings, problems, time_group, key_end, 'takes more than '//to_text(max_steps)//' stable '// &
+                'steps of '//short_text(step)//'; allowed: up to '//short_text(max_steps*step)//'.')
       return
     end if
     associate (time => deck%stepping%time)

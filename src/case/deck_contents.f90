@@ -6,16 +6,16 @@ module deck_contents
   use stepping_parameters, only: stepping_t
   use linear_solver_parameters, only: linear_solver_parameters_t
   use output_parameters, only: output_t
-  use scene_pilots, only: scene_outlook_t
-  use scenes, only: scene_t
+  use setup_pilots, only: expected_scales_t
+  use setups, only: setup_t
   use text, only: line_t
   implicit none
   private
   public :: deck_t
 
-  !> A deck that was read: the scene to model, and what is around it; it has many components because every group of the
+  !> A deck that was read: the setup to model, and what is around it; it has many components because every group of the
   !> deck has one.
-  type, extends(scene_t) :: deck_t
+  type, extends(setup_t) :: deck_t
     !> Path or name it was read from
     character(len=:), allocatable :: source
     !> Text as it was read, kept for the results and a restart
@@ -36,8 +36,8 @@ module deck_contents
     type(initial_state_t) :: initial
     !> What was chosen for the accuracy and why
     type(line_t), allocatable :: reasons(:)
-    !> Scales of the scene, and what the run is to show
-    type(scene_outlook_t) :: outlook
+    !> Scales of the setup, and what the run is to show
+    type(expected_scales_t) :: expected
     !> Which groups on the steps the deck has
     logical :: has_time = .false., has_adapt = .false.
     !> How steps are taken

@@ -5,7 +5,7 @@ module deck_crack_bands
   use crack_bands, only: create_crack_band, longest_element
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
-  use deck_remarks, only: tell, remark, remark_idle, are_clear
+  use deck_remarks, only: report, remark, remark_idle, are_clear
   use in_situ_strengths, only: material_in_place
   use kinds, only: wp
   use material_deck, only: material_group, key_shear_strain, toughness_keys
@@ -22,7 +22,7 @@ module deck_crack_bands
   private
   public :: check_crack_bands
 
-  !> Energy that failure takes over the fracture energy from which it is told: in two digits smaller ratios are 1.
+  !> Energy that failure takes over the fracture energy from which it is reported: in two digits smaller ratios are 1.
   real(wp), parameter :: noted = 1.1_wp
 
 contains
@@ -37,7 +37,7 @@ contains
 
     if (.not. any([(any(deck%materials(i)%toughness > 0), i=1, size(deck%materials))])) then
       if (deck%ply_damage%in_situ) call refuse_in_situ(deck, problems)
-      if (deck%ply_damage%permanent_shear) call tell(deck%settings, problems, ply_damage_group, key_permanent, &
+      if (deck%ply_damage%permanent_shear) call report(deck%settings, problems, ply_damage_group, key_permanent, &
         'belongs to plies with fracture energies; give G_ft, G_fc, G_mt and G_mc of every material, or leave it out.')
       do i = 1, size(deck%materials)
         call remark_idle(deck%settings, problems, material_group, key_shear_strain, &
@@ -71,10 +71,10 @@ contains
     integer :: place
 
     if (.not. (deck%has_time .and. is_explicit(deck%stepping))) &
-      call tell(deck%settings, problems, ply_damage_group, key_permanent, 'implicit steps and load steps have no '// &
+      call report(deck%settings, problems, ply_damage_group, key_permanent, 'implicit steps and load steps have no '// &
                 'permanent strains; take integrator = ''central_difference'' of &time, or leave it out.')
     if (any([(deck%settings%is_given(material_group, key_shear_strain, place), place=1, size(deck%materials))])) return
-    call tell(deck%settings, problems, ply_damage_group, key_permanent, 'there is no permanent strain without '// &
+    call report(deck%settings, problems, ply_damage_group, key_permanent, 'there is no permanent strain without '// &
               key_shear_strain//' of a &'//material_group//'; give it, or leave this out.')
   end subroutine check_permanent_shear
 
@@ -91,7 +91,7 @@ contains
         if (.not. are_clear(deck%settings, problems, material_group, toughness_keys(mode), place)) return
       end do
     end do
-    call tell(deck%settings, problems, ply_damage_group, key_in_situ, 'strengths in place follow from the '// &
+    call report(deck%settings, problems, ply_damage_group, key_in_situ, 'strengths in place follow from the '// &
               'fracture energies G_mt and G_mc; give G_ft, G_fc, G_mt and G_mc of every material, or leave it out.')
   end subroutine refuse_in_situ
 
@@ -112,7 +112,7 @@ contains
       if (are_clear(deck%settings, problems, material_group, toughness_keys(mode), place)) &
         call append(missing, toughness_keys(mode))
     end do
-    if (size(missing) > 0) call tell(deck%settings, problems, material_group, '', &
+    if (size(missing) > 0) call report(deck%settings, problems, material_group, '', &
       'fracture energies are given, but not '//joined(missing, ', ')// &
       '; give G_ft, G_fc, G_mt and G_mc of every material, or none.', place)
   end subroutine check_energies
@@ -130,7 +130,7 @@ contains
     strain = deck%settings%real_of(material_group, key_shear_strain, place)
     if (.not. (strain > 0 .and. deck%materials(place)%g12 > 0)) return
     linear = deck%materials(place)%s12/deck%materials(place)%g12
-    if (strain < linear) call tell(deck%settings, problems, material_group, key_shear_strain, 'must be at least '// &
+    if (strain < linear) call report(deck%settings, problems, material_group, key_shear_strain, 'must be at least '// &
                                    'S12/G12 = '//short_text(linear)//', that of linear shear.', place)
   end subroutine check_shear
 

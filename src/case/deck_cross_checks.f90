@@ -1,12 +1,12 @@
 !> Checks across the groups of a deck: whether what it asks for can be modelled and makes sense together. Checks within
 !> a group stand beside its rows, those of sizes against each other in `deck_extents`.
-!> A check whose keys are already at fault is left out, so that one fault is told once.
+!> A check whose keys are already at fault is left out, so that one fault is reported once.
 module deck_cross_checks
   use adapt_deck, only: adapt_group, key_growth_step
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
   use deck_symmetries, only: check_symmetry
-  use deck_remarks, only: tell, remark, remark_idle, are_clear
+  use deck_remarks, only: report, remark, remark_idle, are_clear
   use interface_places, only: delamination_group, key_below_ply
   use delamination_parameters, only: growth_one_per_step, interface_objection, law_cohesive, law_front
   use failure_criteria, only: needed_strengths
@@ -69,7 +69,7 @@ contains
       call check_travel_in_time(deck, problems)
     else if (deck%has_static .and. .not. (deck%has_pressure .or. deck%has_thermal .or. loads(deck%lines) .or. &
              problems%concern(pressure_group) .or. problems%concern(line_group))) then
-      call tell(deck%settings, problems, static_group, '', 'there is no load; give &pressure, or a &line with one.')
+      call report(deck%settings, problems, static_group, '', 'there is no load; give &pressure, or a &line with one.')
     else if (.not. (deck%has_static .or. deck%has_impactor .or. deck%has_pressure .or. deck%has_thermal .or. &
                     deck%inherits .or. loads(deck%lines) .or. problems%concern(line_group) .or. &
                     problems%concern(static_group) .or. problems%concern(impactor_group) .or. &
@@ -87,10 +87,10 @@ contains
 
     if (.not. deck%settings%is_given(impactor_group, key_travel)) then
       if (.not. problems%concern(impactor_group, key_travel)) &
-        call tell(deck%settings, problems, static_group, '', 'an impactor needs time, or a way to go; give '// &
+        call report(deck%settings, problems, static_group, '', 'an impactor needs time, or a way to go; give '// &
                   '&impactor travel, or leave out &static or &impactor.')
     else if (deck%has_pressure .or. loads(deck%lines)) then
-      call tell(deck%settings, problems, impactor_group, key_travel, 'beside it a static analysis takes no other '// &
+      call report(deck%settings, problems, impactor_group, key_travel, 'beside it a static analysis takes no other '// &
                 'load; leave out &pressure, and lines that move or press.')
     end if
     call remark_idle(deck%settings, problems, impactor_group, key_mass//' '//key_gravity//' '//key_integrator//' '// &
@@ -105,10 +105,10 @@ contains
     type(problems_t), intent(inout) :: problems
 
     if (.not. is_explicit(deck%stepping)) then
-      call tell(deck%settings, problems, impactor_group, key_travel, 'in time it goes with &time integrator = '// &
+      call report(deck%settings, problems, impactor_group, key_travel, 'in time it goes with &time integrator = '// &
                 '''central_difference''; give that, &static for load steps, or the velocity instead.')
     else if (deck%impactor%rise > deck%stepping%time%end .and. .not. problems%concern(time_group)) then
-      call tell(deck%settings, problems, impactor_group, impactor_key_rise, 'the rise lasts longer than the run.')
+      call report(deck%settings, problems, impactor_group, impactor_key_rise, 'the rise lasts longer than the run.')
     end if
     call remark_idle(deck%settings, problems, impactor_group, key_mass//' '//key_gravity//' '//key_integrator//' '// &
                      keys_of_motion(deck%settings), 'has no effect where the travel is given.')
@@ -175,7 +175,7 @@ contains
     end do
     tilts = tilts .or. is_mirrored(deck%plate%symmetry)
     if (all(tilts) .and. (any(held%component == 3) .or. any(edges))) return
-    call tell(deck%settings, problems, line_group, '', 'lines and edges leave the plate free to move or to tilt '// &
+    call report(deck%settings, problems, line_group, '', 'lines and edges leave the plate free to move or to tilt '// &
               'in a static analysis; support another line.', 1)
   end subroutine check_line_supports
 
@@ -213,7 +213,7 @@ contains
         return
       end if
       if (deck%mesh%patch <= 0 .and. s%has_group(mesh_group) .and. are_clear(s, problems, mesh_group, key_patch)) &
-        call tell(s, problems, mesh_group, key_patch, 'an impactor needs a loaded patch; give its side > 0.')
+        call report(s, problems, mesh_group, key_patch, 'an impactor needs a loaded patch; give its side > 0.')
       ! The force presses on all of the patch, which has no nose above it there.
       if (deck%impactor%spreads .and. deck%impactor%radius > 0 .and. &
           deck%mesh%patch/sqrt(2.0_wp) > deck%impactor%radius) &
@@ -222,13 +222,13 @@ contains
                     short_text(deck%impactor%radius)//'; make the patch smaller.')
       if (.not. (s%is_given(indentation_group, key_k) .or. s%is_given(impactor_group, key_radius)) .and. &
           are_clear(s, problems, indentation_group, key_k) .and. are_clear(s, problems, impactor_group, key_radius)) &
-        call tell(s, problems, impactor_group, key_radius, &
+        call report(s, problems, impactor_group, key_radius, &
                   'is missing; give it, or the contact stiffness &indentation k.')
       if (deck%has_static .or. deck%impactor%travel > 0) return
       if (deck%impactor%velocity <= 0 .and. deck%impactor%gravity <= 0 .and. .not. deck%has_pressure .and. &
           .not. problems%concern(pressure_group) .and. &
           are_clear(s, problems, impactor_group, keys_of_motion(s)//' '//key_gravity)) &
-        call tell(s, problems, impactor_group, key_velocity, &
+        call report(s, problems, impactor_group, key_velocity, &
                   'nothing moves the impactor towards the plate; give a velocity or gravity > 0.')
     end associate
   end subroutine check_impact
@@ -246,7 +246,7 @@ contains
       associate (place => deck%delaminations(i)%group)
         if (.not. are_clear(deck%settings, problems, delamination_group, key_below_ply, place)) cycle
         if (interface_objection(deck%delaminations(i), size(deck%laminate%angle)) /= '') &
-          call tell(deck%settings, problems, delamination_group, '', &
+          call report(deck%settings, problems, delamination_group, '', &
                     interface_objection(deck%delaminations(i), size(deck%laminate%angle))//'.', place)
       end associate
     end do
@@ -269,7 +269,7 @@ contains
         if (needed(j)%text == '') cycle
         if (are_clear(deck%settings, problems, material_group, needed(j)%text, i)) call append(missing, needed(j)%text)
       end do
-      if (size(missing) > 0) call tell(deck%settings, problems, material_group, '', 'ply damage needs the '// &
+      if (size(missing) > 0) call report(deck%settings, problems, material_group, '', 'ply damage needs the '// &
         'strengths '//joined(missing, ', ')//'; give them or leave &ply_damage out.', i)
       deallocate (missing)
     end do

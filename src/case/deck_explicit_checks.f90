@@ -4,7 +4,7 @@ module deck_explicit_checks
   use adapt_deck, only: adapt_group
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
-  use deck_remarks, only: are_clear, remark, remark_idle, tell
+  use deck_remarks, only: are_clear, remark, remark_idle, report
   use delamination_deck, only: key_law
   use delamination_parameters, only: law_front
   use equilibrium_deck, only: solver_group
@@ -33,7 +33,7 @@ contains
     call check_fronts(deck, problems)
     associate (s => deck%settings)
       if (s%text_of(mesh_group, key_mass) == 'consistent' .and. are_clear(s, problems, mesh_group, key_mass)) &
-        call tell(s, problems, mesh_group, key_mass, 'central differences need a lumped mass; leave it out, or '// &
+        call report(s, problems, mesh_group, key_mass, 'central differences need a lumped mass; leave it out, or '// &
                   'write &time integrator = ''generalized_alpha''.')
       if (s%has_group(adapt_group)) call remark(s, problems, adapt_group, '', no_effect)
       ! Residual stresses are brought into equilibrium before the first step.
@@ -57,7 +57,7 @@ contains
         if (place == before .or. deck%delaminations(i)%law /= law_front) cycle
         before = place
         if (are_clear(deck%settings, problems, delamination_group, key_law, place)) &
-          call tell(deck%settings, problems, delamination_group, key_law, 'central differences move no front; '// &
+          call report(deck%settings, problems, delamination_group, key_law, 'central differences move no front; '// &
                     'write &time integrator = ''generalized_alpha'', or law = ''cohesive'' with strengths.', place)
       end associate
     end do

@@ -5,11 +5,11 @@ module deck_extents
   use deck_contents, only: deck_t
   use deck_mesh_lines, only: check_window_lines
   use deck_problems, only: problems_t
-  use deck_remarks, only: tell, remark, are_clear
+  use deck_remarks, only: report, remark, are_clear
   use delaminated_regions, only: cells_within, extent_of_cells
   use delamination_deck, only: key_smoothing, key_starter, key_zone
   use interface_places, only: delamination_group
-  use delamination_parameters, only: delamination_t, law_front, release_vcct, default_smoothing, least_smoothed_cells
+  use delamination_parameters, only: delamination_t, law_front, release_vcct, default_smoothing, min_smoothed_cells
   use gradings, only: core_elements
   use impactor_deck, only: impactor_group, key_at
   use kinds, only: wp
@@ -17,7 +17,7 @@ module deck_extents
   use line_loads, only: along_x
   use placed_lines, only: node_line, place_of_node
   use laminate_deck, only: laminate_group, key_thicknesses
-  use mesh_deck, only: mesh_group, key_elements, key_patch, key_core, key_cell, most_elements
+  use mesh_deck, only: mesh_group, key_elements, key_patch, key_core, key_cell, max_elements
   use mesh_parameters, only: is_halved, is_mirrored
   use plate_deck, only: plate_group, key_length, key_symmetry
   use text, only: line_t, to_text
@@ -25,14 +25,14 @@ module deck_extents
   private
   public :: check_sizes, check_extents, extent_lines
 
-  !> Length over thickness beyond which rounding spoils the answer, and below which plate theory does.
-  real(wp), parameter :: most_slender = 1.0e5_wp, least_slender = 5
+  !> Length over thickness beyond which rounding spoils the result, and below which plate theory does.
+  real(wp), parameter :: max_slenderness = 1.0e5_wp, min_slenderness = 5
   !> Smallest patch, fraction of the plate's shorter side.
-  real(wp), parameter :: least_patch = 1.0e-5_wp
+  real(wp), parameter :: min_patch = 1.0e-5_wp
   !> Side of a starter over the loaded patch's below which growth may never start.
-  real(wp), parameter :: least_starter = 1.5_wp
+  real(wp), parameter :: min_starter = 1.5_wp
   !> Difference from the size asked for, relative to it, that a user is warned of.
-  real(wp), parameter :: noticeable = 0.05_wp
+  real(wp), parameter :: size_tolerance = 0.05_wp
   !> Distance from its place at which a line counts as moved, relative to the plate's length.
   real(wp), parameter :: moved_line = 1.0e-3_wp
   !> Part by which rounding may carry a length beyond its limit.
@@ -74,10 +74,11 @@ contains
         direction = merge(2, 1, line%direction == along_x)
         half = deck%plate%length(direction)/2
         if (abs(line%at) > half*(1 + rounded_off)) then
-          call tell(deck%settings, problems, line_group, line_key_at, 'the line passes beside the plate; allowed: '// &
+          call report(deck%settings, problems, line_group, line_key_at, &
+                      'the line passes beside the plate; allowed: '// &
                     to_text(-half)//' to '//to_text(half)//'.', place)
         else if (mirrored(direction) .and. line%at < 0) then
-          call tell(deck%settings, problems, line_group, line_key_at, 'one side stands for the plate, and a line '// &
+          call report(deck%settings, problems, line_group, line_key_at, 'one side stands for the plate, and a line '// &
                     'for that on the other side too; allowed: 0 or more.', place)
         end if
       end associate
@@ -117,14 +118,14 @@ contains
     shorter = minval(deck%plate%length)
     longer = maxval(deck%plate%length)
     if (thickness > shorter) then
-      call tell(deck%settings, problems, laminate_group, key_thicknesses, 'the laminate is '//to_text(thickness)// &
+      call report(deck%settings, problems, laminate_group, key_thicknesses, 'the laminate is '//to_text(thickness)// &
                 ' thick, more than the plate is wide; this is no plate.')
-    else if (longer > most_slender*thickness*(1 + rounded_off)) then
-      call tell(deck%settings, problems, laminate_group, key_thicknesses, 'the laminate is '//to_text(thickness)// &
-                ' thick, less than '//to_text(1/most_slender)//' of the plate''s length, where rounding spoils it.')
-    else if (thickness*least_slender > shorter) then
+    else if (longer > max_slenderness*thickness*(1 + rounded_off)) then
+      call report(deck%settings, problems, laminate_group, key_thicknesses, 'the laminate is '//to_text(thickness)// &
+                ' thick, less than '//to_text(1/max_slenderness)//' of the plate''s length, where rounding spoils it.')
+    else if (thickness*min_slenderness > shorter) then
       call remark(deck%settings, problems, laminate_group, key_thicknesses, 'the plate is less than '// &
-                  to_text(least_slender)//' thicknesses wide; plate theory is inaccurate there.')
+                  to_text(min_slenderness)//' thicknesses wide; plate theory is inaccurate there.')
     end if
   end subroutine check_thickness
 
@@ -140,18 +141,18 @@ contains
     associate (s => deck%settings, patch => deck%mesh%patch)
       if (patch <= 0) return
       if (any(patch/2 + abs(deck%mesh%struck) > deck%plate%length/2) .and. patch <= shorter) then
-        if (are_clear(s, problems, impactor_group, key_at)) call tell(s, problems, impactor_group, key_at, 'the '// &
+        if (are_clear(s, problems, impactor_group, key_at)) call report(s, problems, impactor_group, key_at, 'the '// &
           'loaded patch reaches over the border of the plate; strike further inside.')
       else if (patch > shorter) then
-        call tell(s, problems, mesh_group, key_patch, 'is larger than the plate; allowed: up to '// &
+        call report(s, problems, mesh_group, key_patch, 'is larger than the plate; allowed: up to '// &
                   to_text(shorter)//'.')
-      else if (patch < least_patch*shorter) then
-        call tell(s, problems, mesh_group, key_patch, 'is too small for the plate; allowed: from '// &
-                  to_text(least_patch*shorter)//'.')
+      else if (patch < min_patch*shorter) then
+        call report(s, problems, mesh_group, key_patch, 'is too small for the plate; allowed: from '// &
+                  to_text(min_patch*shorter)//'.')
       else if (any(.not. is_halved(deck%plate%symmetry) .and. deck%mesh%elements == 2 .and. &
                patch < deck%plate%length) .and. are_clear(s, problems, mesh_group, key_elements) .and. &
                are_clear(s, problems, plate_group, key_symmetry)) then
-        call tell(s, problems, mesh_group, key_elements, 'a loaded patch with plate around it takes at least 3 '// &
+        call report(s, problems, mesh_group, key_elements, 'a loaded patch with plate around it takes at least 3 '// &
                   'elements each way.')
       end if
     end associate
@@ -169,10 +170,10 @@ contains
     associate (s => deck%settings, mesh => deck%mesh)
       if (minval(mesh%core) <= 0 .or. mesh%cell <= 0) return
       if (any(mesh%core/2 + abs(mesh%struck) >= deck%plate%length/2)) then
-        call tell(s, problems, mesh_group, key_core, &
+        call report(s, problems, mesh_group, key_core, &
                   'reaches the border of the plate; give it smaller or leave it out.')
-      else if (any(mesh%core/mesh%cell > most_elements)) then
-        call tell(s, problems, mesh_group, key_cell, 'is too small for the core.')
+      else if (any(mesh%core/mesh%cell > max_elements)) then
+        call report(s, problems, mesh_group, key_cell, 'is too small for the core.')
       else if (are_clear(s, problems, mesh_group, key_elements//' '//key_patch) .and. &
                are_clear(s, problems, plate_group, key_symmetry)) then
         halved = is_halved(deck%plate%symmetry)
@@ -181,7 +182,7 @@ contains
           least = parts*(sum(core_elements(mesh%patch/2, mesh%core(direction)/2, mesh%cell)) + 1)
           if (abs(mesh%struck(direction)) > 0) parts = 1
           if (mesh%elements(direction) >= least .and. modulo(mesh%elements(direction), parts) == 0) cycle
-          call tell(s, problems, mesh_group, key_elements, 'the core needs at least '//to_text(least)//' along '// &
+          call report(s, problems, mesh_group, key_elements, 'the core needs at least '//to_text(least)//' along '// &
                     merge('x', 'y', direction == 1)//trim(merge(', and an even number.', '.                    ', &
                                                                 parts == 2)))
           return
@@ -203,12 +204,12 @@ contains
       associate (s => deck%settings, d => deck%delaminations(i), place => deck%delaminations(i)%group)
         if (any(d%zone > deck%plate%length) .and. are_clear(s, problems, plate_group, key_length) .and. &
             are_clear(s, problems, delamination_group, key_zone, place)) &
-          call tell(s, problems, delamination_group, key_zone, 'the zone must not be larger than the plate.', place)
+          call report(s, problems, delamination_group, key_zone, 'the zone must not be larger than the plate.', place)
         if (d%follows .and. any(d%starter + 2*abs(d%starter_at) >= deck%plate%length) .and. &
             are_clear(s, problems, plate_group, key_length) .and. &
             are_clear(s, problems, delamination_group, key_starter, place)) &
-          call tell(s, problems, delamination_group, key_starter, 'must lie within the plate.', place)
-        if (deck%has_impactor .and. d%law == law_front .and. d%starter < least_starter*deck%mesh%patch .and. &
+          call report(s, problems, delamination_group, key_starter, 'must lie within the plate.', place)
+        if (deck%has_impactor .and. d%law == law_front .and. d%starter < min_starter*deck%mesh%patch .and. &
             are_clear(s, problems, delamination_group, key_starter, place)) &
           call remark(s, problems, delamination_group, key_starter, 'the starter is hardly larger than the loaded '// &
                       'patch: most of the shear then passes inside it, and growth may never start.', place)
@@ -276,15 +277,16 @@ contains
     associate (d => delamination)
       if (d%law /= law_front .or. d%energy_release /= release_vcct .or. .not. d%starter > 0) return
       ! A round front in isotropic plies has one rate all around.
-      if (d%starter_round .and. all(abs(deck%materials%e1 - deck%materials%e2) <= noticeable*deck%materials%e1)) return
+      if (d%starter_round .and. all(abs(deck%materials%e1 &
+                                        - deck%materials%e2) <= size_tolerance*deck%materials%e1)) return
       distance = d%smoothing
       advice = 'give a shorter one'
       if (.not. distance > 0) then
         distance = default_smoothing(sum(deck%laminate%thickness), cell)
-        advice = 'take cells of at most '//to_text(rounded(radius/least_smoothed_cells))
-        if (.not. least_smoothed_cells*cell > sum(deck%laminate%thickness)) return
+        advice = 'take cells of at most '//to_text(rounded(radius/min_smoothed_cells))
+        if (.not. min_smoothed_cells*cell > sum(deck%laminate%thickness)) return
       end if
-      if (distance > radius*(1 + noticeable)) &
+      if (distance > radius*(1 + size_tolerance)) &
         call remark(deck%settings, problems, delamination_group, key_smoothing, 'rates are averaged over '// &
                     to_text(rounded(distance))//' along the front, more than half of the starter, which levels '// &
                     'those that differ along it; '//advice//'.', d%group)
@@ -335,7 +337,7 @@ contains
     real(wp), intent(in) :: x_edges(:), y_edges(:)
     !> The interface as the deck gives it
     type(delamination_t), intent(in) :: delamination
-    !> Extents along x and y on the whole plate
+    !> Extents along x and y on the full plate
     real(wp), intent(out) :: zone(2), starter(2)
 
     zone = [extent_of_cells(x_edges, delamination%zone(1)), extent_of_cells(y_edges, delamination%zone(2))]
@@ -351,7 +353,7 @@ contains
     !> Extents on the mesh and in the deck
     real(wp), intent(in) :: given(2), asked(2)
 
-    differs = any(abs(given - asked) > noticeable*asked)
+    differs = any(abs(given - asked) > size_tolerance*asked)
   end function differs
 
   !> Two extents for the reader, to four digits.

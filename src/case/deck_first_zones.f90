@@ -1,10 +1,10 @@
-!> Where interfaces whose layers follow their damage have them at the start: under the loaded patch or the starter, and
+!> Where interfaces with adaptive layers have them at the start: under the loaded patch or the starter, and
 !> in some cells around it.
 module deck_first_zones
   use cell_grids, only: cell_edges
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
-  use deck_remarks, only: are_clear, tell
+  use deck_remarks, only: are_clear, report
   use delamination_deck, only: key_strip, key_zone
   use delamination_parameters, only: law_front
   use interface_places, only: delamination_group
@@ -44,13 +44,13 @@ contains
 
   contains
 
-    !> Tells of a zone that is missing.
+    !> Reports a zone that is missing.
     subroutine want(reason)
       !> Why it is needed
       character(len=*), intent(in) :: reason
 
       if (are_clear(deck%settings, problems, delamination_group, key_zone, place)) &
-        call tell(deck%settings, problems, delamination_group, key_zone, 'is missing; '//reason//'.', place)
+        call report(deck%settings, problems, delamination_group, key_zone, 'is missing; '//reason//'.', place)
     end subroutine want
   end subroutine check_left_out_zones
 
@@ -77,7 +77,7 @@ contains
     integer :: i, direction
 
     if (problems%errors() > 0) return
-    if (deck%laminate%shear_correction == shear_energy) call set_lasting_zones(deck)
+    if (deck%laminate%shear_correction == shear_energy) call set_permanent_zones(deck)
     thickness = thicknesses_ahead*sum(deck%laminate%thickness)
     do direction = 1, 2
       associate (edges => cell_edges(deck%plate, deck%mesh, direction) - deck%mesh%struck(direction))
@@ -96,10 +96,10 @@ contains
     end do
   end subroutine set_first_zones
 
-  !> Gives interfaces that would follow their damage the layers that they may come to from the start. By equilibrium
+  !> Gives interfaces with adaptive layers their largest layers from the start. By equilibrium
   !> through the thickness the plate is softer in transverse shear than its layers together, a sandwich many times: its
   !> strain energy would jump where layers appear.
-  subroutine set_lasting_zones(deck)
+  subroutine set_permanent_zones(deck)
     !> The deck; its interfaces receive the zones
     type(deck_t), intent(inout) :: deck
     integer :: i
@@ -114,5 +114,5 @@ contains
     end do
     call append(deck%reasons, 'The plate has layers from the start, '//trim(merge('in the core', 'everywhere ', &
                 deck%mesh%cell > 0))//', as with shear_correction = ''energy'' it is softer in shear than they are.')
-  end subroutine set_lasting_zones
+  end subroutine set_permanent_zones
 end module deck_first_zones

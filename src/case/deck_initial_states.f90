@@ -3,7 +3,7 @@ module deck_initial_states
   use cell_grids, only: cell_edges
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
-  use deck_remarks, only: are_clear, remark_idle, tell
+  use deck_remarks, only: are_clear, remark_idle, report
   use delamination_deck, only: key_zone
   use delamination_parameters, only: law_names, law_of
   use impactor_deck, only: impactor_group
@@ -40,24 +40,27 @@ contains
     associate (s => deck%settings)
       if (deck%load_start > 0 .and. .not. deck%load_start < deck%stepping%time%end .and. &
           are_clear(s, problems, time_group, key_settle//' end')) &
-        call tell(s, problems, time_group, key_settle, 'leaves no time for the load; allowed: less than end = '// &
+        call report(s, problems, time_group, key_settle, 'leaves no time for the load; allowed: less than end = '// &
                   to_text(deck%stepping%time%end)//'.')
       if (.not. deck%inherits) return
       if (deck%has_static) then
-        call tell(s, problems, static_group, '', 'load steps do not begin from a state of another run; give &time '// &
+        call report(s, problems, static_group, '', &
+                    'load steps do not begin from a state of another run; give &time '// &
                   'with integrator = ''central_difference'', or leave &initial_state out.')
       else if (deck%has_time .and. .not. is_explicit(deck%stepping)) then
-        call tell(s, problems, initial_state_group, '', 'goes with &time integrator = ''central_difference''.')
+        call report(s, problems, initial_state_group, '', 'goes with &time integrator = ''central_difference''.')
       end if
-      if (deck%has_impactor) call tell(s, problems, impactor_group, '', 'does not go with &initial_state; load the '// &
+      if (deck%has_impactor) call report(s, problems, impactor_group, '', &
+                                         'does not go with &initial_state; load the '// &
                                        'plate by &line or &pressure.')
       do place = 1, size(deck%lines)
-        if (deck%lines(place)%precedes()) call tell(s, problems, line_group, key_rise, 'a line that has moved the '// &
+        if (deck%lines(place)%precedes()) call report(s, problems, line_group, key_rise, &
+                                                      'a line that has moved the '// &
           'plate before the run does not go with &initial_state; give it a rise > 0.', place)
       end do
       do place = 1, size(deck%supports)
         if (deck%supports(place)%unilateral) &
-          call tell(s, problems, support_group, key_unilateral, 'a frame closes on both faces of a plate from '// &
+          call report(s, problems, support_group, key_unilateral, 'a frame closes on both faces of a plate from '// &
                     '&initial_state; allowed: .false.', place)
       end do
     end associate
@@ -244,7 +247,7 @@ contains
   pure function short_list(numbers) result(list)
     !> The numbers
     real(wp), intent(in) :: numbers(:)
-    !> Parted by blanks
+    !> Separated by blanks
     character(len=:), allocatable :: list
     integer :: i
 
@@ -259,7 +262,7 @@ contains
   pure function integer_list(numbers) result(list)
     !> The numbers
     integer, intent(in) :: numbers(:)
-    !> Parted by blanks
+    !> Separated by blanks
     character(len=:), allocatable :: list
 
     list = short_list(real(numbers, wp))

@@ -1,4 +1,4 @@
-!> The integrator of a deck that names none, by its scene. Where plies or interfaces soften, implicit steps find
+!> The integrator of a deck that names none, by its setup. Where plies or interfaces soften, implicit steps find
 !> equilibrium by many solves, and central differences need none.
 module deck_integrators
   use deck_contents, only: deck_t
@@ -33,7 +33,7 @@ contains
     deck%stepping%time%integrator = integrator_of(deck%settings)
   end subroutine choose_integrator
 
-  !> What of a dynamic scene softens; empty: nothing, or the deck has what only implicit steps do.
+  !> What of a dynamic setup softens; empty: nothing, or the deck has what only implicit steps do.
   function what_softens(deck) result(softening)
     !> The deck
     type(deck_t), intent(in) :: deck

@@ -2,7 +2,7 @@
 module deck_library
   use case_deck, only: case_group, key_units
   use deck_problems, only: problems_t
-  use deck_remarks, only: tell, are_clear
+  use deck_remarks, only: report, are_clear
   use deck_settings, only: settings_t
   use deck_table, only: load_deck_table
   use deck_vocabulary, only: vocabulary_t
@@ -31,10 +31,10 @@ contains
                     place=1, settings%groups_named(material_group))])) return
     system = system_of(settings)
     if (system == 0) then
-      if (are_clear(settings, problems, case_group, key_units)) call tell(settings, problems, material_group, &
+      if (are_clear(settings, problems, case_group, key_units)) call report(settings, problems, material_group, &
         key_library, 'the values are known in SI; say what units the deck is in by '//key_units//' of &'// &
         case_group//'.', first_with_library(settings))
-      ! Told once; with any system the values are there, so that no check finds them missing.
+      ! Reported once; with any system the values are there, so that no check finds them missing.
       system = 1
     end if
     call load_deck_table(vocabulary)

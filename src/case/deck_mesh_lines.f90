@@ -3,7 +3,7 @@ module deck_mesh_lines
   use cell_grids, only: cell_edges
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
-  use deck_remarks, only: tell
+  use deck_remarks, only: report
   use kinds, only: wp
   use mesh_deck, only: key_lines, mesh_group
   use rigs, only: window_lines
@@ -24,14 +24,14 @@ contains
     integer :: direction
 
     if (misses(window_lines(deck%supports, 1), 1) .or. misses(window_lines(deck%supports, 2), 2)) then
-      call tell(deck%settings, problems, support_group, key_window, 'no line of the mesh can be moved to an edge '// &
+      call report(deck%settings, problems, support_group, key_window, 'no line of the mesh can be moved to an edge '// &
                 'of the window; give more elements, or keep the patch off the edge.')
       return
     end if
     do direction = 1, 2
       if (.not. deck%settings%is_given(mesh_group, key_lines(direction))) cycle
       if (misses(deck%settings%reals_of(mesh_group, key_lines(direction)), direction)) &
-        call tell(deck%settings, problems, mesh_group, key_lines(direction), 'no line of the mesh can be moved '// &
+        call report(deck%settings, problems, mesh_group, key_lines(direction), 'no line of the mesh can be moved '// &
                   'there; allowed: on the plate, off the patch, with more elements between lines.')
     end do
 

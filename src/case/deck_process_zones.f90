@@ -20,7 +20,7 @@ module deck_process_zones
   use stacking, only: stacked_plies, section_stiffness
   implicit none
   private
-  public :: check_process_zones, settle_flaws
+  public :: check_process_zones, set_flaws
 
 contains
 
@@ -42,8 +42,8 @@ contains
     end do
   end subroutine check_process_zones
 
-  !> Finds what strength interfaces have beside cracks, and tells where cracks make no difference.
-  subroutine settle_flaws(deck, problems)
+  !> Finds what strength interfaces have beside cracks, and reports where cracks make no difference.
+  subroutine set_flaws(deck, problems)
     !> The deck, filled and checked; its interfaces receive that strength
     type(deck_t), intent(inout) :: deck
     !> Receives the remarks
@@ -66,9 +66,9 @@ contains
         end if
       end associate
     end do
-  end subroutine settle_flaws
+  end subroutine set_flaws
 
-  !> Tells where cracks of the plies by transverse shear make no difference.
+  !> Reports where cracks of the plies by transverse shear make no difference.
   subroutine remark_shear_cracks(deck, delamination, problems)
     !> The deck
     type(deck_t), intent(in) :: deck

@@ -1,4 +1,4 @@
-!> Reads a deck: scan, rules, parameters, checks across groups. All faults are told, none stops the reading.
+!> Reads a deck: scan, rules, parameters, checks across groups. All faults are reported, none stops the reading.
 module deck_reader
   use adapt_deck, only: adapt_group, fill_adapt
   use case_deck, only: fill_case, fill_claims, has_accuracy
@@ -11,18 +11,18 @@ module deck_reader
   use deck_initial_states, only: check_initial_state
   use deck_interface_remarks, only: check_interfaces
   use deck_library, only: take_library
-  use deck_process_zones, only: check_process_zones, settle_flaws
+  use deck_process_zones, only: check_process_zones, set_flaws
   use deck_extents, only: check_sizes, check_extents
   use deck_explicit_checks, only: check_central_differences
   use deck_first_zones, only: check_left_out_zones, set_first_zones
   use deck_idle_keys, only: check_idle_keys
   use deck_problems, only: problems_t
   use deck_refinements, only: refine
-  use deck_rules, only: settle
+  use deck_rules, only: resolve_settings
   use deck_scales, only: check_scales
   use deck_shear_remarks, only: check_correction
   use deck_slow_motion, only: check_softening_steps
-  use deck_scanner, only: scan_t, scan_deck, most_bytes
+  use deck_scanner, only: scan_t, scan_deck, max_bytes
   use deck_symmetries, only: note_symmetry
   use deck_table, only: load_deck_table
   use deck_units, only: check_units
@@ -52,7 +52,7 @@ module deck_reader
   use pressure_deck, only: fill_pressure, check_pressure, pressure_group
   use static_deck, only: fill_static, static_group
   use rigs, only: window_lines
-  use stepping_parameters, only: follows_error, is_explicit
+  use stepping_parameters, only: is_error_controlled, is_explicit
   use support_deck, only: fill_supports, check_rigs
   use thermal_deck, only: fill_thermal, check_thermal, thermal_group
   use time_deck, only: fill_time, check_time, time_group
@@ -76,7 +76,7 @@ contains
     type(error_t), allocatable :: error
     character(len=:), allocatable :: content
 
-    call read_whole_file(path, most_bytes, content, error)
+    call read_whole_file(path, max_bytes, content, error)
     if (allocated(error)) then
       call problems%begin(path)
       call problems%cannot_read(error%message)
@@ -106,7 +106,7 @@ contains
     call load_deck_table(vocabulary)
     call scan_deck(content, scan, problems)
     if (size(scan%blocks) == 0 .or. problems%is_full()) return
-    call settle(scan, vocabulary, deck%settings, problems)
+    call resolve_settings(scan, vocabulary, deck%settings, problems)
     if (problems%is_full()) return
     call take_library(deck%settings, problems)
     call note_groups(deck)
@@ -130,7 +130,7 @@ contains
     if (deck%has_time .and. is_explicit(deck%stepping)) call find_stable_step(deck, problems)
     if (deck%has_ply_damage) call check_crack_bands(deck, problems)
     call check_process_zones(deck, problems)
-    call settle_flaws(deck, problems)
+    call set_flaws(deck, problems)
     call check_scales(deck, problems)
     call check_softening_steps(deck, problems)
     call check_units(deck, problems)
@@ -228,7 +228,8 @@ contains
     if (deck%accuracy > 0) call choose_by_accuracy(deck, problems)
     if (deck%has_time .and. is_explicit(deck%stepping)) call choose_for_central_differences(deck, problems)
     call fill_adapt(deck%settings, deck%stepping%adapt)
-    if (deck%has_time) call fill_time(deck%settings, natural_rho_infinity(deck), follows_error(deck%stepping%adapt), &
+    if (deck%has_time) call fill_time(deck%settings, natural_rho_infinity(deck), &
+                                      is_error_controlled(deck%stepping%adapt), &
                                       deck%stepping%time, deck%stepping%central)
     ! Without &adapt every step has the same length.
     if (.not. deck%stepping%adapt%on) deck%stepping%time%step_max = deck%stepping%time%step
@@ -238,13 +239,13 @@ contains
     call fill_pressure(deck%settings, deck%stepping%time%end, deck%pressure)
     if (deck%has_thermal) call fill_thermal(deck%settings, deck%temperature_change)
     call fill_initial_state(deck%settings, deck%initial)
-    if (.not. deck%has_impactor) deck%load_start = deck%stepping%central%settle
+    if (.not. deck%has_impactor) deck%load_start = deck%stepping%central%resolve_settings
     if (deck%has_time) deck%ramp_time = deck%stepping%time%end - deck%load_start
     call fill_lines(deck%settings, merge(deck%ramp_time, 0.0_wp, deck%has_time), deck%lines)
     if (deck%has_static) call fill_static(deck%settings, deck%stepping%static_steps, deck%stepping%dissipation)
   end subroutine fill_loads
 
-  !> Spectral radius at high frequency that suits a scene: ties that vanish excite the mesh's highest frequencies, a law
+  !> Spectral radius at high frequency that suits a setup: ties that vanish excite the mesh's highest frequencies, a law
   !> that softens less. With it doc/manual/accuracy.md has the same area at steps of 16, 8 and 4 us.
   pure real(wp) function natural_rho_infinity(deck) result(rho_infinity)
     !> The deck, its interfaces filled

@@ -1,4 +1,4 @@
-!> A deck's scene on finer elements with shorter steps, to see what its figures change by.
+!> A deck's setup on finer elements with shorter steps, to see what its figures change by.
 module deck_refinements
   use case_deck, only: case_group, key_refine
   use deck_contents, only: deck_t

@@ -1,4 +1,4 @@
-!> What the deck's scene has to resolve: found by pilot calculations, with warnings where mesh or step don't.
+!> What the deck's setup has to resolve: found by pilot calculations, with warnings where mesh or step don't.
 module deck_scales
   use case_deck, only: case_group, key_accuracy
   use cell_grids, only: cell_edges
@@ -7,20 +7,20 @@ module deck_scales
   use deck_remarks, only: remark
   use kinds, only: wp
   use mesh_deck, only: mesh_group, key_core, key_elements, key_patch
-  use scene_pilots, only: outlook_of
-  use scene_scales, only: scene_scales_t, scales_of, has_blow
+  use setup_pilots, only: expected_scales_of
+  use setup_scales, only: setup_scales_t, scales_of, has_impact_velocity
   use short_numbers, only: short_text
-  use stepping_parameters, only: is_explicit, outlook_t
+  use stepping_parameters, only: is_explicit, expected_response_t
   use time_deck, only: time_group, key_step
   implicit none
   private
   public :: check_scales
 
   !> Errors of peak and history, by pilot calculations, that a user is warned of.
-  real(wp), parameter :: noticeable(2) = [0.05_wp, 0.2_wp]
+  real(wp), parameter :: error_limits(2) = [0.05_wp, 0.2_wp]
   !> The same for the size of the patch, which is an estimate itself.
-  real(wp), parameter :: noticeable_patch(2) = [0.1_wp, 0.2_wp]
-  !> Part of the accuracy asked for above which pilots' errors are told: they are 1.2 to 2 times the true ones.
+  real(wp), parameter :: patch_error_limits(2) = [0.1_wp, 0.2_wp]
+  !> Part of the accuracy asked for above which pilots' errors are reported: they are 1.2 to 2 times the true ones.
   real(wp), parameter :: missed = 1.5_wp
   !> Steps of pilots in the rise of first contact where the run takes many more, as central differences do: these are
   !> less than .1 % off, more than the run with its own is.
@@ -34,25 +34,25 @@ contains
     type(deck_t), intent(inout) :: deck
     !> Warnings are added
     type(problems_t), intent(inout) :: problems
-    type(scene_scales_t) :: scales
+    type(setup_scales_t) :: scales
     real(wp) :: step
 
     if (problems%errors() > 0) return
-    scales = scales_of(deck%scene_t)
-    if (has_blow(deck%scene_t) .and. .not. deck%has_static) then
+    scales = scales_of(deck%setup_t)
+    if (has_impact_velocity(deck%setup_t) .and. .not. deck%has_static) then
       step = deck%stepping%time%step
       if (is_explicit(deck%stepping)) step = max(step, scales%contact_time/fine_steps)
-      deck%outlook = outlook_of(deck%scene_t, scales, step, deck%stepping%time%end, &
+      deck%expected = expected_scales_of(deck%setup_t, scales, step, deck%stepping%time%end, &
                                 edge_near(deck, merge(scales%wave_length, maxval(deck%plate%length), &
                                                       deck%settings%is_given(mesh_group, key_core) .or. &
                                                       .not. deck%settings%is_known(mesh_group, key_core))))
-      associate (o => deck%outlook)
-        deck%stepping%outlook = outlook_t(scales%contact_time, o%force, o%deflection, o%last_contact)
+      associate (o => deck%expected)
+        deck%stepping%expected = expected_response_t(scales%contact_time, o%force, o%deflection, o%last_contact)
       end associate
       call check_resolution(deck, problems)
       call check_accuracy(deck, problems)
     end if
-    deck%outlook%scales = scales
+    deck%expected%scales = scales
   end subroutine check_scales
 
   !> Warns of a step, a mesh and a patch that don't resolve the impact.
@@ -62,23 +62,23 @@ contains
     !> Warnings are added
     type(problems_t), intent(inout) :: problems
 
-    associate (o => deck%outlook)
-      if (any(o%step_error > noticeable)) call remark(deck%settings, problems, time_group, key_step, &
+    associate (o => deck%expected)
+      if (any(o%step_error > error_limits)) call remark(deck%settings, problems, time_group, key_step, &
         'is too long for this impact: by a pilot calculation the largest force would be '// &
         short_text(100*o%step_error(1))//' % off, its history '//short_text(100*o%step_error(2))// &
         ' %; make it shorter, or leave it out with &case accuracy.')
-      if (any(o%mesh_error > noticeable)) call remark(deck%settings, problems, mesh_group, key_elements, &
+      if (any(o%mesh_error > error_limits)) call remark(deck%settings, problems, mesh_group, key_elements, &
         'are too large for this impact, '//short_text(o%edge)//' near the struck point: by a pilot calculation the '// &
         'largest force would be '//short_text(100*o%mesh_error(1))//' % off, its history '// &
         short_text(100*o%mesh_error(2))//' %; give more, or leave them out with &case accuracy.')
-      if (any(o%patch_error > noticeable_patch)) call remark(deck%settings, problems, mesh_group, key_patch, &
+      if (any(o%patch_error > patch_error_limits)) call remark(deck%settings, problems, mesh_group, key_patch, &
         'is larger than the contact that it stands for, whose force spreads over '//short_text(o%contact_side)// &
         ' in the middle of the thickness: the largest force changes by '//short_text(100*o%patch_error(1))// &
         ' %, its history by '//short_text(100*o%patch_error(2))//' %.')
     end associate
   end subroutine check_resolution
 
-  !> Tells where mesh and step do not reach the accuracy asked for, or where nobody knows: a contact so long that
+  !> Reports where mesh and step do not reach the accuracy asked for, or where nobody knows: a contact so long that
   !> pilot calculations with half the step would take too long.
   subroutine check_accuracy(deck, problems)
     !> The deck
@@ -87,7 +87,7 @@ contains
     type(problems_t), intent(inout) :: problems
 
     if (.not. deck%accuracy > 0) return
-    associate (o => deck%outlook)
+    associate (o => deck%expected)
       if (o%step_error(1) < 0 .or. o%mesh_error(1) < 0) then
         call remark(deck%settings, problems, case_group, key_accuracy, 'can''t be held against pilot calculations '// &
                     'for this step: so many steps would take them too long.')

@@ -59,7 +59,7 @@ contains
     real(wp) :: period
 
     clause = ': press in slow motion, with &time integrator=''central_difference'''
-    period = deck%outlook%scales%first_period
+    period = deck%expected%scales%first_period
     if (period > 0) clause = clause//' end='//short_text(periods*period)//' in place of &static ('// &
                              short_text(period)//' is the period of the first bending mode)'
     if (.not. period > 0) &

@@ -3,7 +3,7 @@
 module deck_symmetries
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
-  use deck_remarks, only: tell, are_clear
+  use deck_remarks, only: report, are_clear
   use delamination_deck, only: key_starter_at
   use delamination_parameters, only: delamination_t, law_front
   use impactor_deck, only: impactor_group, key_at
@@ -42,21 +42,22 @@ contains
     name = ''''//lower_case(deck%settings%text_of(plate_group, key_symmetry))//''''
     part = trim(merge('quarter', 'half   ', deck%plate%symmetry == symmetry_quarter))
     associate (s => deck%settings, symmetry => deck%plate%symmetry)
-      if (any(is_mirrored(symmetry)) .and. is_coupled(deck)) call tell(s, problems, plate_group, key_symmetry, &
+      if (any(is_mirrored(symmetry)) .and. is_coupled(deck)) call report(s, problems, plate_group, key_symmetry, &
         culprit(deck)//' couples bending or extension with shear or twist (A16, A26, B16, B26, D16, D26 or A45 '// &
         'isn''t 0), so a '//part//' can''t stand for the plate; use ''none'' or ''point''.')
       if (struck_aside(deck, symmetry) .and. are_clear(s, problems, impactor_group, key_at)) &
-        call tell(s, problems, impactor_group, key_at, 'the impactor strikes beside the lines of symmetry = '//name// &
+        call report(s, problems, impactor_group, key_at, 'the impactor strikes beside the lines of symmetry = '// &
+                    name// &
                   '; use ''none''.')
       call check_starters(deck, name, problems)
       if (.not. rigs_alike(deck, symmetry) .and. .not. problems%concern(support_group)) &
-        call tell(s, problems, support_group, key_clamps, 'clamps have no image under symmetry = '//name// &
-                  '; list all of the whole plate, or use ''none''.')
-      if (symmetry == symmetry_point .and. any_front(deck)) call tell(s, problems, plate_group, key_symmetry, &
+        call report(s, problems, support_group, key_clamps, 'clamps have no image under symmetry = '//name// &
+                  '; list all of the full plate, or use ''none''.')
+      if (symmetry == symmetry_point .and. any_front(deck)) call report(s, problems, plate_group, key_symmetry, &
         'fronts are not followed across the line that a turned plate is cut at; use ''none'', or law = ''cohesive''.')
       if (symmetry == symmetry_point .and. .not. problems%concern(line_group)) then
         if (any(deck%lines%direction == along_x .or. .not. deck%lines%at > 0)) &
-          call tell(s, problems, plate_group, key_symmetry, 'a line is no line any more where a turned plate is '// &
+          call report(s, problems, plate_group, key_symmetry, 'a line is no line any more where a turned plate is '// &
                     'cut; use ''none'', or lines along y at x > 0, which stand for their images too.')
       end if
     end associate
@@ -78,7 +79,8 @@ contains
       end if
       if (starter_aside(deck%delaminations(i), deck%plate%symmetry) .and. &
           are_clear(deck%settings, problems, delamination_group, key_starter_at, deck%delaminations(i)%group)) &
-        call tell(deck%settings, problems, delamination_group, key_starter_at, 'the starter lies beside the lines '// &
+        call report(deck%settings, problems, delamination_group, key_starter_at, &
+                    'the starter lies beside the lines '// &
                   'of symmetry = '//name//'; use ''none''.', deck%delaminations(i)%group)
     end do
   end subroutine check_starters
@@ -123,7 +125,7 @@ contains
     end do
   end function smallest_part
 
-  !> Notes the symmetry that a whole plate is to keep as it breaks. Without anything that breaks it does so by itself.
+  !> Notes the symmetry that a full plate is to keep as it breaks. Without anything that breaks it does so by itself.
   subroutine note_symmetry(deck)
     !> The deck, checked
     type(deck_t), intent(inout) :: deck

@@ -1,7 +1,8 @@
 !> Values of the deck that look as if they were in another unit than the rest.
 !>
 !> Any consistent units will do, so the system is the one of `&case units`, or else that which most values fit. A value
-!> is told only if its size is odd in that system and usual in a unit that people write. Three figures are held against
+!> is reported only if its size is odd in that system and usual in a unit that people write. Three figures are held
+!> against
 !> each other rather than against ranges: the run's time against the plate's period, the mass of a steel ball against
 !> its radius, and the contact stiffness against Sun's formula.
 module deck_units
@@ -71,14 +72,14 @@ contains
       if (.not. is_odd(list(i)%quantity, list(i)%value, system)) cycle
       fits = unit_that_fits(list(i)%quantity, list(i)%value)
       if (fits == '') cycle
-      call tell_unit(deck, problems, list(i), system, 'is odd', fits)
+      call report_unit(deck, problems, list(i), system, 'is odd', fits)
     end do
     if (deck%has_time .and. .not. deck%has_static) call check_times(deck, system, problems)
     if (deck%has_impactor .and. .not. deck%has_static) call check_ball(deck, system, problems)
   end subroutine check_units
 
   !> Adds a warning.
-  subroutine tell_unit(deck, problems, item, system, finding, fits)
+  subroutine report_unit(deck, problems, item, system, finding, fits)
     !> The deck
     type(deck_t), intent(in) :: deck
     !> Receives the warning
@@ -95,9 +96,9 @@ contains
     call remark(deck%settings, problems, trim(item%group), trim(item%key), short_text(item%value)//' '// &
                 unit_name(item%quantity, system)//' '//finding//' beside the other values, which fit '// &
                 trim(systems(system))//'; it looks as if it were in '//fits//'.', item%place)
-  end subroutine tell_unit
+  end subroutine report_unit
 
-  !> Values with a size that can be told to be odd.
+  !> Values with a size that can be recognised as odd.
   subroutine gather(deck, list)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -170,7 +171,7 @@ contains
       odd(i) = odd_kinds(list, i)
     end do
     system = minloc(odd, 1)
-    ! Without an impactor there are too few values to tell, and plates of unit density are common.
+    ! Without an impactor there are too few values to decide, and plates of unit density are common.
     if (2*odd(system) > present_kinds .or. .not. deck%has_impactor) system = 0
   end function likeliest_system
 
@@ -207,15 +208,15 @@ contains
                                    of_ms(4) = [character(len=2) :: 'us', '', 's', '']
 
     if (deck%settings%is_known(time_group, key_end) .and. .not. deck%settings%is_given(time_group, key_end)) return
-    longest = max(deck%outlook%scales%first_period, contact_rises*deck%outlook%scales%contact_time)
-    if (deck%has_impactor) longest = max(longest, pi*sqrt(deck%impactor%mass*deck%outlook%scales%compliance))
+    longest = max(deck%expected%scales%first_period, contact_rises*deck%expected%scales%contact_time)
+    if (deck%has_impactor) longest = max(longest, pi*sqrt(deck%impactor%mass*deck%expected%scales%compliance))
     if (.not. longest > 0) return
     ratio = deck%stepping%time%end/longest
     if (ratio > shortest_run .and. ratio < longest_run) return
     do i = 1, size(thousands)
       if (ratio*thousands(i) < shortest_run .or. ratio*thousands(i) > longest_run) cycle
       associate (unit => merge(of_ms(i), of_si(i), unit_name(of_time, system) == 'ms'))
-        if (unit /= '') call tell_unit(deck, problems, &
+        if (unit /= '') call report_unit(deck, problems, &
                                        quantity_t(of_time, deck%stepping%time%end, time_group, key_end), &
                                        system, 'is '//short_text(ratio)//' times what happens', trim(unit))
       end associate
@@ -241,7 +242,7 @@ contains
       if (unit_name(of_mass, system) == 't') ball = ball*1.0e12_wp
       if (unit_name(of_time, system) == 'ms') ball = ball*1.0e9_wp
       if (abs(ball/(1000*steel) - 1) < near) then
-        call tell_unit(deck, problems, quantity_t(of_mass, impactor%mass, impactor_group, key_mass), system, &
+        call report_unit(deck, problems, quantity_t(of_mass, impactor%mass, impactor_group, key_mass), system, &
                        'is a thousand times a steel ball''s', &
                        trim(merge('kg', 'g ', unit_name(of_mass, system) == 't')))
       end if

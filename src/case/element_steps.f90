@@ -13,7 +13,7 @@ module element_steps
   use model_building, only: create_model
   use models, only: model_t
   use ply_failures, only: ply_failure_t, new_ply_failure
-  use scenes, only: scene_t
+  use setups, only: setup_t
   use stable_steps, only: highest_element_frequency
   implicit none
   private
@@ -35,7 +35,7 @@ contains
     integer :: element
 
     step = 0
-    call create_model(small_scene(deck), alone, model, error)
+    call create_model(small_setup(deck), alone, model, error)
     if (allocated(error)) return
     plies = new_ply_failure(model)
     call highest_element_frequency(model, plies%stiffness, scaling, frequency, element)
@@ -43,30 +43,30 @@ contains
   end function smallest_element_step
 
   !> A free plate of two by two of the smallest elements, layered wherever an interface may delaminate.
-  pure function small_scene(deck) result(scene)
+  pure function small_setup(deck) result(setup)
     !> The deck
     type(deck_t), intent(in) :: deck
     !> The plate
-    type(scene_t) :: scene
+    type(setup_t) :: setup
     integer :: i
 
-    scene%kinematics = deck%kinematics
-    scene%materials = deck%materials
-    scene%laminate = deck%laminate
-    scene%delaminations = deck%delaminations
-    scene%plate%length = 2*[shortest_edge(deck, 1), shortest_edge(deck, 2)]
-    scene%plate%edges = edge_free
-    scene%plate%symmetry = symmetry_none
-    scene%mesh = mesh_t(elements=2, grading=1, shear=deck%mesh%shear, mass=deck%mesh%mass)
-    do i = 1, size(scene%delaminations)
-      associate (d => scene%delaminations(i))
-        d%zone = scene%plate%length
+    setup%kinematics = deck%kinematics
+    setup%materials = deck%materials
+    setup%laminate = deck%laminate
+    setup%delaminations = deck%delaminations
+    setup%plate%length = 2*[shortest_edge(deck, 1), shortest_edge(deck, 2)]
+    setup%plate%edges = edge_free
+    setup%plate%symmetry = symmetry_none
+    setup%mesh = mesh_t(elements=2, grading=1, shear=deck%mesh%shear, mass=deck%mesh%mass)
+    do i = 1, size(setup%delaminations)
+      associate (d => setup%delaminations(i))
+        d%zone = setup%plate%length
         d%follows = .false.
         d%starter = 0
         d%starter_strip = 0
       end associate
     end do
-  end function small_scene
+  end function small_setup
 
   !> Shortest side of elements along a direction.
   pure real(wp) function shortest_edge(deck, direction) result(edge)

@@ -1,4 +1,4 @@
-!> The table of `implam check`, which the log of a run repeats: scales of the scene, expected figures, and strengths in
+!> The table of `implam check`, which the log of a run repeats: scales of the setup, expected figures, and strengths in
 !> place. Where &case names its units, values are in those that engineers read: mm, ms, N, J, kg, MPa; else they are in
 !> the deck's own and have the dimension beside them.
 module scale_tables
@@ -43,7 +43,7 @@ module scale_tables
 
 contains
 
-  !> The scales of the scene and what a run is expected to show.
+  !> The scales of the setup and what a run is expected to show.
   function scale_lines(deck) result(lines)
     !> The deck, checked
     type(deck_t), intent(in) :: deck
@@ -56,7 +56,7 @@ contains
     else
       call append(lines, 'Scales of the case:')
     end if
-    associate (o => deck%outlook, scales => deck%outlook%scales)
+    associate (o => deck%expected, scales => deck%expected%scales)
       call put('thickness of the laminate', scales%thickness, length)
       call put('mass of the plate', scales%plate_mass, mass)
       call put('period of the first bending mode', scales%first_period, time)

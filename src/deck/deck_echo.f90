@@ -1,4 +1,4 @@
-!> Tells every key in effect and whether it is from the deck, by default or chosen, for the log.
+!> Lists every key in effect and whether it is from the deck, by default or chosen, for the log.
 module deck_echo
   use deck_entries, only: written_values
   use deck_settings, only: settings_t, setting_t

@@ -1,12 +1,12 @@
 !> Groups, keys and values as they stand in a deck.
 module deck_entries
-  use deck_problems, only: most_shown
+  use deck_problems, only: max_shown
   implicit none
   private
   public :: value_t, entry_t, block_t, append_entry, append_values, split_repeats, shown, shown_values, written_values
 
   !> Most values and keys that a deck may have.
-  integer, parameter, public :: most_values = 10000
+  integer, parameter, public :: max_values = 10000
 
   !> One value of a key.
   type :: value_t
@@ -24,8 +24,8 @@ module deck_entries
     character(len=:), allocatable :: key
     !> Line of the key
     integer :: line = 0
-    !> False: a fault was already told
-    logical :: sound = .true.
+    !> False: a fault was already reported
+    logical :: valid = .true.
     !> The values, repeat counts spread out
     type(value_t), allocatable :: values(:)
   end type entry_t
@@ -53,7 +53,7 @@ contains
     do i = 1, size(entries)
       longer(i)%block = entries(i)%block
       longer(i)%line = entries(i)%line
-      longer(i)%sound = entries(i)%sound
+      longer(i)%valid = entries(i)%valid
       call move_alloc(entries(i)%key, longer(i)%key)
       call move_alloc(entries(i)%values, longer(i)%values)
     end do
@@ -112,7 +112,7 @@ contains
     repeats = 0
     if (verify(digits, '0123456789') > 0 .or. len(digits) > 9) return
     read (digits, *, iostat=status) repeats
-    if (status /= 0 .or. repeats > most_values) repeats = 0
+    if (status /= 0 .or. repeats > max_values) repeats = 0
   end subroutine split_repeats
 
   !> A name or word as a message shows it: not too long.
@@ -123,7 +123,7 @@ contains
     character(len=:), allocatable :: short
 
     short = word
-    if (len(word) > most_shown) short = word(:most_shown - 3)//'...'
+    if (len(word) > max_shown) short = word(:max_shown - 3)//'...'
   end function shown
 
   !> Values as a message shows them, with a blank in front.
@@ -134,7 +134,7 @@ contains
     character(len=:), allocatable :: short
 
     short = ''
-    if (size(values) > 0) short = ' '//shown(written_values(values(:min(size(values), most_shown))))
+    if (size(values) > 0) short = ' '//shown(written_values(values(:min(size(values), max_shown))))
   end function shown_values
 
   !> Values as they would stand in a deck.

@@ -1,4 +1,4 @@
-!> The faults of a deck: collected, so that all are told at once, and each in one line.
+!> The faults of a deck: collected, so that all are reported at once, and each in one line.
 module deck_problems
   use errors, only: exit_done, exit_deck
   use grouped_messages, only: merged, skeleton
@@ -7,10 +7,10 @@ module deck_problems
   private
   public :: problems_t
 
-  !> Faults told at most; a deck with more is not a deck.
-  integer, parameter :: most_problems = 100
+  !> Faults reported at most; a deck with more is not a deck.
+  integer, parameter :: max_problems = 100
   !> Characters of a name or value shown in a message.
-  integer, parameter, public :: most_shown = 60
+  integer, parameter, public :: max_shown = 60
 
   !> Stands for any key of a group, when a fault may have swallowed some.
   character(len=*), parameter, public :: any_key = '*'
@@ -128,7 +128,7 @@ contains
     problem%group = lower_case(group)
     problem%key = lower_case(key)
     problem%message = message
-    if (.not. is_warning .and. self%errors() == most_problems) &
+    if (.not. is_warning .and. self%errors() == max_problems) &
       problem%message = 'there are more faults; mend those above first.'
     self%list = [self%list, problem]
   end subroutine add
@@ -137,7 +137,7 @@ contains
   pure logical function is_full(self)
     class(problems_t), intent(in) :: self
 
-    is_full = self%errors() > most_problems
+    is_full = self%errors() > max_problems
   end function is_full
 
   !> True: an error belongs to this group, or to this key of it, so checks that build on it would mislead.
@@ -185,16 +185,16 @@ contains
     !> Lines such as `deck.nml:7: &plate edges = 'soft': is not a choice; allowed: ...`
     type(line_t), allocatable :: list(:)
     type(problem_t), allocatable :: problems(:)
-    logical, allocatable :: told(:)
+    logical, allocatable :: reported(:)
     integer :: next(1), i, pass
 
     allocate (list(0))
     problems = self%grouped()
-    allocate (told(size(problems)), source=.false.)
+    allocate (reported(size(problems)), source=.false.)
     do pass = 1, 2
       do i = 1, count(problems%is_warning .eqv. pass == 2)
-        next = minloc(problems%line, mask=.not. told .and. (problems%is_warning .eqv. pass == 2))
-        told(next(1)) = .true.
+        next = minloc(problems%line, mask=.not. reported .and. (problems%is_warning .eqv. pass == 2))
+        reported(next(1)) = .true.
         call append(list, self%line_of(problems(next(1))))
       end do
     end do
@@ -228,13 +228,13 @@ contains
     !> The faults
     type(problem_t), allocatable :: list(:)
     type(line_t), allocatable :: alike(:)
-    logical :: told(size(self%list))
+    logical :: reported(size(self%list))
     integer :: i, k
 
     allocate (list(0))
-    told = .false.
+    reported = .false.
     do i = 1, size(self%list)
-      if (told(i)) cycle
+      if (reported(i)) cycle
       list = [list, self%list(i)]
       if (.not. self%list(i)%is_warning) cycle
       if (allocated(alike)) deallocate (alike)
@@ -242,7 +242,7 @@ contains
         if (.not. self%list(k)%is_warning .or. self%list(k)%line /= self%list(i)%line) cycle
         if (skeleton(self%list(k)%message) /= skeleton(self%list(i)%message)) cycle
         call append(alike, self%list(k)%message)
-        told(k) = .true.
+        reported(k) = .true.
       end do
       list(size(list))%message = merged(alike)
     end do

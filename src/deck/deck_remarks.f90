@@ -6,12 +6,12 @@ module deck_remarks
   use text, only: line_t, words_of
   implicit none
   private
-  public :: tell, remark, remark_idle, are_clear
+  public :: report, remark, remark_idle, are_clear
 
 contains
 
   !> Adds an error that belongs to a key, or to a group if the key is empty.
-  subroutine tell(settings, problems, group, key, fault, place)
+  subroutine report(settings, problems, group, key, fault, place)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> Receives the error
@@ -25,7 +25,7 @@ contains
 
     call problems%error(line_of(settings, group, key, place), group, key, head(settings, group, key, place)//fault, &
                         place)
-  end subroutine tell
+  end subroutine report
 
   !> Adds a warning that belongs to a key, or to a group if the key is empty.
   subroutine remark(settings, problems, group, key, message, place)
@@ -70,11 +70,11 @@ contains
   end subroutine remark_idle
 
   !> True: the values of some keys, or their absence, are what the user meant, as far as one can know. A check that
-  !> asks this first tells no fault that another one brings along.
+  !> asks this first reports no fault that another one brings along.
   pure logical function are_clear(settings, problems, group, keys, place)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
-    !> Faults told so far
+    !> Faults reported so far
     type(problems_t), intent(in) :: problems
     !> Name of the group
     character(len=*), intent(in) :: group

@@ -9,15 +9,15 @@ module deck_rules
   use text, only: line_t, append, joined, lower_case, nearest_name, to_text
   implicit none
   private
-  public :: settle
+  public :: resolve_settings
 
   !> Most groups of one name; no laminate has so many materials.
-  integer, parameter :: most_repetitions = 100
+  integer, parameter :: max_repetitions = 100
 
 contains
 
-  !> Turns a scanned deck into keys in effect and tells every name and value that isn't allowed.
-  subroutine settle(scan, vocabulary, settings, problems)
+  !> Turns a scanned deck into keys in effect and reports every name and value that isn't allowed.
+  subroutine resolve_settings(scan, vocabulary, settings, problems)
     !> What the deck consists of
     type(scan_t), intent(in) :: scan
     !> What it may consist of
@@ -31,21 +31,21 @@ contains
 
     allocate (settings%groups(0), settings%items(0))
     do i = 1, size(scan%blocks)
-      call judge_group(scan, i, vocabulary, settings, problems, accepted(i))
+      call check_group(scan, i, vocabulary, settings, problems, accepted(i))
       if (problems%is_full()) return
     end do
     do i = 1, size(scan%entries)
-      if (accepted(scan%entries(i)%block)) call judge_key(scan, i, place_of(scan, accepted, scan%entries(i)%block), &
+      if (accepted(scan%entries(i)%block)) call check_key(scan, i, place_of(scan, accepted, scan%entries(i)%block), &
                                                           vocabulary, problems)
       if (problems%is_full()) return
     end do
     do i = 1, size(vocabulary%groups)
-      call settle_group(scan, accepted, vocabulary, i, settings, problems)
+      call resolve_group(scan, accepted, vocabulary, i, settings, problems)
     end do
-  end subroutine settle
+  end subroutine resolve_settings
 
   !> Whether a group is known and allowed here.
-  subroutine judge_group(scan, block, vocabulary, settings, problems, accepted)
+  subroutine check_group(scan, block, vocabulary, settings, problems, accepted)
     !> What the deck consists of
     type(scan_t), intent(in) :: scan
     !> Index of the group in it
@@ -66,14 +66,14 @@ contains
       index = vocabulary%group_index(group%name)
       earlier = settings%groups_named(group%name)
       if (index == 0) then
-        call tell_unknown_group(group%name, group%line, vocabulary, problems)
+        call report_unknown_group(group%name, group%line, vocabulary, problems)
       else if (earlier > 0 .and. all(vocabulary%groups(index)%presence /= &
                                      [character(len=10) :: 'repeatable', 'several'])) then
         call problems%error(group%line, '', '', '&'//group%name//': the group was already given in line '// &
                             to_text(settings%line_of_group(group%name))//'; give it once.')
-      else if (earlier >= most_repetitions) then
+      else if (earlier >= max_repetitions) then
         call problems%error(group%line, '', '', '&'//group%name//': the group comes more than '// &
-                            to_text(most_repetitions)//' times.')
+                            to_text(max_repetitions)//' times.')
       else
         accepted = .true.
         new%name = lower_case(group%name)
@@ -81,10 +81,10 @@ contains
         settings%groups = [settings%groups, new]
       end if
     end associate
-  end subroutine judge_group
+  end subroutine check_group
 
   !> A group that isn't in the table.
-  subroutine tell_unknown_group(name, line, vocabulary, problems)
+  subroutine report_unknown_group(name, line, vocabulary, problems)
     !> Name of the group
     character(len=*), intent(in) :: name
     !> Its line
@@ -102,10 +102,10 @@ contains
       call problems%error(line, '', '', '&'//shown(name)//': there is no such group; allowed: '// &
                           joined(vocabulary%group_names(), ', ')//'.')
     end if
-  end subroutine tell_unknown_group
+  end subroutine report_unknown_group
 
   !> Whether a key belongs to its group and comes once.
-  subroutine judge_key(scan, entry, place, vocabulary, problems)
+  subroutine check_key(scan, entry, place, vocabulary, problems)
     !> What the deck consists of
     type(scan_t), intent(in) :: scan
     !> Index of the key in it
@@ -121,17 +121,17 @@ contains
     associate (this => scan%entries(entry), group => scan%blocks(scan%entries(entry)%block)%name)
       if (this%key == '') return
       if (vocabulary%key_index(group, this%key) == 0) then
-        call tell_unknown_key(lower_case(group), place, this, vocabulary, problems)
+        call report_unknown_key(lower_case(group), place, this, vocabulary, problems)
         return
       end if
       earlier = entry_of(scan, this%block, this%key)
       if (earlier /= entry) call problems%error(this%line, group, this%key, message_head(group, this)// &
         'the key was already given in line '//to_text(scan%entries(earlier)%line)//'; give it once.', place)
     end associate
-  end subroutine judge_key
+  end subroutine check_key
 
   !> A key that its group doesn't have.
-  subroutine tell_unknown_key(group, place, entry, vocabulary, problems)
+  subroutine report_unknown_key(group, place, entry, vocabulary, problems)
     !> Name of the group
     character(len=*), intent(in) :: group
     !> Which of the groups of this name
@@ -157,10 +157,10 @@ contains
       call problems%error(entry%line, group, entry%key, message_head(group, entry)// &
                           'the group has no such key; allowed: '//joined(vocabulary%key_names(group), ', ')//'.', place)
     end if
-  end subroutine tell_unknown_key
+  end subroutine report_unknown_key
 
   !> Adds all keys of the groups of one name, given or by default.
-  subroutine settle_group(scan, accepted, vocabulary, group, settings, problems)
+  subroutine resolve_group(scan, accepted, vocabulary, group, settings, problems)
     !> What the deck consists of
     type(scan_t), intent(in) :: scan
     !> Which of its groups count
@@ -180,22 +180,22 @@ contains
       do block = 1, size(scan%blocks)
         if (.not. accepted(block) .or. lower_case(scan%blocks(block)%name) /= entry%name) cycle
         place = place + 1
-        call settle_keys(scan, block, place, vocabulary, entry%name, settings, problems)
+        call resolve_keys(scan, block, place, vocabulary, entry%name, settings, problems)
       end do
       if (place > 0) return
       if (entry%presence == 'settings') then
-        call settle_keys(scan, 0, 1, vocabulary, entry%name, settings, problems)
+        call resolve_keys(scan, 0, 1, vocabulary, entry%name, settings, problems)
       else if (all(entry%presence /= [character(len=8) :: 'optional', 'several']) .and. &
                .not. problems%concern(entry%name)) then
-        ! Without any group the deck was already told to have none.
+        ! Without any group the deck was already reported to have none.
         if (size(scan%blocks) > 0) call problems%error(0, entry%name, '', &
           '&'//entry%name//' is missing; `implam explain '//entry%name//'` shows what it takes.')
       end if
     end associate
-  end subroutine settle_group
+  end subroutine resolve_group
 
   !> Adds all keys of one group.
-  subroutine settle_keys(scan, block, place, vocabulary, group, settings, problems)
+  subroutine resolve_keys(scan, block, place, vocabulary, group, settings, problems)
     !> What the deck consists of
     type(scan_t), intent(in) :: scan
     !> Index of the group in it; 0: the deck hasn't got it
@@ -224,9 +224,9 @@ contains
         if (entry > 0) then
           setting%given = .true.
           setting%line = scan%entries(entry)%line
-          setting%sound = scan%entries(entry)%sound
+          setting%valid = scan%entries(entry)%valid
           setting%values = scan%entries(entry)%values
-          if (setting%sound) call judge_values(key, place, scan%entries(entry), vocabulary, setting%sound, problems)
+          if (setting%valid) call check_values(key, place, scan%entries(entry), vocabulary, setting%valid, problems)
         else
           setting%line = settings%line_of_group(group, place)
           call take_default(key, setting, problems)
@@ -234,7 +234,7 @@ contains
         settings%items = [settings%items, setting]
       end associate
     end do
-  end subroutine settle_keys
+  end subroutine resolve_keys
 
   !> A key that the deck doesn't give.
   subroutine take_default(key, setting, problems)
@@ -254,7 +254,7 @@ contains
   end subroutine take_default
 
   !> Number and values of a given key.
-  subroutine judge_values(key, place, entry, vocabulary, sound, problems)
+  subroutine check_values(key, place, entry, vocabulary, valid, problems)
     !> The key as the table has it
     type(key_entry_t), intent(in) :: key
     !> Which of the groups of this name
@@ -264,7 +264,7 @@ contains
     !> The table
     type(vocabulary_t), intent(in) :: vocabulary
     !> True: the values can be used
-    logical, intent(out) :: sound
+    logical, intent(out) :: valid
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
     character(len=:), allocatable :: fault, count_fault, limit
@@ -282,7 +282,7 @@ contains
       if (forgotten == 0) cycle
       call problems%error(entry%line, key%group, entry%values(i)%text, message_head(key%group, entry)// &
                           'there is no = behind '//entry%values(i)%text//'; write key = value.', place)
-      sound = .false.
+      valid = .false.
       return
     end do
     count_fault = fault_of_count(key, size(entry%values))
@@ -291,10 +291,10 @@ contains
     else if (fault == '') then
       fault = count_fault
     end if
-    sound = fault == ''
-    if (.not. sound) call problems%error(entry%line, key%group, key%name, message_head(key%group, entry)// &
+    valid = fault == ''
+    if (.not. valid) call problems%error(entry%line, key%group, key%name, message_head(key%group, entry)// &
                                          fault//'; '//allowed_sentence(key)//limit//'.', place)
-  end subroutine judge_values
+  end subroutine check_values
 
   !> Which of the groups of its name a group is.
   pure integer function place_of(scan, accepted, block) result(place)

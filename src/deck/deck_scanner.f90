@@ -2,7 +2,7 @@
 !> group as absent and passes over a missing slash, a repeated key, a cut text or an empty value in silence.
 module deck_scanner
   use deck_entries, only: value_t, entry_t, block_t, append_entry, append_values, split_repeats, shown, shown_values, &
-                          most_values
+                          max_values
   use deck_problems, only: problems_t, any_key
   use deck_tokens, only: token_t, cursor_t, next_token, skip_to_group, token_end, token_group, token_slash, &
                          token_key, token_word, token_quoted, token_cut, token_comma, token_equals
@@ -13,7 +13,7 @@ module deck_scanner
   public :: scan_t, scan_deck
 
   !> Largest deck in bytes, and longest line.
-  integer, parameter, public :: most_bytes = 1000000, longest_line = 4000
+  integer, parameter, public :: max_bytes = 1000000, longest_line = 4000
 
   !> What a deck consists of.
   type :: scan_t
@@ -33,7 +33,7 @@ module deck_scanner
 
 contains
 
-  !> Finds groups, keys and values; tells every fault of the writing.
+  !> Finds groups, keys and values; reports every fault of the writing.
   subroutine scan_deck(content, scan, problems)
     !> Text of the deck
     character(len=*), intent(in) :: content
@@ -52,7 +52,7 @@ contains
     if (.not. readable) return
     call take_plain(content, problems, deck)
     if (index(deck, byte_order_mark()) == 1) cursor%at = 4
-    do while (.not. problems%is_full() .and. scan%values < most_values)
+    do while (.not. problems%is_full() .and. scan%values < max_values)
       if (.not. scan%open) then
         call skip_to_group(deck, cursor, junk, junk_line)
         if (junk_line > 0) call problems%error(junk_line, '', '', shown(junk)// &
@@ -63,8 +63,8 @@ contains
       call take(scan, token, problems)
       if (token%kind == token_end) exit
     end do
-    if (scan%values >= most_values) call problems%error(cursor%line, '', '', 'the deck has more than '// &
-      to_text(most_values)//' keys and values; no deck needs so many.')
+    if (scan%values >= max_values) call problems%error(cursor%line, '', '', 'the deck has more than '// &
+      to_text(max_values)//' keys and values; no deck needs so many.')
     if (size(scan%blocks) == 0 .and. problems%errors() == 0) call problems%error(0, '', '', &
       'the deck has no group; it needs at least &plate, &mesh, &material and &laminate.')
   end subroutine scan_deck
@@ -77,7 +77,7 @@ contains
     mark = char(239)//char(187)//char(191)
   end function byte_order_mark
 
-  !> Tells whether this is text with lines of a sensible length.
+  !> Whether this is text with lines of a sensible length.
   subroutine check_characters(deck, problems, readable)
     !> Text of the deck
     character(len=*), intent(in) :: deck
@@ -138,17 +138,17 @@ contains
       scan%open = .false.
     case (token_end)
       call finish_entry(scan, problems)
-      if (scan%open) call tell_missing_slash(scan, 'the deck ends', problems)
+      if (scan%open) call report_missing_slash(scan, 'the deck ends', problems)
     case (token_key)
       call begin_entry(scan, token, problems)
     case (token_word, token_quoted, token_cut)
       call take_value(scan, token, problems)
     case (token_comma)
-      if (scan%value_due) call spoil(scan, token%line, 'has no value in front of a comma; leave the comma out', &
+      if (scan%value_due) call mark_faulty(scan, token%line, 'has no value in front of a comma; leave the comma out', &
                                      problems)
       scan%value_due = .true.
     case (token_equals)
-      call spoil(scan, token%line, 'has an = too many; write key = value', problems)
+      call mark_faulty(scan, token%line, 'has an = too many; write key = value', problems)
     end select
   end subroutine take
 
@@ -168,7 +168,7 @@ contains
       scan%open = .false.
       return
     end if
-    if (scan%open) call tell_missing_slash(scan, '&'//shown(token%text)//' begins in line '// &
+    if (scan%open) call report_missing_slash(scan, '&'//shown(token%text)//' begins in line '// &
                                            to_text(token%line), problems)
     block%name = token%text
     block%line = token%line
@@ -178,7 +178,7 @@ contains
   end subroutine begin_block
 
   !> The open group isn't ended.
-  subroutine tell_missing_slash(scan, event, problems)
+  subroutine report_missing_slash(scan, event, problems)
     !> What was found so far
     type(scan_t), intent(in) :: scan
     !> What happens instead
@@ -190,7 +190,7 @@ contains
       call problems%error(last%line, '', '', '&'//shown(last%name)//': '//event// &
                           ' before the group does; end the group with /')
     end associate
-  end subroutine tell_missing_slash
+  end subroutine report_missing_slash
 
   !> A key begins.
   subroutine begin_entry(scan, token, problems)
@@ -214,7 +214,7 @@ contains
     scan%values = scan%values + 1
     scan%collecting = .true.
     scan%value_due = .true.
-    if (index_start > 0) call spoil(scan, token%line, 'is given part by part as '//shown(token%text)// &
+    if (index_start > 0) call mark_faulty(scan, token%line, 'is given part by part as '//shown(token%text)// &
                                     '; list all values behind one =', problems)
   end subroutine begin_entry
 
@@ -238,7 +238,8 @@ contains
 
     if (scan%collecting) then
       associate (last => scan%entries(size(scan%entries)))
-        if (size(last%values) == 0) call spoil(scan, last%line, 'has no value; give one or leave the key out', problems)
+        if (size(last%values) == 0) call mark_faulty(scan, last%line, 'has no value; give one or leave the key out', &
+                                                     problems)
       end associate
     end if
     scan%collecting = .false.
@@ -257,18 +258,19 @@ contains
     type(value_t) :: value
 
     if (.not. scan%collecting) then
-      call tell_stray_value(scan, token, problems)
+      call report_stray_value(scan, token, problems)
     else if (token%kind == token_cut) then
-      call spoil(scan, token%line, 'has a text whose closing quote isn''t in its line; close it', problems, any_key)
+      call mark_faulty(scan, token%line, 'has a text whose closing quote isn''t in its line; close it', problems, &
+                       any_key)
     else
       value%quoted = token%kind == token_quoted
       call split_repeats(token%text, value%quoted, token%repeats, repeats, value%text)
       if (repeats < 1 .or. (len(value%text) == 0 .and. .not. value%quoted)) then
-        call spoil(scan, token%line, 'has a wrong repeat count in '//shown(token%text)// &
-                   '; write count*value with a count from 1 to '//to_text(most_values), problems)
-      else if (scan%values + repeats > most_values) then
-        scan%values = most_values
-        scan%entries(size(scan%entries))%sound = .false.
+        call mark_faulty(scan, token%line, 'has a wrong repeat count in '//shown(token%text)// &
+                   '; write count*value with a count from 1 to '//to_text(max_values), problems)
+      else if (scan%values + repeats > max_values) then
+        scan%values = max_values
+        scan%entries(size(scan%entries))%valid = .false.
       else
         call append_values(scan%entries(size(scan%entries))%values, repeats, value)
         scan%values = scan%values + repeats
@@ -283,7 +285,7 @@ contains
   end subroutine take_value
 
   !> A value without a key.
-  subroutine tell_stray_value(scan, token, problems)
+  subroutine report_stray_value(scan, token, problems)
     !> What was found so far
     type(scan_t), intent(inout) :: scan
     !> The value
@@ -300,15 +302,15 @@ contains
     entry%block = size(scan%blocks)
     entry%key = ''
     entry%line = token%line
-    entry%sound = .false.
+    entry%valid = .false.
     allocate (entry%values(0))
     call append_entry(scan%entries, entry)
     scan%values = scan%values + 1
     scan%collecting = .true.
-  end subroutine tell_stray_value
+  end subroutine report_stray_value
 
-  !> The writing of the last key is wrong: tells it once, and bars the key from further checks.
-  subroutine spoil(scan, line, fault, problems, keys)
+  !> The writing of the last key is wrong: reports it once, and bars the key from further checks.
+  subroutine mark_faulty(scan, line, fault, problems, keys)
     !> What was found so far
     type(scan_t), intent(inout) :: scan
     !> Line of the fault
@@ -327,15 +329,15 @@ contains
       if (.not. scan%collecting) then
         call problems%error(line, group, '', '&'//shown(group)// &
                             ': a comma or = stands where a key should; write key = value.')
-      else if (scan%entries(last)%sound) then
+      else if (scan%entries(last)%valid) then
         concerned = scan%entries(last)%key
         if (present(keys)) concerned = keys
         call problems%error(line, group, concerned, '&'//shown(group)//' '// &
                             shown(scan%entries(last)%key)//' ='//shown_values(scan%entries(last)%values)//': '// &
                             fault//'.')
-        scan%entries(last)%sound = .false.
+        scan%entries(last)%valid = .false.
       end if
     end associate
-  end subroutine spoil
+  end subroutine mark_faulty
 
 end module deck_scanner

@@ -19,7 +19,7 @@ module deck_settings
     !> True: from the deck
     logical :: given = .false.
     !> True: the values can be used
-    logical :: sound = .true.
+    logical :: valid = .true.
     !> True: not from the deck but chosen for the accuracy that it asks for
     logical :: chosen = .false.
     !> Table that gave the value as the deck refers to it; unallocated: none
@@ -150,7 +150,7 @@ contains
 
     i = self%find(group, key, place)
     is_known = .false.
-    if (i > 0) is_known = self%items(i)%sound .and. size(self%items(i)%values) > 0
+    if (i > 0) is_known = self%items(i)%valid .and. size(self%items(i)%values) > 0
   end function is_known
 
   !> Line to name when a key is at fault: its own, or its group's.
@@ -181,7 +181,7 @@ contains
 
     i = self%find(group, key, place)
     if (i > 0) then
-      if (self%items(i)%sound) values = self%items(i)%values
+      if (self%items(i)%valid) values = self%items(i)%values
     end if
     if (.not. allocated(values)) allocate (values(0))
   end subroutine take_values

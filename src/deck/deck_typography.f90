@@ -1,4 +1,4 @@
-!> Characters that word processors and web pages put in the place of plain ones: each is told with its line, and
+!> Characters that word processors and web pages put in the place of plain ones: each is reported with its line, and
 !> replaced, so that the rest of the deck is read as it was meant. In texts and comments they may stand.
 module deck_typography
   use deck_problems, only: problems_t
@@ -30,13 +30,13 @@ module deck_typography
     character(len=1) :: quote = ' '
     !> True: a curly quote began the text, and another may end it
     logical :: curly = .false.
-    !> Kinds of characters told in this line
-    logical :: told(size(signs)) = .false.
+    !> Kinds of characters reported in this line
+    logical :: reported(size(signs)) = .false.
   end type place_t
 
 contains
 
-  !> The deck with plain characters. Each kind is told once a line.
+  !> The deck with plain characters. Each kind is reported once a line.
   subroutine take_plain(deck, problems, clean)
     !> Text of the deck
     character(len=*), intent(in) :: deck
@@ -53,8 +53,8 @@ contains
     do while (at <= len(deck))
       kind = kind_at(deck, at)
       if (kind > 0 .and. counts(place, kind)) then
-        if (.not. place%told(kind)) call problems%error(place%line, '', '', 'here stands '//trim(advice(kind))//'.')
-        place%told(kind) = .true.
+        if (.not. place%reported(kind)) call problems%error(place%line, '', '', 'here stands '//trim(advice(kind))//'.')
+        place%reported(kind) = .true.
         clean = clean//deck(copied + 1:at - 1)//plain(kind)
         if (index('''"', plain(kind)) > 0) place%curly = place%quote == ' '
         call pass(place, plain(kind))

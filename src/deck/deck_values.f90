@@ -11,7 +11,7 @@ module deck_values
 
   !> Decades that numbers keep within, so that their products stay finite and nonzero: reals other than 0 are at least
   !> 10**-29 and less than 10**30 in size, whole numbers less than 10**9.
-  integer, parameter :: most_decades = 30, most_integer_decades = 9
+  integer, parameter :: max_decades = 30, max_integer_decades = 9
   !> Characters of a name, in lower case
   character(len=*), parameter :: name_characters = 'abcdefghijklmnopqrstuvwxyz0123456789._-'
   !> Longest number, name and text
@@ -88,7 +88,7 @@ contains
       fault = shown(value%text)//' is not a number'
     else if (key%kind == 'integer' .and. verify(value%text, '+-0123456789') > 0) then
       fault = shown(value%text)//' is not a whole number'
-    else if (abs(decade) >= merge(most_integer_decades, most_decades, key%kind == 'integer')) then
+    else if (abs(decade) >= merge(max_integer_decades, max_decades, key%kind == 'integer')) then
       fault = shown(value%text)//' is too '//trim(merge('large', 'small', decade > 0))//' a number'
     else if (.not. in_range(key%allowed, real_value(value))) then
       fault = shown(value%text)//' is outside the range'
@@ -245,7 +245,7 @@ contains
     limit = ''
     if (value%quoted .or. .not. any(key%kind == [character(len=7) :: 'real', 'integer'])) return
     call measure_number(value%text, is_number, decade)
-    most = merge(most_integer_decades, most_decades, key%kind == 'integer')
+    most = merge(max_integer_decades, max_decades, key%kind == 'integer')
     largest = '1e'//to_text(most)
     if (.not. is_number .or. abs(decade) < most) return
     if (decade < 0) then

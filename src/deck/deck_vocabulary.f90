@@ -58,9 +58,9 @@ contains
 
   !> Takes the table apart.
   pure subroutine load_vocabulary(group_rows, key_rows, vocabulary)
-    !> Rows of groups: name, presence and meaning, parted by bars
+    !> Rows of groups: name, presence and meaning, separated by bars
     character(len=*), intent(in) :: group_rows(:)
-    !> Rows of keys: group, key, type, number of values, unit, default, allowed and meaning, parted by bars
+    !> Rows of keys: group, key, type, number of values, unit, default, allowed and meaning, separated by bars
     character(len=*), intent(in) :: key_rows(:)
     !> The table as data
     type(vocabulary_t), intent(out) :: vocabulary

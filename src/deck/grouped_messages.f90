@@ -1,4 +1,5 @@
-!> Messages that differ in numbers alone, told as one: numbers that differ stand as a range, those of plies as a list.
+!> Messages that differ in numbers alone, reported as one: numbers that differ stand as a range, those of plies as a
+!> list.
 module grouped_messages
   use text, only: line_t
   implicit none
@@ -12,7 +13,7 @@ module grouped_messages
 
 contains
 
-  !> A message without its numbers: what is alike in messages that are told as one.
+  !> A message without its numbers: what is alike in messages that are reported as one.
   pure function skeleton(message) result(bare)
     !> The message
     character(len=*), intent(in) :: message

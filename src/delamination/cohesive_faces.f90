@@ -1,11 +1,12 @@
 !> Two faces at a point of a cohesive interface: the law while they part, the stiffness of the undamaged interface while
 !> they are pressed together, and friction between the damaged parts of faces that press on each other. Faces without
 !> contact pass through each other as far as they were damaged when the step began, so that tractions have a potential
-!> within a step; what is intact holds them in both directions. What it stores as they close is let go as damage grows,
+!> within a step; what is intact holds them in both directions. What it stores as they close is released as damage
+!> grows,
 !> and is found again in what the integrators take.
 module cohesive_faces
   use cohesive_laws, only: cohesive_law_t, stiffness_of
-  use cohesive_points, only: cohesive_point_t, cohesive_reach, cohesive_traction, grown_damage, stored_energy
+  use cohesive_points, only: cohesive_point_t, separation_of, cohesive_traction, grown_damage, stored_energy
   use cohesive_tangents, only: operator_stiffness, traction_slopes
   use face_friction, only: friction_energy, friction_slopes, friction_traction
   use kinds, only: wp
@@ -82,7 +83,7 @@ contains
     !> Derivatives of each traction (row) by each jump (column)
     real(wp) :: slopes(3, 3)
 
-    slopes = traction_slopes(self%law, jumps, cohesive_reach(self%law, jumps, 0.0_wp), old)
+    slopes = traction_slopes(self%law, jumps, separation_of(self%law, jumps, 0.0_wp), old)
     if (jumps(3) < 0) slopes(3, 3) = closing_stiffness(self, old)
     if (self%friction > 0) slopes(:2, :2) = slopes(:2, :2) + sticking(self, jumps, old)
   end function slopes

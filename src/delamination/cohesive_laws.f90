@@ -16,7 +16,7 @@ module cohesive_laws
   !> grown delamination by 0.3 to 1.4 %; the iterations of a step fall by a third from 50 to 5.
   real(wp), parameter :: usual_stiffness = 5
   !> Least jump at failure over jump at onset.
-  real(wp), parameter :: least_ratio = 20
+  real(wp), parameter :: min_ratio = 20
 
   !> The law of one interface.
   type :: cohesive_law_t
@@ -66,19 +66,19 @@ contains
     law%stiffness_opening = stiffness
     if (.not. abs(stiffness) > 0) then
       if (.not. thickness > 0) return
-      law%stiffness_opening = max(usual_stiffness*modulus/thickness, least_stiffness(law))
+      law%stiffness_opening = max(usual_stiffness*modulus/thickness, min_stiffness(law))
     end if
     law%stiffness_shear = law%stiffness_opening*(toughness(1)/toughness(2))*(strength(2)/strength(1))**2
-    law%failure_ratio = least_ratio*law%stiffness_opening/least_stiffness(law)
+    law%failure_ratio = min_ratio*law%stiffness_opening/min_stiffness(law)
   end function create_cohesive_law
 
   !> Least stiffness of opening that leaves the fall of the curve gentle, 10 sigma**2/G_Ic.
-  pure real(wp) function least_stiffness(law)
+  pure real(wp) function min_stiffness(law)
     !> The law, with toughness and strength of opening
     type(cohesive_law_t), intent(in) :: law
 
-    least_stiffness = least_ratio*law%strength_opening**2/(2*law%toughness_opening)
-  end function least_stiffness
+    min_stiffness = min_ratio*law%strength_opening**2/(2*law%toughness_opening)
+  end function min_stiffness
 
   !> What is wrong with a law, or an empty text.
   pure function cohesive_objection(law) result(objection)
@@ -98,8 +98,8 @@ contains
       objection = 'pressure_strengthening must not be negative'
     else if (.not. (positive(law%stiffness_opening) .and. positive(law%stiffness_shear))) then
       objection = 'stiffness must be positive'
-    else if (law%failure_ratio < least_ratio*(1 - sqrt(epsilon(1.0_wp)))) then
-      objection = 'stiffness must be at least '//text_at_least(least_stiffness(law))// &
+    else if (law%failure_ratio < min_ratio*(1 - sqrt(epsilon(1.0_wp)))) then
+      objection = 'stiffness must be at least '//text_at_least(min_stiffness(law))// &
                   ' (10 strength_opening**2/G_Ic)'
     end if
   end function cohesive_objection

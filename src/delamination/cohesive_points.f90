@@ -8,7 +8,7 @@ module cohesive_points
   use kinds, only: wp
   implicit none
   private
-  public :: cohesive_point_t, cohesive_reach_t, cohesive_traction, cohesive_reach, grown_damage, point_class, opened, &
+  public :: cohesive_point_t, separation_t, cohesive_traction, separation_of, grown_damage, point_class, opened, &
             undamaged_energy, stored_energy, mode_mixity, dissipated_share, share_growth
 
   !> Classes of points: without damage, damaged and not growing, growing in this state, without traction for good.
@@ -25,7 +25,7 @@ module cohesive_points
   end type cohesive_point_t
 
   !> How far jumps reach along the curve.
-  type :: cohesive_reach_t
+  type :: separation_t
     !> Largest of the jumps, closing not counted
     real(wp) :: size = 0
     !> The jumps over their size
@@ -36,7 +36,7 @@ module cohesive_points
     real(wp) :: toughness = 0
     !> Jump over that of the onset, x, at most N
     real(wp) :: ratio = 0
-  end type cohesive_reach_t
+  end type separation_t
 
 contains
 
@@ -54,16 +54,16 @@ contains
     real(wp), intent(out) :: traction(3)
     !> The point with these jumps
     type(cohesive_point_t), intent(out) :: new
-    type(cohesive_reach_t) :: reach
+    type(separation_t) :: separation
 
-    reach = cohesive_reach(law, jumps, pressure)
-    new%damage = grown_damage(law, reach, old)
-    new%dissipated = old%dissipated + reach%toughness*share_growth(law, old%damage, new%damage)
+    separation = separation_of(law, jumps, pressure)
+    new%damage = grown_damage(law, separation, old)
+    new%dissipated = old%dissipated + separation%toughness*share_growth(law, old%damage, new%damage)
     traction = ((1 - new%damage)*stiffness_of(law))*opened(jumps)
   end subroutine cohesive_traction
 
   !> How far jumps reach along the curve: x = sqrt(N Y/G_c).
-  pure function cohesive_reach(law, jumps, pressure) result(reach)
+  pure function separation_of(law, jumps, pressure) result(separation)
     !> The law
     type(cohesive_law_t), intent(in) :: law
     !> Two shears and opening
@@ -71,13 +71,13 @@ contains
     !> Contact pressure; none if negative
     real(wp), intent(in) :: pressure
     !> Place on the curve
-    type(cohesive_reach_t) :: reach
+    type(separation_t) :: separation
     real(wp) :: size, s1, s2, n, shear, energy, share, unit_ratio, toughness
 
     ! Plain numbers: with arrays and components this took five times as long.
     toughness = law%toughness_opening
     if (pressure > 0) toughness = toughness*(1 + law%pressure_strengthening*pressure/law%strength_shear)**2
-    reach%toughness = toughness
+    separation%toughness = toughness
     size = max(abs(jumps(1)), abs(jumps(2)), jumps(3))
     if (.not. size > 0) return
     s1 = jumps(1)/size
@@ -90,33 +90,33 @@ contains
     if (share > 0 .and. abs(law%toughness_shear - law%toughness_opening) > 0) &
       toughness = toughness*(1 + (law%toughness_shear/law%toughness_opening - 1)*share**law%mixing_exponent)
     unit_ratio = sqrt(law%failure_ratio*energy/toughness)
-    reach%size = size
-    reach%unit = [s1, s2, n]
-    reach%unit_energy = energy
-    reach%shear_share = share
-    reach%toughness = toughness
+    separation%size = size
+    separation%unit = [s1, s2, n]
+    separation%unit_energy = energy
+    separation%shear_share = share
+    separation%toughness = toughness
     ! No product beyond failure, where jumps near the largest number would overflow. Jumps that are no numbers go on.
     if (size >= law%failure_ratio/unit_ratio) then
-      reach%ratio = law%failure_ratio
+      separation%ratio = law%failure_ratio
     else
-      reach%ratio = size*unit_ratio
+      separation%ratio = size*unit_ratio
     end if
-  end function cohesive_reach
+  end function separation_of
 
   !> Damage with trial jumps: d = N (x - 1)/(x (N - 1)) between onset and failure, and never less than before.
-  pure real(wp) function grown_damage(law, reach, old) result(damage)
+  pure real(wp) function grown_damage(law, separation, old) result(damage)
     !> The law
     type(cohesive_law_t), intent(in) :: law
     !> Place of the jumps on the curve
-    type(cohesive_reach_t), intent(in) :: reach
+    type(separation_t), intent(in) :: separation
     !> The point in the last accepted state
     type(cohesive_point_t), intent(in) :: old
 
     damage = 0
-    if (reach%ratio >= law%failure_ratio) then
+    if (separation%ratio >= law%failure_ratio) then
       damage = 1
-    else if (reach%ratio > 1) then
-      damage = min(1.0_wp, law%failure_ratio*(reach%ratio - 1)/(reach%ratio*(law%failure_ratio - 1)))
+    else if (separation%ratio > 1) then
+      damage = min(1.0_wp, law%failure_ratio*(separation%ratio - 1)/(separation%ratio*(law%failure_ratio - 1)))
     end if
     damage = max(old%damage, damage)
   end function grown_damage
@@ -135,13 +135,13 @@ contains
   end function point_class
 
   !> The jumps that the law sees.
-  pure function opened(jumps) result(seen)
+  pure function opened(jumps) result(opening_jumps)
     !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
     !> The same, a closing one as none
-    real(wp) :: seen(3)
+    real(wp) :: opening_jumps(3)
 
-    seen = [jumps(1), jumps(2), max(jumps(3), 0.0_wp)]
+    opening_jumps = [jumps(1), jumps(2), max(jumps(3), 0.0_wp)]
   end function opened
 
   !> Energy per area that these jumps would store in an undamaged interface, Y.
@@ -173,10 +173,10 @@ contains
     type(cohesive_law_t), intent(in) :: law
     !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
-    type(cohesive_reach_t) :: reach
+    type(separation_t) :: separation
 
-    reach = cohesive_reach(law, jumps, 0.0_wp)
-    share = reach%shear_share
+    separation = separation_of(law, jumps, 0.0_wp)
+    share = separation%shear_share
   end function mode_mixity
 
   !> Part of the toughness that a damage has dissipated: phi(d) = d/(N (1 - d) + d), from 0 to 1.

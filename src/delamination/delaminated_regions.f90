@@ -36,7 +36,7 @@ contains
     type(layered_mesh_t), intent(in) :: mesh
     !> Index of the zone
     integer, intent(in) :: zone
-    !> Side or diameter of the starter, of the whole plate; 0: none
+    !> Side or diameter of the starter, of the full plate; 0: none
     real(wp), intent(in) :: starter
     !> First and last x of a starter across the zone's width; none unless the first is smaller
     real(wp), intent(in), optional :: strip(2)
@@ -140,7 +140,7 @@ contains
     end do
   end function cells_within
 
-  !> What the cells within an extent really extend over on the whole plate, as they are taken whole.
+  !> What the cells within an extent really extend over on the full plate, as they are taken whole.
   pure real(wp) function extent_of_cells(edges, extent) result(taken)
     !> Edges of the cells along one direction, the struck point at 0
     real(wp), intent(in) :: edges(:)

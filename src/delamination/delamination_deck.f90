@@ -3,7 +3,7 @@ module delamination_deck
   use cohesive_laws, only: cohesive_objection, create_cohesive_law
   use deck_choices, only: code_of
   use deck_problems, only: problems_t
-  use deck_remarks, only: tell, remark, remark_idle, are_clear
+  use deck_remarks, only: report, remark, remark_idle, are_clear
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
   use delamination_parameters, only: delamination_t, law_front, law_cohesive, default_starter, toughnesses, &
@@ -65,7 +65,7 @@ module delamination_deck
     'delamination | cracks_as_flaws | logical | 1 | - | .false. | .true. .false. | &
       &Damage starts beside matrix cracks of the neighbouring plies at what the cells resolve of the strengths.', &
     'delamination | shear_cracks | logical | 1 | - | .false. | .true. .false. | &
-      &Damage starts beside cracks by transverse shear in the neighbouring plies at the shear that they bear.', &
+      &Damage starts beside cracks by transverse shear in the neighbouring plies at their shear strength.', &
     'delamination | energy_release | choice | 1 | - | ''vcct'' | two_state vcct | &
       &Energy release rate: Eq. 11 with its sign put right, or virtual crack closure.', &
     'delamination | growth | choice | 1 | - | ''equilibrium'' | equilibrium one_per_step | &
@@ -192,13 +192,13 @@ contains
     !> Strengths YT and S12 of the weaker ply; 0: not given
     real(wp), intent(in) :: of_plies(2)
 
-    suits = .not. asks_for_front(settings, place) .and. &
+    suits = .not. needs_front(settings, place) .and. &
             (of_plies(1) > 0 .or. settings%is_given(group, 'strength_opening', place)) .and. &
             (of_plies(2) > 0 .or. settings%is_given(group, 'strength_shear', place))
   end function suits_cohesive
 
   !> True if the deck gives a key that only a front has.
-  pure logical function asks_for_front(settings, place)
+  pure logical function needs_front(settings, place)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> Which of the groups
@@ -207,8 +207,8 @@ contains
     integer :: i
 
     names = words_of(key_starter//' '//fronts_only, ' ')
-    asks_for_front = any([(settings%is_given(group, names(i)%text, place), i=1, size(names))])
-  end function asks_for_front
+    needs_front = any([(settings%is_given(group, names(i)%text, place), i=1, size(names))])
+  end function needs_front
 
   !> One strength: the key, or that of the plies.
   subroutine fill_strength(settings, place, key, of_plies, strength)
@@ -251,13 +251,13 @@ contains
       if (delaminations(i)%starter > 0 .and. settings%is_given(group, key_zone, place) .and. &
           any(delaminations(i)%starter + 2*abs(delaminations(i)%starter_at) >= delaminations(i)%zone) .and. &
           are_clear(settings, problems, group, key_zone//' '//key_starter//' '//key_starter_at, place)) &
-        call tell(settings, problems, group, '', 'the starter must be smaller than the zone and lie within it.', place)
+        call report(settings, problems, group, '', 'the starter must be smaller than its zone and inside it.', place)
     end do
     do i = 2, size(delaminations)
       if (delaminations(i)%below_ply <= delaminations(i - 1)%below_ply .and. &
           are_clear(settings, problems, group, key_below_ply, delaminations(i)%group) .and. &
           are_clear(settings, problems, group, key_below_ply, delaminations(i - 1)%group)) &
-        call tell(settings, problems, group, key_below_ply, 'is not below the interface before it; give each '// &
+        call report(settings, problems, group, key_below_ply, 'is not below the interface before it; give each '// &
                   'interface once, in order from the struck face.', delaminations(i)%group)
     end do
   end subroutine check_delaminations
@@ -276,9 +276,9 @@ contains
     if (.not. settings%is_given(group, key_strip, place)) return
     if (.not. are_clear(settings, problems, group, key_strip//' '//key_starter, place)) return
     if (settings%is_given(group, key_starter, place)) then
-      call tell(settings, problems, group, key_strip, 'a starter is a square or a strip; leave one of them out.', place)
+      call report(settings, problems, group, key_strip, 'a starter is a square or a strip; give one of them.', place)
     else if (.not. delamination%starter_strip(1) < delamination%starter_strip(2)) then
-      call tell(settings, problems, group, key_strip, 'the first x must be smaller than the second.', place)
+      call report(settings, problems, group, key_strip, 'the first x must be smaller than the second.', place)
     end if
   end subroutine check_strip
 
@@ -295,9 +295,9 @@ contains
 
     if (.not. are_clear(settings, problems, group, 'G_c G_Ic G_IIc', place)) return
     if (toughness_objection(delamination) /= '') then
-      call tell(settings, problems, group, '', toughness_objection(delamination)//'.', place)
+      call report(settings, problems, group, '', toughness_objection(delamination)//'.', place)
     else if (delamination%energy_release == release_two_state .and. delamination%toughness <= 0) then
-      call tell(settings, problems, group, 'energy_release', 'Eq. 11 does not part the modes; give G_c, or take '// &
+      call report(settings, problems, group, 'energy_release', 'Eq. 11 does not part the modes; give G_c, or take '// &
                 '''vcct''.', place)
     end if
   end subroutine check_toughness
@@ -314,7 +314,7 @@ contains
     type(problems_t), intent(inout) :: problems
 
     if (delamination%law /= law_cohesive) then
-      if (.not. (settings%is_given(group, key_law, place) .or. asks_for_front(settings, place))) &
+      if (.not. (settings%is_given(group, key_law, place) .or. needs_front(settings, place))) &
         call remark(settings, problems, group, '', 'a front with a starter of the usual size holds the faces, as a '// &
                     'cohesive law needs strength_opening and strength_shear, or YT and S12 of the materials.', place)
       return
@@ -327,12 +327,12 @@ contains
 
   contains
 
-    !> Tells of a strength that is missing, unless its key has a fault already.
+    !> Reports a strength that is missing, unless its key has a fault already.
     subroutine want(key, other)
       !> The key, and what serves as well
       character(len=*), intent(in) :: key, other
 
-      if (are_clear(settings, problems, group, key, place)) call tell(settings, problems, group, key, &
+      if (are_clear(settings, problems, group, key, place)) call report(settings, problems, group, key, &
         'is missing; a cohesive law needs it, '//other, place)
     end subroutine want
   end subroutine check_strengths
@@ -357,7 +357,7 @@ contains
       objection = cohesive_objection(create_cohesive_law(toughnesses(d), d%mixing_exponent, [d%strength_opening, &
                                                          d%strength_shear], d%stiffness, 0.0_wp, 0.0_wp, 0.0_wp))
     end associate
-    if (objection /= '') call tell(settings, problems, group, 'stiffness', objection//'.', place)
+    if (objection /= '') call report(settings, problems, group, 'stiffness', objection//'.', place)
   end subroutine check_law
 
   !> What an interface asks for but has no effect.

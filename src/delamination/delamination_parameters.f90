@@ -84,7 +84,7 @@ module delamination_parameters
 
   !> Cells at least over which a front is smoothed. On stepped discs rates then scatter by 2 to 7 % about their mean,
   !> with 3 cells by 4 to 13 %; a cross-ply with cells of 1 mm sets free .97 of what it books, with 2.6 cells .84.
-  integer, parameter, public :: least_smoothed_cells = 5
+  integer, parameter, public :: min_smoothed_cells = 5
 
   !> What two runs must have in common for one to begin with the damage of the other, by its names in the deck.
   character(len=*), parameter, public :: law_names(*) = [character(len=16) :: 'law', 'G_c', 'G_Ic', 'G_IIc', 'eta', &
@@ -112,7 +112,7 @@ contains
     !> Thickness of the laminate, and length of the mean cell
     real(wp), intent(in) :: thickness, cell
 
-    distance = max(thickness, least_smoothed_cells*cell)
+    distance = max(thickness, min_smoothed_cells*cell)
   end function default_smoothing
 
   !> Side of a starter that covers 0.05 % of the plate, as in section 3.3.2 of the paper.

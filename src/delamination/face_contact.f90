@@ -13,7 +13,7 @@ module face_contact
   use kinds, only: wp
   implicit none
   private
-  public :: contact_law_t, create_contact_law, contact_pressure, updated_multiplier, updated_decay, unmet_contact
+  public :: contact_law_t, create_contact_law, contact_pressure, updated_multiplier, updated_decay, contact_residual
 
   !> Stiffness of the contact over the transverse stiffness of the layers. On random and plate-like
   !> compliances of 40 nodes a factor of 1 left 40 to over 80 factorizations, 100 about 5 multiplier updates
@@ -75,7 +75,7 @@ contains
   !> and the pressures settle so slowly with it that most had not after 80 updates. The weighted mean shrinks as
   !> the faces under pressure meet, and 2 to 6 updates do, be the faces held back by stiffness or by inertia.
   !> A new step starts with a tail as steep as the contact is stiff.
-  elemental real(wp) function updated_decay(law, gaps, pressures, largest_pressure, settled) result(decay)
+  elemental real(wp) function updated_decay(law, gaps, pressures, largest_pressure, converged) result(decay)
     !> The law
     type(contact_law_t), intent(in) :: law
     !> Sums over the faces of area times pressure times size of the gap, and of area times pressure
@@ -83,19 +83,19 @@ contains
     !> Largest pressure
     real(wp), intent(in) :: largest_pressure
     !> True: the pressures go with the gaps, the step is done
-    logical, intent(in) :: settled
+    logical, intent(in) :: converged
 
     decay = 0
     if (.not. largest_pressure > 0) return
     decay = law%stiffness/largest_pressure
-    if (settled) return
+    if (converged) return
     decay = steepest*decay
     if (gaps*decay > decay_factor*pressures) decay = decay_factor*pressures/gaps
   end function updated_decay
 
   !> What is missing from pressure only at closed faces: the lesser of the pressure and of the pressure that
   !> would close the gap in the layers' own thickness.
-  elemental real(wp) function unmet_contact(law, gap, pressure) result(unmet)
+  elemental real(wp) function contact_residual(law, gap, pressure) result(mismatch)
     !> The law
     type(contact_law_t), intent(in) :: law
     !> Gap, positive when open
@@ -103,8 +103,8 @@ contains
     !> Pressure, not negative
     real(wp), intent(in) :: pressure
 
-    unmet = abs(min(pressure, law%layer_stiffness*gap))
-  end function unmet_contact
+    mismatch = abs(min(pressure, law%layer_stiffness*gap))
+  end function contact_residual
 
   !> Pressure and its derivative by the gap. Pressure never pulls.
   elemental subroutine contact_pressure(law, decay, gap, multiplier, pressure, slope)

@@ -19,7 +19,7 @@ module front_smoothing
   !> Lines of nodes, to each side of an edge's middle, among which its nodes are looked for: two cells and a half.
   integer, parameter :: lines_beside = 5
   !> Relative difference of distances that counts as none.
-  real(wp), parameter :: alike = 1.0e-6_wp
+  real(wp), parameter :: distance_tolerance = 1.0e-6_wp
 
   !> A front with its smooth line.
   type :: smooth_front_t
@@ -210,7 +210,7 @@ contains
             node = mesh%node_at(i, j)
             away = norm2(mesh%node_coordinates(:, node) - self%place(:, s))
             if (pass == 1) least(node) = min(least(node), away)
-            if (pass == 1 .or. away > (1 + alike)*least(node) + alike*self%ahead(s)) cycle
+            if (pass == 1 .or. away > (1 + distance_tolerance)*least(node) + distance_tolerance*self%ahead(s)) cycle
             found = found + 1
             if (pass == 2) count(node) = count(node) + 1
             if (pass < 4) cycle

@@ -45,20 +45,20 @@ contains
     integer, allocatable :: below(:)
 
     below = settings%integers_of(group, key_below_ply, place)
-    if (asks_for_all(settings, place)) below = between
+    if (names_all(settings, place)) below = between
     if (size(below) == 0) below = [0]
   end function plies_above
 
   !> True if a word stands for the interfaces.
-  pure logical function asks_for_all(settings, place)
+  pure logical function names_all(settings, place)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> Which of the groups
     integer, intent(in) :: place
 
-    asks_for_all = any(lower_case(settings%text_of(group, key_below_ply, place)) == &
+    names_all = any(lower_case(settings%text_of(group, key_below_ply, place)) == &
                        [character(len=14) :: 'all', 'between_angles'])
-  end function asks_for_all
+  end function names_all
 
   !> Says which interfaces `all` leaves out, as plies of one angle are one.
   subroutine remark_left_out(settings, plies, between, problems)

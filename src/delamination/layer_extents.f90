@@ -1,5 +1,6 @@
-!> Extents of a layered rectangle that follows its damage: full extents along x and y, centred on the struck point, as
-!> the deck would give them. Centred, so that a quarter and the whole plate are layered alike.
+!> Extents of a layered rectangle that grows with the damage: full extents along x and y, centred on the struck point,
+!> as
+!> the deck would give them. Centred, so that a quarter and the full plate are layered alike.
 module layer_extents
   use delaminated_regions, only: cells_within
   use kinds, only: wp
@@ -21,7 +22,7 @@ module layer_extents
 
 contains
 
-  !> Extents that layers may come to: they are meant to stay within the core, or else the plate; a run tells if they
+  !> Extents that layers may come to: they are meant to stay within the core, or else the plate; a run reports if they
   !> leave the core.
   pure function largest_extents(extents, core, cell, length) result(largest)
     !> Those of the present, of the core, and the plate's lengths

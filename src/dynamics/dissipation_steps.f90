@@ -26,9 +26,9 @@ module dissipation_steps
   !> A step that dissipates a given energy.
   type, extends(static_step_t) :: dissipation_step_t
     !> Energy that the step is to dissipate
-    real(wp) :: wanted = 0
+    real(wp) :: target_dissipation = 0
     !> Change of the load factor at most; farther away there are other branches of equilibrium, which no path leads to
-    real(wp) :: farthest = 0
+    real(wp) :: max_load_change = 0
   contains
     procedure :: begin
     procedure :: find_residual
@@ -39,21 +39,21 @@ module dissipation_steps
 contains
 
   !> The step to a time that dissipates an energy.
-  pure function new_dissipation_step(model, time, wanted, farthest) result(self)
+  pure function new_dissipation_step(model, time, target_dissipation, max_load_change) result(self)
     type(model_t), intent(in) :: model
     !> Time at its end
     real(wp), intent(in) :: time
-    !> Energy to dissipate, of the whole plate
-    real(wp), intent(in) :: wanted
+    !> Energy to dissipate, of the full plate
+    real(wp), intent(in) :: target_dissipation
     !> Change of the load factor at most
-    real(wp), intent(in) :: farthest
+    real(wp), intent(in) :: max_load_change
     !> The problem
     type(dissipation_step_t) :: self
 
     self%static_step_t = new_static_step(model, time, 0.0_wp)
-    self%curable = .true.
-    self%wanted = wanted
-    self%farthest = farthest
+    self%retries_shorter = .true.
+    self%target_dissipation = target_dissipation
+    self%max_load_change = max_load_change
   end function new_dissipation_step
 
   !> First guess: on along the last step, as far as the energies compare.
@@ -69,7 +69,7 @@ contains
     type(state_t), intent(inout) :: new
     real(wp) :: part
 
-    part = min(1.0_wp, self%wanted/old%path%dissipated)
+    part = min(1.0_wp, self%target_dissipation/old%path%dissipated)
     self%load_factor = old%load_factor + part*old%path%factor_change
     call self%static_step_t%begin(model, operator, old, new)
     new%motion%displacement = old%motion%displacement + part*old%path%change
@@ -108,17 +108,17 @@ contains
     !> State at the end; remembers its largest forces
     type(state_t), intent(inout) :: new
 
-    if (model%scene%has_impactor) then
+    if (model%setup%has_impactor) then
       ! The impactor goes to where its force asks for.
       if (new%force < 0) then
         residual_norm = huge(residual_norm)
         return
       end if
-      new%load_factor = travel_for(model, new)/model%scene%impactor%travel
+      new%load_factor = travel_for(model, new)/model%setup%impactor%travel
     end if
     residual_norm = self%static_step_t%residual_norm(model, equilibrium, operator, residual, new)
     residual_norm = max(residual_norm, &
-                        abs(new%path%dissipated/self%wanted - 1)/missed*equilibrium%tolerance)
+                        abs(new%path%dissipated/self%target_dissipation - 1)/missed*equilibrium%tolerance)
   end function residual_norm
 
   !> Turns the correction at a fixed load into one with the change of the load that brings the energy wanted.
@@ -137,35 +137,35 @@ contains
     real(wp), intent(inout) :: correction(:, :)
     !> Set if the solver fails
     type(error_t), allocatable, intent(inout) :: error
-    real(wp), allocatable :: loads(:, :), answer(:, :), slopes(:, :)
+    real(wp), allocatable :: loads(:, :), response(:, :), slopes(:, :)
     real(wp) :: sums(2), change, factor
 
-    allocate (loads, answer, slopes, mold=correction)
-    answer = 0
+    allocate (loads, response, slopes, mold=correction)
+    response = 0
     slopes = 0
     loads = 0
-    if (model%scene%has_impactor) then
+    if (model%setup%has_impactor) then
       call push_plate(model, 1.0_wp, loads)
     else
       call model%load_slopes(loads)
     end if
-    call solve_tangent(operator, model, new%interfaces%cohesive, loads, answer, error)
+    call solve_tangent(operator, model, new%interfaces%cohesive, loads, response, error)
     if (allocated(error)) return
     call new%interfaces%cohesive%add_dissipation_slopes(model, old%interfaces%cohesive, new%motion%displacement, slopes)
-    sums = [model%product(slopes, correction), model%product(slopes, answer)]
+    sums = [model%product(slopes, correction), model%product(slopes, response)]
     call model%communicator%sum(sums)
     sums = sums*model%mesh%multiplicity
     change = 0
-    if (abs(sums(2)) > 0) change = (self%wanted - new%path%dissipated - sums(1))/sums(2)
-    if (model%scene%has_impactor) then
+    if (abs(sums(2)) > 0) change = (self%target_dissipation - new%path%dissipated - sums(1))/sums(2)
+    if (model%setup%has_impactor) then
       new%force = new%force + part_taken(new%iterations)*change
     else
       ! Beside a limit a correction may lead far away, from where none comes back.
       factor = new%load_factor + part_taken(new%iterations)*change
-      factor = min(max(factor, old%load_factor - self%farthest), old%load_factor + self%farthest)
+      factor = min(max(factor, old%load_factor - self%max_load_change), old%load_factor + self%max_load_change)
       change = (factor - new%load_factor)/part_taken(new%iterations)
       new%load_factor = factor
     end if
-    correction = part_taken(new%iterations)*(correction + change*answer)
+    correction = part_taken(new%iterations)*(correction + change*response)
   end subroutine complete_correction
 end module dissipation_steps

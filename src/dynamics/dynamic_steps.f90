@@ -38,14 +38,14 @@ module dynamic_steps
     !> Changed ties and contacts with which the operator is renewed
     integer :: renewal = huge(1)
     !> True: the last correction took as many solves as a factorization costs
-    logical :: dear = .false.
+    logical :: correction_is_costly = .false.
     !> Integrator of the plate
     type(plate_integrator_t) :: integrator
     !> Displacement to start from, (5, points); unallocated: the motion goes on as it was
     real(wp), allocatable :: guess(:, :)
     !> True: the first guess is the displacement of the start, whose forces are known; or it goes on with the velocity
     !> of the start, so its inertia forces are
-    logical :: stays = .false., coasts = .false.
+    logical :: keeps_displacement = .false., keeps_velocity = .false.
     !> True: internal forces follow from the motion, as one correction solves the step
     logical :: spares = .false.
     !> Square of the patch's shares, of this rank's points
@@ -99,32 +99,33 @@ contains
     type(state_t), intent(inout) :: new
 
     new%time = old%time + self%step
-    new%load_factor = new%time/model%scene%ramp_time
+    new%load_factor = new%time/model%setup%ramp_time
     call new%interfaces%ties%fade(model, self%step)
     self%patch_square = sum((model%patch(model%patch_points)/model%mesh%multiplicity)**2)
-    if (model%scene%has_impactor) self%coupling = begin_coupling(model, self%integrator, old, self%step)
-    self%coasts = model%scene%has_impactor .and. .not. (allocated(self%guess) .or. model%has_bonds)
-    self%stays = self%coasts .and. self%is_solved_at_once(model, operator)
-    self%spares = self%stays .and. modulo(old%step + 1, between_checks) > 0 .and. .not. (model%map%layered .or. &
-      allocated(model%rig%holds) .or. allocated(model%pressure) .or. size(model%lines) > 0)
-    if (self%spares) self%spares = self%coupling%is_settled() .and. .not. any(operator%numbering%leader > 0)
+    if (model%setup%has_impactor) self%coupling = begin_coupling(model, self%integrator, old, self%step)
+    self%keeps_velocity = model%setup%has_impactor .and. .not. (allocated(self%guess) .or. model%has_bonds)
+    self%keeps_displacement = self%keeps_velocity .and. self%is_solved_at_once(model, operator)
+    self%spares = self%keeps_displacement .and. modulo(old%step + 1, between_checks) > 0 &
+      .and. .not. (model%map%layered .or. &
+      allocated(model%rig%held_by) .or. allocated(model%pressure) .or. size(model%lines) > 0)
+    if (self%spares) self%spares = self%coupling%forces_agree() .and. .not. any(operator%numbering%leader > 0)
     if (allocated(self%guess)) then
       new%motion%displacement = self%guess
-    else if (.not. self%stays) then
+    else if (.not. self%keeps_displacement) then
       new%motion%displacement = self%step*old%motion%velocity
       call new%interfaces%faces%hold(model, new%motion%displacement)
       new%motion%displacement = old%motion%displacement + new%motion%displacement
-      call new%interfaces%keep_touching(model, new%motion%displacement)
+      call new%interfaces%keep_contact_closed(model, new%motion%displacement)
       if (has_moved_lines(model)) &
         call keep_lines(model, new%interfaces, new%time, line_displacement, new%motion%displacement)
     end if
-    if (.not. self%coasts) call self%complete(old, new)
+    if (.not. self%keeps_velocity) call self%complete(old, new)
     new%iterations = 0
     new%force_iterations = 0
     new%contact_iterations = 0
-    self%dear = .false.
-    self%asks_elements = .false.
-    self%searches = allocated(new%interfaces%cohesive%cohesive)
+    self%correction_is_costly = .false.
+    self%uses_element_tangents = .false.
+    self%searches_lines = allocated(new%interfaces%cohesive%cohesive)
   end subroutine begin
 
   !> True: forces are linear in the motion but for the impactor's, and the operator knows all of them.
@@ -135,7 +136,7 @@ contains
     !> The factored operator
     type(tangent_operator_t), intent(in) :: operator
 
-    solved = model%scene%kinematics == kinematics_linear .and. .not. model%scene%has_ply_damage
+    solved = model%setup%kinematics == kinematics_linear .and. .not. model%setup%has_ply_damage
     if (solved) solved = abs(operator%mass_factor/self%integrator%mass_factor(self%step) - 1) < 1.0e-9_wp
   end function is_solved_at_once
 
@@ -156,7 +157,7 @@ contains
     real(wp) :: amplitude
 
     associate (m => self%integrator%alpha_m, f => self%integrator%alpha_f)
-      if (self%stays .and. new%iterations == 0) then
+      if (self%keeps_displacement .and. new%iterations == 0) then
         energy = 0
         call weigh_start(size(residual), [(1 - m)/(self%integrator%beta*self%step), &
           (1 - m)*0.5_wp/self%integrator%beta - 1], old%motion%momentum, old%motion%inertia, old%motion%internal, &
@@ -167,7 +168,7 @@ contains
         return
       else
         call new%find_internal(model, old, energy)
-        if (self%coasts .and. new%iterations == 0) then
+        if (self%keeps_velocity .and. new%iterations == 0) then
           ! Newmark's acceleration with the velocity of the start.
           new%motion%inertia = (1 - 0.5_wp/self%integrator%beta)*old%motion%inertia
         else
@@ -187,7 +188,7 @@ contains
         residual = residual + lines
       end if
       if (.not. allocated(model%pressure)) return
-      amplitude = (1 - f)*model%scene%pressure%amplitude(new%time) + f*model%scene%pressure%amplitude(old%time)
+      amplitude = (1 - f)*model%setup%pressure%amplitude(new%time) + f*model%setup%pressure%amplitude(old%time)
       residual(3, :) = residual(3, :) + amplitude*model%pressure(3, :)
     end associate
   end subroutine find_residual
@@ -229,7 +230,7 @@ contains
     !> State at the end; remembers its largest forces
     type(state_t), intent(inout) :: new
 
-    if (self%stays .and. new%iterations == 0) then
+    if (self%keeps_displacement .and. new%iterations == 0) then
       ! An iteration follows in any case.
       residual_norm = huge(residual_norm)
       return
@@ -244,7 +245,7 @@ contains
                                       new%largest_forces)
   end function residual_norm
 
-  !> The force answers to the motion only within an iteration, so an impact needs one.
+  !> The force depends on the motion only within an iteration, so an impact needs one.
   pure logical function may_stop(self, model, new, pressures_new)
     !> The problem
     class(dynamic_step_t), intent(in) :: self
@@ -254,11 +255,12 @@ contains
     !> True: contact has taken new pressures since the last correction
     logical, intent(in) :: pressures_new
 
-    may_stop = new%iterations > 0 .or. .not. model%scene%has_impactor
+    may_stop = new%iterations > 0 .or. .not. model%setup%has_impactor
   end function may_stop
 
   !> Finds a correction by the tangent, and with it the impactor's force.
-  subroutine find_correction(self, model, operator, old, new, residual, tolerance, correction, falls, error)
+  subroutine find_correction(self, model, operator, old, new, residual, tolerance, correction, negative_curvature, &
+                             error)
     !> The problem
     class(dynamic_step_t), intent(inout) :: self
     !> Mesh, numbering and interfaces of the plate
@@ -276,25 +278,27 @@ contains
     !> Correction of the displacement, (5, points)
     real(wp), intent(inout) :: correction(:, :)
     !> True: it goes along negative curvature of the tangent
-    logical, intent(out) :: falls
+    logical, intent(out) :: negative_curvature
     !> Set if a solve fails or numbers are not finite
     type(error_t), allocatable, intent(inout) :: error
     type(tangent_product_t) :: tangent
     real(wp), allocatable :: diagonal(:, :)
     logical :: satisfied
 
-    falls = .false.
+    negative_curvature = .false.
     call find_tangent(model, operator, old, new, [self%integrator%stiffness_factor(), &
-                      self%integrator%mass_factor(self%step)], self%dear, self%renewal, self%asks_elements, tangent, &
+                      self%integrator%mass_factor(self%step)], self%correction_is_costly, self%renewal, &
+                        self%uses_element_tangents, tangent, &
                       diagonal, error)
     if (allocated(error)) return
-    if (model%scene%has_impactor .and. .not. tangent%is_factored()) &
+    if (model%setup%has_impactor .and. .not. tangent%is_factored()) &
       call add_force_slope(model, operator, self%coupling, old, new, tangent)
-    call find_krylov_correction(operator, model, tangent, diagonal, residual, tolerance, correction, error, falls, &
+    call find_krylov_correction(operator, model, tangent, diagonal, residual, tolerance, correction, error, &
+                                negative_curvature, &
                                 satisfied)
     if (allocated(error)) return
-    self%dear = .not. satisfied
-    if (model%scene%has_impactor) then
+    self%correction_is_costly = .not. satisfied
+    if (model%setup%has_impactor) then
       ! The correction holds the linear part of the force's change; the law asks for the rest.
       self%coupling%unknown = self%coupling%unknown &
                               - tangent%force_slope*model%patch_mean(correction)/self%coupling%share
@@ -316,9 +320,9 @@ contains
     type(error_t), allocatable :: error
     integer :: iterations
 
-    if (.not. model%scene%has_impactor) return
+    if (.not. model%setup%has_impactor) return
     new%patch_mean = model%contact_deflection(new%motion%displacement)
-    call self%coupling%find_force(model%scene%indentation, old%indentation, new%patch_mean, 0.0_wp, iterations, error)
+    call self%coupling%find_force(model%setup%indentation, old%indentation, new%patch_mean, 0.0_wp, iterations, error)
     new%force_iterations = new%force_iterations + iterations
   end subroutine find_force
 
@@ -351,11 +355,11 @@ contains
     call new%count_step(old)
     new%deflection = model%deflection(new%motion%displacement)
     new%patch_mean = model%contact_deflection(new%motion%displacement)
-    if (model%scene%has_impactor) then
-      new%impactor = advance(model%scene%impactor, old%impactor, self%step, self%coupling%unknown, &
+    if (model%setup%has_impactor) then
+      new%impactor = advance(model%setup%impactor, old%impactor, self%step, self%coupling%unknown, &
                              self%coupling%force_end)
       new%force = self%coupling%force_end
-      call commit_indentation(model%scene%indentation, new%indentation, new%impactor%displacement - new%patch_mean)
+      call commit_indentation(model%setup%indentation, new%indentation, new%impactor%displacement - new%patch_mean)
     end if
     call model%profile%enter('energy ledger')
     call book_step(model, self%integrator, old, self%step, self%coupling%load(), energy, new)

@@ -15,9 +15,11 @@ module dynamic_tangents
 
 contains
 
-  !> The tangent, but for the impactor's force, after the operator was renewed if that is due: where it is told so, or
+  !> The tangent, but for the impactor's force, after the operator was renewed if that is due: where that is required,
+  !> or
   !> where ties and contacts have left it.
-  subroutine find_tangent(model, operator, old, new, factors, told, most_changes, asks_elements, tangent, diagonal, &
+  subroutine find_tangent(model, operator, old, new, factors, required, max_changes, uses_element_tangents, tangent, &
+                          diagonal, &
                           error)
     !> Mesh, numbering and interfaces of the plate
     type(model_t), target, intent(in) :: model
@@ -30,11 +32,11 @@ contains
     !> Factors of stiffness and mass
     real(wp), intent(in) :: factors(2)
     !> True: renewed in any case
-    logical, intent(in) :: told
+    logical, intent(in) :: required
     !> Changes of ties and contacts that are left to the iteration
-    integer, intent(in) :: most_changes
+    integer, intent(in) :: max_changes
     !> True: the factor has left too much of the forces, so elements are asked also where they change slowly
-    logical, intent(in) :: asks_elements
+    logical, intent(in) :: uses_element_tangents
     !> The tangent
     type(tangent_product_t), intent(out) :: tangent
     !> Its diagonal, (5, points); unallocated: the tangent is the factored operator
@@ -44,11 +46,11 @@ contains
     real(wp), allocatable :: wanted(:, :)
     logical :: due
 
-    due = told
+    due = required
     if (model%has_bonds) then
       allocate (wanted, mold=operator%added)
       call new%interfaces%added_stiffness(model, operator%diagonal, factors(1), wanted)
-      if (.not. due) due = operator%has_left(model, wanted, most_changes)
+      if (.not. due) due = operator%has_outdated_constraints(model, wanted, max_changes)
     end if
     if (due) call operator%renew(model, new%plies%stiffness, new%interfaces, new%motion%displacement, factors(1), &
                                  factors(2), error)
@@ -61,10 +63,11 @@ contains
     tangent%stiffness_factor = factors(1)
     tangent%mass_factor = factors(2)
     tangent%mass_change = factors(2) - operator%mass_factor
-    tangent%elements = model%scene%kinematics == kinematics_von_karman .and. (asks_elements .or. model%has_bonds)
-    tangent%elements = .not. due .and. (model%scene%has_ply_damage .or. tangent%elements)
+    tangent%elements = model%setup%kinematics == kinematics_von_karman .and. (uses_element_tangents &
+                                                                              .or. model%has_bonds)
+    tangent%elements = .not. due .and. (model%setup%has_ply_damage .or. tangent%elements)
     if (model%has_bonds) &
-      call tangent%take_jumps(operator%added, wanted, new%interfaces%cohesive%cohesive, factors(1)* &
+      call tangent%set_jump_stiffness(operator%added, wanted, new%interfaces%cohesive%cohesive, factors(1)* &
         new%interfaces%cohesive%tangents_at(model, old%interfaces%cohesive, new%motion%displacement))
     if (tangent%is_factored()) return
     diagonal = operator%diagonal
@@ -87,7 +90,7 @@ contains
     push(3, :) = model%patch/model%mesh%multiplicity
     allocate (tangent%pattern(operator%numbering%rows))
     call operator%numbering%gather(push, tangent%pattern)
-    tangent%force_slope = coupling%slope(model%scene%indentation, old%indentation, &
+    tangent%force_slope = coupling%slope(model%setup%indentation, old%indentation, &
                                          model%contact_deflection(new%motion%displacement))
   end subroutine add_force_slope
 end module dynamic_tangents

@@ -53,7 +53,7 @@ contains
     real(wp) :: amplitudes(2), gain, impactor, taken, fracture, heat, damage
 
     call find_products(model, integrator, old, step, energy, new, products)
-    amplitudes = model%scene%pressure%amplitude([old%time, new%time])
+    amplitudes = model%setup%pressure%amplitude([old%time, new%time])
     new%ledger%kinetic = products%kinetic/2
     new%ledger%strain = products%strain
     new%ledger%contact = old%ledger%contact - products%faces
@@ -68,7 +68,8 @@ contains
     heat = new%interfaces%friction_heat(model, old%interfaces)
     new%ledger%friction = new%ledger%friction + heat
     new%ledger%algorithmic = new%ledger%algorithmic - (damage + fracture + heat)
-    call new%plies%judge(damage, products%strain - old%ledger%strain - products%mean_internal - products%cohesive, &
+    call new%plies%measure_lag(damage, products%strain - old%ledger%strain - products%mean_internal &
+                               - products%cohesive, &
                          max(new%ledger%initial + new%ledger%external_work, products%strain))
     if (model%map%layered) then
       ! What fracture takes has been booked, and taken off here, when the ties were released.
@@ -76,8 +77,8 @@ contains
                                     new%motion%displacement - old%motion%displacement, taken)
       new%ledger%algorithmic = new%ledger%algorithmic + taken
     end if
-    if (.not. model%scene%has_impactor) return
-    impactor = impactor_energy(model%scene%impactor, new%impactor)
+    if (.not. model%setup%has_impactor) return
+    impactor = impactor_energy(model%setup%impactor, new%impactor)
     new%ledger%impactor = impactor
     new%ledger%indentation = new%indentation%work
     new%ledger%algorithmic = new%ledger%algorithmic - (force*(new%patch_mean - old%patch_mean) &
@@ -128,7 +129,7 @@ contains
     end associate
   end function integrator_gain
 
-  !> Products of the step's fields, of the whole plate.
+  !> Products of the step's fields, of the full plate.
   subroutine find_products(model, integrator, old, step, energy, new, products)
     type(model_t), intent(in) :: model
     !> Integrator of the plate
@@ -153,7 +154,7 @@ contains
     if (model%has_bonds) sums(10) = new%interfaces%contact_work(model, new%motion%displacement, &
                                                                 new%motion%displacement - old%motion%displacement)
     if (size(model%lines) > 0) sums(11:12) = line_products(model, old, new)
-    if (model%scene%has_crack_bands()) &
+    if (model%setup%has_crack_bands()) &
       sums(13) = stored_beyond_work(new%interfaces%cohesive, model, old%interfaces%cohesive, old%motion%displacement, &
                                     new%motion%displacement)
     call model%communicator%sum(sums)

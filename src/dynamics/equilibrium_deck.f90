@@ -16,7 +16,7 @@ module equilibrium_deck
   !> Rows of the keys.
   character(len=key_row_length), parameter, public :: equilibrium_rows(*) = [character(len=key_row_length) :: &
     'solver | tolerance | real | 1 | - | 1e-6 | >= 1e-13, <= 0.01 | &
-      &Residual of equilibrium accepted, relative to the forces in play.', &
+      &Residual of equilibrium accepted, relative to the reference force.', &
     'solver | max_iterations | integer | 1 | - | 30 | >= 1, <= 10000 | &
       &Iterations before a step is tried again with half its length.']
 

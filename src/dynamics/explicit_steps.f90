@@ -1,5 +1,5 @@
 !> Steps by central differences with what belongs to them: an equilibrium before the first, failures of plies, flaws of
-!> interfaces, and the ledger when somebody looks.
+!> interfaces, and the ledger when output or a check is due.
 module explicit_steps
   use central_difference_energies, only: book_energies
   use central_differences, only: central_difference_t
@@ -17,7 +17,7 @@ module explicit_steps
   use unstable_motions, only: refuse_instability
   implicit none
   private
-  public :: advance_explicit, complete_step, settle_stresses
+  public :: advance_explicit, complete_step, equilibrate_initial_stresses
 
   !> Steps between two looks for cracks that are flaws of interfaces. Cracks run at about the speed of shear waves, a
   !> third of that of the fibres' waves, which pass at most a cell in two steps; so none passes more than a cell or two
@@ -28,7 +28,7 @@ contains
 
   !> Brings a plate into equilibrium with its residual stresses and with lines that have moved it before the run, so
   !> that nothing rings. Collective.
-  subroutine settle_stresses(operator, model, linear_solver, now, error)
+  subroutine equilibrate_initial_stresses(operator, model, linear_solver, now, error)
     !> The factored operator; released afterwards
     type(tangent_operator_t), intent(inout) :: operator
     type(model_t), intent(in) :: model
@@ -42,7 +42,7 @@ contains
     call operator%create(model, linear_solver%factorization, error)
     if (.not. allocated(error)) call find_initial_equilibrium(model, operator, now, error)
     call operator%release()
-  end subroutine settle_stresses
+  end subroutine equilibrate_initial_stresses
 
   !> Takes one step. Collective.
   subroutine advance_explicit(method, model, event, now)
@@ -56,7 +56,7 @@ contains
 
     if (comes_to_rest(method, model, now)) call damp_motion(method, model, now, method%parameters%settle)
     call method%advance(model, event, now)
-    if (model%scene%has_ply_damage .and. .not. allocated(now%plies%bands)) then
+    if (model%setup%has_ply_damage .and. .not. allocated(now%plies%bands)) then
       call model%profile%enter('ply criteria')
       call now%plies%grow(model, now%motion%displacement)
       call model%profile%leave()
@@ -80,14 +80,14 @@ contains
 
     comes_to_rest = .false.
     if (.not. method%parameters%settle > 0) return
-    if (model%scene%has_impactor) then
+    if (model%setup%has_impactor) then
       comes_to_rest = now%time > 0 .and. .not. now%force > 0 .and. now%impactor%velocity < 0
     else
-      comes_to_rest = now%time < model%scene%load_start
+      comes_to_rest = now%time < model%setup%load_start
     end if
   end function comes_to_rest
 
-  !> Completes what a step leaves until somebody looks: energies, reactions and stress. Collective.
+  !> Completes what a step leaves until output or a check is due: energies, reactions and stress. Collective.
   subroutine complete_step(method, model, now, error)
     !> Central differences
     type(central_difference_t), intent(in) :: method

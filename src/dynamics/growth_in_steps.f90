@@ -48,7 +48,7 @@ contains
       free = trial%interfaces%faces%free
       fracture = trial%ledger%delamination
       call grow_fronts(model, trial%plies%stiffness, trial%motion, trial%interfaces, trial%ledger%delamination, grown)
-      ! The integrators cannot tell the energy that fracture takes from their own losses.
+      ! The integrators cannot distinguish the energy dissipated by fracture from their own losses.
       trial%ledger%algorithmic = trial%ledger%algorithmic - (trial%ledger%delamination - fracture)
       if (.not. grown .or. grows_by_steps(model)) exit
       call ties%release(model, free, trial%interfaces%faces%free, &
@@ -74,6 +74,6 @@ contains
     type(model_t), intent(in) :: model
 
     grows_by_steps = model%map%layered
-    if (grows_by_steps) grows_by_steps = all(model%scene%delaminations%growth /= growth_equilibrium)
+    if (grows_by_steps) grows_by_steps = all(model%setup%delaminations%growth /= growth_equilibrium)
   end function grows_by_steps
 end module growth_in_steps

@@ -24,13 +24,13 @@ module impact_coupling
     real(wp) :: unknown = 0, force_end = 0
     !> Share of the unknown in the plate's load, and the rest of the load
     real(wp) :: share = 0, inherited = 0
-    !> Force at the start of the step, and where between end and start the plate wants it
+    !> Force at the start of the step, and where between end and start the equation of motion requires it
     real(wp) :: start_force = 0, alpha_f = 0
   contains
     !> Force on the plate in its equation of motion.
     procedure :: load
     !> True: one solution finds the load.
-    procedure :: is_settled
+    procedure :: forces_agree
     !> Solves for the force, and lets the plate respond.
     procedure :: solve
     !> Finds the force.
@@ -40,7 +40,7 @@ module impact_coupling
   end type impact_coupling_t
 
   !> Change of a deflection over the indentation at which the slope of the force is taken.
-  real(wp), parameter :: nudge = 1.0e-6_wp
+  real(wp), parameter :: deflection_increment = 1.0e-6_wp
 
 contains
 
@@ -56,8 +56,8 @@ contains
     !> The impactor's side of the step
     type(impact_coupling_t) :: coupling
 
-    call predict(model%scene%impactor, old%impactor, step, coupling%free_displacement, coupling%compliance)
-    coupling%mean = takes_mean_force(model%scene%impactor)
+    call predict(model%setup%impactor, old%impactor, step, coupling%free_displacement, coupling%compliance)
+    coupling%mean = takes_mean_force(model%setup%impactor)
     coupling%unknown = old%force
     coupling%force_end = old%force
     coupling%start_force = old%force
@@ -77,12 +77,12 @@ contains
   end function load
 
   !> True: one solution finds the load. The mean force over a step is the plate's load only for alpha_f = 1/2.
-  pure logical function is_settled(self)
+  pure logical function forces_agree(self)
     !> The impactor's side of the step
     class(impact_coupling_t), intent(in) :: self
 
-    is_settled = .not. self%mean .or. abs(self%alpha_f - 0.5_wp) <= 0
-  end function is_settled
+    forces_agree = .not. self%mean .or. abs(self%alpha_f - 0.5_wp) <= 0
+  end function forces_agree
 
   !> Solves for the impact force, given the correction of the plate for the force assumed, and adds the
   !> plate's response to the change of the force.
@@ -105,7 +105,7 @@ contains
 
     before = self%unknown
     new%patch_mean = model%contact_deflection(new%motion%displacement) + model%patch_mean(correction)
-    call self%find_force(model%scene%indentation, old%indentation, new%patch_mean, operator%compliance, iterations, &
+    call self%find_force(model%setup%indentation, old%indentation, new%patch_mean, operator%compliance, iterations, &
                          error)
     correction = correction + (self%share*(self%unknown - before))*operator%response
     new%force_iterations = new%force_iterations + iterations
@@ -127,7 +127,7 @@ contains
     integer :: iterations
 
     slope = 0
-    step = nudge*abs(self%free_displacement - patch_mean)
+    step = deflection_increment*abs(self%free_displacement - patch_mean)
     if (.not. step > 0) return
     here = self
     beyond = self
@@ -158,7 +158,8 @@ contains
     alpha_free = self%free_displacement - patch_mean + self%unknown*compliance
     call solve_impact_force(law, indentation, indentation%alpha, alpha_free, self%compliance + compliance, self%mean, &
                             self%unknown, alpha_end, self%force_end, iterations, error)
-    ! The plate wants the force at 1 - alpha_f of the step, which is the mean force for alpha_f = 1/2 only.
+    ! The equation of motion requires the force at 1 - alpha_f of the step, which is the mean force for alpha_f = 1/2
+    ! only.
     if (self%mean) self%inherited = (0.5_wp - self%alpha_f)*(self%force_end - self%start_force)
   end subroutine find_force
 end module impact_coupling

@@ -39,7 +39,7 @@ contains
       now%patch_mean = model%contact_deflection(now%motion%displacement)
       call book_energies(explicit, model, now)
       now%ledger%initial = now%ledger%initial + now%ledger%error()
-      call stepper%look(model, error)
+      call stepper%complete_state(model, error)
     end associate
   end subroutine begin_inherited
 end module inherited_starts

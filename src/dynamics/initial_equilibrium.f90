@@ -18,10 +18,10 @@ module initial_equilibrium
   public :: has_initial_motion, find_initial_equilibrium, find_acceleration
 
   !> Mass over that which would double the lowest frequency of a bending plate as long as this one.
-  real(wp), parameter :: little = 1.0e-3_wp
+  real(wp), parameter :: negligible_mass = 1.0e-3_wp
   !> Residual over the forces of the suppressed strains: loads to come may be much smaller than these.
   real(wp), parameter :: tolerance = 1.0e-11_wp
-  integer, parameter :: most_iterations = 100
+  integer, parameter :: max_iterations = 100
 
 contains
 
@@ -38,15 +38,15 @@ contains
     real(wp) :: energy
 
     energy = 0
-    if (model%scene%has_thermal) then
-      call settle(model, operator, .false., state, error)
+    if (model%setup%has_thermal) then
+      call equilibrate(model, operator, .false., state, error)
       if (allocated(error)) return
       energy = state%ledger%strain + state%ledger%ply_damage
       state%ledger%initial = state%ledger%initial + energy
       state%ledger%residual = energy
     end if
-    if (model%scene%has_static .or. .not. lines_precede(model)) return
-    call settle(model, operator, .true., state, error)
+    if (model%setup%has_static .or. .not. lines_precede(model)) return
+    call equilibrate(model, operator, .true., state, error)
     if (allocated(error)) return
     state%ledger%external_work = state%ledger%strain + state%ledger%ply_damage - energy
   end subroutine find_initial_equilibrium
@@ -55,7 +55,7 @@ contains
   pure logical function has_initial_motion(model)
     type(model_t), intent(in) :: model
 
-    has_initial_motion = model%scene%has_thermal .or. lines_precede(model)
+    has_initial_motion = model%setup%has_thermal .or. lines_precede(model)
   end function has_initial_motion
 
   !> True: lines have moved the plate before a run in time begins.
@@ -67,7 +67,7 @@ contains
   end function lines_precede
 
   !> Brings a plate at rest into equilibrium. Collective.
-  subroutine settle(model, operator, moved, state, error)
+  subroutine equilibrate(model, operator, moved, state, error)
     type(model_t), intent(in) :: model
     !> The factored operator; not ready for steps afterwards
     type(tangent_operator_t), intent(inout) :: operator
@@ -88,7 +88,7 @@ contains
     if (moved) call keep_lines(model, state%interfaces, 0.0_wp, line_displacement, state%motion%displacement)
     largest = 0
     force_square = square_of_forces(model)
-    do iteration = 0, most_iterations
+    do iteration = 0, max_iterations
       call state%find_internal(model, before, energy)
       residual = -state%motion%internal
       if (moved) then
@@ -102,7 +102,7 @@ contains
       if (relative_residual(model%communicator, operator%numbering, residual, suppressing, suppressing, force_square, &
                             operator%diagonal, state%motion%displacement, .true., tolerance, model%thickness, &
                             largest) <= tolerance) exit
-      if (iteration == most_iterations) call fail(error, exit_convergence, &
+      if (iteration == max_iterations) call fail(error, exit_convergence, &
         'No equilibrium at the start, under the residual stresses of &thermal or &line of history = ''fixed''.')
       if (.not. allocated(error)) call operator%renew(model, state%plies%stiffness, state%interfaces, &
         state%motion%displacement, 1.0_wp, mass_factor(model), error)
@@ -119,7 +119,7 @@ contains
     state%deflection = model%deflection(state%motion%displacement)
     state%patch_mean = model%contact_deflection(state%motion%displacement)
     operator%ready = .false.
-  end subroutine settle
+  end subroutine equilibrate
 
   !> Acceleration of a plate in equilibrium under a pressure or forces that are there from the start, and the velocity
   !> of lines that move at once. Collective.
@@ -139,7 +139,7 @@ contains
     allocate (loads, mold=state%motion%displacement)
     ! Lines that are prescribed are in equilibrium with the plate already; their springs in the operator keep them.
     call model%line_forces(state%motion%displacement, 0.0_wp, loads, prescribed=.false.)
-    if (allocated(model%pressure)) loads = loads + model%scene%pressure%amplitude(0.0_wp)*model%pressure
+    if (allocated(model%pressure)) loads = loads + model%setup%pressure%amplitude(0.0_wp)*model%pressure
     associate (motion => state%motion)
       call operator%renew(model, state%plies%stiffness, state%interfaces, motion%displacement, 0.0_wp, mass_factor, &
                           error)
@@ -173,8 +173,8 @@ contains
     type(model_t), intent(in) :: model
 
     factor = 0
-    if (model%scene%has_static) return
-    factor = little*min(model%section%stiffness(13), model%section%stiffness(16))/model%section%mass(1) &
-             *(pi/maxval(model%scene%plate%length))**4
+    if (model%setup%has_static) return
+    factor = negligible_mass*min(model%section%stiffness(13), model%section%stiffness(16))/model%section%mass(1) &
+             *(pi/maxval(model%setup%plate%length))**4
   end function mass_factor
 end module initial_equilibrium

@@ -5,19 +5,19 @@
 !> acceleration of every ply stay what they are, and with them strains and energies. What the energies differ by is
 !> booked: rounding, or with an energy-consistent shear correction that of the sections.
 module layer_switches
-  use contact_following, only: follow_contact, take_contact
+  use contact_updates, only: update_contact_area, set_contact_area
   use errors, only: error_t
   use kinds, only: wp
-  use layer_demand, only: demanded_extents
+  use required_zones, only: required_extents
   use layer_transfers, only: layer_transfer_t
   use layered_meshes, only: layered_mesh_t
   use linear_solver_parameters, only: linear_solver_parameters_t
   use model_building, only: create_model
   use models, only: model_t
   use profiles, only: profile_t
-  use scenes, only: scene_t
+  use setups, only: setup_t
   use states, only: state_t
-  use step_memories, only: remember, step_memory_t
+  use step_memories, only: save_state, step_memory_t
   use stepping_parameters, only: stepping_t
   use time_stepping, only: time_stepper_t
   use timers, only: timer_set_t
@@ -26,7 +26,7 @@ module layer_switches
   public :: advance_with_layers, move_with_plate
 
   !> Steps of central differences between two looks at the layers that damage asks for.
-  integer, parameter :: between_demands = 16
+  integer, parameter :: steps_between_zone_checks = 16
 
 contains
 
@@ -57,22 +57,22 @@ contains
     again = follows(model)
     if (.not. again) call stepper%advance(model, event, error)
     do while (again)
-      memory = remember(stepper)
+      memory = save_state(stepper)
       call stepper%advance(model, event, error)
       if (allocated(error)) return
       call model%profile%enter('layers')
       associate (now => stepper%now)
-        extents = demanded_extents(model, now%plies%stiffness, now%interfaces, now%motion%displacement)
-        more = any(extents > present_extents(model%scene))
-        again = more .and. any(now%interfaces%border_reached .and. model%scene%delaminations%follows)
+        extents = required_extents(model, now%plies%stiffness, now%interfaces, now%motion%displacement)
+        more = any(extents > present_extents(model%setup))
+        again = more .and. any(now%interfaces%border_reached .and. model%setup%delaminations%follows)
       end associate
-      if (again) call memory%take_back(stepper)
+      if (again) call memory%restore_state(stepper)
       if (more) call switch(model, stepper, linear_solver, extents, error)
       switched = switched .or. more
       call model%profile%leave()
       if (allocated(error)) return
     end do
-    if (.not. allocated(error)) call follow_contact(model, stepper%now, stepper%operator, error)
+    if (.not. allocated(error)) call update_contact_area(model, stepper%now, stepper%operator, error)
   end subroutine advance_with_layers
 
   !> Takes a step by central differences, and looks from time to time whether the plate needs more layers. Damage
@@ -95,34 +95,34 @@ contains
     switched = .false.
     call stepper%advance(model, event, error)
     if (allocated(error) .or. .not. follows(model)) return
-    if (modulo(stepper%now%step, between_demands) > 0) return
+    if (modulo(stepper%now%step, steps_between_zone_checks) > 0) return
     call model%profile%enter('layers')
     associate (now => stepper%now)
-      extents = demanded_extents(model, now%plies%stiffness, now%interfaces, now%motion%displacement)
+      extents = required_extents(model, now%plies%stiffness, now%interfaces, now%motion%displacement)
     end associate
-    switched = any(extents > present_extents(model%scene))
+    switched = any(extents > present_extents(model%setup))
     if (switched) call switch(model, stepper, linear_solver, extents, error)
     call model%profile%leave()
   end subroutine advance_explicit
 
-  !> True if layers follow their damage somewhere.
+  !> True if there are adaptive layers.
   pure logical function follows(model)
     type(model_t), intent(in) :: model
 
     follows = model%map%layered
-    if (follows) follows = any(model%scene%delaminations%follows)
+    if (follows) follows = any(model%setup%delaminations%follows)
   end function follows
 
   !> Extents of the zones.
-  pure function present_extents(scene) result(extents)
-    !> The scene
-    type(scene_t), intent(in) :: scene
+  pure function present_extents(setup) result(extents)
+    !> The setup
+    type(setup_t), intent(in) :: setup
     !> Full extents along x and y, (2, zones)
-    real(wp) :: extents(2, size(scene%delaminations))
+    real(wp) :: extents(2, size(setup%delaminations))
     integer :: zone
 
     do zone = 1, size(extents, 2)
-      extents(:, zone) = scene%delaminations(zone)%zone
+      extents(:, zone) = setup%delaminations(zone)%zone
     end do
   end function present_extents
 
@@ -142,25 +142,25 @@ contains
     type(timer_set_t) :: timers
     type(profile_t) :: profile
     type(layered_mesh_t) :: mesh
-    type(scene_t) :: scene
+    type(setup_t) :: setup
     type(stepping_t) :: stepping
     integer :: zone
 
     transfer%communicator = model%communicator
-    call stepper%look(model, error)
+    call stepper%complete_state(model, error)
     if (allocated(error)) return
     stepper%operator%ready = .false.
     call stepper%visit(transfer, model, error)
     if (allocated(error)) return
     timers = stepper%operator%timers
     call stepper%operator%release()
-    scene = model%scene
+    setup = model%setup
     do zone = 1, size(extents, 2)
-      scene%delaminations(zone)%zone = extents(:, zone)
+      setup%delaminations(zone)%zone = extents(:, zone)
     end do
     mesh = model%mesh
     profile = model%profile
-    call create_model(scene, transfer%communicator, model, error)
+    call create_model(setup, transfer%communicator, model, error)
     model%profile = profile
     if (allocated(error)) return
     stepping = stepper%stepping
@@ -169,19 +169,19 @@ contains
     call transfer%turn_to(mesh, model%mesh)
     call stepper%visit(transfer, model, error)
     if (.not. (allocated(error) .or. allocated(stepper%explicit))) &
-      call take_contact(model, stepper%now, stepper%operator, error)
+      call set_contact_area(model, stepper%now, stepper%operator, error)
     if (allocated(error)) return
     stepper%operator%timers = timers
     if (allocated(stepper%explicit)) then
-      call settle_explicit(model, transfer, stepper, error)
+      call transfer_explicit_state(model, transfer, stepper, error)
       return
     end if
-    call settle(model, transfer, stepper%now)
+    call transfer_state(model, transfer, stepper%now)
     if (allocated(stepper%now%path%change)) call move_with_plate(model, transfer, stepper%now%path%change)
   end subroutine switch
 
   !> Lets the new layers move with the plate that they were, and finds forces and energies anew.
-  subroutine settle(model, transfer, now)
+  subroutine transfer_state(model, transfer, now)
     type(model_t), intent(in) :: model
     !> Where points and elements come from
     type(layer_transfer_t), intent(in) :: transfer
@@ -205,16 +205,16 @@ contains
       energies(2) = model%product(motion%velocity, motion%momentum)/2
       call model%communicator%sum(energies)
       energies = energies*model%mesh%multiplicity
-      if (model%scene%has_static) energies(2) = now%ledger%kinetic
+      if (model%setup%has_static) energies(2) = now%ledger%kinetic
       now%ledger%layers = now%ledger%layers + now%ledger%strain + now%ledger%kinetic - sum(energies)
       now%ledger%strain = energies(1)
       now%ledger%kinetic = energies(2)
-      if (.not. model%scene%has_static) call hold_joined(model, transfer, now)
+      if (.not. model%setup%has_static) call balance_new_layers(model, transfer, now)
     end associate
-  end subroutine settle
+  end subroutine transfer_state
 
   !> Lets the new layers move with the plate that they were, and finds their forces. Collective.
-  subroutine settle_explicit(model, transfer, stepper, error)
+  subroutine transfer_explicit_state(model, transfer, stepper, error)
     !> The model; receives how the impactor's force is spread
     type(model_t), intent(inout) :: model
     !> Where points and elements come from
@@ -232,10 +232,10 @@ contains
       call now%plies%restack(model, transfer%is_split(model%distribution%elements))
       call explicit%resume(model, now)
       call explicit%renew_forces(model, now)
-      call stepper%look(model, error)
+      call stepper%complete_state(model, error)
       now%ledger%layers = now%ledger%layers + before - now%ledger%kinetic - now%ledger%strain
     end associate
-  end subroutine settle_explicit
+  end subroutine transfer_explicit_state
 
   !> Gives the new layers the rotations of the layer above, and no jumps.
   subroutine move_with_plate(model, transfer, field)
@@ -257,7 +257,7 @@ contains
   !> Adds to the internal forces those that held the new layers together: the plate was in equilibrium with them. They
   !> are gone at the end of the next step, and without a blow: with the internal forces alone, an integrator that weighs
   !> the old ones would throw the jumps to 1 + alpha_f/(1 - alpha_f) of what they settle at.
-  pure subroutine hold_joined(model, transfer, now)
+  pure subroutine balance_new_layers(model, transfer, now)
     type(model_t), intent(in) :: model
     !> Where points come from
     type(layer_transfer_t), intent(in) :: transfer
@@ -276,5 +276,5 @@ contains
         end associate
       end do
     end associate
-  end subroutine hold_joined
+  end subroutine balance_new_layers
 end module layer_switches

@@ -1,4 +1,4 @@
-!> What the history tells of lines that hold, move or press on the plate.
+!> What the history reports of lines that hold, move or press on the plate.
 module line_columns
   use kinds, only: wp
   use line_loads, only: line_load_t
@@ -90,7 +90,7 @@ contains
     integer :: i, along
 
     allocate (ends(0))
-    associate (plate => model%scene%plate, lines => model%lines%load)
+    associate (plate => model%setup%plate, lines => model%lines%load)
       on = on_ends(plate, lines)
       if (.not. any(on)) return
       along = lines(findloc(on, .true., dim=1))%component

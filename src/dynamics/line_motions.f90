@@ -44,7 +44,7 @@ contains
     do i = 1, size(model%lines)
       associate (line => model%lines(i))
         if (.not. line%load%prescribed) cycle
-        values = line%load%course(time, model%scene%ramp_time)
+        values = line%load%course(time, model%setup%ramp_time)
         call line%move_to(values(derivative), change)
       end associate
     end do
@@ -55,7 +55,7 @@ contains
     field = field + change
   end subroutine keep_lines
 
-  !> Gives the lines their velocity and acceleration at a time, and tells the energy that this brings: the work of the
+  !> Gives the lines their velocity and acceleration at a time, and gives the energy that this brings: the work of the
   !> forces that move them.
   subroutine move_lines(model, interfaces, time, motion, work)
     type(model_t), intent(in) :: model
@@ -65,7 +65,7 @@ contains
     real(wp), intent(in) :: time
     !> The motion at that time, with its momentum
     type(motion_t), intent(inout) :: motion
-    !> Change of the kinetic energy of the whole plate
+    !> Change of the kinetic energy of the full plate
     real(wp), intent(out) :: work
     real(wp), allocatable :: change(:, :), momentum(:, :)
 

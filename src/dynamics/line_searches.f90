@@ -13,22 +13,22 @@ module line_searches
   !> Force along the correction over that at its start with which it ends (Matthies and Strang).
   real(wp), parameter :: slope_left = 0.5_wp
   !> Parts of a bracket between which the next trial lies, and trials at most: an eighth trial is within 1e-3 of the
-  !> bracket, and a correction that asks for more is no good.
-  real(wp), parameter :: least_part = 0.1_wp, most_part = 0.9_wp
-  integer, parameter :: most_trials = 8
+  !> bracket, and a correction that requires more is rejected.
+  real(wp), parameter :: min_part = 0.1_wp, max_part = 0.9_wp
+  integer, parameter :: max_trials = 8
 
   !> A search along a correction.
   type :: line_search_t
     !> True: there is one
     logical :: on = .false.
     !> True: a correction along negative curvature, which may be too short
-    logical :: falls = .false.
+    logical :: negative_curvature = .false.
     !> Displacement before the correction, and the correction, (5, points)
     real(wp), allocatable :: start(:, :), direction(:, :)
     !> Part of the correction taken
     real(wp) :: share = 1
     !> Work of contacts along it at its start, and its fall
-    real(wp), private :: contact = 0, contact_fall = 0
+    real(wp), private :: contact = 0, contact_decrease = 0
     !> Force along it at its start
     real(wp), private :: first = 0
     !> Parts taken between which the force changes its sign, and the force there
@@ -39,13 +39,13 @@ module line_searches
     !> Begins a search.
     procedure :: begin
     !> Judges the part taken, and chooses another one.
-    procedure :: judge
+    procedure :: assess
   end type line_search_t
 
 contains
 
   !> Begins a search along a correction. Collective.
-  subroutine begin(self, model, start, direction, residual, smooth, contact_stiffness, falls)
+  subroutine begin(self, model, start, direction, residual, smooth, contact_stiffness, negative_curvature)
     !> The search
     class(line_search_t), intent(inout) :: self
     type(model_t), intent(in) :: model
@@ -56,7 +56,7 @@ contains
     !> What contacts and ties add to the stiffness of three components, (3, points)
     real(wp), intent(in) :: contact_stiffness(:, :)
     !> True: a correction along negative curvature
-    logical, intent(in) :: falls
+    logical, intent(in) :: negative_curvature
     real(wp) :: sums(3)
 
     associate (owned => model%distribution%owned)
@@ -66,10 +66,10 @@ contains
     call model%communicator%sum(sums)
     self%first = sums(1)
     self%contact = sums(1) - sums(2)
-    self%contact_fall = sums(3)
+    self%contact_decrease = sums(3)
     self%start = start
     self%direction = direction
-    self%falls = falls
+    self%negative_curvature = negative_curvature
     self%share = 1
     self%low = 0
     self%low_force = self%first
@@ -79,7 +79,7 @@ contains
   end subroutine begin
 
   !> Judges the part taken by the force along it, and chooses another one where that is too large. Collective.
-  subroutine judge(self, model, smooth, ends)
+  subroutine assess(self, model, smooth, ends)
     !> The search
     class(line_search_t), intent(inout) :: self
     type(model_t), intent(in) :: model
@@ -91,10 +91,10 @@ contains
 
     force = model%product(self%direction, smooth)
     call model%communicator%sum(force)
-    force = force + self%contact - self%share*self%contact_fall
+    force = force + self%contact - self%share*self%contact_decrease
     self%trials = self%trials + 1
-    ends = abs(force) <= slope_left*self%first .or. self%trials >= most_trials &
-           .or. force > 0 .and. .not. (self%falls .or. self%high < huge(self%high))
+    ends = abs(force) <= slope_left*self%first .or. self%trials >= max_trials &
+           .or. force > 0 .and. .not. (self%negative_curvature .or. self%high < huge(self%high))
     self%on = .not. ends
     if (ends) return
     if (force > 0) then
@@ -106,9 +106,9 @@ contains
     end if
     if (self%high < huge(self%high)) then
       part = self%low_force/(self%low_force - self%high_force)
-      self%share = self%low + min(most_part, max(least_part, part))*(self%high - self%low)
+      self%share = self%low + min(max_part, max(min_part, part))*(self%high - self%low)
     else
       self%share = 2*self%share
     end if
-  end subroutine judge
+  end subroutine assess
 end module line_searches

@@ -1,4 +1,4 @@
-!> Size of a residual of equilibrium relative to the forces in play; translations and rotations apart,
+!> Size of a residual of equilibrium relative to the reference force; translations and rotations apart,
 !> since their units differ.
 module residual_norms
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_positive_inf
@@ -14,7 +14,7 @@ module residual_norms
 
 contains
 
-  !> Residual over the largest of the forces in play, the larger of translations and rotations; infinite if
+  !> Residual over the largest of the reference forces, the larger of translations and rotations; infinite if
   !> any number is not finite. The same on every rank.
   real(wp) function relative_residual(communicator, numbering, residual, first, second, load, diagonal, displacement, &
                                       may_end, tolerance, length, largest) result(norm)
@@ -24,7 +24,7 @@ contains
     type(numbering_t), intent(in) :: numbering
     !> Residual at the owned points, (5, points)
     real(wp), contiguous, intent(in) :: residual(:, :)
-    !> Two kinds of forces in play, (5, points)
+    !> Two kinds of reference forces, (5, points)
     real(wp), contiguous, intent(in) :: first(:, :), second(:, :)
     !> This rank's share of the square of a further load on w
     real(wp), intent(in) :: load
@@ -36,7 +36,7 @@ contains
     !> Relative residual that will be accepted
     real(wp), intent(in) :: tolerance
     !> Lever arm that makes moments of forces, the laminate's thickness: moments balance among themselves, so
-    !> those left over tell nothing of the moments in play
+    !> those left over say nothing of the reference moments
     real(wp), intent(in) :: length
     !> Largest forces so far, translations and rotations: judged by these once forces have faded
     real(wp), intent(inout) :: largest(2)

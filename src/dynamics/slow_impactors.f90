@@ -11,7 +11,7 @@ module slow_impactors
   use tangent_operators, only: tangent_operator_t
   implicit none
   private
-  public :: push_plate, find_push, push_unmet, travel_for, follow_impactor
+  public :: push_plate, find_push, force_mismatch, travel_for, move_slow_impactor
 
 contains
 
@@ -23,7 +23,7 @@ contains
     !> Forces on the unknowns at the owned points, (5, points)
     real(wp), intent(inout) :: loads(:, :)
 
-    if (model%scene%has_impactor) loads(3, :) = loads(3, :) + force/model%mesh%multiplicity*model%patch
+    if (model%setup%has_impactor) loads(3, :) = loads(3, :) + force/model%mesh%multiplicity*model%patch
   end subroutine push_plate
 
   !> Finds the force that goes with the travel and with the plate's response to it, and adds this response to a
@@ -54,8 +54,8 @@ contains
     compliance = model%patch_mean(response)
     mean = model%contact_deflection(new%motion%displacement) + model%patch_mean(correction)
     ! A plate that gives way backwards would pull at the impactor: this step is for a shorter one.
-    call solve_impact_force(model%scene%indentation, new%indentation, new%indentation%alpha, &
-                            new%load_factor*model%scene%impactor%travel - mean + new%force*compliance, compliance, &
+    call solve_impact_force(model%setup%indentation, new%indentation, new%indentation%alpha, &
+                            new%load_factor*model%setup%impactor%travel - mean + new%force*compliance, compliance, &
                             .false., force, alpha, force_end, iterations, error)
     if (allocated(error)) return
     new%force_iterations = new%force_iterations + iterations
@@ -64,16 +64,16 @@ contains
   end subroutine find_push
 
   !> How far the force is from that of the indentation, over the larger of them.
-  real(wp) function push_unmet(model, new) result(unmet)
+  real(wp) function force_mismatch(model, new) result(mismatch)
     type(model_t), intent(in) :: model
     !> State at this load
     type(state_t), intent(in) :: new
     real(wp) :: force
 
-    force = indentation_force(model%scene%indentation, new%indentation, new%load_factor*model%scene%impactor%travel - &
+    force = indentation_force(model%setup%indentation, new%indentation, new%load_factor*model%setup%impactor%travel - &
                               model%contact_deflection(new%motion%displacement))
-    unmet = abs(force - new%force)/max(force, new%force, tiny(force))
-  end function push_unmet
+    mismatch = abs(force - new%force)/max(force, new%force, tiny(force))
+  end function force_mismatch
 
   !> Travel at which the impactor presses with the force of a state.
   real(wp) function travel_for(model, new) result(travel)
@@ -81,22 +81,22 @@ contains
     !> The state
     type(state_t), intent(in) :: new
 
-    travel = indentation_of(model%scene%indentation, new%indentation, new%force) + &
+    travel = indentation_of(model%setup%indentation, new%indentation, new%force) + &
              model%contact_deflection(new%motion%displacement)
   end function travel_for
 
   !> Completes an accepted load step: the impactor's place, the indentation, and the work of what moves it.
-  subroutine follow_impactor(model, old, new)
+  subroutine move_slow_impactor(model, old, new)
     type(model_t), intent(in) :: model
     !> State at the load before
     type(state_t), intent(in) :: old
     !> State at this load, its deflections known
     type(state_t), intent(inout) :: new
 
-    new%impactor%displacement = new%load_factor*model%scene%impactor%travel
-    call commit_indentation(model%scene%indentation, new%indentation, new%impactor%displacement - new%patch_mean)
+    new%impactor%displacement = new%load_factor*model%setup%impactor%travel
+    call commit_indentation(model%setup%indentation, new%indentation, new%impactor%displacement - new%patch_mean)
     new%ledger%indentation = new%indentation%work
     new%ledger%external_work = new%ledger%external_work + new%indentation%work - old%indentation%work + &
                                (old%force + new%force)/2*(new%patch_mean - old%patch_mean)
-  end subroutine follow_impactor
+  end subroutine move_slow_impactor
 end module slow_impactors

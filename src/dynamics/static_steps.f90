@@ -10,7 +10,7 @@ module static_steps
   use states, only: state_t
   use step_problems, only: step_problem_t
   use residual_norms, only: relative_residual
-  use slow_impactors, only: push_plate, find_push, push_unmet, follow_impactor
+  use slow_impactors, only: push_plate, find_push, force_mismatch, move_slow_impactor
   use static_tangents, only: solve_tangent
   use tangent_operators, only: tangent_operator_t
   implicit none
@@ -54,7 +54,7 @@ contains
     type(static_step_t) :: self
 
     self%contact_tolerance = contact_tolerance
-    self%curable = model%scene%kinematics /= kinematics_linear
+    self%retries_shorter = model%setup%kinematics /= kinematics_linear
     self%time = time
     self%load_factor = load_factor
   end function new_static_step
@@ -119,7 +119,7 @@ contains
     residual_norm = relative_residual(model%communicator, operator%numbering, residual, new%motion%internal, loads, &
                                       0.0_wp, operator%diagonal, new%motion%displacement, new%iterations > 1, &
                                       equilibrium%tolerance, model%thickness, new%largest_forces)
-    if (model%scene%has_impactor) residual_norm = max(residual_norm, push_unmet(model, new))
+    if (model%setup%has_impactor) residual_norm = max(residual_norm, force_mismatch(model, new))
   end function residual_norm
 
   !> New pressures may be too little a change for the tolerance; only a correction can make them fit the gaps.
@@ -136,7 +136,8 @@ contains
   end function may_stop
 
   !> Finds a correction by a fresh tangent wherever that may have changed.
-  subroutine find_correction(self, model, operator, old, new, residual, tolerance, correction, falls, error)
+  subroutine find_correction(self, model, operator, old, new, residual, tolerance, correction, negative_curvature, &
+                             error)
     !> The problem
     class(static_step_t), intent(inout) :: self
     !> Mesh, numbering and interfaces of the plate
@@ -154,11 +155,11 @@ contains
     !> Correction of the displacement, (5, points)
     real(wp), intent(inout) :: correction(:, :)
     !> True: it goes along negative curvature of the tangent
-    logical, intent(out) :: falls
+    logical, intent(out) :: negative_curvature
     !> Set if a solve fails
     type(error_t), allocatable, intent(inout) :: error
 
-    falls = .false.
+    negative_curvature = .false.
     if (.not. operator%ready .or. changes(model, new%iterations)) &
       call operator%renew(model, new%plies%stiffness, new%interfaces, new%motion%displacement, 1.0_wp, 0.0_wp, error)
     if (.not. allocated(error)) &
@@ -184,7 +185,7 @@ contains
     !> Set if a solve fails
     type(error_t), allocatable, intent(inout) :: error
 
-    if (model%scene%has_impactor) call find_push(model, operator, part_taken(new%iterations), new, correction, error)
+    if (model%setup%has_impactor) call find_push(model, operator, part_taken(new%iterations), new, correction, error)
     if (allocated(error)) error%code = exit_convergence
     correction = part_taken(new%iterations)*correction
   end subroutine complete_correction
@@ -195,13 +196,13 @@ contains
     !> Iterations of this step so far
     integer, intent(in) :: iterations
 
-    changes = model%scene%kinematics /= kinematics_linear .or. model%rig%unilateral
-    if (model%map%layered) changes = changes .or. any(model%scene%delaminations%law == law_cohesive)
+    changes = model%setup%kinematics /= kinematics_linear .or. model%rig%unilateral
+    if (model%map%layered) changes = changes .or. any(model%setup%delaminations%law == law_cohesive)
     ! Plies may have failed since the step before; later only contacts change.
-    if (.not. changes) changes = iterations == 0 .and. (model%scene%has_ply_damage .or. model%map%layered)
-    changes = changes .or. model%scene%has_crack_bands()
+    if (.not. changes) changes = iterations == 0 .and. (model%setup%has_ply_damage .or. model%map%layered)
+    changes = changes .or. model%setup%has_crack_bands()
     if (changes .or. .not. model%map%layered) return
-    changes = any(model%scene%delaminations%contact /= contact_none)
+    changes = any(model%setup%delaminations%contact /= contact_none)
   end function changes
 
   !> Part of a correction that is taken. Newton's iteration may go round between two sets of points whose damage grows;
@@ -255,7 +256,7 @@ contains
     ! that sets free would go into motion.
     call push_plate(model, old%force, loads_before)
     sums(5) = sums(5) + model%product(change, loads_before - old%motion%internal)/2
-    if (.not. (model%scene%has_ply_damage .or. allocated(model%nose))) sums(5) = 0
+    if (.not. (model%setup%has_ply_damage .or. allocated(model%nose))) sums(5) = 0
     call model%communicator%sum(sums)
     sums = sums*model%mesh%multiplicity
     call new%count_step(old)
@@ -267,7 +268,7 @@ contains
     fracture = new%interfaces%cohesive%dissipation(model, old%interfaces%cohesive)
     heat = new%interfaces%friction_heat(model, old%interfaces)
     new%ledger%friction = old%ledger%friction + heat
-    if (model%scene%has_impactor) call follow_impactor(model, old, new)
+    if (model%setup%has_impactor) call move_slow_impactor(model, old, new)
     call new%plies%book(model, damage)
     new%ledger%ply_damage = old%ledger%ply_damage + damage
     new%ledger%delamination = old%ledger%delamination + fracture

@@ -1,4 +1,4 @@
-!> What the history tells of an accepted step: motion, energies, the step itself and its iterations. The energies are
+!> What the history reports of an accepted step: motion, energies, the step itself and its iterations. The energies are
 !> defined in doc/manual/energy_ledger.md.
 module step_columns
   use kinds, only: wp
@@ -53,8 +53,8 @@ module step_columns
       &computation.', &
     'force_iterations | integer | - | Newton and bisection steps for the contact force in the step, &
       &counted likewise.', &
-    'contact_iterations | integer | - | Rounds of contact pressures in the step that had something to &
-      &settle, counted likewise.', &
+    'contact_iterations | integer | - | Updates of contact pressures in the step before they converged, &
+      &counted likewise.', &
     'total_iterations | integer | - | Sum of iterations over the accepted steps.', &
     'total_force_iterations | integer | - | Sum of force_iterations over the accepted steps.', &
     'total_contact_iterations | integer | - | Sum of contact_iterations over the accepted steps.', &

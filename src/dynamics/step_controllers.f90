@@ -3,55 +3,55 @@ module step_controllers
   use kinds, only: wp
   use archives, only: archive_t
   use gear_integrator, only: largest_growth_ratio
-  use stepping_parameters, only: stepping_t, adapt_t, follows_error, refactor_deflection
+  use stepping_parameters, only: stepping_t, adapt_t, is_error_controlled, refactor_deflection
   implicit none
   private
   public :: step_controller_t
 
   !> Energy release rate over its critical value from which fronts that grow a cell a step shorten the step.
-  real(wp), parameter :: nearing = 0.8_wp
+  real(wp), parameter :: ratio_near_growth = 0.8_wp
   !> Ratios of the mass factor between which a lagged operator still serves well.
   real(wp), parameter :: lag_low = 0.3_wp, lag_high = 1.7_wp
 
   !> Errors over the tolerance from which the next step is half as long, and from which a step is tried again. An error
   !> grows with the third power of the step: halving it brings the first back to a quarter.
-  real(wp), parameter, public :: shrinks = 2, retries = 8
+  real(wp), parameter, public :: shortening_error = 2, rejection_error = 8
   !> Error of a step in the rise of first contact, over the third power of their ratio.
   real(wp), parameter :: first_error = 4
   !> Error over the tolerance that a longer step may be expected to have, in an impact and after it.
-  real(wp), parameter :: spare_in_impact = 0.125_wp, spare_after = 0.5_wp
+  real(wp), parameter :: allowed_in_impact = 0.125_wp, allowed_after = 0.5_wp
   !> Doublings of a step that follows the error. Gear's method bears one after some equal steps: the product of its
   !> companion matrices then has a norm of 23, of 1100 with one after two steps, of 128 with two at once, of 6 without.
-  integer, parameter :: most_levels = 3, most_levels_of_gear = 1
+  integer, parameter :: max_doublings = 3, max_doublings_of_gear = 1
   integer, parameter, public :: equal_of_gear = 4
   !> Steps that must have gone well before the step grows: in an impact, where waves may come back, and after it.
-  integer, parameter :: quiet_in_impact = 24, quiet_after = 8
+  integer, parameter :: steady_in_impact = 24, steady_after = 8
   !> Ratio from which a step counts as longer than another one.
   real(wp), parameter :: longer_than = 1 + 1.0e-9_wp
   !> What a step misses of how plies break, over the most it may, from which the next is not twice as long. It grows
   !> with the square of the step: an onset passed in a step costs half the fall of the force times the way beyond it.
-  real(wp), parameter :: spare_in_breaking = 0.25_wp
+  real(wp), parameter :: allowed_damage_lag = 0.25_wp
   !> Parts of the time to the first event of which steps that follow the error are halves of halves, at most.
-  integer, parameter :: most_parts = 8
+  integer, parameter :: max_parts = 8
 
   !> What is remembered from step to step.
   type :: step_controller_t
     !> Step wanted next, and the last one taken
-    real(wp) :: wanted = 0, last = 0
+    real(wp) :: target = 0, last = 0
     !> Steps of its length in a row
-    integer :: equal = 0
+    integer :: equal_steps = 0
     !> Part of the step wanted that growing fronts leave: halves of halves, so that the factored operator need not
     !> follow every small change
     real(wp) :: part = 1
     !> Fewest iterations of a step since the operator was renewed, and the sum of those beyond it
     integer :: fewest = huge(1), excess = 0
     !> Steps since the step wanted last changed
-    integer :: quiet = 0
+    integer :: steady_steps = 0
     !> Largest error over its tolerance among them
     real(wp) :: error = 0
     !> Doublings of the step that wait until they fit into what is left to the next event
-    integer :: levels = 0
-    !> First of the steps that follow the error, below which none of them is shortened once anything has broken
+    integer :: doublings = 0
+    !> First of the steps that follow the error, below which none of them is shortened once anything has failed
     real(wp) :: first = 0
   contains
     !> First step of those that follow the error.
@@ -59,7 +59,7 @@ module step_controllers
     !> Shortest step that an error asks for.
     procedure :: shortest
     !> Learns from the error of an accepted step.
-    procedure :: follow_error
+    procedure :: adapt_to_error
     !> Shortens the step after one with too large an error.
     procedure :: shorten
     !> Step to try next, landing on the next output time.
@@ -67,9 +67,9 @@ module step_controllers
     !> Learns from an accepted step.
     procedure :: accept
     !> Shortens the step where fronts are about to grow or have grown.
-    procedure :: heed_fronts
+    procedure :: limit_by_fronts
     !> Lengthens the step after it was cut because plies break.
-    procedure :: heed_plies
+    procedure :: limit_by_ply_damage
     !> Learns from a rejected step.
     procedure :: reject
     !> True if the operator should be renewed before a step.
@@ -96,8 +96,8 @@ contains
 
     ratio = largest_growth_ratio
     if (present(growth)) ratio = growth
-    step = self%part*self%wanted
-    longer = step*2.0_wp**self%levels
+    step = self%part*self%target
+    longer = step*2.0_wp**self%doublings
     ! A longer step waits until the steps left are a multiple of it: so there are few lengths.
     if (abs(remaining/longer - anint(remaining/longer)) < 1.0e-6_wp .and. remaining > longer/2) step = longer
     step = min(step, limit)
@@ -115,7 +115,7 @@ contains
   end function ceiling_of
 
   !> Learns from an accepted step.
-  pure subroutine accept(self, stepping, step, iterations, lasting, stress_change)
+  pure subroutine accept(self, stepping, step, iterations, lag_iterations, stress_change)
     !> The controller
     class(step_controller_t), intent(inout) :: self
     !> How steps are taken
@@ -123,28 +123,28 @@ contains
     !> Step taken
     real(wp), intent(in) :: step
     !> Its iterations, and those of them that a fresh operator might have spared
-    integer, intent(in) :: iterations, lasting
+    integer, intent(in) :: iterations, lag_iterations
     !> Change of the stress at the struck point over its largest value so far
     real(wp), intent(in) :: stress_change
     real(wp) :: room
 
-    self%equal = merge(self%equal + 1, 1, abs(step - self%last) <= 1.0e-9_wp*step)
+    self%equal_steps = merge(self%equal_steps + 1, 1, abs(step - self%last) <= 1.0e-9_wp*step)
     self%last = step
-    self%fewest = min(self%fewest, lasting)
-    self%excess = self%excess + lasting - self%fewest
+    self%fewest = min(self%fewest, lag_iterations)
+    self%excess = self%excess + lag_iterations - self%fewest
     room = 2
-    if (follows_error(stepping%adapt)) then
+    if (is_error_controlled(stepping%adapt)) then
       return
     else if (stepping%adapt%on) then
       room = stepping%adapt%stress_change/max(stress_change, tiny(room)**0.5_wp)
       if (4*iterations > 3*stepping%equilibrium%max_iterations) room = min(room, 0.7_wp)
     end if
     if (room < 0.8_wp) then
-      self%wanted = self%wanted*max(room, 0.5_wp)
+      self%target = self%target*max(room, 0.5_wp)
     else if (room > 1.5_wp) then
-      self%wanted = self%wanted*largest_growth_ratio
+      self%target = self%target*largest_growth_ratio
     end if
-    self%wanted = min(max(self%wanted, stepping%time%step_min), stepping%time%step_max)
+    self%target = min(max(self%target, stepping%time%step_min), stepping%time%step_max)
   end subroutine accept
 
   !> First step of those that follow the error: the deck's, or what the tolerance leaves of the rise of first contact.
@@ -159,36 +159,36 @@ contains
     real(wp) :: parts, step
 
     step = stepping%time%step
-    if (stepping%outlook%rise > 0) &
-      step = min(step, stepping%outlook%rise*(first_error*stepping%adapt%tolerance)**(1.0_wp/3))
+    if (stepping%expected%rise > 0) &
+      step = min(step, stepping%expected%rise*(first_error*stepping%adapt%tolerance)**(1.0_wp/3))
     step = min(max(step, stepping%time%step_min), stepping%time%step_max)
     parts = remaining/step
-    self%wanted = 1
-    do while (parts > most_parts)
+    self%target = 1
+    do while (parts > max_parts)
       parts = parts/2
-      self%wanted = self%wanted/2
+      self%target = self%target/2
     end do
-    self%wanted = self%wanted*remaining/max(1.0_wp, ceiling_of(parts*(1 - 1.0e-9_wp)))
-    self%first = self%wanted
+    self%target = self%target*remaining/max(1.0_wp, ceiling_of(parts*(1 - 1.0e-9_wp)))
+    self%first = self%target
   end subroutine begin
 
-  !> Shortest step that an error asks for: the smallest of the deck, or once anything has broken the first of the run.
+  !> Shortest step that an error asks for: the smallest of the deck, or once anything has failed the first of the run.
   !> What breaks at once sends out waves as short as the mesh allows, and no step gets their error below the tolerance
   !> without following each of them.
-  pure real(wp) function shortest(self, stepping, broken)
+  pure real(wp) function shortest(self, stepping, damaged)
     !> The controller
     class(step_controller_t), intent(in) :: self
     !> How steps are taken
     type(stepping_t), intent(in) :: stepping
     !> True once plies have failed or delaminations have grown
-    logical, intent(in) :: broken
+    logical, intent(in) :: damaged
 
     shortest = stepping%time%step_min
-    if (broken) shortest = max(shortest, self%first)
+    if (damaged) shortest = max(shortest, self%first)
   end function shortest
 
   !> Learns from the error of an accepted step: halves the step, or doubles it once that pays for a factorization.
-  pure subroutine follow_error(self, stepping, step, error, remaining, is_over, gear, broken)
+  pure subroutine adapt_to_error(self, stepping, step, error, remaining, is_over, gear, damaged)
     !> The controller
     class(step_controller_t), intent(inout) :: self
     !> How steps are taken
@@ -202,40 +202,41 @@ contains
     !> True: Gear's method moves the impactor
     logical, intent(in) :: gear
     !> True once plies have failed or delaminations have grown
-    logical, intent(in) :: broken
-    integer :: levels
-    real(wp) :: spare, shortest
+    logical, intent(in) :: damaged
+    integer :: doublings
+    real(wp) :: allowed_error, shortest
 
-    if (step > 1.5_wp*self%part*self%wanted) then
-      self%wanted = step/self%part
-      call start_watch(self)
+    if (step > 1.5_wp*self%part*self%target) then
+      self%target = step/self%part
+      call reset_errors(self)
     end if
-    self%quiet = self%quiet + 1
+    self%steady_steps = self%steady_steps + 1
     self%error = max(self%error, error)
-    shortest = self%shortest(stepping, broken)
-    if (error > shrinks .and. self%part*self%wanted > shortest*longer_than) then
+    shortest = self%shortest(stepping, damaged)
+    if (error > shortening_error .and. self%part*self%target > shortest*longer_than) then
       call self%shorten(step, error, shortest)
-    else if (self%levels == 0 .and. self%quiet >= merge(quiet_after, quiet_in_impact, is_over)) then
-      spare = merge(spare_after, spare_in_impact, is_over)
-      do levels = merge(most_levels_of_gear, most_levels, gear), 1, -1
-        if (self%wanted*2.0_wp**levels > stepping%time%step_max) cycle
-        if (self%error*8.0_wp**levels > spare .and. self%wanted*2.0_wp**levels > shortest*longer_than) cycle
-        if (remaining*(1 - 0.5_wp**levels) > stepping%adapt%iterations*step) exit
+    else if (self%doublings == 0 .and. self%steady_steps >= merge(steady_after, steady_in_impact, is_over)) then
+      allowed_error = merge(allowed_after, allowed_in_impact, is_over)
+      do doublings = merge(max_doublings_of_gear, max_doublings, gear), 1, -1
+        if (self%target*2.0_wp**doublings > stepping%time%step_max) cycle
+        if (self%error*8.0_wp**doublings > allowed_error &
+            .and. self%target*2.0_wp**doublings > shortest*longer_than) cycle
+        if (remaining*(1 - 0.5_wp**doublings) > stepping%adapt%iterations*step) exit
       end do
-      call start_watch(self)
-      self%levels = levels
+      call reset_errors(self)
+      self%doublings = doublings
     end if
-  end subroutine follow_error
+  end subroutine adapt_to_error
 
   !> Begins to watch errors anew.
-  pure subroutine start_watch(self)
+  pure subroutine reset_errors(self)
     !> The controller
     class(step_controller_t), intent(inout) :: self
 
-    self%quiet = 0
+    self%steady_steps = 0
     self%error = 0
-    self%levels = 0
-  end subroutine start_watch
+    self%doublings = 0
+  end subroutine reset_errors
 
   !> Halves the step until the error is expected to be within the tolerance again.
   pure subroutine shorten(self, step, error, shortest)
@@ -246,16 +247,16 @@ contains
     !> Shortest step that an error asks for
     real(wp), intent(in) :: shortest
 
-    self%wanted = max(shortest, step/self%part*0.5_wp**max(1, nint(log(error/shrinks)/log(8.0_wp) &
+    self%target = max(shortest, step/self%part*0.5_wp**max(1, nint(log(error/shortening_error)/log(8.0_wp) &
                                                                                  + 0.2_wp)))
-    call start_watch(self)
+    call reset_errors(self)
   end subroutine shorten
 
   !> Shortens the step where delaminations that grow one cell a step are about to grow or have grown (section 3.3.3
   !> of the paper, step 5): as their energy release rate nears the critical one, the step is halved at 0.9 of it, again
   !> at 0.95 and so on in proportion to what is left, down to twice the smallest part; after an extension the smallest
   !> part is taken. Then it doubles from step to step, as far as the steps may grow.
-  pure subroutine heed_fronts(self, stepping, ratio, extended)
+  pure subroutine limit_by_fronts(self, stepping, ratio, extended)
     !> The controller, after `accept`
     class(step_controller_t), intent(inout) :: self
     !> How steps are taken
@@ -266,9 +267,9 @@ contains
     logical, intent(in) :: extended
     real(wp) :: smallest, allowed
 
-    smallest = min(1.0_wp, max(stepping%adapt%growth_step, stepping%time%step_min/self%wanted))
+    smallest = min(1.0_wp, max(stepping%adapt%growth_step, stepping%time%step_min/self%target))
     allowed = 1
-    do while (allowed/2 >= max(2*smallest, (1 - ratio)/(1 - nearing)))
+    do while (allowed/2 >= max(2*smallest, (1 - ratio)/(1 - ratio_near_growth)))
       allowed = allowed/2
     end do
     if (extended) then
@@ -276,21 +277,21 @@ contains
     else
       self%part = min(allowed, max(smallest, 2*self%part))
     end if
-  end subroutine heed_fronts
+  end subroutine limit_by_fronts
 
   !> Doubles a step that was cut because plies break, once it follows them with ease.
-  pure subroutine heed_plies(self, stepping, haste)
+  pure subroutine limit_by_ply_damage(self, stepping, damage_lag)
     !> The controller, after `accept`
     class(step_controller_t), intent(inout) :: self
     !> How steps are taken
     type(stepping_t), intent(in) :: stepping
     !> What the last step missed, over the most that it may
-    real(wp), intent(in) :: haste
+    real(wp), intent(in) :: damage_lag
 
     if (stepping%adapt%on) return
-    self%wanted = self%last/self%part
-    if (haste < spare_in_breaking) self%wanted = min(2*self%wanted, stepping%time%step_max)
-  end subroutine heed_plies
+    self%target = self%last/self%part
+    if (damage_lag < allowed_damage_lag) self%target = min(2*self%target, stepping%time%step_max)
+  end subroutine limit_by_ply_damage
 
   !> Learns from a rejected step: half of it is tried next.
   pure subroutine reject(self, step)
@@ -299,7 +300,7 @@ contains
     !> Step that failed
     real(wp), intent(in) :: step
 
-    self%wanted = step/(2*self%part)
+    self%target = step/(2*self%part)
   end subroutine reject
 
   !> True if the operator should be renewed before a step: by the paper's rule, or once the iterations
@@ -343,15 +344,15 @@ contains
     !> Where to or where from
     class(archive_t), intent(inout) :: archive
 
-    call archive%item('controller/wanted', self%wanted)
+    call archive%item('controller/wanted', self%target)
     call archive%item('controller/last', self%last)
-    call archive%item('controller/equal', self%equal)
+    call archive%item('controller/equal', self%equal_steps)
     call archive%item('controller/part', self%part)
     call archive%item('controller/fewest', self%fewest)
     call archive%item('controller/excess', self%excess)
-    call archive%item('controller/quiet', self%quiet)
+    call archive%item('controller/quiet', self%steady_steps)
     call archive%item('controller/error', self%error)
-    call archive%item('controller/levels', self%levels)
+    call archive%item('controller/levels', self%doublings)
     call archive%item('controller/first', self%first)
   end subroutine visit
 end module step_controllers

@@ -8,7 +8,7 @@ module step_errors
   use models, only: model_t
   use newmark_integrators, only: plate_integrator_t
   use states, only: state_t
-  use stepping_parameters, only: outlook_t
+  use stepping_parameters, only: expected_response_t
   use tan_sun_indentation, only: indentation_stiffness
   implicit none
   private
@@ -37,7 +37,7 @@ module step_errors
     !> Remembers a state that is about to be replaced.
     procedure :: note
     !> Forgets the states before a sudden change.
-    procedure :: forget
+    procedure :: reset
     !> True: impactor and plate are not to meet again.
     procedure :: impact_is_over
     !> Saves or loads what is remembered.
@@ -66,10 +66,10 @@ contains
     total = sum(self%share)
     call model%communicator%sum(total)
     self%share = self%share/total
-    if (.not. model%scene%has_impactor) return
+    if (.not. model%setup%has_impactor) return
     self%known = past
     self%time = -step*[1, 2]
-    self%indentation = model%scene%impactor%velocity*self%time
+    self%indentation = model%setup%impactor%velocity*self%time
   end subroutine start
 
   !> Weights of the last four states, latest first, in the error of displacements over the last step. For
@@ -102,14 +102,14 @@ contains
 
   !> Error of a step that has been tried: of the indentation as a part of the largest force, of the deflection as a part
   !> of the largest deflection, whichever is larger. 0 until there are four states. Collective.
-  subroutine estimate(self, model, integrator, outlook, now, trial, error)
+  subroutine estimate(self, model, integrator, expected, now, trial, error)
     !> The estimate; learns the largest force and deflection
     class(step_error_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Integrator of the plate
     type(plate_integrator_t), intent(in) :: integrator
     !> What the run is expected to show
-    type(outlook_t), intent(in) :: outlook
+    type(expected_response_t), intent(in) :: expected
     !> State at the start of the step
     type(state_t), intent(in) :: now
     !> State at its end
@@ -125,11 +125,11 @@ contains
                              + weights(2)*now%motion%displacement(3, :size(self%share)) &
                              + weights(3)*self%deflection(:, 1) + weights(4)*self%deflection(:, 2))**2)
     call model%communicator%sum(square)
-    deflection = max(outlook%deflection, self%largest, abs(trial%deflection))
+    deflection = max(expected%deflection, self%largest, abs(trial%deflection))
     if (deflection > 0) error = max(sqrt(square), abs(dot_product(weights, [trial%deflection, now%deflection, &
                                                                             self%struck])))/deflection
-    if (.not. model%scene%has_impactor .or. self%impact_is_over(outlook, trial)) return
-    force = max(outlook%force, self%force, trial%force)
+    if (.not. model%setup%has_impactor .or. self%impact_is_over(expected, trial)) return
+    force = max(expected%force, self%force, trial%force)
     if (force > 0) error = max(error, max(self%stiffness, stiffness_of(model, trial))/force* &
                                abs(dot_product(weights, [trial%indentation%alpha, now%indentation%alpha, &
                                                          self%indentation])))
@@ -141,20 +141,20 @@ contains
     !> The state
     type(state_t), intent(in) :: state
 
-    stiffness = indentation_stiffness(model%scene%indentation, state%indentation, state%indentation%alpha)
+    stiffness = indentation_stiffness(model%setup%indentation, state%indentation, state%indentation%alpha)
   end function stiffness_of
 
-  !> True: impactor and plate are apart, he flies off, and no other contact is expected.
-  pure logical function impact_is_over(self, outlook, state) result(over)
+  !> True: the impactor has left the plate and moves away from it, and no other contact is expected.
+  pure logical function impact_is_over(self, expected, state) result(over)
     !> The estimate
     class(step_error_t), intent(in) :: self
     !> What the run is expected to show
-    type(outlook_t), intent(in) :: outlook
+    type(expected_response_t), intent(in) :: expected
     !> The state
     type(state_t), intent(in) :: state
 
     over = self%force > 0 .and. .not. state%force > 0 .and. state%impactor%velocity < 0 .and. &
-           state%time > outlook%last_contact
+           state%time > expected%last_contact
   end function impact_is_over
 
   !> Remembers a state that is about to be replaced, and the largest of the one that replaces it.
@@ -174,7 +174,7 @@ contains
     self%deflection(:, 2) = self%deflection(:, 1)
     self%deflection(:, 1) = now%motion%displacement(3, :size(self%share))
     self%largest = max(self%largest, abs(next%deflection))
-    if (.not. model%scene%has_impactor) return
+    if (.not. model%setup%has_impactor) return
     self%force = max(self%force, next%force)
     self%stiffness = max(self%stiffness, stiffness_of(model, next))
   end subroutine note
@@ -182,12 +182,12 @@ contains
   !> Forgets the states before a sudden change: plies that failed or fronts that grew after a step change the forces at
   !> its end at once. Divided differences across that see a third derivative that grows the more the shorter the step,
   !> although the step, which ends there, has no such error.
-  pure subroutine forget(self)
+  pure subroutine reset(self)
     !> The estimate
     class(step_error_t), intent(inout) :: self
 
     self%known = 0
-  end subroutine forget
+  end subroutine reset
 
   !> Saves or loads what is remembered.
   subroutine visit(self, archive, model)

@@ -5,16 +5,16 @@ module step_intervals
   use stepping_parameters, only: is_explicit, stepping_t
   implicit none
   private
-  public :: steps_between_looks, steps_between_stages
+  public :: steps_between_checks, steps_between_stages
 
   !> Seconds that central differences take of one processor for an element of one layer in one step. Measured on panels
   !> with cohesive interfaces and crack bands, gfortran 12 with -O3 on one core of an AMD EPYC; the elastic Sun-Chen
   !> plate takes .2e-6.
   real(wp), parameter, public :: seconds_per_element = 0.55e-6_wp
   !> Seconds of one processor in which a run looks at its ledger, its limits, at signals and at elapsed time.
-  real(wp), parameter :: seconds_between_looks = 1
+  real(wp), parameter :: seconds_between_checks = 1
   !> Most steps between two looks. With these their costs, those of about one step, do not count.
-  integer, parameter :: most_between_looks = 64
+  integer, parameter :: max_between_checks = 64
   !> Steps of central differences between two looks at what of the interfaces is damaged. A look costs a twentieth of a
   !> step, and damage is found as late as a hundredth of the time in which the force of a blow rises.
   integer, parameter :: between_stages = 8
@@ -22,16 +22,16 @@ module step_intervals
 contains
 
   !> Steps between two looks. The same on any number of ranks and after a restart, as warnings are given then.
-  pure integer function steps_between_looks(stepping, elements) result(steps)
+  pure integer function steps_between_checks(stepping, elements) result(steps)
     !> How steps are taken
     type(stepping_t), intent(in) :: stepping
     !> Number of elements of all layers
     integer, intent(in) :: elements
 
     steps = 1
-    if (is_explicit(stepping)) steps = max(1, min(most_between_looks, int(seconds_between_looks/ &
+    if (is_explicit(stepping)) steps = max(1, min(max_between_checks, int(seconds_between_checks/ &
       (seconds_per_element*elements))))
-  end function steps_between_looks
+  end function steps_between_checks
 
   !> Steps between two looks at what of the interfaces is damaged.
   pure integer function steps_between_stages(stepping) result(steps)

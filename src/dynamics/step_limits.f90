@@ -7,7 +7,7 @@ module step_limits
   use models, only: model_t
   use states, only: state_t
   use step_controllers, only: step_controller_t, equal_of_gear
-  use stepping_parameters, only: adapt_t, follows_error
+  use stepping_parameters, only: adapt_t, is_error_controlled
   implicit none
   private
   public :: impactor_limit, growth_limit, has_gear
@@ -24,8 +24,8 @@ contains
     real(wp), intent(in) :: wanted
 
     limit = huge(limit)
-    if (.not. model%scene%has_impactor) return
-    limit = largest_safe_step(model%scene%impactor, model%scene%indentation, now%indentation, now%indentation%alpha, &
+    if (.not. model%setup%has_impactor) return
+    limit = largest_safe_step(model%setup%impactor, model%setup%indentation, now%indentation, now%indentation%alpha, &
                               now%impactor%velocity)
     if (limit < wanted) limit = wanted*2.0_wp**floor(log(limit/wanted)/log(2.0_wp))
   end function impactor_limit
@@ -39,7 +39,7 @@ contains
     type(step_controller_t), intent(in) :: controller
 
     ratio = largest_growth_ratio
-    if (.not. (follows_error(adapt) .or. model%scene%has_crack_bands() .and. .not. adapt%on)) return
+    if (.not. (is_error_controlled(adapt) .or. model%setup%has_crack_bands() .and. .not. adapt%on)) return
     ratio = 1024
     if (has_gear(model)) ratio = merge(2, 1, controller%equal >= equal_of_gear)
   end function growth_limit
@@ -48,6 +48,6 @@ contains
   pure logical function has_gear(model)
     type(model_t), intent(in) :: model
 
-    has_gear = model%scene%has_impactor .and. model%scene%impactor%integrator == integrator_gear4
+    has_gear = model%setup%has_impactor .and. model%setup%impactor%integrator == integrator_gear4
   end function has_gear
 end module step_limits

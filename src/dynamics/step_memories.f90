@@ -6,7 +6,7 @@ module step_memories
   use time_stepping, only: time_stepper_t
   implicit none
   private
-  public :: step_memory_t, remember
+  public :: step_memory_t, save_state
 
   !> A stepper before a step.
   type :: step_memory_t
@@ -19,13 +19,13 @@ module step_memories
     type(step_error_t) :: step_error
   contains
     !> Takes an accepted step back.
-    procedure :: take_back
+    procedure :: restore_state
   end type step_memory_t
 
 contains
 
   !> Keeps what the next step will change.
-  pure function remember(stepper) result(self)
+  pure function save_state(stepper) result(self)
     !> The stepper
     type(time_stepper_t), intent(in) :: stepper
     !> Its memory
@@ -34,10 +34,10 @@ contains
     self%now = stepper%now
     self%controller = stepper%controller
     self%step_error = stepper%step_error
-  end function remember
+  end function save_state
 
   !> Takes an accepted step back; it counts as tried in vain.
-  subroutine take_back(self, stepper)
+  subroutine restore_state(self, stepper)
     !> The memory of the stepper before the step
     class(step_memory_t), intent(in) :: self
     !> The stepper
@@ -48,5 +48,5 @@ contains
     stepper%step_error = self%step_error
     stepper%rejected = stepper%rejected + 1
     stepper%operator%ready = .false.
-  end subroutine take_back
+  end subroutine restore_state
 end module step_memories

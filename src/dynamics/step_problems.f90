@@ -15,32 +15,33 @@ module step_problems
   private
   public :: step_problem_t, solve_step
 
-  !> What is left of the residual by a correction at most, and of the forces in play, and part of the square of the last
+  !> What is left of the residual by a correction at most, and of the reference forces, and part of the square of the
+  !> last
   !> ratio of residuals that the next may leave (S. C. Eisenstat, H. F. Walker, SIAM J. Sci. Comput. 17 (1996) 16-32,
   !> choice 2).
-  real(wp), parameter :: most_left = 1.0e-3_wp, left_of_square = 0.9_wp
+  real(wp), parameter :: max_forcing_term = 1.0e-3_wp, forcing_factor = 0.9_wp
   !> What a correction by the factored operator may leave before the elements are asked for their tangents, each for a
   !> fifth of a solve.
-  real(wp), parameter :: well_left = 1.0e-2_wp
+  real(wp), parameter :: acceptable_reduction = 1.0e-2_wp
   !> Part of the tolerance to which the last correction goes: beyond it solves gain nothing.
-  real(wp), parameter :: spare = 0.3_wp
+  real(wp), parameter :: tolerance_margin = 0.3_wp
 
   !> One kind of step.
   type, abstract :: step_problem_t
     !> Distance of pressures and gaps from contact (complementarity) at which they have settled
     real(wp) :: contact_tolerance = 0
     !> True: a solver that fails may be cured by a shorter step
-    logical :: curable = .true.
+    logical :: retries_shorter = .true.
     !> True: corrections by the factored operator have left too much, so the elements are asked for their tangents
-    logical :: asks_elements = .false.
+    logical :: uses_element_tangents = .false.
     !> True: a correction is searched for the part of it to take
-    logical :: searches = .false.
+    logical :: searches_lines = .false.
   contains
     !> First guess of the state at the end of the step.
     procedure(begin_step), deferred :: begin
     !> Residual of equilibrium without ties and contact.
     procedure(find_residual), deferred :: find_residual
-    !> Size of a residual relative to the forces in play.
+    !> Size of a residual relative to the reference force.
     procedure(residual_norm), deferred :: residual_norm
     !> True if a residual within the tolerance is the end.
     procedure(may_stop), deferred :: may_stop
@@ -85,7 +86,7 @@ module step_problems
       real(wp), intent(out) :: energy
     end subroutine find_residual
 
-    !> Size of a residual relative to the forces in play; infinite if a number is not finite.
+    !> Size of a residual relative to the reference force; infinite if a number is not finite.
     real(wp) function residual_norm(self, model, equilibrium, operator, residual, new)
       import :: step_problem_t, model_t, equilibrium_t, tangent_operator_t, state_t, wp
       !> The problem
@@ -114,7 +115,8 @@ module step_problems
     end function may_stop
 
     !> Finds a correction by the tangent, renewing the operator where that is due.
-    subroutine find_correction(self, model, operator, old, new, residual, tolerance, correction, falls, error)
+    subroutine find_correction(self, model, operator, old, new, residual, tolerance, correction, negative_curvature, &
+                               error)
       import :: step_problem_t, model_t, tangent_operator_t, state_t, error_t, wp
       !> The problem
       class(step_problem_t), intent(inout) :: self
@@ -133,7 +135,7 @@ module step_problems
       !> Correction of the displacement, (5, points)
       real(wp), intent(inout) :: correction(:, :)
       !> True: it goes along negative curvature of the tangent
-      logical, intent(out) :: falls
+      logical, intent(out) :: negative_curvature
       !> Set if a solve fails or numbers are not finite
       type(error_t), allocatable, intent(inout) :: error
     end subroutine find_correction
@@ -210,7 +212,7 @@ contains
       call find_forces(problem, model, operator, old, new, residual, smooth, energy)
       norm = problem%residual_norm(model, equilibrium, operator, residual, new)
       if (search%on .and. norm > equilibrium%tolerance) then
-        call search%judge(model, smooth, ends)
+        call search%assess(model, smooth, ends)
         if (.not. ends) then
           new%motion%displacement = search%start + search%share*search%direction
           call problem%complete(old, new)
@@ -223,19 +225,21 @@ contains
       if (converged) converged = problem%may_stop(model, new, pressures_new)
       pressures_new = .false.
       if (converged) then
-        call settle(problem, model, new, converged)
+        call update_multipliers(problem, model, new, converged)
         if (converged) exit
         pressures_new = .true.
         before = 0
         if (new%contact_iterations < equilibrium%max_iterations) cycle
       end if
       if (.not. norm <= huge(norm) .or. new%iterations >= equilibrium%max_iterations) exit
-      problem%asks_elements = problem%asks_elements .or. before > 0 .and. norm > well_left*before
+      problem%uses_element_tangents = problem%uses_element_tangents .or. before > 0 &
+        .and. norm > acceptable_reduction*before
       call correct(problem, model, operator, old, new, residual, smooth, forcing_term(equilibrium, norm, before), &
                    correction, search, error)
       if (allocated(error)) then
         ! Numbers have run away, or the operator is not positive: a shorter step may cure it.
-        if ((problem%curable .or. model%scene%has_impactor) .and. error%code == exit_convergence) deallocate (error)
+        if ((problem%retries_shorter .or. model%setup%has_impactor) &
+            .and. error%code == exit_convergence) deallocate (error)
         return
       end if
       before = norm
@@ -253,10 +257,10 @@ contains
     !> Size of the residual, and of that before the last correction; 0: there was none
     real(wp), intent(in) :: norm, before
 
-    ! Faces that a correction has pressed into each other push with a thousandfold of all forces in play.
-    left = most_left*min(1.0_wp, 1/norm)
-    if (before > 0) left = min(left, left_of_square*(norm/before)**2)
-    left = max(left, spare*equilibrium%tolerance/norm)
+    ! Faces that a correction has pressed into each other push with a thousandfold of all reference forces.
+    left = max_forcing_term*min(1.0_wp, 1/norm)
+    if (before > 0) left = min(left, forcing_factor*(norm/before)**2)
+    left = max(left, tolerance_margin*equilibrium%tolerance/norm)
   end function forcing_term
 
   !> Residual, and what it is without ties and contacts.
@@ -279,7 +283,7 @@ contains
 
     call operator%timers%start('element forces')
     call problem%find_residual(model, old, new, residual, energy)
-    if (problem%searches) smooth = residual
+    if (problem%searches_lines) smooth = residual
     call model%profile%enter('contact and ties')
     call new%interfaces%act(model, new%motion%displacement, residual)
     call model%profile%leave()
@@ -287,20 +291,21 @@ contains
   end subroutine find_forces
 
   !> Takes the pressures found as the next estimates.
-  subroutine settle(problem, model, new, settled)
+  subroutine update_multipliers(problem, model, new, converged)
     !> The kind of step
     class(step_problem_t), intent(in) :: problem
     type(model_t), intent(in) :: model
     !> State at the end
     type(state_t), intent(inout) :: new
     !> True if they have settled
-    logical, intent(out) :: settled
+    logical, intent(out) :: converged
 
     call model%profile%enter('contact and ties')
-    call new%interfaces%settle(model, new%motion%displacement, problem%contact_tolerance, new%contact_iterations, &
-                               settled)
+    call new%interfaces%update_contact(model, new%motion%displacement, problem%contact_tolerance, &
+                                       new%contact_iterations, &
+                               converged)
     call model%profile%leave()
-  end subroutine settle
+  end subroutine update_multipliers
 
   !> Finds a correction, and begins to search it.
   subroutine correct(problem, model, operator, old, new, residual, smooth, tolerance, correction, search, error)
@@ -327,13 +332,13 @@ contains
     !> Set if a solve fails or numbers are not finite
     type(error_t), allocatable, intent(inout) :: error
     real(wp), allocatable :: stiffness(:, :)
-    logical :: falls
+    logical :: negative_curvature
 
-    call problem%find_correction(model, operator, old, new, residual, tolerance, correction, falls, error)
-    if (allocated(error) .or. .not. problem%searches) return
+    call problem%find_correction(model, operator, old, new, residual, tolerance, correction, negative_curvature, error)
+    if (allocated(error) .or. .not. problem%searches_lines) return
     allocate (stiffness(3, size(correction, 2)))
     call new%interfaces%faces%added_stiffness(model, operator%diagonal, stiffness)
     call new%interfaces%rig%add_stiffness(model, 0.0_wp, stiffness)
-    call search%begin(model, new%motion%displacement, correction, residual, smooth, stiffness, falls)
+    call search%begin(model, new%motion%displacement, correction, residual, smooth, stiffness, negative_curvature)
   end subroutine correct
 end module step_problems

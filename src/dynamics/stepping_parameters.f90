@@ -4,7 +4,7 @@ module stepping_parameters
   use kinds, only: wp
   implicit none
   private
-  public :: time_t, adapt_t, equilibrium_t, outlook_t, stepping_t, follows_error, is_explicit, &
+  public :: time_t, adapt_t, equilibrium_t, expected_response_t, stepping_t, is_error_controlled, is_explicit, &
             end_of_run
 
   !> Time integrators of the plate.
@@ -19,7 +19,7 @@ module stepping_parameters
   real(wp), parameter, public :: past_contact = 1.25_wp
   !> Longest run that follows the contact, over the end that was chosen for it: an impactor that is not gone by then
   !> perforates the plate or rests on it.
-  real(wp), parameter :: most_followed = 4
+  real(wp), parameter :: max_followed = 4
 
   !> Time integration of the plate.
   type :: time_t
@@ -35,7 +35,7 @@ module stepping_parameters
     integer :: integrator = integrator_generalized_alpha
     !> Newmark's parameters
     real(wp) :: beta = 0.25_wp, gamma = 0.5_wp
-    !> Seconds on the wall after which the run ends with a checkpoint; 0: none
+    !> Wall-clock seconds after which the run ends with a checkpoint; 0: none
     real(wp) :: wall_limit = 0
     !> Spectral radius at infinite frequency of generalised-alpha, 0 (most damping) to 1 (none)
     real(wp) :: rho_infinity = 1
@@ -63,21 +63,21 @@ module stepping_parameters
 
   !> Convergence of equilibrium.
   type :: equilibrium_t
-    !> Residual of equilibrium accepted, relative to the forces in play
+    !> Residual of equilibrium accepted, relative to the reference force
     real(wp) :: tolerance = 1.0e-6_wp
     !> Iterations of equilibrium before a step is tried again with half its length
     integer :: max_iterations = 30
   end type equilibrium_t
 
   !> What a run is expected to show, by a pilot calculation; 0: not known.
-  type :: outlook_t
+  type :: expected_response_t
     !> Time in which the force of first contact rises
     real(wp) :: rise = 0
     !> Largest force and deflection
     real(wp) :: force = 0, deflection = 0
     !> End of the last contact
     real(wp) :: last_contact = 0
-  end type outlook_t
+  end type expected_response_t
 
   !> All that steps are taken by.
   type :: stepping_t
@@ -92,7 +92,7 @@ module stepping_parameters
     !> Adaptivity
     type(adapt_t) :: adapt
     !> What the run is expected to show
-    type(outlook_t) :: outlook
+    type(expected_response_t) :: expected
     !> Convergence of equilibrium
     type(equilibrium_t) :: equilibrium
   end type stepping_t
@@ -114,20 +114,20 @@ contains
     !> When there was contact last
     real(wp), intent(in) :: contact_end
 
-    associate (time => stepping%time, settle => stepping%central%settle)
+    associate (time => stepping%time, central => stepping%central)
       end_of_run = time%end
-      if (time%follows_contact) end_of_run = min(most_followed*time%end, max(time%end, past_contact*contact_end))
+      if (time%follows_contact) end_of_run = min(max_followed*time%end, max(time%end, past_contact*contact_end))
       ! The plate comes to rest from the end of the contact on.
-      if (contact_end > 0 .and. settle > 0) &
-        end_of_run = max(end_of_run, min(contact_end, most_followed*time%end) + settle)
+      if (contact_end > 0 .and. central%settle > 0) &
+        end_of_run = max(end_of_run, min(contact_end, max_followed*time%end) + central%settle)
     end associate
   end function end_of_run
 
   !> True: steps follow the error that each makes.
-  elemental logical function follows_error(adapt)
+  elemental logical function is_error_controlled(adapt)
     !> Adaptive rules
     type(adapt_t), intent(in) :: adapt
 
-    follows_error = adapt%on .and. adapt%rule == rule_local_error
-  end function follows_error
+    is_error_controlled = adapt%on .and. adapt%rule == rule_local_error
+  end function is_error_controlled
 end module stepping_parameters

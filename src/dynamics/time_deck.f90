@@ -3,7 +3,7 @@ module time_deck
   use central_difference_parameters, only: central_difference_parameters_t
   use deck_choices, only: code_of
   use deck_problems, only: problems_t
-  use deck_remarks, only: tell, remark_idle, are_clear
+  use deck_remarks, only: report, remark_idle, are_clear
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
   use kinds, only: wp
@@ -33,8 +33,8 @@ module time_deck
     'time | step_max | real | 1 | time | = step, end with &adapt rule=''local_error'' | > 0 | &
       &Largest step taken with &adapt.', &
     'time | wall_limit | real | 1 | s | none | > 0 | &
-      &Seconds on the wall by which the run ends with a checkpoint; --wall-limit overrides it.', &
-    'time | integrator | choice | 1 | - | = by the scene | newmark generalized_alpha central_difference | &
+      &Wall-clock seconds by which the run ends with a checkpoint; --wall-limit overrides it.', &
+    'time | integrator | choice | 1 | - | = by the setup | newmark generalized_alpha central_difference | &
       &Time integrator of the plate; left out, central_difference where plies or interfaces soften.', &
     'time | beta | real | 1 | - | 0.25 | > 0, <= 1 | &
       &Newmark''s beta; 2 beta >= gamma keeps every step stable.', &
@@ -44,13 +44,13 @@ module time_deck
       &Generalised-alpha''s spectral radius at high frequency: 1 damps nothing, 0 most.', &
     'time | step_factor | real | 1 | - | 0.9 | > 0, <= 1 | &
       &Part of the stable step that central differences take.', &
-    'time | mass_scaling | real | 1 | - | = up to 10, as the waves bear | >= 1, <= 1000 | &
+    'time | mass_scaling | real | 1 | - | = up to 10, as the waves allow | >= 1, <= 1000 | &
       &Factor of in-plane and rotary inertia for central differences, never of the inertia of w; 1: none.', &
     'time | settle | real | 1 | time | 0 | >= 0 | &
     &Time in which a plate is damped to rest: before lines begin to load it, or after an impact.']
 
   !> Most steps of a run: more pass the range of default integers.
-  real(wp), parameter, public :: most_steps = 1.0e8_wp
+  real(wp), parameter, public :: max_steps = 1.0e8_wp
 
 contains
 
@@ -112,11 +112,11 @@ contains
 
     if (time%step > 0 .and. time%end > 0 .and. clear('step end')) then
       if (time%step > time%end) then
-        call tell(settings, problems, time_group, 'step', 'is longer than the run; allowed: up to end = '// &
+        call report(settings, problems, time_group, 'step', 'is longer than the run; allowed: up to end = '// &
                   to_text(time%end)//'.')
-      else if (time%end > most_steps*time%step) then
-        call tell(settings, problems, time_group, 'step', 'makes more than '//to_text(most_steps)//' steps; '// &
-                  'allowed: from '//to_text(time%end/most_steps)//'.')
+      else if (time%end > max_steps*time%step) then
+        call report(settings, problems, time_group, 'step', 'makes more than '//to_text(max_steps)//' steps; '// &
+                  'allowed: from '//to_text(time%end/max_steps)//'.')
       end if
     end if
     if (time%integrator == integrator_central_difference) then
@@ -126,13 +126,15 @@ contains
     end if
     call remark_idle(settings, problems, time_group, 'step_factor '//key_mass_scaling//' '//key_settle, &
                      'has no effect without integrator = ''central_difference''.')
-    if (time%step_min > time%step .and. clear('step step_min')) call tell(settings, problems, time_group, 'step_min', &
+    if (time%step_min > time%step .and. clear('step step_min')) call report(settings, problems, time_group, &
+                                                                            'step_min', &
       'is larger than the first step; allowed: up to step = '//to_text(time%step)//'.')
-    if (time%step_max < time%step .and. clear('step step_max')) call tell(settings, problems, time_group, 'step_max', &
+    if (time%step_max < time%step .and. clear('step step_max')) call report(settings, problems, time_group, &
+                                                                            'step_max', &
       'is smaller than the first step; allowed: from step = '//to_text(time%step)//'.')
     if (.not. clear(key_integrator)) return
     if (time%integrator == integrator_newmark) then
-      if (2*time%beta < time%gamma .and. clear('beta gamma')) call tell(settings, problems, time_group, 'beta', &
+      if (2*time%beta < time%gamma .and. clear('beta gamma')) call report(settings, problems, time_group, 'beta', &
         'the plate''s motion would be unstable; allowed: from gamma/2 = '//to_text(time%gamma/2)//'.')
       call remark_idle(settings, problems, time_group, 'rho_inf', 'has no effect with integrator = ''newmark''.')
     else if (time%integrator == integrator_generalized_alpha) then

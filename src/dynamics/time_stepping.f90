@@ -7,15 +7,15 @@ module time_stepping
   use initial_equilibrium, only: find_initial_equilibrium, find_acceleration, has_initial_motion
   use step_errors, only: step_error_t
   use central_differences, only: central_difference_t
-  use explicit_steps, only: advance_explicit, complete_step, settle_stresses
-  use stepping_parameters, only: stepping_t, follows_error, is_explicit
+  use explicit_steps, only: advance_explicit, complete_step, equilibrate_initial_stresses
+  use stepping_parameters, only: stepping_t, is_error_controlled, is_explicit
   use linear_solver_parameters, only: linear_solver_parameters_t
   use newmark_integrators, only: plate_integrator_t, plate_integrator
   use models, only: model_t
   use states, only: state_t, new_state
   use tangent_operators, only: tangent_operator_t
   use operator_restarts, only: visit_operator
-  use step_controllers, only: step_controller_t, retries, shrinks
+  use step_controllers, only: step_controller_t, rejection_error, shortening_error
   use step_limits, only: impactor_limit, growth_limit, has_gear
   use step_problems, only: solve_step
   use dynamic_steps, only: dynamic_step_t, new_dynamic_step
@@ -32,7 +32,7 @@ module time_stepping
   public :: time_stepper_t
 
   !> Largest energy that a step dissipates, over that of the step before: from it the first guess is made.
-  real(wp), parameter :: most_growth = 4
+  real(wp), parameter :: max_growth = 4
   !> All that evolves during a run.
   type :: time_stepper_t
     !> The state reached
@@ -44,7 +44,7 @@ module time_stepping
     !> Error that each step adds
     type(step_error_t) :: step_error
     !> The last one over its tolerance; and what the last step missed of how plies break, over the most that it may
-    real(wp), private :: error = 0, haste = 0
+    real(wp), private :: error = 0, damage_lag = 0
     !> True: the last step errs beyond the tolerance, and none is to be shorter
     logical :: errs = .false.
     !> Integrator of the plate
@@ -52,7 +52,7 @@ module time_stepping
     !> How steps are taken
     type(stepping_t) :: stepping
     !> Factorizations and solves when the present step was begun
-    integer, private :: factorizations_begun = 0, solves_begun = 0
+    integer, private :: factorizations_at_start = 0, solves_at_start = 0
     !> Steps that were tried in vain
     integer :: rejected = 0
     !> Unknowns that are free to move
@@ -68,8 +68,8 @@ module time_stepping
     procedure :: advance
     !> Smallest step worth trying.
     procedure :: smallest_step
-    !> Completes what a step by central differences leaves until somebody looks.
-    procedure :: look
+    !> Completes what a step by central differences leaves until output or a check is due.
+    procedure :: complete_state
     !> Energy to be dissipated per time.
     procedure, private :: energy_rate
     !> Time of a step by dissipation over that of one by load.
@@ -100,20 +100,20 @@ contains
       allocate (self%explicit)
       self%unknowns = count(.not. model%held)
       if (.not. resumed .and. has_initial_motion(model)) &
-        call settle_stresses(self%operator, model, linear_solver, self%now, error)
+        call equilibrate_initial_stresses(self%operator, model, linear_solver, self%now, error)
       if (.not. allocated(error)) call self%explicit%start(model, stepping%central, self%now)
       return
     end if
     allocate (self%trial, source=self%now)
-    self%controller%wanted = 1.0_wp/self%stepping%static_steps
+    self%controller%target = 1.0_wp/self%stepping%static_steps
     if (self%stepping%dissipation > 0) allocate (self%now%path%change, source=self%now%motion%displacement)
     call self%operator%create(model, linear_solver%factorization, error)
     self%unknowns = self%operator%numbering%total
     if (.not. allocated(error)) call find_initial_equilibrium(model, self%operator, self%now, error)
-    if (allocated(error) .or. model%scene%has_static) return
+    if (allocated(error) .or. model%setup%has_static) return
     self%integrator = plate_integrator(self%stepping%time)
-    self%controller%wanted = self%stepping%time%step
-    if (follows_error(stepping%adapt)) call self%step_error%start(model, stepping%time%step)
+    self%controller%target = self%stepping%time%step
+    if (is_error_controlled(stepping%adapt)) call self%step_error%start(model, stepping%time%step)
     if (allocated(model%pressure) .or. size(model%lines) > 0) &
       call find_acceleration(model, self%operator, self%integrator%mass_factor(stepping%time%step), self%now, error)
   end subroutine start
@@ -136,20 +136,20 @@ contains
       self%controller%last = self%explicit%steps%now
       return
     end if
-    follows = follows_error(self%stepping%adapt) .and. .not. model%scene%has_static
+    follows = is_error_controlled(self%stepping%adapt) .and. .not. model%setup%has_static
     if (follows .and. self%now%step == 0) call self%controller%begin(self%stepping, event)
     do
-      if (model%scene%has_static) then
+      if (model%setup%has_static) then
         call try_load(self, model, event, step, converged, error)
       else
         call try_step(self, model, event, step, converged, error)
       end if
       if (allocated(error)) return
       if (converged .and. follows) then
-        call self%step_error%estimate(model, self%integrator, self%stepping%outlook, self%now, self%trial, self%error)
+        call self%step_error%estimate(model, self%integrator, self%stepping%expected, self%now, self%trial, self%error)
         self%error = self%error/self%stepping%adapt%tolerance
-        shortest = self%controller%shortest(self%stepping, self%now%has_broken())
-        if (self%error > retries .and. step > shortest*(1 + 1.0e-9_wp)) then
+        shortest = self%controller%shortest(self%stepping, self%now%has_failures())
+        if (self%error > rejection_error .and. step > shortest*(1 + 1.0e-9_wp)) then
           self%rejected = self%rejected + 1
           call self%controller%shorten(step, self%error, shortest)
           cycle
@@ -162,20 +162,20 @@ contains
       if (self%stepping%dissipation > 0) self%now%path%by_dissipation = self%now%path%dissipated > 0
       if (step <= self%smallest_step(model)*self%step_scale()*(1 + 1.0e-9_wp)) then
         call fail(error, exit_convergence, 'No equilibrium from '// &
-                  trim(merge('load factor', 'time       ', model%scene%has_static))//' '// &
+                  trim(merge('load factor', 'time       ', model%setup%has_static))//' '// &
                   rounded_text(self%now%time)// &
                   ' on with the smallest step, '//rounded_text(step)//'.')
         return
       end if
     end do
-    if (follows) self%errs = self%error > shrinks .and. step <= shortest*(1 + 1.0e-9_wp)
+    if (follows) self%errs = self%error > shortening_error .and. step <= shortest*(1 + 1.0e-9_wp)
     if (abs(self%trial%time - event) <= 1.0e-9_wp*step) self%trial%time = event
     call accept(self, model, step)
-    if (model%scene%has_static .and. self%now%plies%softened) call settle(self, model, error)
+    if (model%setup%has_static .and. self%now%plies%softened) call equilibrate(self, model, error)
   end subroutine advance
 
   !> Brings a plate whose plies have failed under a load back into equilibrium with it, until no more of them fail.
-  subroutine settle(self, model, error)
+  subroutine equilibrate(self, model, error)
     !> The time stepper
     class(time_stepper_t), intent(inout) :: self
     type(model_t), intent(in) :: model
@@ -194,10 +194,10 @@ contains
       self%trial%step = self%now%step
       call accept(self, model, 0.0_wp)
     end do
-  end subroutine settle
+  end subroutine equilibrate
 
-  !> Completes what a step by central differences leaves until somebody looks. Collective.
-  subroutine look(self, model, error)
+  !> Completes what a step by central differences leaves until output or a check is due. Collective.
+  subroutine complete_state(self, model, error)
     !> The time stepper
     class(time_stepper_t), intent(inout) :: self
     !> Receives how the impactor's force is spread
@@ -206,7 +206,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     if (allocated(self%explicit)) call complete_step(self%explicit, model, self%now, error)
-  end subroutine look
+  end subroutine complete_state
 
   !> Smallest step worth trying.
   pure real(wp) function smallest_step(self, model) result(step)
@@ -214,7 +214,7 @@ contains
     class(time_stepper_t), intent(in) :: self
     type(model_t), intent(in) :: model
 
-    step = merge(1.0_wp/(1024*self%stepping%static_steps), self%stepping%time%step_min, model%scene%has_static)
+    step = merge(1.0_wp/(1024*self%stepping%static_steps), self%stepping%time%step_min, model%setup%has_static)
   end function smallest_step
 
   !> Tries one time step.
@@ -234,12 +234,12 @@ contains
     real(wp) :: mass_factor
     logical :: due
 
-    step = self%controller%propose(event - self%now%time, impactor_limit(model, self%now, self%controller%wanted), &
+    step = self%controller%propose(event - self%now%time, impactor_limit(model, self%now, self%controller%target), &
                                    growth_limit(model, self%stepping%adapt, self%controller))
     mass_factor = self%integrator%mass_factor(step)
     due = .not. self%operator%ready
     if (.not. due) &
-      due = self%controller%renewal_due(self%stepping%adapt, model%scene%kinematics == kinematics_von_karman, &
+      due = self%controller%renewal_due(self%stepping%adapt, model%setup%kinematics == kinematics_von_karman, &
         mass_factor/self%operator%mass_factor, self%now%deflection - self%operator%deflection, model%thickness)
     if (due) then
       call self%operator%renew(model, self%now%plies%stiffness, self%now%interfaces, self%now%motion%displacement, &
@@ -247,15 +247,15 @@ contains
       if (allocated(error)) return
       call self%controller%renewed()
     end if
-    self%factorizations_begun = self%operator%factorizations
-    self%solves_begun = self%operator%solves
+    self%factorizations_at_start = self%operator%factorizations
+    self%solves_at_start = self%operator%solves
     problem = new_dynamic_step(self%integrator, step, self%stepping%adapt%iterations)
     call solve_step(problem, model, self%stepping%equilibrium, self%operator, self%now, self%trial, converged, error)
     if (converged .and. model%map%layered) &
       call grow_in_step(problem, model, self%stepping%equilibrium, self%operator, self%now, self%trial, converged, &
                         error)
-    self%haste = self%trial%plies%haste
-    if (converged .and. self%haste > 1) converged = .not. step > self%smallest_step(model)*(1 + 1.0e-9_wp)
+    self%damage_lag = self%trial%plies%damage_lag
+    if (converged .and. self%damage_lag > 1) converged = .not. step > self%smallest_step(model)*(1 + 1.0e-9_wp)
   end subroutine try_step
 
   !> Tries one load step.
@@ -273,13 +273,13 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(static_step_t) :: by_load
     type(dissipation_step_t) :: by_dissipation
-    real(wp) :: wanted
+    real(wp) :: target
 
     step = self%controller%propose((event - self%now%time)/self%step_scale(), huge(step))*self%step_scale()
     associate (now => self%now)
       if (now%path%by_dissipation) then
-        wanted = self%energy_rate()*step
-        if (wanted > most_growth*now%path%dissipated) step = step*most_growth*now%path%dissipated/wanted
+        target = self%energy_rate()*step
+        if (target > max_growth*now%path%dissipated) step = step*max_growth*now%path%dissipated/target
         by_dissipation = new_dissipation_step(model, now%time + step, self%energy_rate()*step, &
                                               1.0_wp/self%stepping%static_steps)
         call solve_step(by_dissipation, model, self%stepping%equilibrium, self%operator, now, self%trial, converged, &
@@ -320,7 +320,7 @@ contains
     type(state_t), allocatable :: before
     real(wp) :: change
     logical :: extended
-    integer :: lasting
+    integer :: lag_iterations
 
     if (self%stepping%dissipation > 0 .and. step > 0) call self%trial%note_path(self%now, self%stepping%dissipation)
     self%trial%stress = struck_stress(model, self%trial%motion%displacement)
@@ -333,34 +333,34 @@ contains
     if (self%trial%plies%softened) call book_failures(model, self%now, self%trial)
     call note_flaws(model, self%trial%plies, self%trial%motion%displacement, self%trial%interfaces)
     associate (interfaces => self%trial%interfaces)
-      if (model%scene%has_static) &
+      if (model%setup%has_static) &
         call find_release_ratio(model, self%trial%plies%stiffness, self%trial%motion, interfaces)
       interfaces%border_reached = interfaces%border_reached .or. interfaces%cohesive%border_reached(model)
-      interfaces%faces%glued = interfaces%faces%glued .or. model%scene%has_impactor .and. .not. model%scene%has_static &
+      interfaces%faces%glued = interfaces%faces%glued .or. model%setup%has_impactor .and. .not. model%setup%has_static &
         .and. self%trial%impactor%velocity <= 0 .and. self%trial%force < self%now%force
     end associate
     extended = self%trial%ledger%delamination > self%now%ledger%delamination
-    if (follows_error(self%stepping%adapt) .and. .not. model%scene%has_static) then
+    if (is_error_controlled(self%stepping%adapt) .and. .not. model%setup%has_static) then
       call self%step_error%note(model, self%now, self%trial)
-      if (extended .or. self%trial%plies%softened) call self%step_error%forget()
+      if (extended .or. self%trial%plies%softened) call self%step_error%reset()
     end if
     call move_alloc(self%now, before)
     call move_alloc(self%trial, self%now)
     call move_alloc(before, self%trial)
-    if (model%scene%has_static) then
-      self%controller%wanted = 1.0_wp/self%stepping%static_steps
+    if (model%setup%has_static) then
+      self%controller%target = 1.0_wp/self%stepping%static_steps
     else
-      lasting = self%operator%solves - self%solves_begun
-      call self%controller%accept(self%stepping, step, self%now%iterations, lasting, change)
-      if (model%scene%has_crack_bands()) call self%controller%heed_plies(self%stepping, self%haste)
-      if (follows_error(self%stepping%adapt)) &
-        call self%controller%follow_error(self%stepping, step, self%error, self%stepping%time%end - self%now%time, &
-          .not. model%scene%has_impactor .or. self%step_error%impact_is_over(self%stepping%outlook, self%now), &
-                                          has_gear(model), self%now%has_broken())
+      lag_iterations = self%operator%solves - self%solves_at_start
+      call self%controller%accept(self%stepping, step, self%now%iterations, lag_iterations, change)
+      if (model%setup%has_crack_bands()) call self%controller%limit_by_ply_damage(self%stepping, self%damage_lag)
+      if (is_error_controlled(self%stepping%adapt)) &
+        call self%controller%adapt_to_error(self%stepping, step, self%error, self%stepping%time%end - self%now%time, &
+          .not. model%setup%has_impactor .or. self%step_error%impact_is_over(self%stepping%expected, self%now), &
+                                          has_gear(model), self%now%has_failures())
       ! What a step took until it renewed the operator itself does not speak against the new one.
-      if (self%operator%factorizations /= self%factorizations_begun) call self%controller%renewed()
+      if (self%operator%factorizations /= self%factorizations_at_start) call self%controller%renewed()
       if (grows_by_steps(model)) &
-        call self%controller%heed_fronts(self%stepping, self%now%interfaces%growth_ratio, extended)
+        call self%controller%limit_by_fronts(self%stepping, self%now%interfaces%growth_ratio, extended)
     end if
   end subroutine accept
 

@@ -60,9 +60,9 @@ contains
         call now%plies%total_dissipation(model)
         ledger%ply_damage = sum(now%plies%dissipated) + now%plies%permanent_shear
       end if
-      if (.not. model%scene%has_impactor) return
+      if (.not. model%setup%has_impactor) return
       ledger%indentation = now%indentation%work
-      if (model%scene%impactor%travel > 0) return
+      if (model%setup%impactor%travel > 0) return
       ledger%impactor = method%impact%energy(model, method%steps%now, now)
     end associate
   end subroutine book_energies

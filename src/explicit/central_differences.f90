@@ -134,14 +134,14 @@ contains
     call self%add_loads(model, now, [0.0_wp, 0.0_wp])
   end subroutine start
 
-  !> Tells points that a frame or a line guides from those that only forces move.
+  !> Separates points that a frame or a line constrains from those that only forces move.
   subroutine sort_points(self)
     !> The method
     type(central_difference_t), intent(inout) :: self
     logical :: guided(size(self%stacks%single))
     integer :: i
 
-    guided = [(self%rigs%bears(self%stacks%single(i)) .or. self%lines%is_pinned(self%stacks%single(i)), &
+    guided = [(self%rigs%on_frame(self%stacks%single(i)) .or. self%lines%is_pinned(self%stacks%single(i)), &
                i=1, size(guided))]
     self%plain = pack(self%stacks%single, .not. guided)
     self%guided = pack(self%stacks%single, guided)
@@ -157,13 +157,13 @@ contains
     type(state_t), intent(in) :: now
     real(wp) :: square
 
-    if (model%scene%kinematics == kinematics_von_karman .and. modulo(now%step, between_frequencies) == 0) then
+    if (model%setup%kinematics == kinematics_von_karman .and. modulo(now%step, between_frequencies) == 0) then
       square = stiffened_frequency(model, now%plies%stiffness, self%of_elements, self%parameters%mass_scaling, &
                                    self%motion)
       if (square > self%stiffened .or. square < relaxed*self%stiffened) self%stiffened = stiffened_reserve*square
     end if
     square = self%stiffened**2
-    if (model%scene%has_impactor) &
+    if (model%setup%has_impactor) &
       square = square + self%impact%contact_frequency_square(model, now%indentation)
     step = self%parameters%step_factor*2/sqrt(square)
     if (self%parameters%longest > 0) step = min(step, self%parameters%longest)
@@ -184,11 +184,11 @@ contains
 
     step = self%steps%now
     longest = self%longest_step(model, now)
-    if (.not. (step <= longest .and. step > relaxed*longest)) step = whole_step(model%scene%ramp_time, longest)
+    if (.not. (step <= longest .and. step > relaxed*longest)) step = whole_step(model%setup%ramp_time, longest)
     self%steps = step_lengths_t(now=step, last=self%steps%now)
     call prepare(self, model)
-    load_factors = [now%load_factor, model%scene%load_factor_at(now%time + step)]
-    call self%lines%find_rates(model, self%steps, load_factors(2), model%scene%offset_left(now%time + step), &
+    load_factors = [now%load_factor, model%setup%load_factor_at(now%time + step)]
+    call self%lines%find_rates(model, self%steps, load_factors(2), model%setup%offset_left(now%time + step), &
                                self%motion)
     call self%change_length(model, now%motion%velocity, -1)
     associate (u => now%motion%displacement, v => now%motion%velocity)
@@ -201,7 +201,7 @@ contains
       call self%circles%hold(model, self%steps, u(3, :), v(3, :))
       call self%inertia%spread(u)
       call self%inertia%spread(v)
-      call self%stacks%follow(self%inertia, now%interfaces%cohesive)
+      call self%stacks%copy_to_followers(self%inertia, now%interfaces%cohesive)
       call self%change_length(model, v, 1)
       call model%profile%leave()
       call model%halo%update(u)
@@ -265,9 +265,9 @@ contains
         call self%lines%prescribe(p, v(:, p))
         call self%lines%react(p, self%steps, self%inertia%mass(:, p), before, v(:, p), self%force(:, p))
       end if
-      if (self%rigs%bears(p)) then
+      if (self%rigs%on_frame(p)) then
         if (u(3, p) + self%steps%now*v(3, p) > 0 .or. self%rigs%reaction(p) > 0) &
-          call self%rigs%bear(p, self%steps, self%inertia%inverse(7, p), u(3, p), v(3, p))
+          call self%rigs%stop_at_frame(p, self%steps, self%inertia%inverse(7, p), u(3, p), v(3, p))
       end if
       u(:, p) = u(:, p) + self%steps%now*v(:, p)
     end do
@@ -312,7 +312,7 @@ contains
     change = self%steps%now*model%motion_of(now%motion%velocity)
     call self%lines%press(model, load_factors, change, loads)
     if (allocated(model%pressure)) then
-      amplitudes = model%scene%pressure%amplitude([now%time - self%steps%now, now%time])
+      amplitudes = model%setup%pressure%amplitude([now%time - self%steps%now, now%time])
       loads = loads + amplitudes(2)*model%pressure
       self%lines%work = self%lines%work + sum(amplitudes)/2*model%pressure(3, :)*change(3, :)
     end if
@@ -384,7 +384,7 @@ contains
       call archive%field('explicit/forces', owned, points, self%force)
       call self%rigs%visit(archive, owned, points)
       call self%impact%visit(archive)
-      if (size(model%lines) > 0 .or. allocated(model%pressure) .or. model%scene%inherits) &
+      if (size(model%lines) > 0 .or. allocated(model%pressure) .or. model%setup%inherits) &
         call self%lines%visit(archive, owned, points)
       if (.not. model%map%layered) return
       allocate (interfaces(8, size(self%force, 2)))

@@ -43,11 +43,11 @@ contains
     integer :: i, k, cell, nodes(9)
 
     allocate (self%points(3, 0), self%weights(3, 0), self%rig(0))
-    if (allocated(model%scene%supports)) then
-      do i = 1, size(model%scene%supports)
-        if (model%scene%supports(i)%unilateral) cycle
+    if (allocated(model%setup%supports)) then
+      do i = 1, size(model%setup%supports)
+        if (model%setup%supports(i)%unilateral) cycle
         do cell = 1, product(model%mesh%cells)
-          crossings = circle_crossings(model%mesh, model%scene%supports(i), cell)
+          crossings = circle_crossings(model%mesh, model%setup%supports(i), cell)
           nodes = model%mesh%cell_nodes(cell)
           do k = 1, size(crossings)
             self%rig = [self%rig, i]

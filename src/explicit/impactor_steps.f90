@@ -63,10 +63,10 @@ contains
     type(indentation_t), intent(in) :: indentation
     real(wp) :: slope, compliance
 
-    slope = indentation_stiffness(model%scene%indentation, indentation, indentation%alpha)
+    slope = indentation_stiffness(model%setup%indentation, indentation, indentation%alpha)
     if (slope > self%contact_stiffness) self%contact_stiffness = slope_reserve*slope
     compliance = sum(self%patch%weights**2*self%patch%inverse)/model%mesh%multiplicity
-    if (.not. model%scene%impactor%travel > 0) compliance = compliance + 1/model%scene%impactor%mass
+    if (.not. model%setup%impactor%travel > 0) compliance = compliance + 1/model%setup%impactor%mass
     square = self%contact_stiffness*compliance
   end function contact_frequency_square
 
@@ -83,12 +83,12 @@ contains
 
     call self%patch%find_deflections(model, now%motion%displacement, w, now%deflection)
     now%patch_mean = self%patch%mean(w)
-    if (.not. model%scene%has_impactor) return
-    associate (impactor => now%impactor, parameters => model%scene%impactor)
+    if (.not. model%setup%has_impactor) return
+    associate (impactor => now%impactor, parameters => model%setup%impactor)
       before = now%force
       if (parameters%travel > 0) then
-        change = parameters%travel*smooth_ramp(now%time/model%scene%ramp_time, &
-                                               parameters%rise/model%scene%ramp_time, 0) - impactor%displacement
+        change = parameters%travel*smooth_ramp(now%time/model%setup%ramp_time, &
+                                               parameters%rise/model%setup%ramp_time, 0) - impactor%displacement
         self%velocity = change/steps%now
       else
         call accelerate(self, model, steps, before)
@@ -96,8 +96,8 @@ contains
       end if
       impactor%displacement = impactor%displacement + change
       alpha = impactor%displacement - now%patch_mean
-      now%force = indentation_force(model%scene%indentation, now%indentation, alpha)
-      call commit_indentation(model%scene%indentation, now%indentation, alpha)
+      now%force = indentation_force(model%setup%indentation, now%indentation, alpha)
+      call commit_indentation(model%setup%indentation, now%indentation, alpha)
       impactor%force = now%force
       call self%patch%spread(w, alpha)
       impactor%velocity = self%velocity
@@ -120,7 +120,7 @@ contains
     real(wp), intent(in) :: force
     real(wp) :: acceleration
 
-    associate (parameters => model%scene%impactor)
+    associate (parameters => model%setup%impactor)
       acceleration = parameters%gravity - force/parameters%mass
       self%loss = self%loss + parameters%mass*acceleration**2*(steps%now - steps%last)/4*steps%mean()
       self%velocity = self%velocity + steps%mean()*acceleration
@@ -137,7 +137,7 @@ contains
     !> The state
     type(state_t), intent(in) :: now
 
-    associate (parameters => model%scene%impactor)
+    associate (parameters => model%setup%impactor)
       energy = parameters%mass*(self%velocity*(self%velocity + step*(parameters%gravity &
         - now%force/parameters%mass))/2 - parameters%gravity*now%impactor%displacement)
     end associate

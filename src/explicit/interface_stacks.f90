@@ -23,12 +23,12 @@ module interface_stacks
     !> Stiffness of the undamaged interface against shear and opening, force per jump, (2, points)
     real(wp), allocatable :: stiffness(:, :)
     !> Twice the energy of the undamaged interface at a node below which no damage begins or grows, (points)
-    real(wp), allocatable :: least_onset(:)
+    real(wp), allocatable :: min_onset(:)
     !> True where some interface of a stack is damaged, (stacks)
     logical, allocatable :: damaged(:)
     !> Square of the step times the compliance of the layers, its diagonal and the entries beside it, along x, y and z,
     !> (3, points)
-    real(wp), allocatable :: diagonal(:, :), beside(:, :)
+    real(wp), allocatable :: diagonal(:, :), off_diagonal(:, :)
     !> Factors of the undamaged stacks, (2, 3, points)
     real(wp), allocatable :: factors(:, :, :)
     !> Forces on the jumps in the last step, and change of the jumps in it, (3, points)
@@ -43,7 +43,7 @@ module interface_stacks
     !> Finds the onsets, which flaws lower.
     procedure :: find_onsets
     !> Gives points that follow others their state.
-    procedure :: follow
+    procedure :: copy_to_followers
   end type interface_stacks_t
 
 contains
@@ -82,7 +82,8 @@ contains
       self%area(inertia%leaders(i)) = self%area(inertia%leaders(i)) + self%area(inertia%followers(i))
       self%area(inertia%followers(i)) = 0
     end do
-    allocate (self%stiffness(2, points), self%least_onset(points), self%diagonal(3, points), self%beside(3, points), &
+    allocate (self%stiffness(2, points), self%min_onset(points), self%diagonal(3, points), self%off_diagonal(3, &
+      points), &
               self%factors(2, 3, points), self%forces(3, points), self%change(3, points), self%lost(2, points), &
               source=0.0_wp)
     do i = 1, model%distribution%owned
@@ -120,7 +121,7 @@ contains
     do i = 1, model%distribution%owned
       if (model%zone(i) == 0) cycle
       law = cohesive%law_at(model, i)
-      self%least_onset(i) = 2*self%area(i)*min(law%toughness_opening, law%toughness_shear)/law%failure_ratio
+      self%min_onset(i) = 2*self%area(i)*min(law%toughness_opening, law%toughness_shear)/law%failure_ratio
     end do
   end subroutine find_onsets
 
@@ -140,7 +141,7 @@ contains
   end subroutine find_damaged
 
   !> Gives the interfaces at points that follow others the state of those.
-  pure subroutine follow(self, inertia, cohesive)
+  pure subroutine copy_to_followers(self, inertia, cohesive)
     !> The stacks
     class(interface_stacks_t), intent(in) :: self
     !> Lumped inertia, with the points that follow
@@ -157,7 +158,7 @@ contains
         cohesive%points(follower)%sliding%slip = inertia%signs(1:2, i)*cohesive%points(follower)%sliding%slip
       end associate
     end do
-  end subroutine follow
+  end subroutine copy_to_followers
 
   !> Compliances of the layers between interfaces for steps of a length, and factors of stacks without damage.
   pure subroutine prepare(self, inertia, step_square)
@@ -175,8 +176,8 @@ contains
           self%diagonal(:, p) = step_square*[coupling(upper(along_x:), z, z) + coupling(lower(along_x:), z, z), &
                                              coupling(upper(along_y:), z, z) + coupling(lower(along_y:), z, z), &
                                              upper(along_z) + lower(along_z)]
-          self%beside(:, p) = 0
-          if (p < self%first(i) + self%layers(i) - 1) self%beside(:, p) = -step_square* &
+          self%off_diagonal(:, p) = 0
+          if (p < self%first(i) + self%layers(i) - 1) self%off_diagonal(:, p) = -step_square* &
             [coupling(lower(along_x:), z, self%height(p + 1)), coupling(lower(along_y:), z, self%height(p + 1)), &
              lower(along_z)]
         end associate
@@ -184,7 +185,7 @@ contains
       associate (from => self%first(i) + 1, to => self%first(i) + self%layers(i) - 1)
         do k = 1, 3
           call factorize(self%stiffness(merge(2, 1, k == 3), from:to), self%diagonal(k, from:to), &
-                         self%beside(k, from:to), self%factors(:, k, from:to))
+                         self%off_diagonal(k, from:to), self%factors(:, k, from:to))
         end do
       end associate
     end do

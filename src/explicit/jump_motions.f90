@@ -46,7 +46,7 @@ contains
       u(1:3, p) = jump
       stacks%forces(:, p) = forces(:, j)
       stacks%change(:, p) = change
-      if (k(1)*(jump(1)**2 + jump(2)**2) + k(3)*max(jump(3), 0.0_wp)**2 < stacks%least_onset(p)) cycle
+      if (k(1)*(jump(1)**2 + jump(2)**2) + k(3)*max(jump(3), 0.0_wp)**2 < stacks%min_onset(p)) cycle
       cohesive%points(p)%sliding%slip = u(1:2, p)
       call damage_point(stacks, model, p, u(1:3, p), 0.0_wp, cohesive)
       if (cohesive%points(p)%damage > 0) stacks%damaged(i) = .true.

@@ -6,7 +6,7 @@ module rig_reactions
   use models, only: model_t
   use rank_totals, only: totals_of
   use states, only: state_t
-  use support_parameters, only: most_supports
+  use support_parameters, only: max_supports
   implicit none
   private
   public :: reactions_of
@@ -22,19 +22,19 @@ contains
     !> The state
     type(state_t), intent(in) :: now
     !> 0 for rigs that the deck does not have
-    real(wp) :: reactions(most_supports)
-    type(exact_sum_t) :: sums(most_supports)
+    real(wp) :: reactions(max_supports)
+    type(exact_sum_t) :: sums(max_supports)
     integer :: i
 
     reactions = 0
-    if (.not. allocated(model%rig%holds)) return
+    if (.not. allocated(model%rig%held_by)) return
     do i = 1, model%distribution%owned
-      associate (holds => model%rig%holds(i), bears => model%rig%bears(i), clamps => model%rig%clamps(i))
-        if (holds > 0) then
-          call sums(holds)%add(method%force(3, i))
-          if (has_interface_below(i)) call sums(holds)%add(method%stacks%forces(3, i + 1))
+      associate (held_by => model%rig%held_by(i), on_frame => model%rig%frame(i), clamps => model%rig%clamps(i))
+        if (held_by > 0) then
+          call sums(held_by)%add(method%force(3, i))
+          if (has_interface_below(i)) call sums(held_by)%add(method%stacks%forces(3, i + 1))
         else
-          if (bears > 0) call sums(bears)%add(method%rigs%reaction(i))
+          if (on_frame > 0) call sums(on_frame)%add(method%rigs%reaction(i))
           if (clamps > 0) &
             call sums(clamps)%add(model%rig%springs(3, i)*now%motion%displacement(3, i) - model%rig%presses(i))
         end if

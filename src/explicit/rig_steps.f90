@@ -14,14 +14,14 @@ module rig_steps
   !> State of frames and springs at this rank's points, (points) each.
   type :: rig_steps_t
     !> True where a frame bears the plate
-    logical, allocatable :: bears(:)
+    logical, allocatable :: on_frame(:)
     !> Reaction of the frame in the last step, force, and change of w in it
     real(wp), allocatable :: reaction(:), approach(:)
     !> Energy lost so far on frames, and to the implicit treatment of springs and to changes of the step's length
     real(wp), allocatable :: frame_loss(:), step_loss(:)
   contains
     !> Brings a node to rest on its frame.
-    procedure :: bear
+    procedure :: stop_at_frame
     !> Adds the forces of springs, and books what they take.
     procedure :: pull
     procedure :: book_springs
@@ -39,14 +39,14 @@ contains
     integer :: points
 
     points = size(model%distribution%points)
-    allocate (self%bears(points), source=.false.)
-    if (model%rig%unilateral) self%bears = model%rig%bears > 0
+    allocate (self%on_frame(points), source=.false.)
+    if (model%rig%unilateral) self%on_frame = model%rig%frame > 0
     allocate (self%reaction(points), self%approach(points), self%frame_loss(points), self%step_loss(points), &
               source=0.0_wp)
   end function create_rig_steps
 
   !> Brings a node that would pass its frame to rest on it, and books what it loses there.
-  pure subroutine bear(self, p, steps, inverse, w, rate)
+  pure subroutine stop_at_frame(self, p, steps, inverse, w, rate)
     !> The frames
     class(rig_steps_t), intent(inout) :: self
     !> The point
@@ -71,9 +71,10 @@ contains
                          + (reaction - self%reaction(p))*self%approach(p)/2
     self%reaction(p) = reaction
     self%approach(p) = steps%now*rate
-  end subroutine bear
+  end subroutine stop_at_frame
 
-  !> Adds the forces of springs at the end of the step, as far as its start tells them; the rest is in the inverse
+  !> Adds the forces of springs at the end of the step, as far as they are known at its start; the rest is in the
+  !> inverse
   !> inertia.
   pure subroutine pull(self, springs, steps, u, v, force)
     !> The springs' state

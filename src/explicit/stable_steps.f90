@@ -186,13 +186,13 @@ contains
     real(wp), intent(in) :: r(lanes, 9, 5)
     !> (lane)
     real(wp) :: squares(lanes)
-    real(wp) :: force(lanes, 9, 5), answer(lanes, 9, 5)
+    real(wp) :: force(lanes, 9, 5), response(lanes, 9, 5)
 
     force = r
     call batch_force(model%elements, b, stiffness, force)
-    answer = force
-    call divide(inverse, answer)
-    squares = sum(sum(force*answer, 3), 2)/max(tiny(squares), sum(sum(force*r, 3), 2))
+    response = force
+    call divide(inverse, response)
+    squares = sum(sum(force*response, 3), 2)/max(tiny(squares), sum(sum(force*r, 3), 2))
   end function squares_of
 
   !> Turns forces into accelerations.

@@ -3,7 +3,7 @@ module stack_motions
   use cohesive_faces, only: cohesive_faces_t
   use cohesive_interfaces, only: cohesive_interfaces_t
   use cohesive_laws, only: weakened
-  use cohesive_points, only: cohesive_reach, grown_damage
+  use cohesive_points, only: separation_of, grown_damage
   use interface_stacks, only: interface_stacks_t
   use jump_motions, only: advance_intact, advance_points
   use kinds, only: wp
@@ -32,7 +32,7 @@ contains
     allocate (work(maxval([1, stacks%layers]) - 1))
     do n = 1, size(work)
       work(n)%n = n
-      allocate (work(n)%area(n), work(n)%stiffness(2, n), work(n)%diagonal(3, n), work(n)%beside(3, n), &
+      allocate (work(n)%area(n), work(n)%stiffness(2, n), work(n)%diagonal(3, n), work(n)%off_diagonal(3, n), &
                 work(n)%free(3, n), work(n)%start(3, n), work(n)%points(n), work(n)%damage(n), &
                 work(n)%closing(n), work(n)%friction(n), &
                 work(n)%forces(3, n), work(n)%limit(n))
@@ -115,10 +115,10 @@ contains
     else
       call solve_factored(n, stacks%factors(:, :, p + 1:q), free, forces)
     end if
-    if (rigs%bears(p)) call rest_on_frame(stacks, i, rigs, inertia, steps, u(3, p), u(3, p + 1), free(3, :), layer, &
+    if (rigs%on_frame(p)) call rest_on_frame(stacks, i, rigs, inertia, steps, u(3, p), u(3, p + 1), free(3, :), layer, &
                                           forces(3, :))
     call push_layers(n, stacks%height(p:q), inertia%inverse(:, p:q), steps%mean(), forces, layer)
-    if (rigs%bears(p)) layer(3, 1) = rigs%approach(p)/steps%now
+    if (rigs%on_frame(p)) layer(3, 1) = rigs%approach(p)/steps%now
     if (pinned) &
       call book_reactions(stacks, i, lines, inertia, steps, force(:, p:q), forces, v(:, p:q), layer)
     call find_rates(n, stacks%height(p:q), layer, free)
@@ -165,11 +165,11 @@ contains
         diagonal(1) = diagonal(1) - steps%now*steps%mean()*inverse
         stiffness = stacks%stiffness(2, p + 1:p + n)
         none = 0
-        call solve_tractions(n, stiffness, none, diagonal, stacks%beside(3, p + 1:p + n), free, forces)
+        call solve_tractions(n, stiffness, none, diagonal, stacks%off_diagonal(3, p + 1:p + n), free, forces)
         rate = rate + steps%mean()*inverse*forces(1)
         if (.not. w + steps%now*rate > 0) rate = -w/steps%now + tiny(rate)
       end if
-      call rigs%bear(p, steps, inverse, w, rate)
+      call rigs%stop_at_frame(p, steps, inverse, w, rate)
     end associate
   end subroutine rest_on_frame
 
@@ -228,7 +228,7 @@ contains
         ! N Y = G_c at the onset, and no mixture of modes is less tough than the weaker of the pure ones.
         if (energy*law%failure_ratio < strength**2*min(law%toughness_opening, law%toughness_shear)) cycle
         work%damage(j) = grown_damage(weakened(law, strength), &
-                                      cohesive_reach(weakened(law, strength), jumps(:, j), 0.0_wp), work%points(j))
+                                      separation_of(weakened(law, strength), jumps(:, j), 0.0_wp), work%points(j))
       end associate
       grows = grows .or. work%damage(j) > work%points(j)%damage
       work%damage(j) = (work%damage(j) + work%points(j)%damage)/2
@@ -260,7 +260,7 @@ contains
       work%area = stacks%area(p + 1:q)
       work%stiffness = stacks%stiffness(:, p + 1:q)
       work%diagonal = stacks%diagonal(:, p + 1:q)
-      work%beside = stacks%beside(:, p + 1:q)
+      work%off_diagonal = stacks%off_diagonal(:, p + 1:q)
       work%free = free
       work%start = u(1:3, p + 1:q)
       work%points = cohesive%points(p + 1:q)

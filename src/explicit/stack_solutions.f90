@@ -19,7 +19,7 @@ module stack_solutions
     !> Areas, and stiffness of shear and opening, force per jump, (2, n)
     real(wp), allocatable :: area(:), stiffness(:, :)
     !> Square of the step times the compliance of the layers along x, y and z: diagonal, and entries beside it, (3, n)
-    real(wp), allocatable :: diagonal(:, :), beside(:, :)
+    real(wp), allocatable :: diagonal(:, :), off_diagonal(:, :)
     !> Jumps at the end of the step without tractions, and those at its start, (3, n)
     real(wp), allocatable :: free(:, :), start(:, :)
     !> Damage and sliding at the start
@@ -54,9 +54,9 @@ contains
         stiffness(j) = stack%stiffness(2, j)
         if (.not. (closed(j) .and. stack%closing(j))) stiffness(j) = (1 - stack%damage(j))*stiffness(j)
       end do
-      call solve_tractions(stack%n, stiffness, none, stack%diagonal(3, :), stack%beside(3, :), stack%free(3, :), &
+      call solve_tractions(stack%n, stiffness, none, stack%diagonal(3, :), stack%off_diagonal(3, :), stack%free(3, :), &
                            stack%forces(3, :))
-      opening = stack%free(3, :) - reached(stack, 3)
+      opening = stack%free(3, :) - jump_reduction(stack, 3)
       before = closed
       closed = opening < 0
       if (all((before .eqv. closed) .or. (.not. stack%damage > 0))) exit
@@ -76,12 +76,12 @@ contains
     integer :: k
 
     do k = 1, 3
-      jumps(k, :) = stack%free(k, :) - reached(stack, k)
+      jumps(k, :) = stack%free(k, :) - jump_reduction(stack, k)
     end do
   end function jumps_of
 
   !> What the forces take off the jumps.
-  pure function reached(stack, k) result(change)
+  pure function jump_reduction(stack, k) result(change)
     !> The stack with its forces
     type(stack_t), intent(in) :: stack
     !> Direction, 1 to 3
@@ -92,10 +92,10 @@ contains
 
     change = stack%diagonal(k, :)*stack%forces(k, :)
     do j = 1, stack%n - 1
-      change(j) = change(j) + stack%beside(k, j)*stack%forces(k, j + 1)
-      change(j + 1) = change(j + 1) + stack%beside(k, j)*stack%forces(k, j)
+      change(j) = change(j) + stack%off_diagonal(k, j)*stack%forces(k, j + 1)
+      change(j + 1) = change(j + 1) + stack%off_diagonal(k, j)*stack%forces(k, j)
     end do
-  end function reached
+  end function jump_reduction
 
   !> Forces along the faces: of the law, and of friction, which sticks elastically up to its limit.
   pure subroutine solve_shears(stack)
@@ -115,7 +115,8 @@ contains
     call solve_both(stack, stiffness, given)
     if (.not. any(stack%limit > 0)) return
     slips = .false.
-    associate (jumps => stack%free(1:2, :) - reshape([reached(stack, 1), reached(stack, 2)], [2, stack%n], &
+    associate (jumps => stack%free(1:2, :) - reshape([jump_reduction(stack, 1), jump_reduction(stack, 2)], [2, &
+      stack%n], &
                                                      order=[2, 1]))
       do j = 1, stack%n
         if (.not. stack%limit(j) > 0) cycle
@@ -138,7 +139,7 @@ contains
     integer :: k
 
     do k = 1, 2
-      call solve_tractions(stack%n, stiffness, given(k, :), stack%diagonal(k, :), stack%beside(k, :), &
+      call solve_tractions(stack%n, stiffness, given(k, :), stack%diagonal(k, :), stack%off_diagonal(k, :), &
                            stack%free(k, :), stack%forces(k, :))
     end do
   end subroutine solve_both

@@ -1,4 +1,4 @@
-!> Tells a motion that central differences have made unstable from one that is not.
+!> Distinguishes an unstable motion by central differences from a stable one.
 module unstable_motions
   use errors, only: error_t, exit_convergence, fail
   use kinds, only: wp
@@ -12,7 +12,7 @@ module unstable_motions
 
   !> Energy that nothing accounts for, over all energy that was there or brought in, from which a run ends. An unstable
   !> mode grows by a factor each step and passes it at once; the watch of the ledger warns from a tenth of it.
-  real(wp), parameter :: most_created = 0.1_wp
+  real(wp), parameter :: max_created = 0.1_wp
 
 contains
 
@@ -28,7 +28,7 @@ contains
 
     created = now%ledger%error()
     energy = max(now%ledger%initial, now%ledger%external_work, now%ledger%initial + now%ledger%external_work)
-    if (created <= most_created*energy .or. .not. (energy > 0 .or. abs(created) > 0)) return
+    if (created <= max_created*energy .or. .not. (energy > 0 .or. abs(created) > 0)) return
     amount = 'the energy has become infinite'
     if (abs(created) <= huge(created)) amount = rounded_text(created)//' of energy have appeared beside '// &
                                                 rounded_text(energy)

@@ -3,7 +3,7 @@ module impact_force
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use errors, only: error_t, fail, exit_internal
   use impact_parameters, only: indentation_law_t
-  use tan_sun_indentation, only: indentation_t, touch_indentation, indentation_force, indentation_stiffness, &
+  use tan_sun_indentation, only: indentation_t, zero_force_indentation, indentation_force, indentation_stiffness, &
                                  mean_indentation_force, indentation_work
   use kinds, only: wp
   implicit none
@@ -11,7 +11,7 @@ module impact_force
   public :: solve_impact_force
 
   !> Never reached: the worst found is 154, at a compliance of 1e100 (usual steps need 3 to 6).
-  integer, parameter :: most_iterations = 500
+  integer, parameter :: max_iterations = 500
 
 contains
 
@@ -42,7 +42,7 @@ contains
     integer, intent(out) :: iterations
     !> Raised if the input isn't finite or the compliance negative
     type(error_t), allocatable, intent(inout) :: error
-    real(wp) :: touch
+    real(wp) :: zero_force
 
     x = 0
     force_end = 0
@@ -53,11 +53,11 @@ contains
       call fail(error, exit_internal, 'The contact force was asked for with a number that is not finite or negative.')
       return
     end if
-    touch = touch_indentation(law, state)
-    if (touch - alpha_free + compliance*force_of_step(law, state, alpha_start, touch, mean_force) >= 0) then
-      if (mean_force) call release(law, state, alpha_start, touch, compliance, x, alpha_end)
+    zero_force = zero_force_indentation(law, state)
+    if (zero_force - alpha_free + compliance*force_of_step(law, state, alpha_start, zero_force, mean_force) >= 0) then
+      if (mean_force) call release(law, state, alpha_start, zero_force, compliance, x, alpha_end)
     else
-      call solve_in_contact(law, state, alpha_start, alpha_free, compliance, mean_force, touch, &
+      call solve_in_contact(law, state, alpha_start, alpha_free, compliance, mean_force, zero_force, &
                             x, alpha_end, iterations)
       force_end = indentation_force(law, state, alpha_end)
     end if
@@ -65,7 +65,7 @@ contains
 
   !> The step ends out of contact, where the work is that of the whole way down to zero force: a
   !> quadratic equation for the way.
-  pure subroutine release(law, state, alpha_start, touch, compliance, x, alpha_end)
+  pure subroutine release(law, state, alpha_start, zero_force, compliance, x, alpha_end)
     !> Indentation law
     type(indentation_law_t), intent(in) :: law
     !> Committed state of the contact
@@ -73,7 +73,7 @@ contains
     !> Indentation at the start of the step
     real(wp), intent(in) :: alpha_start
     !> Indentation of zero force
-    real(wp), intent(in) :: touch
+    real(wp), intent(in) :: zero_force
     !> Fall of the indentation per unit of force
     real(wp), intent(in) :: compliance
     !> Mean force
@@ -83,8 +83,8 @@ contains
     real(wp) :: work, way, root
 
     x = 0
-    if (alpha_start <= touch) return
-    work = indentation_work(law, state, touch, alpha_start)
+    if (alpha_start <= zero_force) return
+    work = indentation_work(law, state, zero_force, alpha_start)
     way = alpha_start - alpha_end
     root = hypot(way, 2*sqrt(compliance)*sqrt(work))
     if (way >= 0) then
@@ -97,7 +97,7 @@ contains
   end subroutine release
 
   !> Newton's iteration on the indentation, kept inside an interval that holds the solution.
-  pure subroutine solve_in_contact(law, state, alpha_start, alpha_free, compliance, mean_force, touch, &
+  pure subroutine solve_in_contact(law, state, alpha_start, alpha_free, compliance, mean_force, zero_force, &
                                    x, alpha_end, iterations)
     !> Indentation law
     type(indentation_law_t), intent(in) :: law
@@ -112,7 +112,7 @@ contains
     !> Whether the unknown is the mean force
     logical, intent(in) :: mean_force
     !> Indentation of zero force, below the solution
-    real(wp), intent(in) :: touch
+    real(wp), intent(in) :: zero_force
     !> The unknown
     real(wp), intent(out) :: x
     !> Indentation at the end of the step
@@ -121,12 +121,12 @@ contains
     integer, intent(out) :: iterations
     real(wp) :: lower, upper, residual, next, newton, change, change_before
 
-    lower = touch
+    lower = zero_force
     upper = alpha_free
     alpha_end = upper
     change_before = upper - lower
     change = change_before
-    do iterations = 0, most_iterations
+    do iterations = 0, max_iterations
       x = force_of_step(law, state, alpha_start, alpha_end, mean_force)
       residual = alpha_end - alpha_free + compliance*x
       if (abs(residual) <= 2*epsilon(residual)*(abs(alpha_end) + abs(alpha_free))) exit

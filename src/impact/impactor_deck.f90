@@ -2,7 +2,7 @@
 module impactor_deck
   use deck_choices, only: code_of
   use deck_problems, only: problems_t
-  use deck_remarks, only: tell, are_clear
+  use deck_remarks, only: report, are_clear
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
   use kinds, only: wp
@@ -57,7 +57,7 @@ contains
     type(problems_t), intent(inout) :: problems
 
     call require_mass(settings, problems)
-    call settle_energy(settings, problems)
+    call set_velocity_from_energy(settings, problems)
     impactor%travel = settings%real_of(impactor_group, key_travel)
     impactor%rise = settings%real_of(impactor_group, key_rise)
     impactor%mass = settings%real_of(impactor_group, key_mass)
@@ -67,15 +67,15 @@ contains
     impactor%spreads = settings%text_of(impactor_group, key_contact_area) == 'sphere'
     if (impactor%spreads .and. .not. impactor%radius > 0 .and. &
         are_clear(settings, problems, impactor_group, key_radius)) &
-      call tell(settings, problems, impactor_group, key_radius, 'is missing; contact_area = ''sphere'' needs it.')
+      call report(settings, problems, impactor_group, key_radius, 'is missing; contact_area = ''sphere'' needs it.')
     impactor%gravity = settings%real_of(impactor_group, key_gravity)
     impactor%integrator = code_of(settings%text_of(impactor_group, key_integrator), &
                                   'gear4 trapezoidal central conserving', &
                                   [integrator_gear4, integrator_trapezoidal, integrator_central, integrator_conserving])
   end subroutine fill_impactor
 
-  !> Turns the energy into the velocity, and tells if neither is given or both are.
-  subroutine settle_energy(settings, problems)
+  !> Turns the energy into the velocity, and reports if neither is given or both are.
+  subroutine set_velocity_from_energy(settings, problems)
     !> Keys in effect
     type(settings_t), intent(inout) :: settings
     !> Faults found are added
@@ -87,17 +87,17 @@ contains
     if (.not. settings%is_given(impactor_group, key_energy)) then
       if (.not. settings%is_given(impactor_group, key_velocity) .and. &
           are_clear(settings, problems, impactor_group, key_velocity//' '//key_energy)) &
-        call tell(settings, problems, impactor_group, key_velocity, 'is missing; give it, or the energy.')
+        call report(settings, problems, impactor_group, key_velocity, 'is missing; give it, or the energy.')
     else if (settings%is_given(impactor_group, key_velocity)) then
-      call tell(settings, problems, impactor_group, key_energy, 'the velocity is given too; give one of them.')
+      call report(settings, problems, impactor_group, key_energy, 'the velocity is given too; give one of them.')
     else if (settings%is_known(impactor_group, key_mass) .and. settings%is_known(impactor_group, key_energy)) then
       mass = settings%real_of(impactor_group, key_mass)
       energy = settings%real_of(impactor_group, key_energy)
       call settings%derive_numbers(impactor_group, key_velocity, [sqrt(2*energy/mass)])
     end if
-  end subroutine settle_energy
+  end subroutine set_velocity_from_energy
 
-  !> Tells if the mass is missing; an impactor that travels slowly needs none.
+  !> Reports if the mass is missing; an impactor that travels slowly needs none.
   subroutine require_mass(settings, problems)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
@@ -107,10 +107,10 @@ contains
     if (.not. settings%has_group(impactor_group) .or. settings%is_given(impactor_group, key_travel)) return
     if (.not. settings%is_given(impactor_group, key_mass) .and. &
         are_clear(settings, problems, impactor_group, key_mass)) &
-      call tell(settings, problems, impactor_group, key_mass, 'is missing; allowed: 1 real value > 0.')
+      call report(settings, problems, impactor_group, key_mass, 'is missing; allowed: 1 real value > 0.')
   end subroutine require_mass
 
-  !> Names of the keys that say how fast the impactor is, parted by blanks.
+  !> Names of the keys that say how fast the impactor is, separated by blanks.
   pure function keys_of_motion(settings) result(keys)
     !> Keys in effect
     type(settings_t), intent(in) :: settings

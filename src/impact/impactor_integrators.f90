@@ -3,7 +3,7 @@
 !>
 !> Every integrator gives the displacement at the end of a step as an affine function of the one
 !> unknown contact force of the step, w_end = w_free - compliance*force. What that force means is
-!> told by `takes_mean_force`.
+!> given by `takes_mean_force`.
 module impactor_integrators
   use gear_integrator, only: advance_gear4, gear4_slope, gear4_limit
   use impact_parameters, only: impactor_parameters_t, indentation_law_t, integrator_gear4, &
@@ -66,7 +66,7 @@ contains
     type(impactor_t), intent(in) :: impactor
     !> Step
     real(wp), intent(in) :: dt
-    !> The force of the step, as `takes_mean_force` tells
+    !> The force of the step, as given by `takes_mean_force`
     real(wp), intent(in) :: step_force
     !> Contact force at the end of the step
     real(wp), intent(in) :: force_end

@@ -2,7 +2,7 @@
 module indentation_deck
   use deck_choices, only: code_of
   use deck_problems, only: problems_t
-  use deck_remarks, only: tell, remark_idle, are_clear
+  use deck_remarks, only: report, remark_idle, are_clear
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
   use impact_parameters, only: indentation_law_t, law_tan_sun, law_hertz, law_thornton, dent_tan_sun, dent_yang_sun
@@ -73,7 +73,7 @@ contains
     call settings%derive(indentation_group, key_k, to_text(law%k), .false.)
   end subroutine fill_indentation
 
-  !> What holds of the law without the group, as the echo tells it.
+  !> What holds of the law without the group, as the echo lists it.
   subroutine echo_without_group(law, lines)
     !> The law
     type(indentation_law_t), intent(in) :: law
@@ -99,7 +99,7 @@ contains
     else
       if (.not. (settings%is_given(indentation_group, 'alpha_cr') .or. &
                  problems%concern(indentation_group, 'alpha_cr'))) &
-        call tell(settings, problems, indentation_group, 'alpha_cr', 'is missing; law = '''// &
+        call report(settings, problems, indentation_group, 'alpha_cr', 'is missing; law = '''// &
                   settings%text_of(indentation_group, 'law')//''' needs the '// &
                   'indentation above which a dent remains (law = ''hertz'' leaves none).')
       if (law%law == law_tan_sun) call check_exponents(settings, law, problems)
@@ -138,7 +138,8 @@ contains
 
     if (.not. are_clear(settings, problems, indentation_group, 'q reload')) return
     if (law%reload > law%q) &
-      call tell(settings, problems, indentation_group, 'reload', 'reloading would take less energy than unloading '// &
+      call report(settings, problems, indentation_group, 'reload', &
+                  'reloading would take less energy than unloading '// &
                 'gave back; allowed: >= 1.5, <= q = '//to_text(law%q)//'.')
   end subroutine check_exponents
 end module indentation_deck

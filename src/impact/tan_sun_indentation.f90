@@ -16,7 +16,7 @@ module tan_sun_indentation
   use kinds, only: wp
   implicit none
   private
-  public :: indentation_t, touch_indentation, indentation_of, indentation_force, indentation_stiffness, &
+  public :: indentation_t, zero_force_indentation, indentation_of, indentation_force, indentation_stiffness, &
             mean_indentation_force, indentation_work, stiffening, commit_indentation
 
   !> What the contact remembers; changes only when a step is accepted.
@@ -54,18 +54,18 @@ module tan_sun_indentation
 contains
 
   !> Indentation below which the contact force is zero.
-  pure function touch_indentation(law, state) result(touch)
+  pure function zero_force_indentation(law, state) result(zero_force)
     !> The law
     type(indentation_law_t), intent(in) :: law
     !> Committed state
     type(indentation_t), intent(in) :: state
     !> The dent, or 0
-    real(wp) :: touch
+    real(wp) :: zero_force
     type(branch_t) :: branch
 
     branch = current_branch(law, state)
-    touch = branch%start
-  end function touch_indentation
+    zero_force = branch%start
+  end function zero_force_indentation
 
   !> Contact force.
   pure function indentation_force(law, state, alpha) result(force)

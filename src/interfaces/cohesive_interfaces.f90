@@ -68,15 +68,15 @@ contains
     integer :: i
 
     if (.not. model%map%layered) return
-    if (.not. any(model%scene%delaminations%law == law_cohesive)) return
+    if (.not. any(model%setup%delaminations%law == law_cohesive)) return
     allocate (self%cohesive(size(model%zone)), source=.false.)
     allocate (self%points(size(model%zone)))
     allocate (self%strength(size(model%zone)), source=1.0_wp)
     allocate (self%stiffness(3, size(model%zone)), source=0.0_wp)
-    if (model%scene%has_static) allocate (self%tangents(3, 3, size(model%zone)), source=0.0_wp)
+    if (model%setup%has_static) allocate (self%tangents(3, 3, size(model%zone)), source=0.0_wp)
     do i = 1, size(model%zone)
       if (model%zone(i) == 0) cycle
-      self%cohesive(i) = model%scene%delaminations(model%zone(i))%law == law_cohesive
+      self%cohesive(i) = model%setup%delaminations(model%zone(i))%law == law_cohesive
       if (.not. self%cohesive(i)) cycle
       if (free(i)) self%points(i)%damage = 1
       self%stiffness(:, i) = (1 - self%points(i)%damage)*model%contact_area(i) &
@@ -178,7 +178,7 @@ contains
     end do
   end subroutine add_dissipation_slopes
 
-  !> Energy dissipated since an earlier state, of the whole plate, the same on every rank.
+  !> Energy dissipated since an earlier state, of the full plate, the same on every rank.
   real(wp) function dissipation(self, model, old) result(energy)
     !> The interfaces
     class(cohesive_interfaces_t), intent(in) :: self
@@ -194,7 +194,7 @@ contains
     end associate
   end function dissipation
 
-  !> Area dissipated in each zone of the whole plate: the sum of the points' areas times the part of their toughness
+  !> Area dissipated in each zone of the full plate: the sum of the points' areas times the part of their toughness
   !> that is gone. The same on every rank.
   function area(self, model)
     !> The interfaces
@@ -206,7 +206,7 @@ contains
     area = total_in_zones(self, model, self%shares(model))
   end function area
 
-  !> Energy dissipated in each zone of the whole plate, the same on every rank.
+  !> Energy dissipated in each zone of the full plate, the same on every rank.
   function dissipated_energy(self, model) result(energy)
     !> The interfaces
     class(cohesive_interfaces_t), intent(in) :: self
@@ -218,7 +218,7 @@ contains
     if (allocated(self%cohesive)) energy = total_in_zones(self, model, self%points%dissipated)
   end function dissipated_energy
 
-  !> Sum of the areas of the cohesive points times a value, in each zone of the whole plate. Collective.
+  !> Sum of the areas of the cohesive points times a value, in each zone of the full plate. Collective.
   function total_in_zones(self, model, values) result(totals)
     !> The interfaces
     type(cohesive_interfaces_t), intent(in) :: self
@@ -310,7 +310,7 @@ contains
     !> Index of the zone
     integer, intent(in) :: zone
 
-    holds_closed = model%scene%delaminations(zone)%contact /= contact_none
+    holds_closed = model%setup%delaminations(zone)%contact /= contact_none
   end function holds_closed
 
   !> True for zones where a point beside the border has been damaged: growth ends there. The same on every rank.
@@ -357,7 +357,7 @@ contains
 
     faces%law = weakened(model%cohesive_laws(zone), strength)
     faces%closing = holds_closed(model, zone)
-    faces%friction = model%scene%delaminations(zone)%friction
+    faces%friction = model%setup%delaminations(zone)%friction
   end function faces_of
 
   !> Saves or loads.

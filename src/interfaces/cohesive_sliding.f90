@@ -8,25 +8,25 @@ module cohesive_sliding
   use rank_totals, only: total_of
   implicit none
   private
-  public :: heat_since, settle_friction, visit_friction
+  public :: heat_since, update_friction_limits, visit_friction
 
   !> Change of a limit over the largest one at which load steps take limits for settled.
-  real(wp), parameter :: settled_change = 1.0e-6_wp
+  real(wp), parameter :: limit_tolerance = 1.0e-6_wp
 
 contains
 
   !> Makes the most that friction bears go with pressures and damage. A step in time goes on with it in the next; a load
   !> step is solved again until it stays what it was.
-  subroutine settle_friction(interfaces, model, displacement, rounds, settled)
+  subroutine update_friction_limits(interfaces, model, displacement, updates, converged)
     !> The interfaces
     type(cohesive_interfaces_t), intent(inout) :: interfaces
     type(model_t), intent(in) :: model
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Counts the times that there was something to settle
-    integer, intent(inout) :: rounds
+    integer, intent(inout) :: updates
     !> False on return if it has not settled
-    logical, intent(inout) :: settled
+    logical, intent(inout) :: converged
     type(cohesive_faces_t) :: faces
     real(wp) :: limit, largest(2)
     integer :: i
@@ -42,11 +42,11 @@ contains
         before = limit
       end associate
     end do
-    if (.not. model%scene%has_static) return
+    if (.not. model%setup%has_static) return
     call model%communicator%maximum(largest)
-    settled = settled .and. largest(2) <= settled_change*largest(1)
-    rounds = rounds + merge(1, 0, largest(2) > 0)
-  end subroutine settle_friction
+    converged = converged .and. largest(2) <= limit_tolerance*largest(1)
+    updates = updates + merge(1, 0, largest(2) > 0)
+  end subroutine update_friction_limits
 
   !> True if faces rub on each other somewhere.
   pure logical function present_in(interfaces, model)
@@ -55,10 +55,10 @@ contains
     type(model_t), intent(in) :: model
 
     present_in = allocated(interfaces%cohesive)
-    if (present_in) present_in = any(model%scene%delaminations%friction > 0)
+    if (present_in) present_in = any(model%setup%delaminations%friction > 0)
   end function present_in
 
-  !> Energy that friction has turned into heat between two states, of the whole plate, the same on every rank.
+  !> Energy that friction has turned into heat between two states, of the full plate, the same on every rank.
   real(wp) function heat_since(model, old, new) result(heat)
     type(model_t), intent(in) :: model
     !> The interfaces in both states

@@ -9,7 +9,7 @@ module contact_and_ties
   use delamination_parameters, only: contact_augmented_lagrangian
   use interface_ties, only: interface_ties_t, create_interface_ties, tie_stiffness, bond_held, bond_penalty, &
                             bond_contact
-  use face_contact, only: contact_pressure, unmet_contact, updated_decay, updated_multiplier
+  use face_contact, only: contact_pressure, contact_residual, updated_decay, updated_multiplier
   use models, only: model_t
   implicit none
   private
@@ -29,13 +29,13 @@ module contact_and_ties
     !> Adds the contact and penalty forces to a residual and takes the residual of held jumps out.
     procedure :: act
     !> Takes the pressures found as the next estimates; they have settled once they go with the gaps.
-    procedure :: settle
+    procedure :: update_contact
     !> How far pressures and gaps are from contact.
     procedure :: complementarity
     !> Work of contact and penalty ties in a step.
     procedure :: work
     !> Keeps touching faces together in a first guess, and open ones from passing through each other.
-    procedure :: keep_touching
+    procedure :: keep_contact_closed
     !> Stiffness that ties and contact add to the diagonal.
     procedure :: added_stiffness
     !> Saves or loads.
@@ -113,7 +113,7 @@ contains
   end function force
 
   !> Takes the pressures found as the next estimates; they have settled once they go with the gaps.
-  subroutine settle(self, model, displacement, tolerance, rounds, settled)
+  subroutine update_contact(self, model, displacement, tolerance, updates, converged)
     !> The state
     class(contact_and_ties_t), intent(inout) :: self
     type(model_t), intent(in) :: model
@@ -122,27 +122,27 @@ contains
     !> Complementarity at which they have settled
     real(wp), intent(in) :: tolerance
     !> Counts the times that there was something to settle
-    integer, intent(inout) :: rounds
+    integer, intent(inout) :: updates
     !> True if they have
-    logical, intent(out) :: settled
-    real(wp) :: unmet
+    logical, intent(out) :: converged
+    real(wp) :: mismatch
 
-    unmet = self%complementarity(model, displacement)
-    settled = unmet <= tolerance
-    call update_multipliers(self, model, displacement, settled)
-    rounds = rounds + merge(1, 0, unmet > 0)
-  end subroutine settle
+    mismatch = self%complementarity(model, displacement)
+    converged = mismatch <= tolerance
+    call update_multipliers(self, model, displacement, converged)
+    updates = updates + merge(1, 0, mismatch > 0)
+  end subroutine update_contact
 
   !> Takes the pressures found as the next estimates, and the decay that suits the gaps. Pressures are those of
   !> the last residual.
-  subroutine update_multipliers(self, model, displacement, settled)
+  subroutine update_multipliers(self, model, displacement, converged)
     !> The state
     type(contact_and_ties_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> True: the pressures go with the gaps, the step is done
-    logical, intent(in) :: settled
+    logical, intent(in) :: converged
     real(wp) :: sums(2, size(self%decay)), largest(size(self%decay))
     integer, allocatable :: points(:), zones(:)
     real(wp), allocatable :: gaps(:), forces(:)
@@ -160,7 +160,7 @@ contains
       call model%communicator%maximum(largest(zone))
     end do
     self%multiplier(points) = updated_multiplier(model%contact_laws(zones), gaps, self%pressure(points))
-    self%decay = updated_decay(model%contact_laws, sums(1, :), sums(2, :), largest, settled)
+    self%decay = updated_decay(model%contact_laws, sums(1, :), sums(2, :), largest, converged)
     self%peak = max(self%peak, maxval(largest))
   end subroutine update_multipliers
 
@@ -179,7 +179,8 @@ contains
     if (.not. model%map%layered) return
     points = self%in_contact(model)
     peak = maxval([self%peak, self%pressure(points)])
-    complementarity = maxval([0.0_wp, unmet_contact(model%contact_laws(model%zone(points)), displacement(3, points), &
+    complementarity = maxval([0.0_wp, contact_residual(model%contact_laws(model%zone(points)), displacement(3, &
+      points), &
                                                     self%pressure(points))])
     call model%communicator%maximum(complementarity)
     call model%communicator%maximum(peak)
@@ -206,8 +207,8 @@ contains
   end function work
 
   !> Keeps touching faces together in a first guess, and open ones from passing through each other: the stiff
-  !> law would answer small errors of a guess with large pressures.
-  subroutine keep_touching(self, model, guess)
+  !> law would turn small errors of a guess with large pressures.
+  subroutine keep_contact_closed(self, model, guess)
     !> The state
     class(contact_and_ties_t), intent(in) :: self
     type(model_t), intent(in) :: model
@@ -220,7 +221,7 @@ contains
     points = self%in_contact(model)
     guess(3, points) = merge(0.0_wp, max(0.0_wp, guess(3, points)), self%multiplier(points) > 0)
     call model%halo%update(guess)
-  end subroutine keep_touching
+  end subroutine keep_contact_closed
 
   !> Stiffness that ties and contact add to the diagonal of the operator.
   pure subroutine added_stiffness(self, model, diagonal, added)

@@ -52,7 +52,7 @@ contains
     else
       front%modes = vcct_rates(model, faces, motion, zone, front%segments, front%line)
     end if
-    front%ratio = [(release_ratio(model%scene%delaminations(zone), front%modes(:, s)), s=1, size(front%segments))]
+    front%ratio = [(release_ratio(model%setup%delaminations(zone), front%modes(:, s)), s=1, size(front%segments))]
   end function release_along_front
 
   !> Rates by virtual crack closure, from forces and jumps averaged along the front.
@@ -147,7 +147,7 @@ contains
     !> Index of the zone
     integer, intent(in) :: zone
 
-    reach = model%scene%delaminations(zone)%smoothing
+    reach = model%setup%delaminations(zone)%smoothing
     if (.not. reach > 0) reach = default_smoothing(model%thickness, model%mesh%mean_cell(zone))
   end function front_reach
 

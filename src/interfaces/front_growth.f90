@@ -25,7 +25,7 @@ contains
     type(motion_t), intent(in) :: motion
     !> The interfaces; receive new delaminated cells and the largest ratio
     type(interface_state_t), intent(inout) :: state
-    !> Energy that fracture has taken from the whole plate; what the new faces take is added
+    !> Energy that fracture has taken from the full plate; what the new faces take is added
     real(wp), intent(inout) :: fracture
     !> True if cells delaminated
     logical, intent(out) :: grown
@@ -36,9 +36,9 @@ contains
     state%release_ratio = 0
     state%growth_ratio = 0
     do zone = 1, size(model%mesh%zones)
-      if (model%scene%delaminations(zone)%law == law_cohesive) cycle
+      if (model%setup%delaminations(zone)%law == law_cohesive) cycle
       front = release_along_front(model, stiffness, state%faces, motion, zone, &
-                                  model%scene%delaminations(zone)%energy_release)
+                                  model%setup%delaminations(zone)%energy_release)
       if (size(front%segments) == 0) cycle
       state%release_ratio = max(state%release_ratio, maxval(front%ratio))
       call release_cells(model, state, zone, front, fracture, grown)
@@ -60,9 +60,9 @@ contains
 
     state%release_ratio = 0
     do zone = 1, size(model%mesh%zones)
-      if (model%scene%delaminations(zone)%law == law_cohesive) cycle
+      if (model%setup%delaminations(zone)%law == law_cohesive) cycle
       front = release_along_front(model, stiffness, state%faces, motion, zone, &
-                                  model%scene%delaminations(zone)%energy_release)
+                                  model%setup%delaminations(zone)%energy_release)
       if (size(front%segments) > 0) state%release_ratio = max(state%release_ratio, maxval(front%ratio))
     end do
   end subroutine find_release_ratio
@@ -76,7 +76,7 @@ contains
     integer, intent(in) :: zone
     !> The front
     type(front_energy_release_t), intent(in) :: front
-    !> Energy that fracture has taken from the whole plate; what the new faces take is added
+    !> Energy that fracture has taken from the full plate; what the new faces take is added
     real(wp), intent(inout) :: fracture
     !> Set true if cells delaminated
     logical, intent(inout) :: grown
@@ -84,20 +84,20 @@ contains
     logical :: enters(size(front%segments))
     integer :: s, foremost
 
-    ! Where the layers end, virtual crack closure finds no force to close: a rate cannot tell that growth is barred.
+    ! Where the layers end, virtual crack closure finds no force to close: a rate cannot show that growth is barred.
     state%border_reached(zone) = state%border_reached(zone) .or. any(front%segments%at_border)
     foremost = maxloc(front%ratio, mask=.not. front%segments%at_border, dim=1)
     ! A delamination that fills its zone has no front but the border; faces that are glued cannot delaminate.
     if (foremost == 0) return
-    if (state%faces%glued .and. model%scene%delaminations(zone)%unloading == unloading_glued) return
+    if (state%faces%glued .and. model%setup%delaminations(zone)%unloading == unloading_glued) return
     largest = front%ratio(foremost)
     state%growth_ratio = max(state%growth_ratio, largest)
     if (.not. largest > 1) return
     enough = max(1.0_wp, together*largest)
-    if (model%scene%delaminations(zone)%growth == growth_one_per_step) enough = largest
+    if (model%setup%delaminations(zone)%growth == growth_one_per_step) enough = largest
     enters = .not. front%segments%at_border .and. front%ratio >= enough
-    if (model%scene%delaminations(zone)%growth == growth_equilibrium) &
-      enters = enters .and. met_first(front, enters, front_reach(model, zone))
+    if (model%setup%delaminations(zone)%growth == growth_equilibrium) &
+      enters = enters .and. closest_to_front(front, enters, front_reach(model, zone))
     do s = 1, size(front%segments)
       associate (segment => front%segments(s), region => state%faces%regions(zone))
         if (.not. enters(s)) cycle
@@ -107,7 +107,7 @@ contains
         fracture = fracture + energy
         state%faces%fracture(zone) = state%faces%fracture(zone) + energy
         grown = .true.
-        if (model%scene%delaminations(zone)%growth == growth_one_per_step) return
+        if (model%setup%delaminations(zone)%growth == growth_one_per_step) return
       end associate
     end do
 
@@ -118,14 +118,14 @@ contains
       !> Segment
       integer, intent(in) :: s
 
-      cell_energy = critical_release_rate(model%scene%delaminations(zone), front%modes(:, s)) &
+      cell_energy = critical_release_rate(model%setup%delaminations(zone), front%modes(:, s)) &
                     *model%mesh%cell_area(front%segments(s)%outside)
     end function cell_energy
   end subroutine release_cells
 
   !> Which cells a smooth front meets first as it moves on: those whose middles lie least far ahead of it among
-  !> the cells within reach that it could enter. A rate averaged over that reach cannot tell them apart.
-  pure function met_first(front, open, reach) result(first)
+  !> the cells within reach that it could enter. A rate averaged over that reach cannot distinguish them.
+  pure function closest_to_front(front, open, reach) result(first)
     !> The front
     type(front_energy_release_t), intent(in) :: front
     !> True for segments that the front could pass
@@ -135,18 +135,19 @@ contains
     !> True for segments that it passes first
     logical :: first(size(open))
     !> Distance, relative to a cell, that counts as none.
-    real(wp), parameter :: alike = 1.0e-6_wp
+    real(wp), parameter :: distance_tolerance = 1.0e-6_wp
     integer :: s, t, image
 
     first = open
     do s = 1, size(open)
       if (.not. open(s)) cycle
       do t = 1, size(open)
-        if (.not. open(t) .or. front%line%offset(t) > front%line%offset(s) - alike*front%line%ahead(s)) cycle
+        if (.not. open(t) .or. front%line%offset(t) > front%line%offset(s) &
+            - distance_tolerance*front%line%ahead(s)) cycle
         if (any([(front%line%weight(s, t, image, reach) > 0, image=0, 3)])) first(s) = .false.
       end do
     end do
-  end function met_first
+  end function closest_to_front
 
   !> Frees the jumps of the new delamination; faces that were pressed together start in contact.
   subroutine open_faces(model, motion, state)

@@ -1,4 +1,4 @@
-!> What the history tells of the interfaces. A new column goes to the end of the border's rows, with its value in the
+!> What the history reports of the interfaces. A new column goes to the end of the border's rows, with its value in the
 !> function beside them: all columns before it stay where they are. One that each interface has goes to the last rows.
 module interface_columns
   use kinds, only: wp
@@ -58,7 +58,7 @@ contains
     type(model_t), intent(in) :: model
     !> The interfaces
     type(interface_state_t), intent(in) :: interfaces
-    !> A value a column, of the whole plate
+    !> A value a column, of the full plate
     real(wp) :: values(size(area_rows))
 
     values = [sum(interfaces%faces%area(model)) + sum(interfaces%cohesive%area(model))]

@@ -60,13 +60,13 @@ contains
     !> Set if the file cannot be written
     type(error_t), allocatable, intent(inout) :: error
 
-    if (output%wants(field_onset)) call write_onset(model, stiffness, interfaces, motion, fields, error)
+    if (output%requests(field_onset)) call write_onset(model, stiffness, interfaces, motion, fields, error)
     if (.not. model%map%layered) return
     associate (faces => interfaces%faces)
-      if (output%wants(field_gap)) call fields%write_point_field('jump', jumps(model, motion%displacement), error)
-      if (output%wants(field_contact_pressure)) &
+      if (output%requests(field_gap)) call fields%write_point_field('jump', jumps(model, motion%displacement), error)
+      if (output%requests(field_contact_pressure)) &
         call fields%write_point_field('contact_pressure', pressures(model, interfaces, motion%displacement), error)
-      if (output%wants(field_delamination)) then
+      if (output%requests(field_delamination)) then
         call fields%write_cell_field('delaminated_above', delaminated_above(model, interfaces), error)
         call fields%write_point_field('damage_above', reshape(interfaces%cohesive%damage(model), &
                                                               [1, size(model%zone)]), error)
@@ -76,7 +76,7 @@ contains
           model, motion%displacement), [1, size(model%zone)]), error)
         call write_figures(model, interfaces, fields, error)
       end if
-      if (output%wants(field_energy_release)) &
+      if (output%requests(field_energy_release)) &
         call fields%write_cell_field('energy_release_above', release_ahead(model, stiffness, faces, motion), error)
     end associate
   end subroutine write_interface_fields
@@ -99,7 +99,7 @@ contains
       bounds(:, zone) = reshape(figures(zone)%bounds, [4])
     end do
     call fields%write_figures('ply_above', real(reshape(model%mesh%zones%below_ply, [1, size(figures)]), wp), error)
-    call fields%write_figures('is_cohesive', reshape(merge(1.0_wp, 0.0_wp, model%scene%delaminations%law == &
+    call fields%write_figures('is_cohesive', reshape(merge(1.0_wp, 0.0_wp, model%setup%delaminations%law == &
                                                            law_cohesive), [1, size(figures)]), error)
     call fields%write_figures('stage', real(reshape(figures%stage, [1, size(figures)]), wp), error)
     call fields%write_figures('area', reshape(figures%area, [1, size(figures)]), error)
@@ -161,7 +161,7 @@ contains
         place = mesh%place_of(mesh%element_cell(element))
         do zone = 1, size(mesh%zones)
           if (mesh%zones(zone)%below_ply /= mesh%element_plies(1, element) - 1) cycle
-          if (model%scene%delaminations(zone)%law == law_cohesive) then
+          if (model%setup%delaminations(zone)%law == law_cohesive) then
             delaminated(1, i) = dot_product(weights, shares(1, model%distribution%connectivity(:, i)))
           else if (interfaces%faces%regions(zone)%is_delaminated(place(1), place(2))) then
             delaminated(1, i) = 1
@@ -182,7 +182,7 @@ contains
     allocate (starters(model%elements%elements), source=0)
     associate (mesh => model%mesh)
       do zone = 1, size(mesh%zones)
-        associate (starter => model%scene%delaminations(zone))
+        associate (starter => model%setup%delaminations(zone))
           region = create_region(mesh, zone, starter%starter, starter%starter_strip, starter%starter_round, &
                                  starter%starter_at)
         end associate
@@ -228,9 +228,9 @@ contains
 
     allocate (ratio(1, model%elements%elements), source=0.0_wp)
     do zone = 1, size(model%mesh%zones)
-      if (model%scene%delaminations(zone)%law == law_cohesive) cycle
+      if (model%setup%delaminations(zone)%law == law_cohesive) cycle
       front = release_along_front(model, stiffness, faces, motion, zone, &
-                                  model%scene%delaminations(zone)%energy_release)
+                                  model%setup%delaminations(zone)%energy_release)
       do s = 1, size(front%segments)
         place = merge(front%segments(s)%inside, front%segments(s)%outside, front%segments(s)%at_border)
         element = model%distribution%local_element(model%mesh%element_at( &

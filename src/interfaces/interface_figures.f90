@@ -15,9 +15,9 @@ module interface_figures
   integer, parameter, public :: stage_intact = 0, stage_damaged = 1, stage_grown = 2
 
   !> Bounds of nothing: largest of no numbers.
-  real(wp), parameter :: nowhere = -huge(nowhere)
+  real(wp), parameter :: empty_bound = -huge(empty_bound)
 
-  !> Figures of one interface of the whole plate, the same on every rank.
+  !> Figures of one interface of the full plate, the same on every rank.
   type :: interface_figures_t
     !> stage_intact, stage_damaged or stage_grown
     integer :: stage = stage_intact
@@ -47,10 +47,10 @@ contains
     figures%energy = interfaces%faces%fracture + interfaces%cohesive%energy(model)
     bounds = bounds_of(model, interfaces)
     do zone = 1, size(figures)
-      if (any(bounds(:, zone) <= nowhere)) cycle
+      if (any(bounds(:, zone) <= empty_bound)) cycle
       do axis = 1, 2
         associate (both => bounds(2*axis - 1:2*axis, zone))
-          if (model%mesh%mirrored(axis) .or. model%scene%plate%symmetry == symmetry_point) both = maxval(both)
+          if (model%mesh%mirrored(axis) .or. model%setup%plate%symmetry == symmetry_point) both = maxval(both)
         end associate
       end do
       figures(zone)%bounds = reshape([-bounds(1, zone), bounds(2, zone), -bounds(3, zone), bounds(4, zone)], [2, 2])
@@ -95,12 +95,12 @@ contains
     type(model_t), intent(in) :: model
     !> The interfaces
     type(interface_state_t), intent(in) :: interfaces
-    !> (4, zones); `nowhere` if nothing has delaminated
+    !> (4, zones); `empty_bound` if nothing has delaminated
     real(wp) :: bounds(4, size(model%mesh%zones))
     real(wp) :: all_bounds(size(bounds))
     integer :: i, zone
 
-    bounds = nowhere
+    bounds = empty_bound
     if (allocated(interfaces%cohesive%cohesive)) then
       do i = 1, model%distribution%owned
         if (.not. interfaces%cohesive%cohesive(i)) cycle
@@ -111,7 +111,7 @@ contains
       end do
     end if
     do zone = 1, size(model%mesh%zones)
-      if (model%scene%delaminations(zone)%law /= law_cohesive) bounds(:, zone) = cell_bounds(model, interfaces, zone)
+      if (model%setup%delaminations(zone)%law /= law_cohesive) bounds(:, zone) = cell_bounds(model, interfaces, zone)
     end do
     all_bounds = reshape(bounds, shape(all_bounds))
     call model%communicator%maximum(all_bounds)
@@ -125,11 +125,11 @@ contains
     type(interface_state_t), intent(in) :: interfaces
     !> Index of the zone
     integer, intent(in) :: zone
-    !> `nowhere` if there are none
+    !> `empty_bound` if there are none
     real(wp) :: bounds(4)
     integer :: i, j
 
-    bounds = nowhere
+    bounds = empty_bound
     associate (region => interfaces%faces%regions(zone), x => model%mesh%x_edges, y => model%mesh%y_edges)
       do j = region%rows(1), region%rows(2)
         do i = region%columns(1), region%columns(2)

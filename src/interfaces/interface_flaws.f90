@@ -13,7 +13,7 @@ module interface_flaws
   public :: may_weaken, weaken_beside, visit_flaws
 
   !> So that cells as far away as the reach count on every machine.
-  real(wp), parameter :: slack = 1 + 1.0e-9_wp
+  real(wp), parameter :: rounding_factor = 1 + 1.0e-9_wp
 
 contains
 
@@ -74,7 +74,8 @@ contains
           if (model%zone(local) /= zone) cycle
           if (interfaces%strength(local) <= part .or. interfaces%points(local)%damage > 0) cycle
           associate (place => mesh%node_coordinates(:, node))
-            if (norm2([distance(place(1), x), distance(place(2), y)]) <= slack*reach) interfaces%strength(local) = part
+            if (norm2([distance(place(1), x), distance(place(2), &
+                                                       y)]) <= rounding_factor*reach) interfaces%strength(local) = part
           end associate
         end do
       end do
@@ -92,8 +93,8 @@ contains
     !> First and last
     integer :: lines(2)
 
-    lines(1) = 2*max(0, count(edges <= ends(1) - slack*reach) - 1)
-    lines(2) = 2*min(size(edges) - 1, count(edges < ends(2) + slack*reach))
+    lines(1) = 2*max(0, count(edges <= ends(1) - rounding_factor*reach) - 1)
+    lines(2) = 2*min(size(edges) - 1, count(edges < ends(2) + rounding_factor*reach))
   end function lines_within
 
   !> True if a crack in a cell can weaken points of a zone.
@@ -108,11 +109,14 @@ contains
 
     place = mesh%place_of(cell)
     associate (columns => mesh%zones(zone)%columns, rows => mesh%zones(zone)%rows, x => mesh%x_edges, y => mesh%y_edges)
-      may_weaken = x(place(1) + 1) + slack*reach >= x(columns(1)) .and. x(place(1)) - slack*reach <= x(columns(2) + 1) &
-                   .and. y(place(2) + 1) + slack*reach >= y(rows(1)) .and. y(place(2)) - slack*reach <= y(rows(2) + 1)
+      may_weaken = x(place(1) + 1) + rounding_factor*reach >= x(columns(1)) .and. x(place(1)) &
+        - rounding_factor*reach <= x(columns(2) + 1) &
+                   .and. y(place(2) + 1) + rounding_factor*reach >= y(rows(1)) .and. y(place(2)) &
+                     - rounding_factor*reach <= y(rows(2) + 1)
     end associate
     ! The image of a cell in a turned plate lies beside the cut only.
-    if (mesh%halved(1) .and. .not. mesh%mirrored(1)) may_weaken = may_weaken .or. mesh%x_edges(place(1)) <= slack*reach
+    if (mesh%halved(1) .and. .not. mesh%mirrored(1)) may_weaken = may_weaken &
+      .or. mesh%x_edges(place(1)) <= rounding_factor*reach
   end function may_weaken
 
   !> Distance of a coordinate from an interval.
@@ -133,7 +137,7 @@ contains
     real(wp), allocatable :: fields(:, :)
 
     if (.not. allocated(interfaces%strength)) return
-    if (.not. any(model%scene%delaminations%cracks_as_flaws .or. model%scene%delaminations%shear_cracks)) return
+    if (.not. any(model%setup%delaminations%cracks_as_flaws .or. model%setup%delaminations%shear_cracks)) return
     fields = reshape(interfaces%strength, [1, size(interfaces%strength)])
     associate (share => model%distribution)
       call archive%field('cohesive/strength', share%points(:share%owned), model%mesh%points(), fields)

@@ -11,7 +11,7 @@ module interface_states
   use exact_sums, only: exact_sum_t
   use interface_flaws, only: visit_flaws
   use rank_totals, only: total_of
-  use cohesive_sliding, only: heat_since, settle_friction, visit_friction
+  use cohesive_sliding, only: heat_since, update_friction_limits, visit_friction
   use tie_release, only: tie_release_t, new_tie_release
   use rig_contact, only: rig_contact_t, new_rig_contact
   implicit none
@@ -40,9 +40,9 @@ module interface_states
     !> Area that a C-scan sees.
     procedure :: projected_area
     !> Takes the contact pressures found as the next estimates.
-    procedure :: settle
+    procedure :: update_contact
     !> Keeps what touches together in a first guess.
-    procedure :: keep_touching
+    procedure :: keep_contact_closed
     !> Work of contact and penalty ties in a step.
     procedure :: contact_work
     !> Energy booked as fracture that fronts have not set free.
@@ -86,7 +86,7 @@ contains
   end subroutine act
 
   !> Takes the contact pressures found, of faces and frames, as the next estimates.
-  subroutine settle(self, model, displacement, tolerance, rounds, settled)
+  subroutine update_contact(self, model, displacement, tolerance, updates, converged)
     !> The state
     class(interface_state_t), intent(inout) :: self
     type(model_t), intent(in) :: model
@@ -95,31 +95,31 @@ contains
     !> Complementarity at which they have settled
     real(wp), intent(in) :: tolerance
     !> Counts the times that there was something to settle
-    integer, intent(inout) :: rounds
+    integer, intent(inout) :: updates
     !> True if they have
-    logical, intent(out) :: settled
-    logical :: rig_settled
-    integer :: rig_rounds
+    logical, intent(out) :: converged
+    logical :: rig_converged
+    integer :: rig_updates
 
-    rig_rounds = rounds
-    call self%faces%settle(model, displacement, tolerance, rounds, settled)
-    call self%rig%settle(model, displacement, tolerance, rig_rounds, rig_settled)
-    settled = settled .and. rig_settled
-    rounds = max(rounds, rig_rounds)
-    if (settled) call settle_friction(self%cohesive, model, displacement, rounds, settled)
-  end subroutine settle
+    rig_updates = updates
+    call self%faces%update_contact(model, displacement, tolerance, updates, converged)
+    call self%rig%update_contact(model, displacement, tolerance, rig_updates, rig_converged)
+    converged = converged .and. rig_converged
+    updates = max(updates, rig_updates)
+    if (converged) call update_friction_limits(self%cohesive, model, displacement, updates, converged)
+  end subroutine update_contact
 
   !> Keeps touching faces together and what rests on a frame there, in a first guess.
-  subroutine keep_touching(self, model, guess)
+  subroutine keep_contact_closed(self, model, guess)
     !> The state
     class(interface_state_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> Guess of the unknowns at its end, (5, points)
     real(wp), intent(inout) :: guess(:, :)
 
-    call self%faces%keep_touching(model, guess)
-    call self%rig%keep_touching(model, guess)
-  end subroutine keep_touching
+    call self%faces%keep_contact_closed(model, guess)
+    call self%rig%keep_contact_closed(model, guess)
+  end subroutine keep_contact_closed
 
   !> Work of contact and penalty ties in a step, of this rank's points.
   pure real(wp) function contact_work(self, model, displacement, change) result(work)
@@ -133,7 +133,7 @@ contains
     if (model%map%layered) work = work + self%faces%work(model, displacement, change)
   end function contact_work
 
-  !> Energy that friction has turned into heat since an earlier state, of the whole plate, the same on every rank.
+  !> Energy that friction has turned into heat since an earlier state, of the full plate, the same on every rank.
   real(wp) function friction_heat(self, model, old) result(heat)
     !> The state
     class(interface_state_t), intent(in) :: self
@@ -144,7 +144,7 @@ contains
     heat = heat_since(model, old%cohesive, self%cohesive)
   end function friction_heat
 
-  !> Area in which at least one interface has delaminated, of the whole plate: nodal areas times the largest part
+  !> Area in which at least one interface has delaminated, of the full plate: nodal areas times the largest part
   !> delaminated above each other. A node where ties are released has delaminated as a whole, a cohesive one by the part
   !> dissipated. All points of a node belong to one rank, so that only the sum is collective.
   function projected_area(self, model) result(area)
@@ -195,7 +195,7 @@ contains
 
     allocate (areas(size(model%mesh%zones), size(model%zone)), source=0.0_wp)
     do zone = 1, size(areas, 1)
-      if (model%scene%delaminations(zone)%law == law_cohesive) cycle
+      if (model%setup%delaminations(zone)%law == law_cohesive) cycle
       field = 0
       call add_patch_weights(model%elements, pack([(i, i=1, model%elements%elements)], &
                                                   [(in_delaminated_cell(i), i=1, model%elements%elements)]), &
@@ -235,7 +235,7 @@ contains
 
     unreleased = 0
     do zone = 1, size(self%border_reached)
-      if (model%scene%delaminations(zone)%growth /= growth_equilibrium) cycle
+      if (model%setup%delaminations(zone)%growth /= growth_equilibrium) cycle
       unreleased = unreleased + max(0.0_wp, self%faces%fracture(zone) - self%ties%set_free(zone))
     end do
   end function unreleased

@@ -20,7 +20,7 @@ module interface_ties
     logical, allocatable :: free(:)
     !> True: separated faces move together (the paper's shortcut for unloading)
     logical :: glued = .false.
-    !> Fracture energy of the cells that fronts have released, of the whole plate, (zones), the same on every rank
+    !> Fracture energy of the cells that fronts have released, of the full plate, (zones), the same on every rank
     real(wp), allocatable :: fracture(:)
   contains
     !> Finds which jumps are free, after a growth.
@@ -33,7 +33,7 @@ module interface_ties
     procedure :: hold
     !> Largest penetration.
     procedure :: penetration
-    !> Delaminated area of each zone of the whole plate.
+    !> Delaminated area of each zone of the full plate.
     procedure :: area
     !> Saves or loads.
     procedure :: visit
@@ -51,7 +51,7 @@ contains
     allocate (self%regions(size(model%mesh%zones)))
     allocate (self%fracture(size(model%mesh%zones)), source=0.0_wp)
     do zone = 1, size(self%regions)
-      associate (starter => model%scene%delaminations(zone))
+      associate (starter => model%setup%delaminations(zone))
         self%regions(zone) = create_region(model%mesh, zone, starter%starter, starter%starter_strip, &
                                            starter%starter_round, starter%starter_at)
       end associate
@@ -85,7 +85,7 @@ contains
 
     bond = bond_none
     if (model%zone(i) == 0) return
-    associate (interface => model%scene%delaminations(model%zone(i)))
+    associate (interface => model%setup%delaminations(model%zone(i)))
       if (interface%law == law_cohesive) then
         bond = bond_cohesive
       else if (.not. self%free(i)) then
@@ -104,7 +104,7 @@ contains
     !> Point of this rank
     integer, intent(in) :: i
 
-    stiffness = model%scene%delaminations(model%zone(i))%penalty_stiffness
+    stiffness = model%setup%delaminations(model%zone(i))%penalty_stiffness
     if (stiffness <= 0) stiffness = 1.0e6_wp*model%contact_laws(model%zone(i))%layer_stiffness
     stiffness = stiffness*model%contact_area(i)
   end function tie_stiffness
@@ -156,7 +156,7 @@ contains
     call model%communicator%maximum(penetration)
   end function penetration
 
-  !> Delaminated area of each zone of the whole plate where fronts release ties.
+  !> Delaminated area of each zone of the full plate where fronts release ties.
   pure function area(self, model)
     !> The bonds
     class(interface_ties_t), intent(in) :: self
@@ -167,7 +167,7 @@ contains
 
     area = 0
     do zone = 1, size(self%regions)
-      if (model%scene%delaminations(zone)%law == law_cohesive) cycle
+      if (model%setup%delaminations(zone)%law == law_cohesive) cycle
       do j = self%regions(zone)%rows(1), self%regions(zone)%rows(2)
         do i = self%regions(zone)%columns(1), self%regions(zone)%columns(2)
           if (self%regions(zone)%is_delaminated(i, j)) area(zone) = area(zone) + model%mesh%cell_area([i, j])
@@ -188,7 +188,7 @@ contains
 
     do zone = 1, size(self%regions)
       ! That of a cohesive interface is its starter for ever.
-      if (model%scene%delaminations(zone)%law == law_cohesive) cycle
+      if (model%setup%delaminations(zone)%law == law_cohesive) cycle
       call self%regions(zone)%visit(archive, 'zone'//achar(iachar('0') + zone))
     end do
     if (.not. model%map%layered) return

@@ -86,7 +86,7 @@ contains
     type(onset_t) :: self
 
     self%stacks = stacks
-    self%strengths = interlaminar_strengths(model%plies, model%scene%materials, model%scene%delaminations)
+    self%strengths = interlaminar_strengths(model%plies, model%setup%materials, model%setup%delaminations)
     self%whole = unit_stresses_of(model%plies)
   end function new_onset
 

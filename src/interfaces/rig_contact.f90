@@ -7,9 +7,9 @@ module rig_contact
   use archives, only: archive_t
   use exact_sums, only: exact_sum_t
   use rank_totals, only: totals_of
-  use face_contact, only: contact_pressure, unmet_contact, updated_multiplier
+  use face_contact, only: contact_pressure, contact_residual, updated_multiplier
   use models, only: model_t
-  use support_parameters, only: most_supports
+  use support_parameters, only: max_supports
   implicit none
   private
   public :: rig_contact_t, new_rig_contact
@@ -22,7 +22,7 @@ module rig_contact
     real(wp), allocatable :: slope(:)
     !> Largest pressure so far
     real(wp) :: peak = 0
-    !> Forces of the rigs where a step has found them itself, (most_supports)
+    !> Forces of the rigs where a step has found them itself, (max_supports)
     real(wp), allocatable :: found(:)
   contains
     !> Adds the pressure's forces to a residual.
@@ -30,11 +30,11 @@ module rig_contact
     !> Adds the forces of springs to internal forces.
     procedure :: add_springs
     !> Takes the pressures found as the next estimates.
-    procedure :: settle
+    procedure :: update_contact
     !> Work of the pressure in a step.
     procedure :: work
     !> Keeps what rests on a frame there in a first guess.
-    procedure :: keep_touching
+    procedure :: keep_contact_closed
     !> Stiffness that frames and clamps add to the diagonal.
     procedure :: add_stiffness
     !> Forces of each rig on the plate.
@@ -53,22 +53,22 @@ contains
     type(rig_contact_t) :: self
 
     if (.not. model%rig%unilateral) return
-    allocate (self%multiplier(size(model%rig%bears)), self%pressure(size(model%rig%bears)), &
-              self%slope(size(model%rig%bears)), source=0.0_wp)
-    where (model%rig%bears > 0) self%slope = -model%rig_law%stiffness
-    where (model%rig%bears > 0 .and. model%rig%presses > 0) self%multiplier = model%rig%presses/model%rig_area
+    allocate (self%multiplier(size(model%rig%frame)), self%pressure(size(model%rig%frame)), &
+              self%slope(size(model%rig%frame)), source=0.0_wp)
+    where (model%rig%frame > 0) self%slope = -model%rig_law%stiffness
+    where (model%rig%frame > 0 .and. model%rig%presses > 0) self%multiplier = model%rig%presses/model%rig_area
     self%pressure = self%multiplier
   end function new_rig_contact
 
   !> Owned points that a frame bears by pressure.
-  pure function borne(model) result(points)
+  pure function on_frame(model) result(points)
     type(model_t), intent(in) :: model
     !> Points of this rank, ascending
     integer, allocatable :: points(:)
     integer :: i
 
-    points = pack([(i, i=1, model%distribution%owned)], model%rig%bears(:model%distribution%owned) > 0)
-  end function borne
+    points = pack([(i, i=1, model%distribution%owned)], model%rig%frame(:model%distribution%owned) > 0)
+  end function on_frame
 
   !> Adds the pressure's forces to a residual.
   pure subroutine act(self, model, displacement, residual)
@@ -83,7 +83,7 @@ contains
 
     if (.not. model%rig%unilateral) return
     do i = 1, model%distribution%owned
-      if (model%rig%bears(i) == 0) cycle
+      if (model%rig%frame(i) == 0) cycle
       call contact_pressure(model%rig_law, 0.0_wp, -displacement(3, i), self%multiplier(i), self%pressure(i), &
                             self%slope(i))
       ! A plate that just touches is held too: without weight, nothing else would hold it on the first step.
@@ -116,7 +116,7 @@ contains
   end subroutine add_springs
 
   !> Takes the pressures found as the next estimates; they have settled once they go with the gaps.
-  subroutine settle(self, model, displacement, tolerance, rounds, settled)
+  subroutine update_contact(self, model, displacement, tolerance, updates, converged)
     !> The state
     class(rig_contact_t), intent(inout) :: self
     type(model_t), intent(in) :: model
@@ -125,24 +125,24 @@ contains
     !> Complementarity at which they have settled
     real(wp), intent(in) :: tolerance
     !> Counts the times that there was something to settle
-    integer, intent(inout) :: rounds
+    integer, intent(inout) :: updates
     !> True if they have
-    logical, intent(out) :: settled
+    logical, intent(out) :: converged
     integer, allocatable :: points(:)
-    real(wp) :: unmet, largest
+    real(wp) :: mismatch, largest
 
-    settled = .true.
+    converged = .true.
     if (.not. model%rig%unilateral) return
-    points = borne(model)
+    points = on_frame(model)
     largest = maxval([0.0_wp, self%pressure(points)])
-    unmet = maxval([0.0_wp, unmet_contact(model%rig_law, -displacement(3, points), self%pressure(points))])
+    mismatch = maxval([0.0_wp, contact_residual(model%rig_law, -displacement(3, points), self%pressure(points))])
     call model%communicator%maximum(largest)
-    call model%communicator%maximum(unmet)
+    call model%communicator%maximum(mismatch)
     self%peak = max(self%peak, largest)
-    if (self%peak > 0) settled = unmet <= tolerance*self%peak
+    if (self%peak > 0) converged = mismatch <= tolerance*self%peak
     self%multiplier(points) = updated_multiplier(model%rig_law, -displacement(3, points), self%pressure(points))
-    rounds = rounds + merge(1, 0, unmet > 0)
-  end subroutine settle
+    updates = updates + merge(1, 0, mismatch > 0)
+  end subroutine update_contact
 
   !> Work of the pressure in a step, of this rank's points.
   pure real(wp) function work(self, model, change)
@@ -154,13 +154,13 @@ contains
 
     work = 0
     if (.not. model%rig%unilateral) return
-    associate (points => borne(model))
+    associate (points => on_frame(model))
       work = -sum(model%rig_area(points)*self%pressure(points)*change(3, points))
     end associate
   end function work
 
   !> Keeps what rests on a frame there in a first guess, and keeps the rest from passing into it.
-  subroutine keep_touching(self, model, guess)
+  subroutine keep_contact_closed(self, model, guess)
     !> The state
     class(rig_contact_t), intent(in) :: self
     type(model_t), intent(in) :: model
@@ -169,10 +169,10 @@ contains
     integer, allocatable :: points(:)
 
     if (.not. model%rig%unilateral) return
-    points = borne(model)
+    points = on_frame(model)
     guess(3, points) = merge(0.0_wp, min(0.0_wp, guess(3, points)), self%multiplier(points) > 0)
     call model%halo%update(guess)
-  end subroutine keep_touching
+  end subroutine keep_contact_closed
 
   !> Adds the stiffness of frames and clamps to that of the diagonal.
   pure subroutine add_stiffness(self, model, stiffness_factor, added)
@@ -188,11 +188,11 @@ contains
     if (.not. (model%rig%unilateral .or. model%rig%elastic)) return
     do i = 1, model%distribution%owned
       added(:, i) = added(:, i) + stiffness_factor*model%rig%springs(:, i)
-      if (model%rig%bears(i) > 0) added(3, i) = added(3, i) - model%rig_area(i)*self%slope(i)
+      if (model%rig%frame(i) > 0) added(3, i) = added(3, i) - model%rig_area(i)*self%slope(i)
     end do
   end subroutine add_stiffness
 
-  !> Forces of each rig on the whole plate, positive against the impact: what the equations of motion leave at the
+  !> Forces of each rig on the full plate, positive against the impact: what the equations of motion leave at the
   !> w that it holds, the pressure on its frame, and the springs of its clamps. The same on every rank.
   function reactions(self, model, displacement, internal, inertia, loads)
     !> The state
@@ -203,22 +203,22 @@ contains
     !> Forces of pressure and lines at the owned points, (5, points)
     real(wp), intent(in) :: loads(:, :)
     !> A force a rig, 0 for those that the deck does not have
-    real(wp) :: reactions(most_supports)
-    type(exact_sum_t) :: sums(most_supports)
+    real(wp) :: reactions(max_supports)
+    type(exact_sum_t) :: sums(max_supports)
     integer :: i
 
     reactions = 0
-    if (.not. allocated(model%rig%holds)) return
+    if (.not. allocated(model%rig%held_by)) return
     if (allocated(self%found)) then
       reactions = self%found
       return
     end if
     do i = 1, model%distribution%owned
-      associate (holds => model%rig%holds(i), bears => model%rig%bears(i), clamps => model%rig%clamps(i))
-        if (holds > 0) then
-          call sums(holds)%add(loads(3, i) - internal(3, i) - inertia(3, i))
+      associate (held_by => model%rig%held_by(i), frame => model%rig%frame(i), clamps => model%rig%clamps(i))
+        if (held_by > 0) then
+          call sums(held_by)%add(loads(3, i) - internal(3, i) - inertia(3, i))
         else
-          if (bears > 0) call sums(bears)%add(model%rig_area(i)*self%pressure(i))
+          if (frame > 0) call sums(frame)%add(model%rig_area(i)*self%pressure(i))
           if (clamps > 0) call sums(clamps)%add(model%rig%springs(3, i)*displacement(3, i) - model%rig%presses(i))
         end if
       end associate

@@ -21,7 +21,7 @@ module tie_release
     real(wp), allocatable :: share(:)
     !> Time in which they fade, (zones)
     real(wp), allocatable :: duration(:)
-    !> Energy that released faces set free, whole plate, (zones)
+    !> Energy that released faces set free, full plate, (zones)
     real(wp), allocatable :: set_free(:)
     !> Time until the last of them is gone, the same on every rank
     real(wp) :: left = 0
@@ -79,7 +79,7 @@ contains
     do i = 1, model%distribution%owned
       if (free_before(i) .or. .not. free(i)) cycle
       self%force(:, i) = forces(:, i)
-      if (model%scene%delaminations(model%zone(i))%contact /= contact_none) self%force(3, i) = min(0.0_wp, forces(3, i))
+      if (model%setup%delaminations(model%zone(i))%contact /= contact_none) self%force(3, i) = min(0.0_wp, forces(3, i))
       self%share(i) = 1
     end do
     self%left = maxval(self%duration)
@@ -95,7 +95,7 @@ contains
     logical, intent(in) :: free_before(:), free(:)
     !> Jumps, (5, points)
     real(wp), intent(in) :: opening(:, :)
-    !> The energy, of the whole plate, (zones)
+    !> The energy, of the full plate, (zones)
     real(wp) :: energy(size(self%set_free))
     integer :: i
 
@@ -160,7 +160,7 @@ contains
     type(tie_release_t), intent(in) :: old
     !> Change of the unknowns, (5, points)
     real(wp), intent(in) :: change(:, :)
-    !> Energy that the forces took from the whole plate
+    !> Energy that the forces took from the full plate
     real(wp), intent(out) :: taken
     real(wp) :: sums(size(self%set_free) + 1), work, mean
     integer :: i

@@ -104,7 +104,7 @@ contains
     if (sum(stiffness(diagonal, 2)) > sum(common(diagonal))) common = stiffness(:, 2)
   end function common_stiffness
 
-  !> Strains without those that vanish on a line of symmetry. Along the front of the whole plate their mean from both
+  !> Strains without those that vanish on a line of symmetry. Along the front of the full plate their mean from both
   !> sides of the line does that.
   pure function symmetric(model, node, strains)
     type(model_t), intent(in) :: model
@@ -197,7 +197,7 @@ contains
     batches = merge(batch_of(elements), 0, elements > 0)
     do e = 1, size(elements)
       if (batches(e) == 0 .or. any(batches(:e - 1) == batches(e))) cycle
-      call nodal_strains(model%elements, batches(e), model%scene%kinematics, field, at_nodes)
+      call nodal_strains(model%elements, batches(e), model%setup%kinematics, field, at_nodes)
       do same = e, size(elements)
         if (batches(same) /= batches(e)) cycle
         s = 1 + (same - 1)/4

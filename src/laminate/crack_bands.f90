@@ -16,7 +16,8 @@ module crack_bands
   use plies, only: elasticity_t, elasticity_of
   use ply_damage_parameters, only: ply_damage_t, energy_modes, fibre_tension, fibre_compression, matrix_tension, &
                                    matrix_compression
-  use softening_falls, only: softening_t, fall_of, worse, damage_at, share_growth, weights_of_signs, least_ratio
+  use linear_softening, only: softening_t, linear_softening_of, more_damaged, damage_at, share_growth, &
+    weights_of_signs, min_ratio
   implicit none
   private
   public :: crack_band_t, band_state_t, band_strains_t, create_crack_band, strain_band, elasticity_left, onset_strain, &
@@ -24,8 +25,8 @@ module crack_bands
 
   !> Rounds in which both damages find together, and the change at which they have. Poisson's coupling is weak, so that
   !> five are usual.
-  integer, parameter :: most_rounds = 50
-  real(wp), parameter :: settled = 1.0e-14_wp
+  integer, parameter :: max_iterations = 50
+  real(wp), parameter :: damage_tolerance = 1.0e-14_wp
 
   !> The law of a ply.
   type :: crack_band_t
@@ -100,7 +101,7 @@ contains
     !> The ply with these strains
     type(band_state_t), intent(out) :: new
     type(band_strains_t) :: strains
-    type(softening_t) :: falls(2)
+    type(softening_t) :: softening(2)
     real(wp) :: before(2)
     integer :: round, i
 
@@ -115,18 +116,19 @@ contains
     else
       call shear_band(band, strains, old, new)
     end if
-    do round = 1, most_rounds
+    do round = 1, max_iterations
       before = new%damage
-      falls = softening_of(sheared_law(band, new%sheared), lengths, strains, new%damage)
+      softening = softening_of(sheared_law(band, new%sheared), lengths, strains, new%damage)
       do i = 1, 2
-        new%damage(i) = max(old%damage(i), damage_at(falls(i)))
+        new%damage(i) = max(old%damage(i), damage_at(softening(i)))
       end do
-      if (all(abs(new%damage - before) <= settled)) exit
+      if (all(abs(new%damage - before) <= damage_tolerance)) exit
     end do
     do i = 1, 2
       if (new%damage(i) > old%damage(i)) &
-        new%dissipated(falls(i)%mode) = new%dissipated(falls(i)%mode) + (1 - band%remainder)*falls(i)%energy* &
-                                        share_growth(falls(i)%ratio, old%damage(i), new%damage(i))
+        new%dissipated(softening(i)%mode) = new%dissipated(softening(i)%mode) + (1 &
+          - band%remainder)*softening(i)%energy* &
+                                        share_growth(softening(i)%ratio, old%damage(i), new%damage(i))
     end do
   end subroutine strain_band
 
@@ -188,7 +190,7 @@ contains
       real(wp), intent(in) :: part
       type(softening_t) :: signs(2)
 
-      signs = matrix_falls(sheared_law(band, loss_at(part)), 1.0_wp, strains, stiffness_left(band, old%damage))
+      signs = matrix_softening(sheared_law(band, loss_at(part)), 1.0_wp, strains, stiffness_left(band, old%damage))
       cracks = part*maxval(signs%exposure) > 1
     end function cracks_at
   end subroutine shear_band
@@ -255,7 +257,7 @@ contains
   end function stiffness_left
 
   !> The falls on which fibres and matrix are: of tension and of compression that with the larger damage.
-  pure function softening_of(band, lengths, strains, damage) result(falls)
+  pure function softening_of(band, lengths, strains, damage) result(softening)
     !> The law
     type(crack_band_t), intent(in) :: band
     !> Length of the element along and across the fibres
@@ -265,14 +267,14 @@ contains
     !> Damage of fibres and matrix
     real(wp), intent(in) :: damage(2)
     !> Of fibres and matrix
-    type(softening_t) :: falls(2)
+    type(softening_t) :: softening(2)
 
-    falls(1) = worse(fibre_falls(band, lengths(1), strains, stiffness_left(band, damage)))
-    falls(2) = worse(matrix_falls(band, lengths(2), strains, stiffness_left(band, damage)))
+    softening(1) = more_damaged(fibre_softening(band, lengths(1), strains, stiffness_left(band, damage)))
+    softening(2) = more_damaged(matrix_softening(band, lengths(2), strains, stiffness_left(band, damage)))
   end function softening_of
 
   !> The falls of the fibres.
-  pure function fibre_falls(band, length, strains, left) result(signs)
+  pure function fibre_softening(band, length, strains, left) result(signs)
     !> The law
     type(crack_band_t), intent(in) :: band
     !> Length of the element along the fibres
@@ -288,13 +290,15 @@ contains
     associate (c => band%elasticity, g => band%toughness)
       call find_strain_alone(c, strains, left, 1, size, weights)
       energy = c%e1*size**2/2
-      signs(1) = fall_of(weights(1)*c%e1*size/band%along(1), energy, g(fibre_tension), length, fibre_tension)
-      signs(2) = fall_of(weights(2)*c%e1*size/band%along(2), energy, g(fibre_compression), length, fibre_compression)
+      signs(1) = linear_softening_of(weights(1)*c%e1*size/band%along(1), energy, g(fibre_tension), length, &
+                                     fibre_tension)
+      signs(2) = linear_softening_of(weights(2)*c%e1*size/band%along(2), energy, g(fibre_compression), length, &
+                                     fibre_compression)
     end associate
-  end function fibre_falls
+  end function fibre_softening
 
   !> The falls of the matrix.
-  pure function matrix_falls(band, length, strains, left) result(signs)
+  pure function matrix_softening(band, length, strains, left) result(signs)
     !> The law
     type(crack_band_t), intent(in) :: band
     !> Length of the element across the fibres
@@ -317,12 +321,14 @@ contains
         toughness = energy/((energy - shear_energy)/g(matrix_tension) + shear_energy/g(matrix_compression))
       across = c%e2*size
       shear = c%g12*sqrt(strains%shear_square)
-      signs(1) = fall_of(weights(1)*matrix_exposure(band%matrix, across, shear), energy, toughness, length, &
+      signs(1) = linear_softening_of(weights(1)*matrix_exposure(band%matrix, across, shear), energy, toughness, &
+                                     length, &
                          matrix_tension)
-      signs(2) = fall_of(weights(2)*matrix_exposure(band%matrix, -across, shear), energy, g(matrix_compression), &
+      signs(2) = linear_softening_of(weights(2)*matrix_exposure(band%matrix, -across, shear), energy, &
+                                     g(matrix_compression), &
                          length, matrix_compression)
     end associate
-  end function matrix_falls
+  end function matrix_softening
 
   !> Strain that s11 or s22 would have alone: e1 + part e2, e2 + part e1, over a common divisor.
   pure subroutine find_strain_alone(elasticity, strains, left, direction, size, weights)
@@ -385,6 +391,6 @@ contains
       energies(matrix_compression) = max(m%compression**2/(2*c%e2), m%shear**2/(2*c%g12) + &
                                                                     band%shear_beta*m%shear**4/2)
     end associate
-    lengths = band%toughness/(least_ratio*energies)
+    lengths = band%toughness/(min_ratio*energies)
   end function longest_element
 end module crack_bands

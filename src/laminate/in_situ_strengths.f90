@@ -28,7 +28,7 @@ contains
     integer, intent(in) :: ply
     !> Materials that they refer to
     type(material_t), intent(in) :: materials(:)
-    !> Tells whether strengths are those in place
+    !> Whether strengths are those in place
     type(ply_damage_t), intent(in) :: damage
     !> The material
     type(material_t) :: material
@@ -51,7 +51,7 @@ contains
     integer, intent(in) :: ply
     !> Materials that they refer to
     type(material_t), intent(in) :: materials(:)
-    !> Tells whether strengths are those in place
+    !> Whether strengths are those in place
     type(ply_damage_t), intent(in) :: damage
     !> The strengths
     type(matrix_strengths_t) :: strengths

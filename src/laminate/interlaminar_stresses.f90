@@ -39,7 +39,7 @@ contains
 
   !> Normal stress below a ply, from sigma_z,z = -tau_xz,x - tau_yz,y. What the shear forces lack in balance is taken
   !> for a load that presses on the upper face, or on the lower one. Inertia and membrane forces of a curved plate are
-  !> not told from it; where they are, the stress is too low by their force per area at most.
+  !> not found from it; where they are, the stress is too low by their force per area at most.
   pure real(wp) function opening(self, ply, gradient) result(stress)
     !> The stresses
     class(unit_stresses_t), intent(in) :: self

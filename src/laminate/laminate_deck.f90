@@ -2,7 +2,7 @@
 module laminate_deck
   use deck_choices, only: code_of
   use deck_problems, only: problems_t
-  use deck_remarks, only: tell, remark, are_clear
+  use deck_remarks, only: report, remark, are_clear
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
   use kinds, only: wp
@@ -12,7 +12,7 @@ module laminate_deck
   use plies, only: material_objection
   use shear_corrections, only: natural_correction
   use stacking, only: stacked_plies
-  use stacking_sequences, only: read_sequence, most_plies, usual_degrees, count_hint
+  use stacking_sequences, only: read_sequence, max_plies, usual_degrees, count_hint
   use text, only: line_t, append, joined, nearest_name, to_text, words_of
   implicit none
   private
@@ -58,7 +58,7 @@ contains
     integer, allocatable :: indices(:)
     integer :: plies, i
 
-    call settle_stacking(settings, problems)
+    call resolve_stacking(settings, problems)
     angles = settings%reals_of(laminate_group, key_angles)
     thicknesses = settings%reals_of(laminate_group, key_thicknesses)
     names = settings%texts_of(laminate_group, 'materials')
@@ -67,9 +67,9 @@ contains
     do i = 1, size(names)
       call find_material(settings, materials, trim(names(i)%text), problems, indices(i))
     end do
-    if (plies > most_plies) call tell(settings, problems, laminate_group, key_angles, &
-                                      'more than '//to_text(most_plies)//' plies.')
-    if (plies == 0 .or. plies > most_plies) return
+    if (plies > max_plies) call report(settings, problems, laminate_group, key_angles, &
+                                      'more than '//to_text(max_plies)//' plies.')
+    if (plies == 0 .or. plies > max_plies) return
     call check_number(settings, key_thicknesses, size(thicknesses), plies, problems)
     call check_number(settings, 'materials', size(names), plies, problems)
     laminate%angle = angles
@@ -78,11 +78,11 @@ contains
     if (any(indices == 0)) return
     if (size(indices) == plies .or. size(indices) == 1) &
       laminate%material = [(indices(min(i, size(indices))), i=1, plies)]
-    call settle_correction(settings, materials, laminate)
+    call choose_correction(settings, materials, laminate)
   end subroutine fill_laminate
 
   !> The reduction of the transverse shear stiffness: the deck's, or the one that suits the plies.
-  subroutine settle_correction(settings, materials, laminate)
+  subroutine choose_correction(settings, materials, laminate)
     !> Keys in effect; get the one that is chosen
     type(settings_t), intent(inout) :: settings
     !> The materials
@@ -95,29 +95,29 @@ contains
 
     if (settings%is_given(laminate_group, key_correction)) then
       laminate%shear_correction = code_of(settings%text_of(laminate_group, key_correction), corrections, codes)
-    else if (is_sound(laminate, materials)) then
+    else if (is_valid(laminate, materials)) then
       laminate%shear_correction = natural_correction(stacked_plies(laminate, materials))
       words = words_of(corrections, ' ')
       call settings%derive(laminate_group, key_correction, &
                            words(findloc(codes, laminate%shear_correction, 1))%text, .true.)
     end if
-  end subroutine settle_correction
+  end subroutine choose_correction
 
   !> True if there are plies of admissible materials.
-  pure logical function is_sound(laminate, materials)
+  pure logical function is_valid(laminate, materials)
     !> The plies
     type(laminate_t), intent(in) :: laminate
     !> Their materials
     type(material_t), intent(in) :: materials(:)
     integer :: i
 
-    is_sound = allocated(laminate%material) .and. allocated(laminate%thickness)
-    if (is_sound) is_sound = &
+    is_valid = allocated(laminate%material) .and. allocated(laminate%thickness)
+    if (is_valid) is_valid = &
       all([(material_objection(materials(laminate%material(i))) == '', i=1, size(laminate%material))])
-  end function is_sound
+  end function is_valid
 
-  !> Turns stacking and ply_thickness into angles and thicknesses, and tells what is missing or given twice.
-  subroutine settle_stacking(settings, problems)
+  !> Turns stacking and ply_thickness into angles and thicknesses, and reports what is missing or given twice.
+  subroutine resolve_stacking(settings, problems)
     !> Keys in effect
     type(settings_t), intent(inout) :: settings
     !> Faults found are added
@@ -132,7 +132,7 @@ contains
     if (.not. settings%has_group(laminate_group)) return
     if (any([(settings%is_given(laminate_group, noted(i)), i=1, 2)])) then
       do i = 1, 2
-        if (settings%is_given(laminate_group, listed(i))) call tell(settings, problems, laminate_group, &
+        if (settings%is_given(laminate_group, listed(i))) call report(settings, problems, laminate_group, &
           trim(listed(i)), trim(noted(i))//' is its other form; '//either)
       end do
       call require(noted)
@@ -140,7 +140,7 @@ contains
       if (any([(settings%is_given(laminate_group, listed(i)), i=1, 2)])) return
       call read_sequence(settings%text_of(laminate_group, key_stacking), angles, fault)
       if (fault /= '') then
-        call tell(settings, problems, laminate_group, key_stacking, fault//'.')
+        call report(settings, problems, laminate_group, key_stacking, fault//'.')
         return
       end if
       i = maxloc(abs(angles), 1)
@@ -155,7 +155,7 @@ contains
 
   contains
 
-    !> Tells those of some keys that are missing.
+    !> Reports those of some keys that are missing.
     subroutine require(keys)
       !> Their names
       character(len=*), intent(in) :: keys(:)
@@ -163,10 +163,10 @@ contains
 
       do j = 1, size(keys)
         if (settings%is_given(laminate_group, keys(j)) .or. problems%concern(laminate_group, trim(keys(j)))) cycle
-        call tell(settings, problems, laminate_group, trim(keys(j)), 'is missing; '//either)
+        call report(settings, problems, laminate_group, trim(keys(j)), 'is missing; '//either)
       end do
     end subroutine require
-  end subroutine settle_stacking
+  end subroutine resolve_stacking
 
   !> A list that has one value or one a ply.
   subroutine check_number(settings, key, number, plies, problems)
@@ -182,7 +182,7 @@ contains
     type(problems_t), intent(inout) :: problems
 
     if (number <= 1 .or. number == plies) return
-    call tell(settings, problems, laminate_group, key, to_text(number)//' values, but angles has '//to_text(plies)// &
+    call report(settings, problems, laminate_group, key, to_text(number)//' values, but angles has '//to_text(plies)// &
               '; allowed: 1 value for all plies or 1 a ply.')
   end subroutine check_number
 
@@ -210,10 +210,11 @@ contains
     if (problems%concern(material_group, 'name') .or. problems%concern(laminate_group, 'materials')) return
     if (problems%concern(material_group) .and. size(names) == 0) return
     if (nearest_name(name, names) /= '') then
-      call tell(settings, problems, laminate_group, 'materials', 'no &material is named '''//name// &
+      call report(settings, problems, laminate_group, 'materials', 'no &material is named '''//name// &
                 '''; did you mean '''//nearest_name(name, names)//'''?')
     else
-      call tell(settings, problems, laminate_group, 'materials', 'no &material is named '''//name//'''; allowed: '''// &
+      call report(settings, problems, laminate_group, 'materials', 'no &material is named '''//name// &
+                  '''; allowed: '''// &
                 joined(names, ''', ''')//'''.')
     end if
   end subroutine find_material

@@ -1,7 +1,7 @@
 !> Materials of the deck: rows of its table, filling, and the checks that decide what a material is.
 module material_deck
   use deck_problems, only: problems_t
-  use deck_remarks, only: tell, are_clear
+  use deck_remarks, only: report, are_clear
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
   use hahn_tsai, only: shear_coefficient
@@ -80,8 +80,8 @@ module material_deck
 
   !> Keys of an orthotropic material that have to be there, and all of them.
   character(len=*), parameter :: needed_keys = 'E1 E2 G12 G23 nu12', orthotropic_keys = needed_keys//' G13 nu23'
-  !> Largest ratio of two moduli of a material; rounding spoils the answer beyond.
-  real(wp), parameter :: most_contrast = 1.0e6_wp
+  !> Largest ratio of two moduli of a material; rounding spoils the result beyond.
+  real(wp), parameter :: max_contrast = 1.0e6_wp
 
 contains
 
@@ -100,7 +100,7 @@ contains
       call fill_material(settings, i, materials(i), problems)
       do j = 1, i - 1
         if (materials(i)%name /= materials(j)%name .or. materials(i)%name == '') cycle
-        call tell(settings, problems, material_group, 'name', 'another material has this name; give each its own.', i)
+        call report(settings, problems, material_group, 'name', 'another material has this name; give each its own.', i)
         exit
       end do
     end do
@@ -133,7 +133,7 @@ contains
     do mode = 1, size(toughness_keys)
       material%toughness(mode) = settings%real_of(material_group, toughness_keys(mode), place)
     end do
-    call judge_completeness(settings, place, problems, complete)
+    call check_completeness(settings, place, problems, complete)
     if (.not. complete) return
     if (settings%is_given(material_group, 'E', place)) then
       call fill_isotropic(settings, place, material)
@@ -141,10 +141,10 @@ contains
       call fill_orthotropic(settings, place, material)
     end if
     if (material_objection(material) /= '') then
-      call tell(settings, problems, material_group, '', material_objection(material)//'.', place)
-    else if (contrast(material) > most_contrast) then
-      call tell(settings, problems, material_group, '', 'its moduli differ by more than a factor of '// &
-                to_text(most_contrast)//', where rounding spoils the answer.', place)
+      call report(settings, problems, material_group, '', material_objection(material)//'.', place)
+    else if (contrast(material) > max_contrast) then
+      call report(settings, problems, material_group, '', 'its moduli differ by more than a factor of '// &
+                to_text(max_contrast)//', where rounding spoils the result.', place)
     end if
     material%shear_beta = shear_coefficient(material%g12, material%s12, &
                                             settings%real_of(material_group, key_shear_strain, place))
@@ -160,8 +160,8 @@ contains
     contrast = maxval(moduli)/minval(moduli)
   end function contrast
 
-  !> Whether the elastic constants are all there and sound; tells what is missing.
-  subroutine judge_completeness(settings, place, problems, complete)
+  !> Whether the elastic constants are all there and sound; reports what is missing.
+  subroutine check_completeness(settings, place, problems, complete)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> Index of the material
@@ -178,7 +178,8 @@ contains
     if (settings%is_given(material_group, 'E', place) .or. settings%is_given(material_group, 'nu', place)) then
       missing = words_with(settings, place, 'E nu', .false.)
       if (size(given) > 0) then
-        call tell(settings, problems, material_group, given(1)%text, 'the material has E or nu too; give either E '// &
+        call report(settings, problems, material_group, given(1)%text, &
+                    'the material has E or nu too; give either E '// &
                   'and nu (isotropic) or E1, E2, G12, G23, nu12 (orthotropic).', place)
         return
       end if
@@ -190,12 +191,12 @@ contains
       end if
     end if
     if (size(missing) > 0) then
-      if (.not. is_misspelt(missing, place, problems)) call tell(settings, problems, material_group, '', &
+      if (.not. is_misspelt(missing, place, problems)) call report(settings, problems, material_group, '', &
         joined(missing, ', ')//' must be given too.', place)
       return
     end if
     complete = are_clear(settings, problems, material_group, 'E nu '//orthotropic_keys, place)
-  end subroutine judge_completeness
+  end subroutine check_completeness
 
   !> Those of some keys that the deck gives, or those that it doesn't.
   function words_with(settings, place, keys, given) result(words)
@@ -219,7 +220,7 @@ contains
     end do
   end function words_with
 
-  !> True: one of the missing keys is there under a wrong name, which was told already.
+  !> True: one of the missing keys is there under a wrong name, which was reported already.
   logical function is_misspelt(missing, place, problems)
     !> Names of keys
     type(line_t), intent(in) :: missing(:)
@@ -281,7 +282,7 @@ contains
     do i = 1, settings%groups_named(material_group)
       if (settings%is_given(material_group, 'density', i)) cycle
       if (.not. are_clear(settings, problems, material_group, 'density '//key_library, i)) cycle
-      call tell(settings, problems, material_group, 'density', 'is missing; a run in time needs a density > 0.', i)
+      call report(settings, problems, material_group, 'density', 'is missing; a run in time needs a density > 0.', i)
     end do
   end subroutine require_densities
 

@@ -138,7 +138,7 @@ contains
   pure function table_line(cells, markdown) result(line)
     !> Its cells
     type(line_t), intent(in) :: cells(:)
-    !> True: parted by bars
+    !> True: separated by bars
     logical, intent(in) :: markdown
     !> The line
     character(len=:), allocatable :: line

@@ -1,7 +1,7 @@
 !> Transverse shear stresses of plies by equilibrium through the thickness, averaged over each ply.
 !>
 !> The stresses are those of the intact laminate under its shear forces (see `transverse_shear`). Where a stack is
-!> parted into layers, the plies of a layer share its force in the proportions that they have in the laminate. That is
+!> divided into layers, the plies of a layer share its force in the proportions that they have in the laminate. That is
 !> equilibrium where layers are joined. Where their faces are free, the largest stress in a layer of several plies is
 !> too low by a third at most.
 module ply_shear
@@ -14,7 +14,7 @@ module ply_shear
 
   !> Least determinant of what a layer takes of unit forces, over the product of its diagonal, at which its plies still
   !> follow the laminate. Both are equal without coupling between the directions.
-  real(wp), parameter :: least_determinant = 0.1_wp
+  real(wp), parameter :: min_determinant = 0.1_wp
 
 contains
 
@@ -56,7 +56,7 @@ contains
       taken = taken + shares(:, :, i)*(plies(i)%z_bottom - plies(i)%z_top)
     end do
     determinant = taken(1, 1)*taken(2, 2) - taken(1, 2)*taken(2, 1)
-    if (min(taken(1, 1), taken(2, 2)) > 0 .and. determinant >= least_determinant*taken(1, 1)*taken(2, 2)) then
+    if (min(taken(1, 1), taken(2, 2)) > 0 .and. determinant >= min_determinant*taken(1, 1)*taken(2, 2)) then
       whole = [taken(2, 2)*force(1) - taken(1, 2)*force(2), taken(1, 1)*force(2) - taken(2, 1)*force(1)]/determinant
       do i = 1, size(plies)
         stress(:, i) = matmul(shares(:, :, i), whole)

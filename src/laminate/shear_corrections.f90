@@ -11,7 +11,7 @@ module shear_corrections
 
   !> Ratio of the plies' shear moduli beyond which one shear strain for all plies is no approximation any more. Plies of
   !> one fibre composite differ by G13/G23, which is below 3; foam and honeycomb differ from their skins by 30 and more.
-  real(wp), parameter :: most_contrast = 10
+  real(wp), parameter :: max_contrast = 10
 
 contains
 
@@ -20,7 +20,7 @@ contains
     !> All plies
     type(ply_t), intent(in) :: plies(:)
 
-    correction = merge(shear_energy, shear_five_sixths, shear_contrast(plies) > most_contrast)
+    correction = merge(shear_energy, shear_five_sixths, shear_contrast(plies) > max_contrast)
   end function natural_correction
 
   !> Largest over smallest shear modulus of the plies across x or y, whichever differ more.

@@ -7,9 +7,9 @@ module stacking_sequences
   public :: read_sequence
 
   !> Most plies of a laminate.
-  integer, parameter, public :: most_plies = 1000
+  integer, parameter, public :: max_plies = 1000
   !> Largest size of an angle, degrees.
-  real(wp), parameter :: most_degrees = 360
+  real(wp), parameter :: max_degrees = 360
   !> Largest size of an angle that is meant as such; beyond, a subscript may have been lost, as in 302 for 30_2.
   real(wp), parameter, public :: usual_degrees = 180
   !> How plies of one angle are counted.
@@ -49,14 +49,14 @@ contains
       if (scan(next(reader), '])') > 0) then
         call object(reader, 'it closes no bracket')
       else
-        call object(reader, 'it does not belong here; angles are parted by /')
+        call object(reader, 'it does not belong here; angles are separated by /')
       end if
     end if
     if (barred) call object(reader, 'the middle ply is marked by ~, but no s mirrors it')
     fault = reader%fault
   end subroutine read_sequence
 
-  !> Items parted by slashes, up to a bracket or the end.
+  !> Items separated by slashes, up to a bracket or the end.
   pure recursive subroutine read_list(reader, angles, barred)
     !> Where to read
     type(reader_t), intent(inout) :: reader
@@ -71,8 +71,8 @@ contains
       call read_item(reader, item, barred)
       if (reader%fault /= '') return
       angles = [angles, item]
-      if (size(angles) > most_plies) then
-        call object(reader, 'the sequence has more than '//to_text(most_plies)//' plies')
+      if (size(angles) > max_plies) then
+        call object(reader, 'the sequence has more than '//to_text(max_plies)//' plies')
         return
       end if
       if (next(reader) /= '/') return
@@ -148,7 +148,7 @@ contains
         call read_count(reader, count)
         if (reader%fault == '') angles = repeated(angles, count)
       end select
-      if (size(angles) > most_plies) call object(reader, 'the sequence has more than '//to_text(most_plies)//' plies')
+      if (size(angles) > max_plies) call object(reader, 'the sequence has more than '//to_text(max_plies)//' plies')
     end do
   end subroutine read_suffix
 
@@ -188,12 +188,12 @@ contains
       call object(reader, 'an angle has no leading zero; '//count_hint)
       return
     end if
-    if (angle > most_degrees) then
+    if (angle > max_degrees) then
       call object(reader, 'the angle is larger than 360 degrees; '//count_hint)
       return
     end if
     call step(reader, last)
-    if (next(reader) == ',') call object(reader, 'angles are parted by /, and a decimal has a point')
+    if (next(reader) == ',') call object(reader, 'angles are separated by /, and a decimal has a point')
     select case (signs)
     case ('+-')
       angles = [angle, -angle]
@@ -220,8 +220,8 @@ contains
     last = verify(number//'/', digits) - 1
     status = 1
     if (last > 0 .and. last <= 4) read (number(:last), *, iostat=status) count
-    if (status /= 0 .or. count < 1 .or. count > most_plies) then
-      call object(reader, 'a count from 1 to '//to_text(most_plies)//' should stand')
+    if (status /= 0 .or. count < 1 .or. count > max_plies) then
+      call object(reader, 'a count from 1 to '//to_text(max_plies)//' should stand')
       return
     end if
     call step(reader, last)
@@ -237,7 +237,7 @@ contains
     real(wp), allocatable :: plies(:)
     integer :: i, times
 
-    times = min(count, most_plies/size(angles) + 1)
+    times = min(count, max_plies/size(angles) + 1)
     plies = [(angles, i=1, times)]
   end function repeated
 

@@ -7,7 +7,7 @@ module dense_systems
   public :: dense_factor_t, positive_factor_t, solve_dense, solve_descending
 
   !> Size of an eigenvalue over the largest below which it counts as that: what lies along it is unknown by rounding.
-  real(wp), parameter :: least_eigenvalue = 1.0e-10_wp
+  real(wp), parameter :: min_eigenvalue = 1.0e-10_wp
 
   !> A small matrix, factored.
   type :: dense_factor_t
@@ -146,6 +146,6 @@ contains
     found = info == 0
     if (.not. found) return
     values = abs(values)
-    x = matmul(vectors, matmul(x, vectors)/max(values, least_eigenvalue*maxval(values), tiny(values)))
+    x = matmul(vectors, matmul(x, vectors)/max(values, min_eigenvalue*maxval(values), tiny(values)))
   end subroutine solve_descending
 end module dense_systems

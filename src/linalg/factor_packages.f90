@@ -23,7 +23,7 @@ module factor_packages
 
   !> Rows up to which one rank factors for all. Measured: on two ranks MUMPS takes 1.3 times as long for a solve as
   !> CHOLMOD on one for 59 000 rows, and .93 times for 240 000.
-  integer, parameter :: most_rows_for_one = 200000
+  integer, parameter :: max_rows_for_one = 200000
 
 contains
 
@@ -41,7 +41,7 @@ contains
     if (factorization == factorization_cholmod) then
       names = ['cholmod']
     else if (positive_definite .and. factorization /= factorization_mumps .and. &
-             (ranks == 1 .or. rows <= most_rows_for_one)) then
+             (ranks == 1 .or. rows <= max_rows_for_one)) then
       names = ['cholmod', 'mumps  ', 'petsc  ']
     else
       names = ['mumps  ', 'petsc  ']
@@ -67,11 +67,11 @@ contains
   end function package_title
 
   !> Sets the controls of MUMPS for a factor that isn't filled yet.
-  subroutine prepare_mumps(preconditioner, room, ierr)
+  subroutine prepare_mumps(preconditioner, memory_margin, ierr)
     !> What is to make the factor
     type(tPC), intent(in) :: preconditioner
     !> Room beyond MUMPS' estimate in %, negative for its own choice
-    integer, intent(in) :: room
+    integer, intent(in) :: memory_margin
     !> First code of PETSc that isn't zero
     integer, intent(out) :: ierr
     type(tMat) :: factor
@@ -80,7 +80,7 @@ contains
     codes = 0
     call PCFactorGetMatrix(preconditioner, factor, codes(1))
     if (codes(1) == 0) call MatMumpsSetIcntl(factor, control_root, 1, codes(2))
-    if (codes(1) == 0 .and. room >= 0) call MatMumpsSetIcntl(factor, control_room, room, codes(3))
+    if (codes(1) == 0 .and. memory_margin >= 0) call MatMumpsSetIcntl(factor, control_room, memory_margin, codes(3))
     ierr = maxval(codes)
   end subroutine prepare_mumps
 

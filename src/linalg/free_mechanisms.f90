@@ -25,9 +25,9 @@ module free_mechanisms
     !> Right-hand side of the next solve.
     procedure :: right_hand_side
     !> Looks at the solution.
-    procedure :: judge
+    procedure :: assess
     !> Forgets the eigenvector.
-    procedure :: forget
+    procedure :: reset
   end type mechanism_t
 
 contains
@@ -56,7 +56,7 @@ contains
   end function right_hand_side
 
   !> Looks at the solution.
-  subroutine judge(self, communicator, solution, found)
+  subroutine assess(self, communicator, solution, found)
     class(mechanism_t), intent(inout) :: self
     !> All ranks
     type(communicator_t), intent(in) :: communicator
@@ -74,16 +74,16 @@ contains
       found = growth > largest_growth .or. .not. growth > 0
     end if
     if (found) then
-      call self%forget()
+      call self%reset()
     else
       self%mode = self%mode/growth
     end if
-  end subroutine judge
+  end subroutine assess
 
   !> Forgets the eigenvector.
-  subroutine forget(self)
+  subroutine reset(self)
     class(mechanism_t), intent(inout) :: self
 
     if (allocated(self%mode)) deallocate (self%mode)
-  end subroutine forget
+  end subroutine reset
 end module free_mechanisms

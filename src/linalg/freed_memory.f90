@@ -5,11 +5,11 @@ module freed_memory
   use, intrinsic :: iso_c_binding, only: c_int
   implicit none
   private
-  public :: give_back_freed, keep_freed
+  public :: return_freed_memory, keep_freed
 
   !> Settings of glibc: what is left at the end of the heap when it is trimmed, the size from which a block is a
   !> mapping of its own, which goes back to the system when freed, and how many such mappings there may be.
-  integer(c_int), parameter :: trim_threshold = -1, mapping_threshold = -3, most_mappings = -4
+  integer(c_int), parameter :: trim_threshold = -1, mapping_threshold = -3, max_mappings = -4
   !> Sizes for the first two, bytes
   integer(c_int), parameter :: left_at_end = 2**20, large = 2**18
   !> Mappings that glibc allows by default
@@ -29,13 +29,13 @@ module freed_memory
 contains
 
   !> Lets large blocks go back to the system when they are freed.
-  subroutine give_back_freed()
-    call set([trim_threshold, mapping_threshold, most_mappings], [left_at_end, large, usual_mappings])
-  end subroutine give_back_freed
+  subroutine return_freed_memory()
+    call set([trim_threshold, mapping_threshold, max_mappings], [left_at_end, large, usual_mappings])
+  end subroutine return_freed_memory
 
   !> Keeps freed memory for the next request.
   subroutine keep_freed()
-    call set([trim_threshold, most_mappings], [-1_c_int, 0_c_int])
+    call set([trim_threshold, max_mappings], [-1_c_int, 0_c_int])
   end subroutine keep_freed
 
   !> Changes settings.

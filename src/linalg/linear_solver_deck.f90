@@ -3,7 +3,7 @@
 module linear_solver_deck
   use deck_choices, only: code_of
   use deck_problems, only: problems_t
-  use deck_remarks, only: tell
+  use deck_remarks, only: report
   use deck_settings, only: settings_t
   use deck_vocabulary, only: key_row_length
   use linear_solver_parameters, only: linear_solver_parameters_t, factorization_mumps, factorization_cholmod, &
@@ -54,7 +54,7 @@ contains
     words = words_of(solver%petsc_options, ' ')
     do i = 1, size(words)
       if (is_allowed(words(i)%text)) cycle
-      call tell(settings, problems, group, 'petsc_options', words(i)%text//' might write files or more; allowed: '// &
+      call report(settings, problems, group, 'petsc_options', words(i)%text//' might write files or more; allowed: '// &
                 '-log_view and options that begin with -ksp_, -pc_ or -mat_, and words without : and /; give '// &
                 'others on the command line.')
       return

@@ -7,7 +7,7 @@ module linear_solvers
   use errors, only: error_t, fail, exit_convergence, exit_internal, exit_usage
   use factor_packages, only: packages_for, why_not_factored, factor_made, factor_not_positive, factor_singular
   use free_mechanisms, only: mechanism_t
-  use freed_memory, only: give_back_freed, keep_freed
+  use freed_memory, only: return_freed_memory, keep_freed
   use kinds, only: wp
   use linear_solver_parameters, only: factorization_automatic, factorization_cholmod
   use petsc_factors, only: petsc_factor_t
@@ -21,7 +21,7 @@ module linear_solvers
   !> What is wrong with a solve that comes too early
   character(len=*), parameter :: no_factor = 'The linear equations were to be solved before they were factored.'
   !> The two factors that a solver may have, and what options for each begin with
-  integer, parameter :: usual = 1, indefinite = 2
+  integer, parameter :: definite = 1, indefinite = 2
   character(len=11), parameter :: prefixes(2) = [character(len=11) :: '', 'indefinite_']
 
   !> A symmetric matrix and its factor. The factor stays what it was until `factorize` is called again,
@@ -34,7 +34,7 @@ module linear_solvers
     !> Number of right-hand sides solved so far
     integer :: solves = 0
     !> Factorizations of a matrix that was promised to be positive definite and was not
-    integer, private :: promises_broken = 0
+    integer, private :: indefinite_matrices = 0
     !> All ranks
     type(communicator_t), private :: communicator
     !> Number of rows that this rank owns, and of all
@@ -44,7 +44,7 @@ module linear_solvers
     !> Its factor as a rule, and that of a matrix that broke its promise, set up when that happens
     type(petsc_factor_t), private :: factors(2)
     !> Which of them is in force
-    integer, private :: current = usual
+    integer, private :: current = definite
     !> True while there is a factor
     logical, private :: factored = .false.
     !> True: the matrix is promised to be positive definite
@@ -99,7 +99,7 @@ contains
     type(error_t), allocatable, intent(inout) :: error
 
     call self%release()
-    call give_back_freed()
+    call return_freed_memory()
     self%communicator = communicator
     self%rows = size(row_start) - 1
     self%total_rows = total_rows
@@ -109,7 +109,7 @@ contains
                 "'automatic' or 'mumps' for factorization of &solver.")
     if (allocated(error)) return
     call self%matrix%define(communicator, first_row, total_rows, row_start, columns, error)
-    if (.not. allocated(error)) call self%set_up_factor(usual, positive_definite, error)
+    if (.not. allocated(error)) call self%set_up_factor(definite, positive_definite, error)
     call communicator%agree(error)
   end subroutine define
 
@@ -165,11 +165,11 @@ contains
     integer :: outcome
 
     self%factorizations = self%factorizations + 1
-    self%current = usual
+    self%current = definite
     call self%make_factor(outcome, error)
     if (outcome == factor_not_positive .and. self%promised .and. self%factorization /= factorization_cholmod .and. &
         .not. allocated(error)) then
-      self%promises_broken = self%promises_broken + 1
+      self%indefinite_matrices = self%indefinite_matrices + 1
       self%current = indefinite
       if (.not. self%factors(indefinite)%defined) call self%set_up_factor(indefinite, .false., error)
       if (.not. allocated(error)) call self%make_factor(outcome, error)
@@ -210,7 +210,7 @@ contains
       call KSPSolve(self%factors(self%current)%solver, self%matrix%right, self%matrix%left, ierr(2))
       call take(self%matrix%left, values, ierr(3))
       if (any(ierr /= 0)) values = ieee_value(1.0_wp, ieee_quiet_nan)
-      call self%mechanism%judge(self%communicator, values, found)
+      call self%mechanism%assess(self%communicator, values, found)
       if (found) outcome = factor_singular
       if (found) return
     end do
@@ -309,9 +309,10 @@ contains
     !> The name
     character(len=:), allocatable :: name
 
-    name = self%factors(usual)%title()
-    if (self%promises_broken == 0) return
-    name = name//' ('//to_text(self%promises_broken)//' of '//to_text(self%factorizations)//' factorizations by '// &
+    name = self%factors(definite)%title()
+    if (self%indefinite_matrices == 0) return
+    name = name//' ('//to_text(self%indefinite_matrices)//' of '//to_text(self%factorizations)// &
+      ' factorizations by '// &
            self%factors(indefinite)%title()//', as the matrix was not positive definite)'
   end function package_used
 
@@ -324,7 +325,7 @@ contains
       call self%factors(i)%release()
     end do
     call self%matrix%release()
-    call self%mechanism%forget()
+    call self%mechanism%reset()
     self%factored = .false.
   end subroutine release
 end module linear_solvers

@@ -34,7 +34,7 @@ module petsc_factors
     !> Whether the matrix is promised to be positive definite
     logical, private :: positive_definite = .true.
     !> Room beyond MUMPS' estimate at first, in %, negative for its own choice
-    integer, private :: usual_room = -1
+    integer, private :: usual_memory_margin = -1
   contains
     !> Chooses the package.
     procedure :: define
@@ -52,7 +52,7 @@ module petsc_factors
     procedure, private :: factor_matrix
     procedure, private :: renew
     procedure, private :: factorize_once
-    procedure, private :: look_at_mumps
+    procedure, private :: check_mumps
   end type petsc_factor_t
 
 contains
@@ -77,7 +77,7 @@ contains
     self%communicator = communicator
     self%positive_definite = positive_definite
     ! Without pivoting, and with nothing to share out, the factor is as large as MUMPS says beforehand.
-    self%usual_room = merge(0, -1, positive_definite .and. communicator%size == 1)
+    self%usual_memory_margin = merge(0, -1, positive_definite .and. communicator%size == 1)
     call KSPCreate(communicator%handle(), self%solver, ierr(1))
     self%defined = ierr(1) == 0
     call KSPSetOptionsPrefix(self%solver, prefix, ierr(2))
@@ -88,7 +88,7 @@ contains
     call KSPSetFromOptions(self%solver, ierr(7))
     call report_petsc(ierr, error)
     if (.not. allocated(error)) call self%choose_package(matrix, packages, error)
-    if (.not. allocated(error)) call self%renew(matrix, self%usual_room, error)
+    if (.not. allocated(error)) call self%renew(matrix, self%usual_memory_margin, error)
   end subroutine define
 
   !> Chooses the package, unless the user has.
@@ -168,12 +168,12 @@ contains
   end subroutine factorize_gathered
 
   !> Gives the package a new factor to fill and sets its controls.
-  subroutine renew(self, matrix, room, error)
+  subroutine renew(self, matrix, memory_margin, error)
     class(petsc_factor_t), intent(inout) :: self
     !> The matrix to be factored
     type(tMat), intent(in) :: matrix
     !> Room beyond MUMPS' estimate in %, negative for its own choice
-    integer, intent(in) :: room
+    integer, intent(in) :: memory_margin
     !> Raised when PETSc fails
     type(error_t), allocatable, intent(inout) :: error
     integer :: ierr(5)
@@ -184,7 +184,7 @@ contains
     ! MUMPS asks the matrix whether it is positive definite when the factor is made.
     call MatSetOption(matrix, MAT_SPD, merge(PETSC_TRUE, PETSC_FALSE, self%positive_definite), ierr(3))
     if (self%package /= '' .and. .not. self%gathered) call PCFactorSetUpMatSolverType(self%preconditioner, ierr(4))
-    if (self%package == 'mumps' .and. ierr(4) == 0) call prepare_mumps(self%preconditioner, room, ierr(5))
+    if (self%package == 'mumps' .and. ierr(4) == 0) call prepare_mumps(self%preconditioner, memory_margin, ierr(5))
     call report_petsc(ierr, error)
   end subroutine renew
 
@@ -199,12 +199,12 @@ contains
     type(error_t), allocatable, intent(inout) :: error
     integer :: ierr, attempt
     logical :: short
-    integer, parameter :: rooms(*) = [100, 400]
+    integer, parameter :: memory_margins(*) = [100, 400]
 
     call self%factorize_once(matrix, outcome, short, error)
-    do attempt = 1, size(rooms)
+    do attempt = 1, size(memory_margins)
       if (allocated(error) .or. .not. short) exit
-      call self%renew(matrix, rooms(attempt), error)
+      call self%renew(matrix, memory_margins(attempt), error)
       if (.not. allocated(error)) call self%factorize_once(matrix, outcome, short, error)
     end do
     call self%communicator%maximum(outcome)
@@ -215,7 +215,7 @@ contains
       call KSPSetReusePreconditioner(self%solver, PETSC_TRUE, ierr)
     else
       ! After a failure the packages refuse to go on with the factor that they have.
-      call self%renew(matrix, self%usual_room, error)
+      call self%renew(matrix, self%usual_memory_margin, error)
     end if
   end subroutine factorize
 
@@ -247,11 +247,11 @@ contains
     failure = 0
     call PCGetFailedReason(self%preconditioner, failure, ierr(3))
     if (failure /= 0) outcome = factor_singular
-    if (self%package == 'mumps') call self%look_at_mumps(outcome, short)
+    if (self%package == 'mumps') call self%check_mumps(outcome, short)
   end subroutine factorize_once
 
   !> What MUMPS reports.
-  subroutine look_at_mumps(self, outcome, short)
+  subroutine check_mumps(self, outcome, short)
     class(petsc_factor_t), intent(in) :: self
     !> One of the factor_* outcomes
     integer, intent(inout) :: outcome
@@ -266,7 +266,7 @@ contains
     if (outcome == factor_made .and. self%positive_definite) then
       if (mumps_report(self%preconditioner, mumps_negative_pivots) > 0) outcome = factor_not_positive
     end if
-  end subroutine look_at_mumps
+  end subroutine check_mumps
 
   !> Name of the package as people call it.
   pure function title(self)

@@ -85,7 +85,7 @@ contains
 
     call PetscInitialized(running, ierr)
     if (running) return
-    call settle_threads()
+    call set_threads()
     ! Options such as -log_view must be there when PETSc starts, and it looks for them in the environment.
     call get_environment_variable('PETSC_OPTIONS', length=length)
     allocate (character(len=length) :: all_options)
@@ -99,15 +99,15 @@ contains
     call communicator%agree(error)
   end subroutine start_petsc
 
-  !> Keeps OpenMP to one thread a rank, as the ranks share the work, unless the environment asks for more. CHOLMOD
+  !> Keeps OpenMP to one thread a rank, as the ranks share the work, unless the environment requests more. CHOLMOD
   !> before SuiteSparse 6 else takes four, whatever the environment says, for loops over before these have begun.
-  subroutine settle_threads()
+  subroutine set_threads()
     character(len=8) :: threads
     integer :: length
 
     call get_environment_variable('OMP_NUM_THREADS', threads, length=length)
     if (length == 0 .or. threads == '1') call limit_parallel_regions(0_c_int)
-  end subroutine settle_threads
+  end subroutine set_threads
 
   !> Ends PETSc; its objects must have been freed before.
   subroutine finish_petsc()

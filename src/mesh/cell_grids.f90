@@ -18,7 +18,7 @@ module cell_grids
     real(wp) :: struck(2) = 0
     !> Node there
     integer :: struck_node = 0
-    !> Models that make up the whole plate: 4 for a quarter
+    !> Models that make up the full plate: 4 for a quarter
     integer :: multiplicity = 1
     !> Directions along which the model begins at the plate's centre, and in which it is mirrored there
     logical :: halved(2) = .false., mirrored(2) = .false.

@@ -49,7 +49,7 @@ contains
 
     first = [(element, element=1, size(first))]
     if (present(first_image)) first = first_image
-    call deal_out_cells(mesh, communicator%size, first, part, error)
+    call partition_cells(mesh, communicator%size, first, part, error)
     if (allocated(error)) return
     call own_points(mesh, part, owner)
     call number_points(owner, communicator%size, self)
@@ -64,7 +64,7 @@ contains
   end subroutine distribute
 
   !> Deals cells out to ranks, each as much work as it has elements, those that are images of each other to one.
-  subroutine deal_out_cells(mesh, ranks, first, part, error)
+  subroutine partition_cells(mesh, ranks, first, part, error)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Number of ranks
@@ -105,7 +105,7 @@ contains
     end do
     call partition_graph(folded_start, folded, ranks, part_of_first, error, work)
     if (.not. allocated(error)) part = part_of_first(place(first))
-  end subroutine deal_out_cells
+  end subroutine partition_cells
 
   !> Graph of the cells that share an edge, compressed rows.
   pure subroutine cell_graph(mesh, row_start, neighbours)

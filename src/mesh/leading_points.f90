@@ -32,11 +32,11 @@ contains
       signs(:, point) = turned
     end do
     if (.not. present(images)) return
-    if (allocated(images%points)) call follow_images(images, leader, signs, held)
+    if (allocated(images%points)) call link_images(images, leader, signs, held)
   end subroutine find_leading_points
 
   !> Has each point follow the first of its images, if that comes before it.
-  pure subroutine follow_images(images, leader, signs, held)
+  pure subroutine link_images(images, leader, signs, held)
     !> The images
     type(symmetry_images_t), intent(in) :: images
     !> Receives the leaders, (points)
@@ -56,5 +56,5 @@ contains
       leader(point) = images%points(point, k)
       signs(:, point) = images%signs(:, k)
     end do
-  end subroutine follow_images
+  end subroutine link_images
 end module leading_points

@@ -1,7 +1,7 @@
 !> The mesh of the deck: rows of its table, filling and checks. What the element brings is in `element_deck`.
 module mesh_deck
   use deck_problems, only: problems_t
-  use deck_remarks, only: tell, are_clear
+  use deck_remarks, only: report, are_clear
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
   use kinds, only: wp
@@ -16,7 +16,7 @@ module mesh_deck
                                          key_core = 'core', key_cell = 'cell', key_grading = 'grading'
   character(len=*), parameter, public :: key_lines(2) = ['lines_x', 'lines_y']
   !> Most elements: more pass the range of default integers.
-  real(wp), parameter, public :: most_elements = 1.0e6_wp
+  real(wp), parameter, public :: max_elements = 1.0e6_wp
   !> Row of the group.
   character(len=group_row_length), parameter, public :: mesh_group_row = &
     'mesh | settings | The rectangle of nine-node elements and the loaded patch.'
@@ -78,15 +78,15 @@ contains
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
 
-    if (product(real(mesh%elements, wp)) > most_elements) call tell(settings, problems, mesh_group, key_elements, &
-      'more than '//to_text(most_elements)//' elements in all; give fewer.')
-    if (mesh%grading > 0 .and. mesh%grading < 1) call tell(settings, problems, mesh_group, key_grading, &
+    if (product(real(mesh%elements, wp)) > max_elements) call report(settings, problems, mesh_group, key_elements, &
+      'more than '//to_text(max_elements)//' elements in all; give fewer.')
+    if (mesh%grading > 0 .and. mesh%grading < 1) call report(settings, problems, mesh_group, key_grading, &
       'the largest edge is not smaller than the smallest; allowed: 0 or >= 1.')
     if (.not. are_clear(settings, problems, mesh_group, key_core//' '//key_cell)) return
     if (settings%is_given(mesh_group, key_core) .and. .not. settings%is_known(mesh_group, key_cell)) then
-      call tell(settings, problems, mesh_group, key_cell, 'is missing; `core` and `cell` go together.')
+      call report(settings, problems, mesh_group, key_cell, 'is missing; `core` and `cell` go together.')
     else if (settings%is_given(mesh_group, key_cell) .and. .not. settings%is_known(mesh_group, key_core)) then
-      call tell(settings, problems, mesh_group, key_core, 'is missing; `core` and `cell` go together.')
+      call report(settings, problems, mesh_group, key_core, 'is missing; `core` and `cell` go together.')
     end if
   end subroutine check_mesh
 end module mesh_deck

@@ -16,7 +16,7 @@ module mesh_parameters
   !> Distance of two lines, over that from the centre, that is none.
   real(wp), parameter :: same_line = 1.0e-9_wp
 
-  !> The plate; lengths are of the whole plate, also under symmetry.
+  !> The plate; lengths are of the full plate, also under symmetry.
   type :: plate_t
     !> Lengths along x and y
     real(wp) :: length(2) = 0
@@ -72,7 +72,7 @@ contains
     end do
   end subroutine add_lines
 
-  !> Number of models that make up the whole plate.
+  !> Number of models that make up the full plate.
   pure integer function parts_of(symmetry) result(parts)
     !> Part that is modelled
     integer, intent(in) :: symmetry

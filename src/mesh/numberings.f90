@@ -2,7 +2,7 @@
 !> matrix that couples them. Renewed as a whole when unknowns are released.
 !>
 !> Points that follow others have the equations of these, but for signs: on the line at which a turned plate is cut, and
-!> on all of a whole plate that keeps its symmetry. So a vector holds every free motion once, and a field all of it.
+!> on all of a full plate that keeps its symmetry. So a vector holds every free motion once, and a field all of it.
 module numberings
   use kinds, only: wp
   use layered_meshes, only: layered_mesh_t

@@ -2,7 +2,7 @@
 module plate_deck
   use deck_choices, only: code_of
   use deck_problems, only: problems_t
-  use deck_remarks, only: remark_idle, tell
+  use deck_remarks, only: remark_idle, report
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
   use kinds, only: wp
@@ -21,7 +21,7 @@ module plate_deck
   !> Rows of the keys.
   character(len=key_row_length), parameter, public :: plate_rows(*) = [character(len=key_row_length) :: &
     'plate | length | real | 2 | length | required | > 0 | &
-      &Lengths of the whole plate along x and y, also under symmetry.', &
+      &Lengths of the full plate along x and y, also under symmetry.', &
     'plate | edges | choice | 1 or 4 | - | required | clamped simple free elastic | &
       &Supports at x-min, x-max, y-min, y-max; one value serves all.', &
     'plate | edge_stiffness | real | 1 | pressure | none | > 0 | &
@@ -36,7 +36,7 @@ module plate_deck
   !> What elastic edges need, against deflection and against rotation.
   character(len=*), parameter :: stiffness_keys(2) = [character(len=23) :: 'edge_stiffness', 'edge_rotation_stiffness']
   !> Largest ratio of the plate's sides.
-  real(wp), parameter :: most_oblong = 1.0e3_wp
+  real(wp), parameter :: max_aspect_ratio = 1.0e3_wp
 
 contains
 
@@ -76,7 +76,7 @@ contains
     integer :: i
 
     if (any(plate%edges == edge_elastic) .and. all(plate%edge_stiffness <= 0)) &
-      call tell(settings, problems, plate_group, 'edges', 'an elastic edge needs edge_stiffness, '// &
+      call report(settings, problems, plate_group, 'edges', 'an elastic edge needs edge_stiffness, '// &
                 'edge_rotation_stiffness or both.')
     if (all(plate%edges /= edge_elastic)) then
       do i = 1, size(stiffness_keys)
@@ -86,11 +86,11 @@ contains
     end if
     ! A plate that is turned onto itself has all opposite edges alike.
     halved = is_halved(plate%symmetry) .or. plate%symmetry == symmetry_point
-    if (settings%is_known(plate_group, key_length) .and. maxval(plate%length) > most_oblong*minval(plate%length)) &
-      call tell(settings, problems, plate_group, key_length, 'one side is more than '//to_text(most_oblong)// &
+    if (settings%is_known(plate_group, key_length) .and. maxval(plate%length) > max_aspect_ratio*minval(plate%length)) &
+      call report(settings, problems, plate_group, key_length, 'one side is more than '//to_text(max_aspect_ratio)// &
                 ' times the other; such a strip is no plate.')
     if (plate%edges(1) /= plate%edges(2) .and. halved(1) .or. plate%edges(3) /= plate%edges(4) .and. halved(2)) &
-      call tell(settings, problems, plate_group, 'edges', 'symmetry = '''// &
+      call report(settings, problems, plate_group, 'edges', 'symmetry = '''// &
                 lower_case(settings%text_of(plate_group, key_symmetry))//''' needs the same support at opposite edges.')
   end subroutine check_plate
 
@@ -105,11 +105,11 @@ contains
 
     if (.not. settings%is_known(plate_group, 'edges')) return
     if (all(plate%edges == edge_free)) then
-      call tell(settings, problems, plate_group, 'edges', &
+      call report(settings, problems, plate_group, 'edges', &
                 'nothing holds the plate in a static analysis; support an edge.')
     else if (count(plate%edges /= edge_free) == 1 .and. all(plate%edges /= edge_clamped) .and. &
              .not. plate%edge_stiffness(2) > 0) then
-      call tell(settings, problems, plate_group, 'edges', 'in a static analysis the plate turns about its one '// &
+      call report(settings, problems, plate_group, 'edges', 'in a static analysis the plate turns about its one '// &
                 'simply supported edge; clamp it or support another one.')
     end if
   end subroutine check_edges

@@ -40,29 +40,29 @@ contains
   end function window_lines
 
   !> Nodes that a frame bears: those over its face, or only those on the edge of a rectangular window.
-  pure function nodes_on_frame(grid, support) result(borne)
+  pure function nodes_on_frame(grid, support) result(on_frame)
     !> The grid
     class(cell_grid_t), intent(in) :: grid
     !> The rig
     type(support_t), intent(in) :: support
     !> True where the frame bears the plate, (nodes)
-    logical, allocatable :: borne(:)
+    logical, allocatable :: on_frame(:)
     real(wp) :: beyond(2), rounding
     integer :: node
     logical :: on_end, on_side
 
-    allocate (borne(grid%nodes()), source=.false.)
+    allocate (on_frame(grid%nodes()), source=.false.)
     if (support%shape == window_none .or. has_crossings(support)) return
     rounding = 1.0e-9_wp*maxval([support%window, support%radius])
-    do node = 1, size(borne)
+    do node = 1, size(on_frame)
       if (support%shape == window_circle) then
-        borne(node) = support%beyond(grid%node_coordinates(:, node)) >= -rounding
+        on_frame(node) = support%beyond(grid%node_coordinates(:, node)) >= -rounding
         cycle
       end if
       beyond = abs(grid%node_coordinates(:, node)) - support%window/2
       on_end = support%bearing == bearing_face .or. all(beyond <= rounding)
       on_side = support%sides == bearing_face .or. beyond(2) <= rounding
-      borne(node) = beyond(1) >= -rounding .and. on_end .or. &
+      on_frame(node) = beyond(1) >= -rounding .and. on_end .or. &
                     beyond(2) >= -rounding .and. beyond(1) <= rounding .and. on_side
     end do
   end function nodes_on_frame

@@ -2,13 +2,13 @@
 module support_deck
   use deck_choices, only: code_of
   use deck_problems, only: problems_t
-  use deck_remarks, only: tell, remark_idle, are_clear
+  use deck_remarks, only: report, remark_idle, are_clear
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
   use kinds, only: wp
   use mesh_parameters, only: plate_t, edge_free
   use plate_deck, only: plate_group, key_length
-  use support_parameters, only: support_t, most_supports, window_none, window_rectangle, window_circle, bearing_edge, &
+  use support_parameters, only: support_t, max_supports, window_none, window_rectangle, window_circle, bearing_edge, &
                                 bearing_face
   use text, only: to_text
   implicit none
@@ -32,9 +32,9 @@ module support_deck
     'support | radius | real | 1 | length | none | > 0 | &
       &Radius of a circular window.', &
     'support | unilateral | logical | 1 | - | .false. | - | &
-      &Whether the plate may lift off the frame, which then bears it by pressure only.', &
+      &Whether the plate may lift off the frame, which then supports it by pressure only.', &
     'support | bearing | choice | 1 | - | = face if unilateral, else edge | edge face | &
-      &What bears the plate: the edge of the window, a simple support, or all of the frame''s face.', &
+      &What supports the plate: the edge of the window, a simple support, or all of the frame''s face.', &
     'support | sides | choice | 1 | - | = as bearing | edge face | &
       &The same for the sides of a rectangular window, those along x, where they differ from its ends.', &
     'support | clamps | real | 1 or more | length | none | any | &
@@ -91,39 +91,40 @@ contains
     type(problems_t), intent(inout) :: problems
     integer :: place
 
-    if (size(supports) > most_supports) call tell(settings, problems, group, '', 'is one too many; allowed: up to '// &
-                                                  to_text(most_supports)//'.', most_supports + 1)
+    if (size(supports) > max_supports) call report(settings, problems, group, '', 'is one too many; allowed: up to '// &
+                                                  to_text(max_supports)//'.', max_supports + 1)
     if (size(supports) > 0 .and. any(plate%edges /= edge_free) .and. &
         are_clear(settings, problems, plate_group, 'edges')) &
-      call tell(settings, problems, plate_group, 'edges', 'a plate on a rig has free edges; allowed with &support: '// &
+      call report(settings, problems, plate_group, 'edges', &
+                  'a plate on a rig has free edges; allowed with &support: '// &
                 '''free''.')
     do place = 1, size(supports)
       call check_parts(settings, supports(place), place, problems)
       if (.not. are_clear(settings, problems, plate_group, key_length)) cycle
       call check_window(settings, plate, supports(place), place, problems)
       call check_clamps(settings, plate, supports(place), place, problems)
-      if (presses_in_vain(supports(place), supports)) &
+      if (has_idle_clamps(supports(place), supports)) &
         call remark_idle(settings, problems, group, 'clamp_force', 'has no effect where a frame holds the plate; '// &
                          'with unilateral = .true. it may lift off.', place)
     end do
   end subroutine check_rigs
 
   !> True if clamps press only where a frame holds the plate both ways.
-  pure logical function presses_in_vain(clamped, supports)
+  pure logical function has_idle_clamps(clamped, supports)
     !> The rig with the clamps
     type(support_t), intent(in) :: clamped
     !> All rigs
     type(support_t), intent(in) :: supports(:)
     integer :: i, j
 
-    presses_in_vain = .false.
+    has_idle_clamps = .false.
     if (.not. clamped%clamp_force > 0 .or. .not. allocated(clamped%clamps)) return
     do i = 1, size(supports)
       if (supports(i)%shape == window_none .or. supports(i)%unilateral .or. supports(i)%bearing == bearing_edge) cycle
-      presses_in_vain = presses_in_vain .or. &
+      has_idle_clamps = has_idle_clamps .or. &
                         all([(supports(i)%beyond(clamped%clamps(:, j)) >= 0, j=1, size(clamped%clamps, 2))])
     end do
-  end function presses_in_vain
+  end function has_idle_clamps
 
   !> A rig that has something to hold the plate by, and no key that its shape has no use for.
   subroutine check_parts(settings, support, place, problems)
@@ -140,16 +141,18 @@ contains
     circle = settings%text_of(group, 'shape', place) == 'circle'
     if (support%shape == window_none .and. settings%is_given(group, 'shape', place) .and. &
         are_clear(settings, problems, group, key_window//' '//key_window_radius//' shape', place)) then
-      call tell(settings, problems, group, trim(merge(key_window_radius, key_window, circle)), &
+      call report(settings, problems, group, trim(merge(key_window_radius, key_window, circle)), &
                 'is missing; give it with this shape.', place)
     else if (support%shape == window_none .and. .not. allocated(support%clamps) .and. &
              are_clear(settings, problems, group, key_window//' '//key_window_radius//' clamps', place)) then
-      call tell(settings, problems, group, '', 'holds nothing; give a window, a radius with shape = ''circle'', or '// &
+      call report(settings, problems, group, '', &
+                  'holds nothing; give a window, a radius with shape = ''circle'', or '// &
                 'clamps.', place)
     end if
     if (support%shape == window_circle .and. support%unilateral .and. support%bearing == bearing_edge .and. &
         are_clear(settings, problems, group, 'shape unilateral bearing', place)) &
-      call tell(settings, problems, group, 'bearing', 'the edge of a circle is no line of the mesh that the plate '// &
+      call report(settings, problems, group, 'bearing', &
+                  'the edge of a circle is no line of the mesh that the plate '// &
                 'may lift off; allowed with it and unilateral: ''face''.', place)
     if (circle) call remark_idle(settings, problems, group, key_window//' sides', 'has no effect on a circle.', place)
     if (.not. circle) call remark_idle(settings, problems, group, key_window_radius, 'has no effect on a rectangle.', &
@@ -160,7 +163,7 @@ contains
       call remark_idle(settings, problems, group, 'clamp_stiffness clamp_force', 'has no effect without clamps.', &
                        place)
     if (support%clamp_stiffness > 0 .and. support%clamp_force > 0) &
-      call tell(settings, problems, group, 'clamp_force', 'says that clamps press, and clamp_stiffness that they '// &
+      call report(settings, problems, group, 'clamp_force', 'says that clamps press, and clamp_stiffness that they '// &
                 'are springs; give one of them.', place)
   end subroutine check_parts
 
@@ -178,10 +181,10 @@ contains
     type(problems_t), intent(inout) :: problems
 
     if (support%shape == window_rectangle .and. any(support%window > plate%length)) then
-      call tell(settings, problems, group, key_window, 'is larger than the plate, which would fall through; '// &
+      call report(settings, problems, group, key_window, 'is larger than the plate, which would fall through; '// &
                 'allowed: up to '//to_text(plate%length(1))//', '//to_text(plate%length(2))//'.', place)
     else if (support%shape == window_circle .and. 2*support%radius > minval(plate%length)) then
-      call tell(settings, problems, group, key_window_radius, 'is larger than half the plate''s width; allowed: '// &
+      call report(settings, problems, group, key_window_radius, 'is larger than half the plate''s width; allowed: '// &
                 'up to '//to_text(minval(plate%length)/2)//'.', place)
     end if
   end subroutine check_window
@@ -202,11 +205,12 @@ contains
 
     if (.not. are_clear(settings, problems, group, key_clamps, place)) return
     if (modulo(size(settings%reals_of(group, key_clamps, place)), 2) == 1) then
-      call tell(settings, problems, group, key_clamps, 'a coordinate is missing; allowed: x and y of each clamp in '// &
+      call report(settings, problems, group, key_clamps, &
+                  'a coordinate is missing; allowed: x and y of each clamp in '// &
                 'turn.', place)
     else if (allocated(support%clamps)) then
       if (any([(any(abs(support%clamps(:, i)) > plate%length/2), i=1, size(support%clamps, 2))])) &
-        call tell(settings, problems, group, key_clamps, 'a clamp lies off the plate; allowed: up to '// &
+        call report(settings, problems, group, key_clamps, 'a clamp lies off the plate; allowed: up to '// &
                   to_text(plate%length(1)/2)//', '//to_text(plate%length(2)/2)//' either way from its centre.', place)
     end if
   end subroutine check_clamps
@@ -228,10 +232,10 @@ contains
         clamps = clamps + size(supports(place)%clamps, 2)
     end do
     if (clamps == 1) then
-      call tell(settings, problems, group, key_clamps, 'one clamp lets the plate turn in a static analysis; '// &
+      call report(settings, problems, group, key_clamps, 'one clamp lets the plate turn in a static analysis; '// &
                 'allowed: none, or two and more.')
     else if (clamps < 3 .and. all(supports%shape == window_none)) then
-      call tell(settings, problems, group, '', 'nothing holds the plate in a static analysis; give a window, or '// &
+      call report(settings, problems, group, '', 'nothing holds the plate in a static analysis; give a window, or '// &
                 'three clamps.')
     end if
   end subroutine check_static_rigs

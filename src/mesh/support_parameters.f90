@@ -3,14 +3,14 @@ module support_parameters
   use kinds, only: wp
   implicit none
   private
-  public :: support_t, most_supports
+  public :: support_t, max_supports
 
   !> Shapes of a window.
   integer, parameter, public :: window_none = 0, window_rectangle = 1, window_circle = 2
   !> What of a frame bears the plate: the edge of its window, or all of its face.
   integer, parameter, public :: bearing_edge = 1, bearing_face = 2
   !> Most supports of a plate: each has a column of its own in the history.
-  integer, parameter :: most_supports = 3
+  integer, parameter :: max_supports = 3
 
   !> One rig. The plate lies on the frame with the face opposite to the struck one.
   type :: support_t

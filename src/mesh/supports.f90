@@ -1,5 +1,5 @@
 !> Which unknowns of the points are held: by supports, by symmetry, because the layers are still
-!> joined, or because the scene never moves them.
+!> joined, or because the setup never moves them.
 module supports
   use kinds, only: wp
   use mesh_parameters, only: plate_t, edge_free, edge_clamped, edge_elastic

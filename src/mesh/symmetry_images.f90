@@ -1,4 +1,4 @@
-!> Images of the points of a whole plate that is its own mirror image, or that a turn by 180 degrees leaves as it is.
+!> Images of the points of a full plate that is its own mirror image, or that a turn by 180 degrees leaves as it is.
 !>
 !> Where something breaks, the equations of such a plate have solutions besides the symmetric one. Rounding would choose
 !> among them: another number of ranks, other units or a turned plate would break in other places, and a part of the
@@ -31,9 +31,9 @@ module symmetry_images
 
 contains
 
-  !> The images of a whole plate's points. A mesh or supports that are not their own image to the last digit have none.
+  !> The images of a full plate's points. A mesh or supports that are not their own image to the last digit have none.
   pure function find_images(mesh, symmetry, held) result(self)
-    !> The mesh of the whole plate
+    !> The mesh of the full plate
     type(layered_mesh_t), intent(in) :: mesh
     !> Part that could stand for the whole, one of `mesh_parameters`
     integer, intent(in) :: symmetry

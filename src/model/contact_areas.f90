@@ -16,7 +16,7 @@ module contact_areas
   !> Part of the indentation by which surfaces are farther apart at the edge of a Hertzian contact.
   real(wp), parameter, public :: edge_gap = 0.5_wp
   !> Weight over the largest from which a place counts as touched: as contact ends, weights fade.
-  real(wp), parameter :: noticed = 1.0e-3_wp
+  real(wp), parameter :: min_weight = 1.0e-3_wp
 
   !> Struck face and nose.
   type :: contact_area_t
@@ -91,6 +91,6 @@ contains
 
     largest = maxval(weights)
     call communicator%maximum(largest)
-    touched = self%area + total_of(communicator, pack(self%beside, weights > noticed*largest))
+    touched = self%area + total_of(communicator, pack(self%beside, weights > min_weight*largest))
   end function touched
 end module contact_areas

@@ -2,7 +2,7 @@
 module gauge_deck
   use deck_choices, only: code_of
   use deck_problems, only: problems_t
-  use deck_remarks, only: are_clear, tell
+  use deck_remarks, only: are_clear, report
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
   use gauges, only: face_back, face_front, gauge_t
@@ -59,7 +59,7 @@ contains
     do place = 1, size(all)
       if (.not. are_clear(settings, problems, group, 'at', place)) cycle
       if (any(abs(all(place)%at) > length/2)) &
-        call tell(settings, problems, group, 'at', 'the gauge lies off the plate; allowed: up to '// &
+        call report(settings, problems, group, 'at', 'the gauge lies off the plate; allowed: up to '// &
                   to_text(length(1)/2)//', '//to_text(length(2)/2)//' either way from its centre.', place)
     end do
   end subroutine check_gauges

@@ -1,4 +1,4 @@
-!> Carries all that evolves from a model to one of the same scene with more layers: an archive in memory, whose fields
+!> Carries all that evolves from a model to one of the same setup with more layers: an archive in memory, whose fields
 !> find their points and elements again. What has no origin keeps the value that it has where it is loaded.
 module layer_transfers
   use archives, only: archive_t
@@ -10,12 +10,12 @@ module layer_transfers
   public :: layer_transfer_t
 
   !> One item, of whatever kind, as a table of reals, which hold every integer.
-  type :: kept_t
+  type :: stored_item_t
     !> Its name
     character(len=:), allocatable :: name
     !> Its values; a field is in global order
     real(wp), allocatable :: values(:, :)
-  end type kept_t
+  end type stored_item_t
 
   !> The archive: saved to, then turned to another mesh and loaded from.
   type, extends(archive_t) :: layer_transfer_t
@@ -28,7 +28,7 @@ module layer_transfers
     !> Signs that the motion of each point takes where its origin is its image, (5, points)
     real(wp), allocatable, private :: signs(:, :)
     !> The items, the first ones of the list
-    type(kept_t), allocatable, private :: kept(:)
+    type(stored_item_t), allocatable, private :: kept(:)
     !> Their number
     integer, private :: items = 0
   contains
@@ -120,7 +120,7 @@ contains
     character(len=*), intent(in) :: name
     !> Its values
     real(wp), intent(in) :: values(:, :)
-    type(kept_t), allocatable :: longer(:)
+    type(stored_item_t), allocatable :: longer(:)
 
     if (.not. allocated(self%kept)) allocate (self%kept(64))
     if (self%items == size(self%kept)) then
@@ -133,7 +133,7 @@ contains
     self%kept(self%items)%values = values
   end subroutine keep
 
-  !> Number of an item. States of one scene consist of the same items, so it is there.
+  !> Number of an item. States of one setup consist of the same items, so it is there.
   pure integer function find(self, name) result(item)
     !> The archive
     class(layer_transfer_t), intent(in) :: self
@@ -232,7 +232,7 @@ contains
     end if
   end subroutine table_item
 
-  !> Visits a field over points or elements; there are always more points, so that its length tells which. Collective
+  !> Visits a field over points or elements; its length shows which, as there are always more points. Collective
   !> when saving.
   subroutine field(self, name, columns, global_columns, value)
     class(layer_transfer_t), intent(inout) :: self

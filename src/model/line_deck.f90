@@ -2,7 +2,7 @@
 module line_deck
   use deck_choices, only: code_of
   use deck_problems, only: problems_t
-  use deck_remarks, only: tell, remark, are_clear
+  use deck_remarks, only: report, remark, are_clear
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
   use kinds, only: wp
@@ -88,15 +88,16 @@ contains
       given = [(settings%is_given(line_group, trim(value_keys(k)), place), k=1, size(value_keys))]
       suits = [spread(lines(place)%component <= 3, 1, 2), spread(lines(place)%component > 3, 1, 2)]
       if (count(given) /= 1) then
-        call tell(settings, problems, line_group, '', 'give one of force, displacement, moment and rotation.', place)
+        call report(settings, problems, line_group, '', 'give one of force, displacement, moment and rotation.', place)
       else if (any(given .and. .not. suits)) then
-        call tell(settings, problems, line_group, 'component', 'u, v and w go with force or displacement, theta_x '// &
+        call report(settings, problems, line_group, 'component', &
+                    'u, v and w go with force or displacement, theta_x '// &
                   'and theta_y with moment or rotation.', place)
       else if (.not. lines(place)%prescribed .and. abs(lines(place)%value) <= 0) then
         call remark(settings, problems, line_group, '', 'a force or moment of 0 is no load.', place)
       end if
       if (lines(place)%rise > 1) &
-        call tell(settings, problems, line_group, key_rise, 'the rise lasts longer than the run.', place)
+        call report(settings, problems, line_group, key_rise, 'the rise lasts longer than the run.', place)
     end do
   end subroutine check_lines
 end module line_deck

@@ -1,4 +1,4 @@
-!> Makes a scene ready for computing: mesh, elements, loads and interfaces of this rank's share.
+!> Makes a setup ready for computing: mesh, elements, loads and interfaces of this rank's share.
 module model_building
   use kinds, only: wp
   use errors, only: error_t
@@ -23,7 +23,7 @@ module model_building
   use placed_lines, only: place_line
   use model_loads, only: build_borders, build_loads, nodal_areas
   use models, only: model_t
-  use scenes, only: scene_t
+  use setups, only: setup_t
   use symmetry_images, only: find_images
   implicit none
   private
@@ -35,10 +35,10 @@ module model_building
 
 contains
 
-  !> Makes a scene ready.
-  subroutine create_model(scene, communicator, self, error)
-    !> The scene; it has passed the deck's checks
-    type(scene_t), intent(in) :: scene
+  !> Makes a setup ready.
+  subroutine create_model(setup, communicator, self, error)
+    !> The setup; it has passed the deck's checks
+    type(setup_t), intent(in) :: setup
     !> The ranks
     type(communicator_t), intent(in) :: communicator
     type(model_t), intent(out) :: self
@@ -47,25 +47,25 @@ contains
     type(zone_t), allocatable :: zones(:)
     integer :: ply
 
-    self%scene = scene
+    self%setup = setup
     self%communicator = communicator
-    self%plies = stacked_plies(scene%laminate, scene%materials)
-    if (scene%has_thermal) then
+    self%plies = stacked_plies(setup%laminate, setup%materials)
+    if (setup%has_thermal) then
       do ply = 1, size(self%plies)
-        self%plies(ply)%free_strain(:2) = scene%temperature_change*scene%materials(self%plies(ply)%material)%expansion
+        self%plies(ply)%free_strain(:2) = setup%temperature_change*setup%materials(self%plies(ply)%material)%expansion
       end do
     end if
     self%shear_shares = shear_shares_of(self%plies)
-    self%thickness = sum(scene%laminate%thickness)
-    self%section = section_of(self%plies, scene%laminate%shear_correction)
-    zones = zones_of(scene)
-    self%mesh = create_mesh(scene%plate, scene%mesh, size(self%plies), zones)
-    self%membrane_idle = scene%kinematics == kinematics_linear .and. size(zones) == 0 .and. &
-                         .not. (scene%has_ply_damage .or. scene%has_thermal) .and. uncoupled(self%section) .and. &
-                         .not. any(lines_in_plane(scene))
-    self%held = held_unknowns(self%mesh, scene%plate, self%membrane_idle, adrift(scene))
-    if (allocated(scene%supports)) call hold_by_rigs(self%mesh, scene%plate, scene%supports, self%held)
-    self%images = find_images(self%mesh, scene%plate%kept, self%held)
+    self%thickness = sum(setup%laminate%thickness)
+    self%section = section_of(self%plies, setup%laminate%shear_correction)
+    zones = zones_of(setup)
+    self%mesh = create_mesh(setup%plate, setup%mesh, size(self%plies), zones)
+    self%membrane_idle = setup%kinematics == kinematics_linear .and. size(zones) == 0 .and. &
+                         .not. (setup%has_ply_damage .or. setup%has_thermal) .and. uncoupled(self%section) .and. &
+                         .not. any(lines_in_plane(setup))
+    self%held = held_unknowns(self%mesh, setup%plate, self%membrane_idle, unrestrained(setup))
+    if (allocated(setup%supports)) call hold_by_rigs(self%mesh, setup%plate, setup%supports, self%held)
+    self%images = find_images(self%mesh, setup%plate%kept, self%held)
     call distribute(self%mesh, communicator, self%distribution, error, self%images%first_cells(self%mesh))
     if (.not. allocated(error)) call build_elements(self, error)
     call communicator%agree(error)
@@ -77,7 +77,7 @@ contains
     call build_loads(self)
     call build_interfaces(self)
     call build_lines(self)
-    if (allocated(scene%supports)) call build_rigs(self)
+    if (allocated(setup%supports)) call build_rigs(self)
     self%has_bonds = self%map%layered .or. self%rig%unilateral .or. self%rig%elastic
     call find_struck_point(self)
   end subroutine create_model
@@ -94,39 +94,40 @@ contains
   end function uncoupled
 
   !> Which rigid motions of a static plate in its own plane nothing holds: along x, along y, turning.
-  pure function adrift(scene)
-    !> The scene
-    type(scene_t), intent(in) :: scene
+  pure function unrestrained(setup)
+    !> The setup
+    type(setup_t), intent(in) :: setup
     !> True: it has to be held unless symmetry does
-    logical :: adrift(3)
+    logical :: unrestrained(3)
     integer :: i
 
-    adrift = scene%has_static .and. scene%plate%symmetry /= symmetry_quarter .and. &
-             (.not. scene%plate%in_plane_fixed .or. all(scene%plate%edges == edge_free))
-    if (allocated(scene%supports)) then
-      do i = 1, size(scene%supports)
-        if (allocated(scene%supports(i)%clamps) .and. .not. scene%supports(i)%clamp_force > 0) &
-          adrift = adrift .and. .not. scene%plate%in_plane_fixed
+    unrestrained = setup%has_static .and. setup%plate%symmetry /= symmetry_quarter .and. &
+             (.not. setup%plate%in_plane_fixed .or. all(setup%plate%edges == edge_free))
+    if (allocated(setup%supports)) then
+      do i = 1, size(setup%supports)
+        if (allocated(setup%supports(i)%clamps) .and. .not. setup%supports(i)%clamp_force > 0) &
+          unrestrained = unrestrained .and. .not. setup%plate%in_plane_fixed
       end do
     end if
-    if (.not. allocated(scene%lines)) return
-    associate (in_plane => lines_in_plane(scene), lines => scene%lines)
-      adrift(1) = adrift(1) .and. .not. any(in_plane .and. lines%component == 1)
-      adrift(2) = adrift(2) .and. .not. any(in_plane .and. lines%component == 2)
+    if (.not. allocated(setup%lines)) return
+    associate (in_plane => lines_in_plane(setup), lines => setup%lines)
+      unrestrained(1) = unrestrained(1) .and. .not. any(in_plane .and. lines%component == 1)
+      unrestrained(2) = unrestrained(2) .and. .not. any(in_plane .and. lines%component == 2)
       ! A line held across itself cannot turn.
-      adrift(3) = adrift(3) .and. .not. any(in_plane .and. (lines%component == 1 .eqv. lines%direction == along_y))
+      unrestrained(3) = unrestrained(3) .and. .not. any(in_plane &
+                                                        .and. (lines%component == 1 .eqv. lines%direction == along_y))
     end associate
-  end function adrift
+  end function unrestrained
 
   !> Lines that hold or move the plate in its own plane.
-  pure function lines_in_plane(scene) result(in_plane)
-    !> The scene
-    type(scene_t), intent(in) :: scene
+  pure function lines_in_plane(setup) result(in_plane)
+    !> The setup
+    type(setup_t), intent(in) :: setup
     !> True for each such line
     logical, allocatable :: in_plane(:)
 
     allocate (in_plane(0))
-    if (allocated(scene%lines)) in_plane = scene%lines%prescribed .and. scene%lines%component <= 2
+    if (allocated(setup%lines)) in_plane = setup%lines%prescribed .and. setup%lines%component <= 2
   end function lines_in_plane
 
   !> Batches of this rank's elements, with their sections.
@@ -140,21 +141,21 @@ contains
 
     associate (mesh => self%mesh, share => self%distribution)
       call self%elements%create(mesh%node_coordinates(:, mesh%point_node(share%points)), share%connectivity, &
-                                self%scene%mesh%shear, error)
+                                self%setup%mesh%shear, error)
       if (allocated(error)) return
-      if (self%scene%has_thermal) allocate (self%free(lanes, 7, self%elements%batches), source=0.0_wp)
+      if (self%setup%has_thermal) allocate (self%free(lanes, 7, self%elements%batches), source=0.0_wp)
       do element = 1, size(share%elements)
         first = mesh%element_plies(1, share%elements(element))
         last = mesh%element_plies(2, share%elements(element))
         section = self%section
         if (last - first + 1 < size(self%plies)) &
-          section = section_of(self%plies(first:last), self%scene%laminate%shear_correction)
+          section = section_of(self%plies(first:last), self%setup%laminate%shear_correction)
         call self%elements%set_section(element, section%stiffness, section%mass)
-        if (self%scene%has_thermal) self%free(lane_of(element), :, batch_of(element)) = &
+        if (self%setup%has_thermal) self%free(lane_of(element), :, batch_of(element)) = &
           free_resultants(self%plies(first:last), self%plies(first:last)%elasticity)
       end do
     end associate
-    if (self%scene%mesh%mass == mass_lumped) allocate (self%lumped(3, size(self%distribution%points)), source=0.0_wp)
+    if (self%setup%mesh%mass == mass_lumped) allocate (self%lumped(3, size(self%distribution%points)), source=0.0_wp)
   end subroutine build_elements
 
   !> Lines on this rank's points.
@@ -164,9 +165,9 @@ contains
     integer :: i
 
     allocate (self%lines(0))
-    if (.not. allocated(self%scene%lines)) return
-    self%lines = [(place_line(self%scene%lines(i), self%mesh, self%distribution, self%map, self%plies, self%section, &
-                              self%scene%plate%symmetry), i=1, size(self%scene%lines))]
+    if (.not. allocated(self%setup%lines)) return
+    self%lines = [(place_line(self%setup%lines(i), self%mesh, self%distribution, self%map, self%plies, self%section, &
+                              self%setup%plate%symmetry), i=1, size(self%setup%lines))]
   end subroutine build_lines
 
   !> Finds the struck node's first point if this rank owns it, and the elements around it.
@@ -186,24 +187,24 @@ contains
   end subroutine find_struck_point
 
   !> The cells of each interface's layered rectangle.
-  pure function zones_of(scene) result(zones)
-    !> The scene
-    type(scene_t), intent(in) :: scene
+  pure function zones_of(setup) result(zones)
+    !> The setup
+    type(setup_t), intent(in) :: setup
     !> One zone an interface
     type(zone_t), allocatable :: zones(:)
     integer :: i
 
-    if (.not. allocated(scene%delaminations)) then
+    if (.not. allocated(setup%delaminations)) then
       allocate (zones(0))
       return
     end if
-    allocate (zones(size(scene%delaminations)))
+    allocate (zones(size(setup%delaminations)))
     do i = 1, size(zones)
-      associate (interface => scene%delaminations(i))
+      associate (interface => setup%delaminations(i))
         zones(i)%below_ply = interface%below_ply
-        zones(i)%columns = cells_within(cell_edges(scene%plate, scene%mesh, 1) - scene%mesh%struck(1), &
+        zones(i)%columns = cells_within(cell_edges(setup%plate, setup%mesh, 1) - setup%mesh%struck(1), &
                                         interface%zone(1))
-        zones(i)%rows = cells_within(cell_edges(scene%plate, scene%mesh, 2) - scene%mesh%struck(2), &
+        zones(i)%rows = cells_within(cell_edges(setup%plate, setup%mesh, 2) - setup%mesh%struck(2), &
                                         interface%zone(2))
       end associate
     end do
@@ -217,16 +218,16 @@ contains
     integer :: i
 
     ! A rigid frame is as hard as the laminate's own thickness over the area of a cell, and far harder: contact's.
-    self%rig = new_rig_model(self%mesh, self%scene%plate, self%scene%supports, self%distribution, &
+    self%rig = new_rig_model(self%mesh, self%setup%plate, self%setup%supports, self%distribution, &
                              rigid*self%plies(1)%elasticity%e2/self%thickness &
-                             *product(self%scene%plate%length/self%scene%mesh%elements)/self%mesh%multiplicity)
+                             *product(self%setup%plate%length/self%setup%mesh%elements)/self%mesh%multiplicity)
     if (allocated(self%rig%line_rig)) call self%rig%join_ranks(self%communicator, self%halo)
     if (.not. self%rig%unilateral) return
     associate (share => self%distribution, last => self%plies(size(self%plies)))
       self%rig_area = nodal_areas(self, pack([(i, i=1, self%elements%elements)], &
                                              self%mesh%element_plies(1, share%elements) == 1))
       self%rig_law = create_contact_law(contact_augmented_lagrangian, 1.0_wp, last%elasticity%e2/self%thickness, &
-                                        self%thickness, moving=.not. self%scene%has_static)
+                                        self%thickness, moving=.not. self%setup%has_static)
     end associate
   end subroutine build_rigs
 
@@ -252,12 +253,12 @@ contains
       self%beside_border = [(beside_border(mesh, share%points(i)), i=1, size(share%points))]
       allocate (self%contact_laws(size(mesh%zones)), self%cohesive_laws(size(mesh%zones)))
       do zone = 1, size(mesh%zones)
-        associate (below => mesh%zones(zone)%below_ply, interface => self%scene%delaminations(zone))
+        associate (below => mesh%zones(zone)%below_ply, interface => self%setup%delaminations(zone))
           thickness = min(self%plies(below)%z_bottom - self%plies(1)%z_top, &
                           self%plies(size(self%plies))%z_bottom - self%plies(below)%z_bottom)
           self%contact_laws(zone) = create_contact_law(interface%contact, interface%contact_exponent, &
                                                        self%plies(below)%elasticity%e2/thickness, thickness, &
-                                                       moving=.not. self%scene%has_static)
+                                                       moving=.not. self%setup%has_static)
           if (interface%law == law_cohesive) &
             self%cohesive_laws(zone) = create_cohesive_law(toughnesses(interface), interface%mixing_exponent, &
                                                            [interface%strength_opening, interface%strength_shear], &

@@ -54,10 +54,10 @@ contains
     area = total_of(self%communicator, weights)
     if (area > 0) weights = weights/area
     call self%spread_force(weights, 0.0_wp)
-    if (self%scene%impactor%spreads) call build_nose(self, area)
-    if (self%scene%has_pressure) then
+    if (self%setup%impactor%spreads) call build_nose(self, area)
+    if (self%setup%has_pressure) then
       call build_pressure(self)
-    else if (self%scene%has_static) then
+    else if (self%setup%has_static) then
       allocate (self%pressure(5, size(self%distribution%points)), source=0.0_wp)
     end if
     if (allocated(self%lumped)) then
@@ -79,7 +79,7 @@ contains
 
     associate (mesh => self%mesh, mine => self%distribution%elements)
       elements = pack([(i, i=1, size(mine))], &
-                      [((mesh%in_patch(mesh%element_cell(mine(i)), self%scene%mesh%patch) .eqv. under) &
+                      [((mesh%in_patch(mesh%element_cell(mine(i)), self%setup%mesh%patch) .eqv. under) &
                         .and. mesh%element_plies(1, mine(i)) == 1, i=1, size(mine))])
     end associate
   end function patch_elements
@@ -92,10 +92,10 @@ contains
     real(wp), intent(in) :: area
     integer :: i
 
-    associate (mesh => self%mesh, points => self%distribution%points, struck => self%scene%mesh%struck)
+    associate (mesh => self%mesh, points => self%distribution%points, struck => self%setup%mesh%struck)
       self%nose = new_contact_area(self%patch, area, nodal_areas(self, patch_elements(self, .false.)), &
                                    [(norm2(mesh%node_coordinates(:, mesh%point_node(points(i))) - struck), &
-                                     i=1, size(points))], self%scene%impactor%radius)
+                                     i=1, size(points))], self%setup%impactor%radius)
     end associate
   end subroutine build_nose
 
@@ -107,11 +107,11 @@ contains
 
     allocate (forces(5, self%borders%columns), source=0.0_wp)
     allocate (x(2, 9, self%elements%elements), pressure(9, self%elements%elements))
-    associate (mesh => self%mesh, share => self%distribution, value => self%scene%pressure%value)
+    associate (mesh => self%mesh, share => self%distribution, value => self%setup%pressure%value)
       call gauss_coordinates(self%elements, mesh%node_coordinates(:, mesh%point_node(share%points)), x)
       pressure = value
-      if (self%scene%pressure%distribution == distribution_sine) &
-        pressure = value*cos(pi*x(1, :, :)/self%scene%plate%length(1))*cos(pi*x(2, :, :)/self%scene%plate%length(2))
+      if (self%setup%pressure%distribution == distribution_sine) &
+        pressure = value*cos(pi*x(1, :, :)/self%setup%plate%length(1))*cos(pi*x(2, :, :)/self%setup%plate%length(2))
       do element = 1, size(share%elements)
         if (mesh%element_plies(1, share%elements(element)) /= 1) pressure(:, element) = 0
       end do

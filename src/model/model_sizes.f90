@@ -5,7 +5,7 @@ module model_sizes
   use layered_meshes, only: zone_t
   use model_building, only: zones_of
   use cell_grids, only: cell_edges
-  use scenes, only: scene_t
+  use setups, only: setup_t
   use text, only: to_text
   implicit none
   private
@@ -41,10 +41,10 @@ module model_sizes
 
 contains
 
-  !> Size of the model that a scene asks for.
-  pure function size_of_model(scene, explicit) result(size_found)
-    !> The scene; it has passed the deck's checks
-    type(scene_t), intent(in) :: scene
+  !> Size of the model that a setup asks for.
+  pure function size_of_model(setup, explicit) result(size_found)
+    !> The setup; it has passed the deck's checks
+    type(setup_t), intent(in) :: setup
     !> True: central differences move it, and nothing is factored
     logical, intent(in) :: explicit
     !> Its size
@@ -53,8 +53,8 @@ contains
     integer :: cells(2), i, j
     real(wp) :: nodes, inside, pairs
 
-    zones = zones_of(with_largest_zones(scene))
-    cells = [size(cell_edges(scene%plate, scene%mesh, 1)) - 1, size(cell_edges(scene%plate, scene%mesh, 2)) - 1]
+    zones = zones_of(with_largest_zones(setup))
+    cells = [size(cell_edges(setup%plate, setup%mesh, 1)) - 1, size(cell_edges(setup%plate, setup%mesh, 2)) - 1]
     nodes = product(2*real(cells, wp) + 1)
     pairs = nodes
     size_found%elements = product(real(cells, wp))
@@ -74,20 +74,20 @@ contains
     size_found%megabytes = 1.0e-6_wp*merge(bytes_layered, bytes_whole, size(zones) > 0)*25*pairs*log(nodes)/log(2.0_wp)
   end function size_of_model
 
-  !> The scene with the largest zones that layers may come to which follow their damage.
-  pure function with_largest_zones(scene) result(largest)
-    !> The scene
-    type(scene_t), intent(in) :: scene
+  !> The setup with the largest zones that adaptive layers may reach.
+  pure function with_largest_zones(setup) result(largest)
+    !> The setup
+    type(setup_t), intent(in) :: setup
     !> The same with other zones
-    type(scene_t) :: largest
+    type(setup_t) :: largest
     integer :: i
 
-    largest = scene
-    if (.not. allocated(scene%delaminations)) return
-    do i = 1, size(scene%delaminations)
-      if (scene%delaminations(i)%follows) &
-        largest%delaminations(i)%zone = largest_extents(scene%delaminations(i)%zone, scene%mesh%core, scene%mesh%cell, &
-                                                        scene%plate%length)
+    largest = setup
+    if (.not. allocated(setup%delaminations)) return
+    do i = 1, size(setup%delaminations)
+      if (setup%delaminations(i)%follows) &
+        largest%delaminations(i)%zone = largest_extents(setup%delaminations(i)%zone, setup%mesh%core, setup%mesh%cell, &
+                                                        setup%plate%length)
     end do
   end function with_largest_zones
 

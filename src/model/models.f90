@@ -1,4 +1,4 @@
-!> A scene made ready for steps: mesh, supports, loads, and who computes what; and the forces that follow from a motion.
+!> A setup made ready for steps: mesh, supports, loads, and who computes what; and the forces that follow from a motion.
 !> In a run only layers and the places where the impactor presses change, between steps.
 module models
   use kinds, only: wp
@@ -22,17 +22,17 @@ module models
   use distributions, only: distribution_t
   use placed_lines, only: placed_line_t
   use rig_models, only: rig_model_t
-  use scenes, only: scene_t
+  use setups, only: setup_t
   use symmetry_images, only: symmetry_images_t
   implicit none
   private
   public :: model_t
 
-  !> A scene made ready for computing on this rank's share of the mesh. It has many components because all that steps
+  !> A setup made ready for computing on this rank's share of the mesh. It has many components because all that steps
   !> share is found once, before them.
   type :: model_t
     !> What the deck asked for
-    type(scene_t) :: scene
+    type(setup_t) :: setup
     !> The ranks
     type(communicator_t) :: communicator
     !> Mesh of the modelled part, whole on every rank
@@ -61,7 +61,7 @@ module models
     real(wp), allocatable :: free(:, :, :)
     !> Held unknowns of every point of the mesh, (5, points of the mesh)
     logical, allocatable :: held(:, :)
-    !> Images of the points, where a whole plate is to keep its symmetry as it breaks
+    !> Images of the points, where a full plate is to keep its symmetry as it breaks
     type(symmetry_images_t) :: images
     !> Weights whose product with w is the mean deflection of the patch, (local points); ghosts zero
     real(wp), allocatable :: patch(:)
@@ -195,12 +195,12 @@ contains
     real(wp), contiguous, intent(in), optional :: free(:, :, :)
 
     if (self%map%layered) then
-      call add_internal_force(self%elements, stiffness, self%scene%kinematics, self%motion_of(displacement), field, &
+      call add_internal_force(self%elements, stiffness, self%setup%kinematics, self%motion_of(displacement), field, &
                               energy, law, free)
     else if (self%membrane_idle) then
       call add_bending_force(self%elements, stiffness, displacement, field, energy)
     else
-      call add_internal_force(self%elements, stiffness, self%scene%kinematics, displacement, field, energy, law, free)
+      call add_internal_force(self%elements, stiffness, self%setup%kinematics, displacement, field, energy, law, free)
     end if
   end subroutine add_elements
 
@@ -336,11 +336,11 @@ contains
     w = self%patch_mean(displacement) + self%patch_offset
   end function contact_deflection
 
-  !> Area of the whole plate that the impactor presses on, the same on every rank.
+  !> Area of the full plate that the impactor presses on, the same on every rank.
   real(wp) function pressed_area(self) result(area)
     class(model_t), intent(in) :: self
 
-    area = self%scene%mesh%patch**2
+    area = self%setup%mesh%patch**2
     if (allocated(self%nose)) area = self%nose%touched(self%communicator, self%patch)*self%mesh%multiplicity
   end function pressed_area
 
@@ -358,7 +358,7 @@ contains
     self%patch_offset = offset
   end subroutine spread_force
 
-  !> Adds the nodal forces of a force on the whole plate's patch.
+  !> Adds the nodal forces of a force on the full plate's patch.
   pure subroutine push_patch(self, force, forces)
     class(model_t), intent(in) :: self
     !> The force

@@ -37,9 +37,9 @@ contains
     real(wp), allocatable :: layers(:, :)
 
     layers = model%motion_of(motion%displacement)
-    if (output%wants(field_displacement)) call fields%write_point_field('displacement', layers(1:3, :), error)
-    if (output%wants(field_rotation)) call fields%write_point_field('rotation', layers(4:5, :), error)
+    if (output%requests(field_displacement)) call fields%write_point_field('displacement', layers(1:3, :), error)
+    if (output%requests(field_rotation)) call fields%write_point_field('rotation', layers(4:5, :), error)
     layers = model%motion_of(motion%velocity)
-    if (output%wants(field_velocity)) call fields%write_point_field('velocity', layers(1:3, :), error)
+    if (output%requests(field_velocity)) call fields%write_point_field('velocity', layers(1:3, :), error)
   end subroutine write_motion_fields
 end module motion_fields

@@ -34,12 +34,12 @@ contains
     integer :: i
 
     allocate (strains(0))
-    if (.not. allocated(model%scene%gauges)) return
-    if (size(model%scene%gauges) == 0) return
-    allocate (sums(size(model%scene%gauges)))
+    if (.not. allocated(model%setup%gauges)) return
+    if (size(model%setup%gauges) == 0) return
+    allocate (sums(size(model%setup%gauges)))
     motion = model%motion_of(displacement)
     do i = 1, size(sums)
-      call add_strain(model, model%scene%gauges(i), motion, sums(i))
+      call add_strain(model, model%setup%gauges(i), motion, sums(i))
     end do
     strains = totals_of(model%communicator, sums)
   end function gauge_strains
@@ -90,7 +90,7 @@ contains
     element = model%mesh%element_at(cell(1) + (cell(2) - 1)*model%mesh%cells(1), ply)
     element = findloc(model%distribution%elements, element, dim=1)
     if (element == 0) return
-    call nodal_strains(model%elements, batch_of(element), model%scene%kinematics, motion, all)
+    call nodal_strains(model%elements, batch_of(element), model%setup%kinematics, motion, all)
     place = [part_of(model%mesh%x_edges, cell(1), at(1)), part_of(model%mesh%y_edges, cell(2), at(2))]
     shape = [(1 - place(1))*(1 - place(2)), place(1)*(1 - place(2)), (1 - place(1))*place(2), product(place)]
     strain = matmul(shape, all(lane_of(element), corners, :6))

@@ -25,7 +25,7 @@ module placed_lines
   type :: placed_line_t
     !> The line as the deck gives it
     type(line_load_t) :: load
-    !> Part of the whole plate's line that lies in the model
+    !> Part of the full plate's line that lies in the model
     real(wp) :: share = 1
     !> Stiffness of its springs together, of the whole line
     real(wp) :: stiffness = 0
@@ -357,7 +357,7 @@ contains
     real(wp), intent(in) :: displacement(:, :)
     !> Ramps over their full values
     real(wp), intent(in) :: load_factor
-    !> Force of the whole plate's line, mean motion
+    !> Force of the full plate's line, mean motion
     type(exact_sum_t) :: totals(2)
     integer :: node
 

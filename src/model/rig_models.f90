@@ -22,7 +22,7 @@ module rig_models
     !> True if clamps have springs or press
     logical :: elastic = .false.
     !> The rig that holds w, or whose frame bears it by pressure; 0: none, (local points); unallocated: no rigs
-    integer, allocatable :: holds(:), bears(:)
+    integer, allocatable :: held_by(:), frame(:)
     !> Stiffness of clamps along u, v and w, (3, local points)
     real(wp), allocatable :: springs(:, :)
     !> Force with which clamps press on the plate, (local points)
@@ -66,7 +66,7 @@ contains
     integer :: i, k, point
 
     if (size(supports) == 0 .and. all(plate%edges /= edge_elastic)) return
-    allocate (self%holds(size(distribution%points)), self%bears(size(distribution%points)), &
+    allocate (self%held_by(size(distribution%points)), self%frame(size(distribution%points)), &
               self%clamps(size(distribution%points)), source=0)
     allocate (self%springs(3, size(distribution%points)), self%presses(size(distribution%points)), source=0.0_wp)
     do i = 1, size(supports)
@@ -76,9 +76,9 @@ contains
         point = distribution%local(mesh%first_point(nodes(k)))
         if (point == 0) cycle
         if (supports(i)%unilateral) then
-          self%bears(point) = i
+          self%frame(point) = i
         else
-          self%holds(point) = i
+          self%held_by(point) = i
         end if
       end do
       nodes = clamp_nodes(mesh, plate, supports(i))
@@ -93,15 +93,15 @@ contains
           self%clamps(point) = i
           self%springs(:, point) = self%springs(:, point) + springs_of(mesh, plate, supports(i))
         else
-          self%holds(point) = i
+          self%held_by(point) = i
         end if
       end do
     end do
     call find_lines(mesh, plate, supports, distribution, rigid, self)
     ! What a clamp presses on bears the plate; what is held needs no frame to bear it, and no clamp moves it.
-    where (self%presses > 0 .and. self%bears == 0) self%bears = self%clamps
-    where (self%holds > 0) self%bears = 0
-    where (self%holds > 0) self%presses = 0
+    where (self%presses > 0 .and. self%frame == 0) self%frame = self%clamps
+    where (self%held_by > 0) self%frame = 0
+    where (self%held_by > 0) self%presses = 0
     self%elastic = any(supports%clamp_stiffness > 0 .or. supports%clamp_force > 0)
   end function new_rig_model
 
@@ -253,15 +253,15 @@ contains
     type(support_t), intent(in) :: supports(:)
     !> u, v, w, theta_x, theta_y of every point, (5, points)
     logical, intent(inout) :: held(:, :)
-    logical, allocatable :: borne(:)
+    logical, allocatable :: on_frame(:)
     integer, allocatable :: nodes(:)
     integer :: i, k
 
     do i = 1, size(supports)
       if (.not. supports(i)%unilateral) then
-        borne = nodes_on_frame(mesh, supports(i))
-        do k = 1, size(borne)
-          if (borne(k)) held(3, mesh%first_point(k)) = .true.
+        on_frame = nodes_on_frame(mesh, supports(i))
+        do k = 1, size(on_frame)
+          if (on_frame(k)) held(3, mesh%first_point(k)) = .true.
         end do
       end if
       if (supports(i)%clamp_stiffness > 0 .or. supports(i)%clamp_force > 0) cycle

@@ -1,4 +1,4 @@
-!> Columns of a table, each computed by one rank, that other ranks need as well: neighbours tell them to each other.
+!> Columns of a table, each computed by one rank, that other ranks need as well: neighbours exchange them.
 module column_exchanges
   use mpi_f08, only: MPI_Comm
   use border_traffic, only: exchange, new_traffic, traffic_t
@@ -8,12 +8,12 @@ module column_exchanges
   private
   public :: column_exchange_t, new_column_exchange
 
-  !> Which columns this rank tells to others, and which it learns from them.
+  !> Which columns this rank sends to others, and which it receives from them.
   type :: column_exchange_t
     !> All ranks
     type(MPI_Comm), private :: group
     !> Columns that others need, and those of others that are needed here
-    type(traffic_t), private :: told, learnt
+    type(traffic_t), private :: sent, received
     !> True: there are some
     logical, private :: needed = .false.
   contains
@@ -34,7 +34,7 @@ contains
     integer, intent(in) :: groups(:, :)
     !> The exchange
     type(column_exchange_t) :: self
-    integer :: told(0:communicator%size - 1), learnt(0:communicator%size - 1), rank
+    integer :: sent(0:communicator%size - 1), received(0:communicator%size - 1), rank
     integer, allocatable :: outward(:), inward(:), owner(:)
     real(wp) :: ranks(size(mine))
 
@@ -47,14 +47,14 @@ contains
     do rank = 0, communicator%size - 1
       associate (out => needed_by(rank, owner == communicator%rank), &
                  in => needed_by(communicator%rank, owner == rank))
-        told(rank) = size(out)
-        learnt(rank) = size(in)
+        sent(rank) = size(out)
+        received(rank) = size(in)
         outward = [outward, out]
         inward = [inward, in]
       end associate
     end do
-    self%told = new_traffic(told, outward)
-    self%learnt = new_traffic(learnt, inward)
+    self%sent = new_traffic(sent, outward)
+    self%received = new_traffic(received, inward)
     self%needed = size(outward) + size(inward) > 0
 
   contains
@@ -87,7 +87,7 @@ contains
     real(wp), allocatable :: values(:, :)
 
     if (.not. self%needed) return
-    call exchange(self%group, self%told, self%learnt, field, values)
-    field(:, self%learnt%columns) = values
+    call exchange(self%group, self%sent, self%received, field, values)
+    field(:, self%received%columns) = values
   end subroutine update
 end module column_exchanges

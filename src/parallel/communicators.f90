@@ -11,7 +11,7 @@ module communicators
   private
   public :: communicator_t, start_mpi, finish_mpi, communicator_from_handle
 
-  !> A group of ranks that tell each other what they have. By default one rank, without MPI.
+  !> A group of ranks that exchange data. By default one rank, without MPI.
   type, extends(rank_group_t) :: communicator_t
   contains
     !> Copies a value of rank 0, or a list of any rank, to every rank.
@@ -38,7 +38,7 @@ contains
     logical :: running
 
     call MPI_Initialized(running)
-    if (.not. running) call settle_open_mpi()
+    if (.not. running) call set_open_mpi()
     if (.not. running) call MPI_Init()
     communicator = communicator_from_handle(MPI_COMM_WORLD%mpi_val)
   end subroutine start_mpi
@@ -53,7 +53,7 @@ contains
   !>
   !> A run without mpirun starts no daemon beside it, which is there to start further processes: that took longer than
   !> the rest of MPI's start.
-  subroutine settle_open_mpi()
+  subroutine set_open_mpi()
     use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char
     interface
       !> C library: sets a variable of the environment.
@@ -69,7 +69,7 @@ contains
 
     status = setenv('OMPI_MCA_sharedfp'//c_null_char, '^sm,lockedfile'//c_null_char, 0_c_int)
     status = setenv('OMPI_MCA_ess_singleton_isolated'//c_null_char, '1'//c_null_char, 0_c_int)
-  end subroutine settle_open_mpi
+  end subroutine set_open_mpi
 
   !> Ends MPI if it was started; nothing may be said between ranks afterwards.
   subroutine finish_mpi()

@@ -27,7 +27,7 @@ module halos
     !> Number of ranks
     integer, private :: size = 1
     !> Owned points that others see, and ghosts
-    type(traffic_t), private :: shared, seen
+    type(traffic_t), private :: shared, ghosts_of_others
   contains
     !> Finds out with whom to exchange what.
     procedure :: define
@@ -71,25 +71,25 @@ contains
     call exchange_lists(self, owner, ghost_numbers)
   end subroutine define
 
-  !> Tells the owners which of their points are seen here, and learns which are seen elsewhere.
+  !> Informs the owners which of their points are seen here, and learns which are ghosts elsewhere.
   subroutine exchange_lists(self, owner, ghost_numbers)
     class(halo_t), intent(inout) :: self
     !> Owning rank of each ghost
     integer, intent(in) :: owner(:)
     !> Global number of each ghost
     integer, intent(in) :: ghost_numbers(:)
-    integer :: wanted(0:self%size - 1), asked(0:self%size - 1), r, i
+    integer :: wanted(0:self%size - 1), requested(0:self%size - 1), r, i
     integer :: order(size(owner))
     integer, allocatable :: numbers(:)
 
     wanted = [(count(owner == r), r=0, self%size - 1)]
-    call MPI_Alltoall(wanted, 1, MPI_INTEGER, asked, 1, MPI_INTEGER, self%group)
+    call MPI_Alltoall(wanted, 1, MPI_INTEGER, requested, 1, MPI_INTEGER, self%group)
     order = [(pack([(i, i=1, size(owner))], owner == r), r=0, self%size - 1)]
-    allocate (numbers(sum(asked)))
+    allocate (numbers(sum(requested)))
     call MPI_Alltoallv(ghost_numbers(order), wanted, offsets(wanted), MPI_INTEGER, &
-                       numbers, asked, offsets(asked), MPI_INTEGER, self%group)
-    self%seen = new_traffic(wanted, self%owned + order)
-    self%shared = new_traffic(asked, numbers - self%first + 1)
+                       numbers, requested, offsets(requested), MPI_INTEGER, self%group)
+    self%ghosts_of_others = new_traffic(wanted, self%owned + order)
+    self%shared = new_traffic(requested, numbers - self%first + 1)
   end subroutine exchange_lists
 
   !> Copies values of owned points to their ghosts.
@@ -100,8 +100,8 @@ contains
     real(wp), allocatable :: values(:, :)
 
     if (self%size == 1) return
-    call exchange(self%group, self%shared, self%seen, field, values)
-    field(:, self%seen%columns) = values
+    call exchange(self%group, self%shared, self%ghosts_of_others, field, values)
+    field(:, self%ghosts_of_others%columns) = values
   end subroutine update
 
   !> Adds values of ghosts to their owned points, in the order of ranks, and zeroes the ghosts.
@@ -113,7 +113,7 @@ contains
     integer :: i
 
     if (self%size == 1) return
-    call exchange(self%group, self%seen, self%shared, field, values)
+    call exchange(self%group, self%ghosts_of_others, self%shared, field, values)
     do i = 1, size(self%shared%columns)
       field(:, self%shared%columns(i)) = field(:, self%shared%columns(i)) + values(:, i)
     end do

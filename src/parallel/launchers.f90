@@ -6,7 +6,7 @@ module launchers
 
 contains
 
-  !> True if a launcher has started this process as one rank of a run: each of those it knows tells a process its rank
+  !> True if a launcher has started this process as one rank of a run: each of those it knows gives a process its rank
   !> by a variable of the environment.
   logical function launched()
     !> Open MPI; PMIx (srun, prterun); PMI (MPICH, Intel MPI, srun); MVAPICH2

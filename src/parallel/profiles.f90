@@ -10,13 +10,13 @@ module profiles
   !> Longest name of a part.
   integer, parameter, public :: part_length = 32
   !> Parts that may lie inside each other.
-  integer, parameter :: most_deep = 32
+  integer, parameter :: max_depth = 32
 
   !> One part of a run.
   type :: profile_row_t
     !> What it does
     character(len=part_length) :: name = ''
-    !> Seconds on the wall
+    !> Wall-clock seconds
     real(wp) :: seconds = 0
     !> How often it was begun
     integer :: calls = 0
@@ -29,7 +29,7 @@ module profiles
     !> The parts in the order of their first beginning
     type(profile_row_t), allocatable :: rows(:)
     !> Parts begun and not ended, the innermost last
-    integer :: open(most_deep) = 0, depth = 0
+    integer :: open(max_depth) = 0, depth = 0
     !> Clock and largest memory when the innermost part was last charged
     real(wp) :: seconds = 0, megabytes = 0
   end type record_t
@@ -103,7 +103,7 @@ contains
         i = size(record%rows)
       end if
       record%rows(i)%calls = record%rows(i)%calls + 1
-      record%depth = min(record%depth + 1, most_deep)
+      record%depth = min(record%depth + 1, max_depth)
       record%open(record%depth) = i
     end associate
   end subroutine enter
@@ -118,7 +118,7 @@ contains
   end subroutine leave
 
   !> Charges the innermost part with what has gone since the last time. Memory is asked for after a while only, as the
-  !> system takes longer to tell it than small parts take.
+  !> system takes longer to give it than small parts take.
   subroutine charge(record)
     !> What has been found
     type(record_t), intent(inout) :: record
@@ -156,7 +156,7 @@ contains
     self%record => null()
   end subroutine release
 
-  !> Largest resident memory so far, in MB of 10^6 bytes; 0 where the system does not tell.
+  !> Largest resident memory so far, in MB of 10^6 bytes; 0 where the system does not report it.
   real(wp) function peak_megabytes()
     integer(c_long) :: usage(18)
 
@@ -164,7 +164,7 @@ contains
     if (get_usage(0_c_int, usage) == 0) peak_megabytes = usage(5)*1024.0e-6_wp
   end function peak_megabytes
 
-  !> Seconds on the wall since some moment in the past.
+  !> Wall-clock seconds since some moment in the past.
   real(wp) function wall_time()
     integer(long) :: ticks, rate
 

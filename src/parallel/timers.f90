@@ -1,4 +1,4 @@
-!> Named stopwatches, of the clock on the wall and of the processor.
+!> Named stopwatches, of the wall clock and of the processor.
 module timers
   use kinds, only: wp
   use profiles, only: profile_t, wall_time
@@ -13,10 +13,10 @@ module timers
   type :: timer_t
     !> What is timed
     character(len=name_length) :: name = ''
-    !> Seconds on the wall and of the processor, summed over all finished runs
+    !> Wall-clock seconds and of the processor, summed over all finished runs
     real(wp) :: wall = 0, processor = 0
     !> Times when the present run began
-    real(wp) :: wall_begun = 0, processor_begun = 0
+    real(wp) :: wall_start = 0, processor_start = 0
     !> Number of finished runs
     integer :: runs = 0
   end type timer_t
@@ -25,7 +25,7 @@ module timers
   type :: timer_set_t
     !> The stopwatches in the order of their first start
     type(timer_t), allocatable, private :: list(:)
-    !> What is timed is told to this profile, too
+    !> What is timed is added to this profile, too
     type(profile_t) :: profile
   contains
     !> Starts a stopwatch.
@@ -59,8 +59,8 @@ contains
       self%list = [self%list, timer_t(name=name)]
       i = size(self%list)
     end if
-    self%list(i)%wall_begun = wall_time()
-    call cpu_time(self%list(i)%processor_begun)
+    self%list(i)%wall_start = wall_time()
+    call cpu_time(self%list(i)%processor_start)
   end subroutine start
 
   !> Stops a stopwatch that was started and adds the run.
@@ -76,8 +76,8 @@ contains
     if (i == 0) return
     call cpu_time(processor)
     associate (timer => self%list(i))
-      timer%wall = timer%wall + wall_time() - timer%wall_begun
-      timer%processor = timer%processor + processor - timer%processor_begun
+      timer%wall = timer%wall + wall_time() - timer%wall_start
+      timer%processor = timer%processor + processor - timer%processor_start
       timer%runs = timer%runs + 1
     end associate
   end subroutine stop_timer
@@ -85,7 +85,7 @@ contains
   !> A table for the log, one line a stopwatch.
   pure function lines(self)
     class(timer_set_t), intent(in) :: self
-    !> Name, runs, seconds on the wall, seconds of the processor
+    !> Name, runs, wall-clock seconds, seconds of the processor
     character(len=name_length + 40), allocatable :: lines(:)
     integer :: i
 

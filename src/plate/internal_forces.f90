@@ -37,7 +37,7 @@ contains
     real(wp) :: resultants(lanes, 7)
     integer :: b
 
-    if (present(law)) call tell_strains(batches, kinematics, u, law)
+    if (present(law)) call share_strains(batches, kinematics, u, law)
     stored = 0.0_wp
     do b = 1, batches%batches
       call gather(batches%points(:, :, b), u, r)
@@ -66,8 +66,8 @@ contains
     if (present(energies)) energy = sum(energies)
   end subroutine add_internal_force
 
-  !> Tells a law the strains that sections share. Collective.
-  subroutine tell_strains(batches, kinematics, u, law)
+  !> Passes a law the strains that sections share. Collective.
+  subroutine share_strains(batches, kinematics, u, law)
     !> The elements
     type(element_batches_t), intent(in) :: batches
     !> One of the kinematics_* choices
@@ -86,7 +86,7 @@ contains
       call law%take(b, batches%weight(:, :, b), strains)
     end do
     call law%exchange()
-  end subroutine tell_strains
+  end subroutine share_strains
 
   !> Turns the unknowns of a batch into its nodal forces, for linear strains.
   pure subroutine batch_force(batches, b, c, r)

@@ -6,26 +6,26 @@ module section_laws
   private
   public :: section_law_t
 
-  !> What the sections of the elements remember, and how they answer to trial strains.
+  !> What the sections of the elements remember, and how they respond to trial strains.
   type, abstract :: section_law_t
   contains
-    !> True where the strains of a batch must be known before any section softens; takes them; tells them to all ranks.
-    procedure(asks_for_batch), deferred :: needs
+    !> True where the strains of a batch must be known before any section softens; takes them; sends them to all ranks.
+    procedure(needs_batch), deferred :: needs
     procedure(take_batch), deferred :: take
-    procedure(tell_ranks), deferred :: exchange
+    procedure(share_with_ranks), deferred :: exchange
     !> Stiffness of the sections of a batch under trial strains.
     procedure(soften_batch), deferred :: soften
   end type section_law_t
 
   abstract interface
     !> True where the strains of a batch must be known before any section softens.
-    pure logical function asks_for_batch(self, b)
+    pure logical function needs_batch(self, b)
       import :: section_law_t
       !> The law
       class(section_law_t), intent(in) :: self
       !> Number of the batch
       integer, intent(in) :: b
-    end function asks_for_batch
+    end function needs_batch
 
     !> Takes the trial strains of a batch that is needed.
     subroutine take_batch(self, b, weight, strains)
@@ -40,12 +40,12 @@ module section_laws
       real(wp), intent(in) :: strains(lanes, 9, 6)
     end subroutine take_batch
 
-    !> Tells what was taken to all ranks. Collective.
-    subroutine tell_ranks(self)
+    !> Sends what was set to all ranks. Collective.
+    subroutine share_with_ranks(self)
       import :: section_law_t
       !> The law
       class(section_law_t), intent(inout) :: self
-    end subroutine tell_ranks
+    end subroutine share_with_ranks
 
     !> Stiffness of the sections of a batch under trial strains.
     subroutine soften_batch(self, b, weight, strains, stiffness, free)

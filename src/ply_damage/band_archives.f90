@@ -31,7 +31,7 @@ contains
                               ply=1, size(states, 1))]
     end do
     call archive%field('ply_failure/crack_bands', model%distribution%elements, model%mesh%elements(), table)
-    if (model%scene%ply_damage%permanent_shear) &
+    if (model%setup%ply_damage%permanent_shear) &
       call archive%field('ply_failure/permanent_shear', model%distribution%elements, model%mesh%elements(), strains)
     if (.not. archive%loading) return
     do element = 1, size(states, 2)

@@ -63,8 +63,8 @@ module crack_band_sections
     !> Energy dissipated so far in each mode, on this rank.
     procedure :: dissipated
     !> Where fibres and matrix of one ply bear nothing any more, and where compression took most of its matrix.
-    procedure :: broken
-    procedure :: mostly_pressed
+    procedure :: failed_parts
+    procedure :: mostly_compressed
     !> Constants left in a ply of an element.
     procedure :: elasticity
     !> Neighbouring plies of an element with their permanent strains; resultants of strains without stress.
@@ -86,12 +86,12 @@ contains
     self%plies = model%plies
     allocate (self%bands(size(model%plies)))
     do i = 1, size(self%bands)
-      self%bands(i) = create_crack_band(material_in_place(model%plies, i, model%scene%materials, &
-                                                          model%scene%ply_damage), model%scene%ply_damage)
+      self%bands(i) = create_crack_band(material_in_place(model%plies, i, model%setup%materials, &
+                                                          model%setup%ply_damage), model%setup%ply_damage)
     end do
     if (allocated(model%free)) then
       self%free = model%free
-    else if (model%scene%ply_damage%permanent_shear) then
+    else if (model%setup%ply_damage%permanent_shear) then
       allocate (self%free(lanes, 7, model%elements%batches), source=0.0_wp)
     end if
     self%onset = minval([(onset_strain(self%bands(i)), i=1, size(self%bands))]) &
@@ -142,7 +142,7 @@ contains
     end do
   end subroutine take
 
-  !> Tells them to all ranks. Collective.
+  !> Sends them to all ranks. Collective.
   subroutine exchange(self)
     !> The plies
     class(crack_band_sections_t), intent(inout) :: self
@@ -304,36 +304,36 @@ contains
   end function dissipated
 
   !> Elements of this rank where fibres and matrix of one ply bear nothing any more.
-  pure function broken(self, ply)
+  pure function failed_parts(self, ply)
     !> The plies
     class(crack_band_sections_t), intent(in) :: self
     !> Ply of the laminate
     integer, intent(in) :: ply
     !> True for fibres, and for the matrix, (2, elements)
-    logical :: broken(2, size(self%touched))
+    logical :: failed_parts(2, size(self%touched))
     integer :: element
 
     do element = 1, size(self%touched)
-      broken(:, element) = self%trial(ply, element)%damage >= 1
+      failed_parts(:, element) = self%trial(ply, element)%damage >= 1
     end do
-  end function broken
+  end function failed_parts
 
   !> True where compression across the fibres has taken more of a ply's matrix than tension has.
-  pure function mostly_pressed(self, ply)
+  pure function mostly_compressed(self, ply)
     !> The plies
     class(crack_band_sections_t), intent(in) :: self
     !> Ply of the laminate
     integer, intent(in) :: ply
     !> (elements)
-    logical :: mostly_pressed(size(self%touched))
+    logical :: mostly_compressed(size(self%touched))
     integer :: element
 
     do element = 1, size(self%touched)
       associate (dissipated => self%trial(ply, element)%dissipated)
-        mostly_pressed(element) = dissipated(matrix_compression) > dissipated(matrix_tension)
+        mostly_compressed(element) = dissipated(matrix_compression) > dissipated(matrix_tension)
       end associate
     end do
-  end function mostly_pressed
+  end function mostly_compressed
 
   !> Constants left in a ply of an element.
   pure function elasticity(self, ply, element)

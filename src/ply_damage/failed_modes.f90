@@ -37,7 +37,7 @@ contains
     !> The modes
     type(failed_modes_t) :: self
 
-    if (.not. model%scene%has_ply_damage) return
+    if (.not. model%setup%has_ply_damage) return
     allocate (self%occurred(failure_modes, size(model%plies), model%elements%elements), source=.false.)
   end function new_failed_modes
 
@@ -84,7 +84,7 @@ contains
 
     elasticity = model%plies(ply)%elasticity
     if (allocated(self%occurred)) &
-      elasticity = degraded(elasticity, self%occurred(:, ply, element), model%scene%ply_damage)
+      elasticity = degraded(elasticity, self%occurred(:, ply, element), model%setup%ply_damage)
   end function elasticity
 
   !> Elastic constants left in the plies of an element.

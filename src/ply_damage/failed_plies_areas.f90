@@ -12,7 +12,7 @@ module failed_plies_areas
 
 contains
 
-  !> Area in which each ply has failed in each mode, of the whole plate. Collective.
+  !> Area in which each ply has failed in each mode, of the full plate. Collective.
   function failed_areas(model, failures) result(areas)
     type(model_t), intent(in) :: model
     !> The failures
@@ -24,7 +24,7 @@ contains
     integer :: ply, mode, i
 
     areas = 0
-    if (.not. model%scene%has_ply_damage) return
+    if (.not. model%setup%has_ply_damage) return
     do i = 1, size(cells)
       cells(i) = model%mesh%cell_area(model%mesh%place_of(model%mesh%element_cell(model%distribution%elements(i))))
     end do

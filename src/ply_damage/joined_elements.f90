@@ -31,12 +31,12 @@ module joined_elements
     real(wp), allocatable, private :: area(:)
     !> Moments of the strains of each, a bound of its strains behind them, (moment_values + 1, numbers)
     real(wp), allocatable, private :: moments(:, :)
-    !> Tells the strains of those that are one across ranks
+    !> Sends the strains of elements joined across ranks
     type(column_exchange_t), private :: across
   contains
     !> True where an element shares its state with others.
     procedure :: shares
-    !> Takes an element's strains; tells them to the ranks that need them.
+    !> Takes an element's strains; sends them to the ranks that need them.
     procedure :: take
     procedure :: exchange
     !> Strains of an element and those that are one with it, and their largest bound.
@@ -58,7 +58,7 @@ contains
     associate (mesh => model%mesh, elements => model%distribution%elements)
       allocate (parts(most, mesh%elements()), joined(2, mesh%elements()), numbers(mesh%elements()))
       do element = 1, mesh%elements()
-        call find_parts(mesh, element, model%scene%has_impactor, parts(:, element), joined(:, element))
+        call find_parts(mesh, element, model%setup%has_impactor, parts(:, element), joined(:, element))
       end do
       numbers = unpack([(element, element=1, size(numbers))], parts(2, :) > 0, 0)
       call number_them(numbers)
@@ -187,7 +187,7 @@ contains
     self%moments(:, self%number(element)) = [values_of(moments), bound]
   end subroutine take
 
-  !> Tells the strains of those that are one across ranks. Collective.
+  !> Sends the strains of elements joined across ranks. Collective.
   subroutine exchange(self)
     !> The elements
     class(joined_elements_t), intent(inout) :: self

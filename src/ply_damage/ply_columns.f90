@@ -1,4 +1,4 @@
-!> What the history tells of failed plies.
+!> What the history reports of failed plies.
 module ply_columns
   use kinds, only: wp
   use models, only: model_t
@@ -10,9 +10,9 @@ module ply_columns
 
   !> Failures in each mode, a ply counting once in each element, and the energies of plies that soften.
   character(len=result_row_length), parameter, public :: ply_rows(*) = [character(len=result_row_length) :: &
-    'fibre_failures | integer | - | Plies of elements whose fibres have failed, counted over the whole plate.', &
-    'matrix_cracks | integer | - | Plies of elements whose matrix has cracked, counted over the whole plate.', &
-    'matrix_crushings | integer | - | Plies of elements whose matrix was crushed, counted over the whole plate.', &
+    'fibre_failures | integer | - | Plies of elements whose fibres have failed, counted over the full plate.', &
+    'matrix_cracks | integer | - | Plies of elements whose matrix has cracked, counted over the full plate.', &
+    'matrix_crushings | integer | - | Plies of elements whose matrix was crushed, counted over the full plate.', &
     'energy_fibre_tension | real | energy | Part of energy_ply_damage that breaking fibres in tension took.', &
     'energy_fibre_compression | real | energy | Part of energy_ply_damage that breaking fibres in compression took.', &
     'energy_matrix_cracking | real | energy | Part of energy_ply_damage that cracking took, where tension acts across &

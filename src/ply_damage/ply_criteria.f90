@@ -38,13 +38,13 @@ contains
                              shear_force(stiffness, element, strains(7:8)))
       do i = 1, size(elasticity)
         associate (ply => model%plies(range(1) + i - 1))
-          associate (strength => model%scene%materials(ply%material))
-            if (model%scene%ply_damage%stress == stress_at_faces) then
+          associate (strength => model%setup%materials(ply%material))
+            if (model%setup%ply_damage%stress == stress_at_faces) then
               stresses = face_stresses(ply, elasticity(i), strains(:6), shear(:, i))
             else
               stresses = spread(middle_stress(ply, elasticity(i), strains(:6), shear(:, i)), 2, 1)
             end if
-            measures(:, i) = chosen_indices(model%scene%ply_damage%criteria, strength, stresses)
+            measures(:, i) = chosen_indices(model%setup%ply_damage%criteria, strength, stresses)
           end associate
         end associate
       end do

@@ -19,8 +19,8 @@ module ply_failures
   public :: ply_failure_t, new_ply_failure
 
   !> Energy that plies may create or lose as they follow a step, as a part of what they dissipate in it, and of all
-  !> energy. What a leap makes breaks more plies.
-  real(wp), parameter :: path_tolerance = 0.1_wp, noticed = 3.0e-4_wp
+  !> energy. The spurious energy of a step past a failure makes more plies fail.
+  real(wp), parameter :: path_tolerance = 0.1_wp, energy_tolerance = 3.0e-4_wp
 
   !> Failures of the plies of this rank's elements.
   type :: ply_failure_t
@@ -34,12 +34,12 @@ module ply_failures
     real(wp), allocatable :: free(:, :, :)
     !> True if plies took stiffness away after the last step
     logical :: softened = .false.
-    !> Energy dissipated in each mode by plies that soften, of the whole plate
+    !> Energy dissipated in each mode by plies that soften, of the full plate
     real(wp) :: dissipated(energy_modes) = 0
     !> Energy that their permanent shear strains have taken
     real(wp) :: permanent_shear = 0
     !> Energy that the last step missed as it followed plies that soften, over the most that it may
-    real(wp) :: haste = 0
+    real(wp) :: damage_lag = 0
     !> True while plies that soften keep their stiffness, as a state is carried over to other layers
     logical :: lagging = .false.
   contains
@@ -49,7 +49,7 @@ module ply_failures
     procedure :: add_layer_forces
     !> Books what softening dissipates in a step, and judges whether the step has followed it.
     procedure :: book
-    procedure :: judge
+    procedure :: measure_lag
     !> Finds what plies that soften have dissipated so far.
     procedure :: total_dissipation
     !> Neighbouring plies of an element with their permanent strains.
@@ -62,7 +62,7 @@ module ply_failures
     procedure :: grow
     !> Gives elements that have come to have fewer plies their stiffness.
     procedure :: restack
-    !> Number of ply elements failed in each mode, of the whole plate.
+    !> Number of ply elements failed in each mode, of the full plate.
     procedure :: counts
     !> Saves or loads.
     procedure :: visit
@@ -78,7 +78,7 @@ contains
 
     self%stiffness = model%elements%stiffness
     if (allocated(model%free)) self%free = model%free
-    if (model%scene%has_crack_bands()) then
+    if (model%setup%has_crack_bands()) then
       self%bands = new_crack_band_sections(model)
       if (allocated(self%bands%free)) self%free = self%bands%free
     else
@@ -123,11 +123,11 @@ contains
     real(wp) :: energy
 
     if (allocated(self%bands)) then
-      call add_internal_force(model%elements, self%stiffness, model%scene%kinematics, motion, force, energy, &
+      call add_internal_force(model%elements, self%stiffness, model%setup%kinematics, motion, force, energy, &
                               self%bands, self%free, energies)
       call self%bands%hand_over(self%stiffness, self%free)
     else
-      call add_internal_force(model%elements, self%stiffness, model%scene%kinematics, motion, force, energy, &
+      call add_internal_force(model%elements, self%stiffness, model%setup%kinematics, motion, force, energy, &
                               free=self%free, energies=energies)
     end if
   end subroutine add_layer_forces
@@ -137,7 +137,7 @@ contains
     !> The failures with the trial of the step
     class(ply_failure_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> Energy of all modes, of the whole plate, the same on every rank
+    !> Energy of all modes, of the full plate, the same on every rank
     real(wp), intent(out) :: energy
     real(wp) :: energies(energy_modes)
 
@@ -162,7 +162,7 @@ contains
 
   !> Judges whether a step has followed how plies soften: the work on them is then what they store and dissipate. A step
   !> over a jump would find the state behind it without the work that leads there.
-  pure subroutine judge(self, dissipated, stored, energy)
+  pure subroutine measure_lag(self, dissipated, stored, energy)
     !> The failures
     class(ply_failure_t), intent(inout) :: self
     !> Energy that plies dissipate in the step
@@ -172,10 +172,11 @@ contains
     !> Energy of the whole run so far
     real(wp), intent(in) :: energy
 
-    self%haste = 0
+    self%damage_lag = 0
     if (allocated(self%bands)) &
-      self%haste = abs(stored + dissipated)/max(path_tolerance*dissipated, noticed*energy, tiny(energy)**0.5_wp)
-  end subroutine judge
+      self%damage_lag = abs(stored + dissipated)/max(path_tolerance*dissipated, energy_tolerance*energy, &
+                                                     tiny(energy)**0.5_wp)
+  end subroutine measure_lag
 
   !> Modes that have occurred in a ply; one that softens has failed where it bears nothing any more.
   pure function failed(self, ply)
@@ -190,11 +191,11 @@ contains
       failed = self%modes%failed(ply)
       return
     end if
-    associate (broken => self%bands%broken(ply), pressed => self%bands%mostly_pressed(ply))
+    associate (failed_parts => self%bands%failed_parts(ply), pressed => self%bands%mostly_compressed(ply))
       allocate (failed(failure_modes, size(pressed)))
-      failed(fibre_failure, :) = broken(1, :)
-      failed(matrix_cracking, :) = broken(2, :) .and. .not. pressed
-      failed(matrix_crushing, :) = broken(2, :) .and. pressed
+      failed(fibre_failure, :) = failed_parts(1, :)
+      failed(matrix_cracking, :) = failed_parts(2, :) .and. .not. pressed
+      failed(matrix_crushing, :) = failed_parts(2, :) .and. pressed
     end associate
   end function failed
 
@@ -259,7 +260,7 @@ contains
       call self%bands%commit()
       return
     end if
-    if (.not. model%scene%has_ply_damage) return
+    if (.not. model%setup%has_ply_damage) return
     call self%modes%find(model, self%stiffness, displacement, failing)
     self%softened = model%communicator%any(any(failing))
     if (.not. self%softened) return
@@ -279,7 +280,7 @@ contains
     associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
       self%stiffness(lane_of(element), :, batch_of(element)) = &
         section_stiffness(model%plies(range(1):range(2)), self%modes%elasticities(model, element), &
-                          model%scene%laminate%shear_correction)
+                          model%setup%laminate%shear_correction)
       if (allocated(self%free)) self%free(lane_of(element), :, batch_of(element)) = &
         free_resultants(model%plies(range(1):range(2)), self%elasticities(model, element))
     end associate
@@ -294,7 +295,7 @@ contains
     logical, intent(in) :: is_split(:)
     integer :: element
 
-    if (.not. model%scene%has_ply_damage) return
+    if (.not. model%setup%has_ply_damage) return
     do element = 1, size(is_split)
       if (.not. is_split(element)) cycle
       associate (range => model%mesh%element_plies(:, model%distribution%elements(element)), &
@@ -310,7 +311,7 @@ contains
     end do
   end subroutine restack
 
-  !> Number of ply elements failed in each mode, of the whole plate.
+  !> Number of ply elements failed in each mode, of the full plate.
   function counts(self, model)
     !> The failures
     class(ply_failure_t), intent(in) :: self
@@ -320,7 +321,7 @@ contains
     integer :: ply, mode
 
     counts = 0
-    if (.not. model%scene%has_ply_damage) return
+    if (.not. model%setup%has_ply_damage) return
     do ply = 1, size(model%plies)
       counts = counts + count(self%failed(ply), dim=2)*model%mesh%multiplicity
     end do
@@ -344,11 +345,11 @@ contains
       do mode = 1, energy_modes
         call archive%item('ply_failure/dissipated_'//to_text(mode), self%dissipated(mode))
       end do
-      if (model%scene%ply_damage%permanent_shear) &
+      if (model%setup%ply_damage%permanent_shear) &
         call archive%item('ply_failure/dissipated_by_shear', self%permanent_shear)
     end if
-    if (model%scene%has_ply_damage) call visit_stiffness(archive, 'ply_failure/stiffness', model, self%stiffness)
-    if (.not. (archive%loading .and. allocated(self%free) .and. model%scene%has_ply_damage)) return
+    if (model%setup%has_ply_damage) call visit_stiffness(archive, 'ply_failure/stiffness', model, self%stiffness)
+    if (.not. (archive%loading .and. allocated(self%free) .and. model%setup%has_ply_damage)) return
     do element = 1, model%elements%elements
       associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
         self%free(lane_of(element), :, batch_of(element)) = &

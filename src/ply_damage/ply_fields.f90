@@ -57,11 +57,11 @@ contains
     real(wp), allocatable :: strains(:, :), stresses(:, :, :), lost(:, :)
     integer :: ply, place, i
 
-    wanted = [output%wants(field_stress), output%wants(field_face_stress), output%wants(field_face_stress)]
+    wanted = [output%requests(field_stress), output%requests(field_face_stress), output%requests(field_face_stress)]
     if (any(wanted)) strains = element_strains(model, plies, displacement)
     do ply = 1, size(model%plies)
       associate (name => 'ply_'//to_text(ply)//'_')
-        if (output%wants(field_ply_damage) .and. model%scene%has_ply_damage) then
+        if (output%requests(field_ply_damage) .and. model%setup%has_ply_damage) then
           call fields%write_cell_field(name//'failure', failure_code(plies%failed(ply)), error)
           lost = stiffness_lost(model, plies, ply)
           call fields%write_cell_field(name//'damage_fibre', lost(1:1, :), error)

@@ -1,4 +1,4 @@
-!> Bounds that tell elements in which no ply can be damaged.
+!> Bounds that exclude elements in which no ply can be damaged.
 module strain_bounds
   use element_batches, only: lanes
   use kinds, only: wp

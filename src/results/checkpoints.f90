@@ -88,7 +88,7 @@ contains
     call self%file%close()
   end subroutine open_for_loading
 
-  !> Ends saving or loading, and tells of all that went wrong meanwhile.
+  !> Ends saving or loading, and reports all that went wrong meanwhile.
   subroutine close (self, error)
     !> The checkpoint
     class(checkpoint_archive_t), intent(inout) :: self

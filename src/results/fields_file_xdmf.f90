@@ -1,4 +1,4 @@
-!> NAME.xdmf: tells ParaView and the like what lies where in NAME.h5.
+!> NAME.xdmf: describes to ParaView and the like what lies where in NAME.h5.
 module fields_file_xdmf
   use errors, only: error_t, exit_files, fail
   use files, only: rename_file
@@ -157,7 +157,7 @@ contains
   pure function escaped(name)
     !> The name
     character(len=*), intent(in) :: name
-    !> As XML wants it
+    !> As XML requires it
     character(len=:), allocatable :: escaped
     integer :: i
 

@@ -31,7 +31,7 @@ contains
       call write_attribute(dataset, 'meaning', meaning, statuses(2))
       call h5dclose_f(dataset, status)
     end if
-    call file%settle(min(status, minval(statuses)), name//' could not be given its unit and meaning')
+    call file%check_status(min(status, minval(statuses)), name//' could not be given its unit and meaning')
   end subroutine write_unit_and_meaning
 
   !> Gives an open dataset an attribute.

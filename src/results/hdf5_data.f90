@@ -119,7 +119,7 @@ contains
     value = ''
     if (.not. file%well()) return
     call h5dopen_f(file%id, name, dataset, status)
-    call file%settle(status, name//' is missing')
+    call file%check_status(status, name//' is missing')
     if (.not. file%well()) return
     call h5dget_type_f(dataset, text_type, status)
     call h5tget_size_f(text_type, length, status)

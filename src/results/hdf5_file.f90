@@ -43,7 +43,7 @@ module hdf5_file
     procedure, private :: hold_reserve
     procedure, private :: give_up_reserve
     procedure :: close
-    procedure :: settle
+    procedure :: check_status
     procedure :: well
     procedure :: exists
     procedure :: make_group
@@ -77,7 +77,7 @@ contains
     self%is_open = status == 0
     call h5pclose_f(creation_list, closed)
     call h5pclose_f(access_list, closed)
-    call self%settle(status, 'the file could not be created')
+    call self%check_status(status, 'the file could not be created')
   end subroutine create
 
   !> Opens a file that is there.
@@ -100,7 +100,7 @@ contains
     call h5fopen_f(path, merge(h5f_acc_rdwr_f, h5f_acc_rdonly_f, writable), self%id, status, access_list)
     self%is_open = status == 0
     call h5pclose_f(access_list, closed)
-    call self%settle(status, 'the file could not be opened')
+    call self%check_status(status, 'the file could not be opened')
   end subroutine open
 
   !> Forgets the file before.
@@ -128,7 +128,7 @@ contains
       call stream%put(repeat('.', reserved_bytes))
       call stream%close()
     end if
-    call self%settle(merge(-1, 0, stream%failed), 'the folder cannot be written to or the disk is full')
+    call self%check_status(merge(-1, 0, stream%failed), 'the folder cannot be written to or the disk is full')
     if (allocated(self%trouble)) call self%give_up_reserve()
   end subroutine hold_reserve
 
@@ -209,7 +209,7 @@ contains
     call h5pclose_f(self%with_groups, closed)
     call h5pclose_f(self%undated, closed)
     self%together = -1
-    call self%settle(status, 'the file could not be closed')
+    call self%check_status(status, 'the file could not be closed')
   end subroutine close
 
   !> Whether the library still holds a file on this rank: it could not close it, and crashes when it tries again at its
@@ -233,7 +233,7 @@ contains
   end function files_left_open
 
   !> Agrees on whether the last step failed on any rank.
-  subroutine settle(self, status, trouble)
+  subroutine check_status(self, status, trouble)
     !> The file
     class(hdf5_file_t), intent(inout) :: self
     !> Status the library returned on this rank; negative means failed
@@ -243,7 +243,7 @@ contains
 
     if (allocated(self%trouble)) return
     if (self%communicator%any(status < 0)) self%trouble = trouble
-  end subroutine settle
+  end subroutine check_status
 
   !> Whether nothing has failed so far.
   pure logical function well(self)
@@ -279,7 +279,7 @@ contains
     if (.not. self%well()) return
     call h5gcreate_f(self%id, path, group, status, lcpl_id=self%with_groups)
     if (status == 0) call h5gclose_f(group, status)
-    call self%settle(status, 'group '//path//' could not be made')
+    call self%check_status(status, 'group '//path//' could not be made')
   end subroutine make_group
 
   !> Removes a group with all that is in it, or a dataset.
@@ -292,7 +292,7 @@ contains
 
     if (.not. self%well()) return
     call h5ldelete_f(self%id, path, status)
-    call self%settle(status, path//' could not be removed')
+    call self%check_status(status, path//' could not be removed')
   end subroutine remove
 
   !> Removes a group after there was trouble with it, so that what is left can be closed.
@@ -322,13 +322,13 @@ contains
     if (self%exists(path)) then
       call h5gn_members_f(self%id, path, count, status)
       if (status < 0) count = 0
-      call self%settle(status, 'group '//path//' could not be listed')
+      call self%check_status(status, 'group '//path//' could not be listed')
     end if
     allocate (names(count))
     do i = 1, count
       call h5gget_obj_info_idx_f(self%id, path, i - 1, name, kind, status)
       names(i)%text = trim(name)
-      call self%settle(status, 'group '//path//' could not be listed')
+      call self%check_status(status, 'group '//path//' could not be listed')
     end do
   end subroutine members
 end module hdf5_file

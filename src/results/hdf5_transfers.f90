@@ -59,14 +59,14 @@ contains
     if (.not. file%well()) return
     call make_spaces(extents, columns, space, memory)
     call h5dcreate_f(file%id, name, stored_type, space, dataset, status, file%undated, file%with_groups)
-    call file%settle(status, name//' could not be made')
+    call file%check_status(status, name//' could not be made')
     if (file%well()) then
       call h5dwrite_f(dataset, native_type, address, status, memory, space, file%together)
       call h5dclose_f(dataset, closed)
     end if
     call h5sclose_f(space, closed)
     call h5sclose_f(memory, closed)
-    call file%settle(status, name//' could not be written')
+    call file%check_status(status, name//' could not be written')
   end subroutine put
 
   !> Reads this rank's columns of a dataset.
@@ -90,11 +90,11 @@ contains
 
     if (.not. file%well()) return
     call h5dopen_f(file%id, name, dataset, status)
-    call file%settle(status, name//' is missing')
+    call file%check_status(status, name//' is missing')
     found = stored_shape(file, name)
     status = -1
     if (size(found) == size(extents)) status = merge(0, -1, all(found == extents))
-    call file%settle(status, name//' has another shape')
+    call file%check_status(status, name//' has another shape')
     if (.not. file%well()) return
     call make_spaces(extents, columns, space, memory)
     place = address
@@ -102,7 +102,7 @@ contains
     call h5dclose_f(dataset, closed)
     call h5sclose_f(space, closed)
     call h5sclose_f(memory, closed)
-    call file%settle(status, name//' could not be read')
+    call file%check_status(status, name//' could not be read')
   end subroutine get
 
   !> Describes an array in the file with this rank's columns chosen, and those columns in memory.

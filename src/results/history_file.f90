@@ -75,7 +75,7 @@ contains
   end subroutine create
 
   !> Goes on with a history: its first rows are kept, those after the checkpoint dropped. If there are fewer rows, or no
-  !> file, it goes on with what there is: `rows` then tells. If its row at the checkpoint is another one than it was,
+  !> file, it goes on with what there is: `rows` then shows it. If its row at the checkpoint is another one than it was,
   !> the history is left as it is.
   subroutine resume(self, communicator, path, columns, whole, rows_to_keep, last_row, error)
     !> The history

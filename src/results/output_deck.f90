@@ -1,7 +1,7 @@
 !> What is written, how often and where in the deck: rows of its table, filling and checks.
 module output_deck
   use deck_problems, only: problems_t
-  use deck_remarks, only: tell, remark
+  use deck_remarks, only: report, remark
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
   use output_parameters, only: output_t, field_displacement, field_rotation, field_velocity, field_gap, &
@@ -34,7 +34,7 @@ module output_deck
     'output | force_filter | real | 1 | 1/time | none | > 0 | &
       &Corner frequency of a low pass, Butterworth of 4th order, that the column force_filtered has passed.', &
     'output | fields | choice | 1 or more | - | = all but stresses and onset | displacement rotation velocity gap &
-      &contact_pressure delamination energy_release ply_damage stress face_stress onset | Fields, parted by commas.']
+      &contact_pressure delamination energy_release ply_damage stress face_stress onset | Fields, separated by commas.']
 
   !> Fields written unless the deck chooses: all but the stresses, which are many, and the onset.
   character(len=*), parameter :: usual_fields = &
@@ -42,7 +42,7 @@ module output_deck
     field_delamination//','//field_energy_release//','//field_ply_damage
 
   !> Most events of a run: more pass the range of default integers.
-  real(wp), parameter :: most_events = 1.0e8_wp
+  real(wp), parameter :: max_events = 1.0e8_wp
   !> Part of a step below which an interval is remarked on.
   real(wp), parameter :: short = 0.5_wp
 
@@ -80,9 +80,9 @@ contains
     do i = 1, size(keys)
       every = settings%real_of(group, trim(keys(i)))
       if (.not. every > 0) cycle
-      if (end > most_events*every) then
-        call tell(settings, problems, group, trim(keys(i)), 'makes more than '//to_text(most_events)//' steps; '// &
-                  'allowed: from '//to_text(end/most_events)//'.')
+      if (end > max_events*every) then
+        call report(settings, problems, group, trim(keys(i)), 'makes more than '//to_text(max_events)//' steps; '// &
+                  'allowed: from '//to_text(end/max_events)//'.')
       else if (every < short*step) then
         call remark(settings, problems, group, trim(keys(i)), 'every step becomes that short, '// &
                     to_text(nint(step/every))//' times as many as with steps of '//to_text(step)//'.')
@@ -121,7 +121,7 @@ contains
       !> The group it needs
       character(len=*), intent(in) :: needed
 
-      if (output%wants(field)) call remark(settings, problems, group, 'fields', ''''//field// &
+      if (output%requests(field)) call remark(settings, problems, group, 'fields', ''''//field// &
                                            ''' has no effect without '//needed//'.')
     end subroutine idle
   end subroutine remark_idle_fields

@@ -32,18 +32,18 @@ module output_parameters
     character(len=:), allocatable :: fields
   contains
     !> True if a field is wanted.
-    procedure :: wants
+    procedure :: requests
   end type output_t
 
 contains
 
   !> True if a field is wanted.
-  pure logical function wants(self, field)
+  pure logical function requests(self, field)
     !> What is written
     class(output_t), intent(in) :: self
     !> Name of the field
     character(len=*), intent(in) :: field
 
-    wants = index(','//self%fields//',', ','//field//',') > 0
-  end function wants
+    requests = index(','//self%fields//',', ','//field//',') > 0
+  end function requests
 end module output_parameters

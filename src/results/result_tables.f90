@@ -1,5 +1,5 @@
 !> Tables of what results hold: the columns of the history and the fields over the plate. A row is a text whose cells
-!> are parted by bars. Each folder brings the rows of what it knows; the header of the history, `implam explain`, the
+!> are separated by bars. Each folder brings the rows of what it knows; the header of the history, `implam explain`, the
 !> manual and the attributes in the field file are all made from them.
 module result_tables
   use text, only: append, line_t, to_text
@@ -147,7 +147,7 @@ contains
   pure logical function is_one_of(word, words)
     !> A word
     character(len=*), intent(in) :: word
-    !> Words parted by blanks
+    !> Words separated by blanks
     character(len=*), intent(in) :: words
 
     is_one_of = len_trim(word) > 0 .and. scan(trim(word), ' ') == 0 .and. &
@@ -165,7 +165,7 @@ contains
 
   !> A table in Markdown, for the manual.
   subroutine markdown_table(heading, rows, lines)
-    !> What the cells hold, parted by bars
+    !> What the cells hold, separated by bars
     character(len=*), intent(in) :: heading
     !> The table
     character(len=*), intent(in) :: rows(:)
@@ -183,7 +183,7 @@ contains
 
   !> A table in columns of equal width, for the terminal.
   subroutine plain_table(heading, rows, lines)
-    !> What the cells hold, parted by bars
+    !> What the cells hold, separated by bars
     character(len=*), intent(in) :: heading
     !> The table
     character(len=*), intent(in) :: rows(:)

@@ -83,7 +83,7 @@ contains
     real(wp), intent(in) :: fraction
     !> What has been done and what is left, in one unit: steps, or time
     real(wp), intent(in) :: done, left
-    !> What else is worth a glance, such as the time in the scene
+    !> What else is worth a glance, such as the time in the setup
     character(len=*), intent(in) :: text
     character(len=:), allocatable :: line
     integer(long) :: now, rate

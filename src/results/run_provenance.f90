@@ -22,7 +22,7 @@ module run_provenance
   type, extends(build_t) :: provenance_t
     !> Text of the deck, as the user wrote it
     character(len=:), allocatable :: deck
-    !> Name of the case, which the deck may have left to the name of its file; empty: not told
+    !> Name of the case, which the deck may have left to the name of its file; empty: not given
     character(len=:), allocatable :: case_name
     !> Units that the deck says it is in; empty: any that are consistent
     character(len=:), allocatable :: units

@@ -1,4 +1,4 @@
-!> The time on the wall that a queue grants a run: it ends with a checkpoint before that is up.
+!> The wall-clock time that a queue grants a run: it ends with a checkpoint before that is up.
 module wall_limits
   use kinds, only: wp
   implicit none
@@ -21,7 +21,7 @@ module wall_limits
     real(wp), private :: longest = 0
   contains
     !> Learns how long a step took.
-    procedure :: learn
+    procedure :: note_step
     !> True if another step might take too long.
     procedure :: is_up
   end type wall_limit_t
@@ -29,14 +29,14 @@ module wall_limits
 contains
 
   !> Learns how long a step took.
-  pure subroutine learn(self, seconds)
+  pure subroutine note_step(self, seconds)
     !> The limit
     class(wall_limit_t), intent(inout) :: self
     !> Seconds that a step took, its results included
     real(wp), intent(in) :: seconds
 
     self%longest = max(self%longest, seconds)
-  end subroutine learn
+  end subroutine note_step
 
   !> True if another step might take too long.
   pure logical function is_up(self, now)

@@ -29,7 +29,7 @@ module modal_plates
   real(wp), parameter :: shortened_clamped = 0.719_wp, shortened_one_clamped = 0.846_wp, &
                          lengthened_cantilever = 1.68_wp, shortened_hinged = 0.8_wp
   !> Most modes along one direction; the deflection by higher ones is below what an estimate needs.
-  integer, parameter :: most_modes = 300
+  integer, parameter :: max_modes = 300
   !> Modes along one direction whose half wave is no shorter than this part of the patch are summed up.
   real(wp), parameter :: part_of_patch = 0.25_wp
 
@@ -37,7 +37,7 @@ contains
 
   !> Modes of a plate up to a frequency, and the compliance of all others.
   pure function modal_plate_of(length, edges, stiffness, mass, patch, cutoff) result(plate)
-    !> Lengths of the whole plate along x and y
+    !> Lengths of the full plate along x and y
     real(wp), intent(in) :: length(2)
     !> Supports at x-min, x-max, y-min, y-max
     integer, intent(in) :: edges(4)
@@ -95,7 +95,7 @@ contains
 
     free = all(edges == edge_free)
     extent = length*length_factor(edges)
-    number = min(most_modes, 4 + int(extent/(2*part_of_patch*patch)))
+    number = min(max_modes, 4 + int(extent/(2*part_of_patch*patch)))
     allocate (modes(2, number))
     do i = 1, number
       modes(1, i) = (2*i - merge(2, 1, free))*pi/extent

@@ -2,7 +2,7 @@
 !> average acceleration.
 !>
 !> A force on the patch shows after n steps by as much whenever it acted. So modes need not be moved one by one: their
-!> answers add up to one, with which the forces are folded. Forces are known only up to the present step, so they are
+!> responses add up to one, with which the forces are folded. Forces are known only up to the present step, so they are
 !> taken in blocks that double (Hairer, Lubich and Schlichte, Fast numerical solution of nonlinear Volterra convolution
 !> equations, SIAM J. Sci. Stat. Comput. 6, 1985): the work grows with the steps times the square of their logarithm,
 !> and not with the steps times the modes.
@@ -12,11 +12,11 @@ module patch_responses
   use modal_plates, only: modal_plate_t
   implicit none
   private
-  public :: patch_response_t, start_response, coming_deflection, look_ahead, block_steps
+  public :: patch_response_t, start_response, predicted_deflection, predict_deflections, block_steps
 
   !> Steps whose forces are folded one by one, and those of a block whose forces are folded without transforms.
   integer, parameter :: block_steps = 64, direct_steps = 256
-  !> Steps that the answer is found for where the end isn't known.
+  !> Steps that the response is found for where the end isn't known.
   integer, parameter :: first_steps = 1024
 
   !> A transform of one length.
@@ -25,19 +25,19 @@ module patch_responses
     complex(wp), allocatable :: value(:)
   end type spectrum_t
 
-  !> The answer of the patch, and what it has in store.
+  !> The response of the patch, and what it has in store.
   type :: patch_response_t
     !> The plate's modes
     type(modal_plate_t) :: plate
     !> Step
     real(wp) :: step = 0
     !> Deflection per force at the end of the same step
-    real(wp) :: at_once = 0
+    real(wp) :: immediate = 0
     !> Deflection so many steps after a force of one at the end of a step
     real(wp), allocatable :: later(:)
     !> Deflection at the ends of all steps by the forces that have been looked ahead with
-    real(wp), allocatable :: coming(:)
-    !> Transforms of the answer by the power of two of the block that they are folded with
+    real(wp), allocatable :: predicted(:)
+    !> Transforms of the response by the power of two of the block that they are folded with
     type(spectrum_t) :: spectra(31)
     !> What transforms of any of these lengths take
     complex(wp), allocatable :: turns(:)
@@ -61,36 +61,36 @@ contains
 
     self%plate = plate
     self%step = step
-    self%at_once = plate%rest + sum(plate%weight*step**2/4/(1 + (plate%frequency*step/2)**2))
-    allocate (self%coming(steps), source=0.0_wp)
+    self%immediate = plate%rest + sum(plate%weight*step**2/4/(1 + (plate%frequency*step/2)**2))
+    allocate (self%predicted(steps), source=0.0_wp)
     known = first_steps
     do while (to_the_end .and. known < steps)
       known = 2*known
     end do
-    call find_answer(self, known)
+    call find_unit_response(self, known)
   end function start_response
 
-  !> Finds the answer for a number of steps. A mode moved by the average acceleration turns by theta a step,
+  !> Finds the response for a number of steps. A mode moved by the average acceleration turns by theta a step,
   !> tan(theta/2) = omega step/2, and after a force of one swings as a sine.
-  pure subroutine find_answer(self, steps)
+  pure subroutine find_unit_response(self, steps)
     !> The response
     type(patch_response_t), intent(inout) :: self
     !> Steps, a power of two
     integer, intent(in) :: steps
-    logical :: swings(size(self%plate%frequency))
+    logical :: oscillates(size(self%plate%frequency))
     real(wp), allocatable :: omega(:)
     integer :: i
 
-    swings = self%plate%frequency > 0
-    omega = pack(self%plate%frequency, swings)
+    oscillates = self%plate%frequency > 0
+    omega = pack(self%plate%frequency, oscillates)
     self%later = sums_of_sines(2*atan(omega*self%step/2), &
-                               pack(self%plate%weight, swings)*self%step/omega/(1 + (omega*self%step/2)**2), steps)
-    self%later = self%later + self%step**2*sum(self%plate%weight, mask=.not. swings)*[(real(i, wp), i=1, steps)]
+                               pack(self%plate%weight, oscillates)*self%step/omega/(1 + (omega*self%step/2)**2), steps)
+    self%later = self%later + self%step**2*sum(self%plate%weight, mask=.not. oscillates)*[(real(i, wp), i=1, steps)]
     self%turns = unit_turns(steps)
-  end subroutine find_answer
+  end subroutine find_unit_response
 
   !> Deflection at the end of a step, but for the force there.
-  pure real(wp) function coming_deflection(self, step, force) result(deflection)
+  pure real(wp) function predicted_deflection(self, step, force) result(deflection)
     !> The response, which looked ahead at the last multiple of `block_steps`
     type(patch_response_t), intent(in) :: self
     !> The step
@@ -100,11 +100,11 @@ contains
     integer :: since
 
     since = mod(step - 1, block_steps)
-    deflection = self%coming(step) + dot_product(self%later(:since), force(step - 1:step - since:-1))
-  end function coming_deflection
+    deflection = self%predicted(step) + dot_product(self%later(:since), force(step - 1:step - since:-1))
+  end function predicted_deflection
 
   !> Folds the forces of the last block into the steps to come, as many of them as the block has.
-  pure subroutine look_ahead(self, now, force)
+  pure subroutine predict_deflections(self, now, force)
     !> The response
     type(patch_response_t), intent(inout) :: self
     !> Steps taken, a multiple of `block_steps`
@@ -115,17 +115,18 @@ contains
 
     ! The largest power of two that divides the steps.
     length = iand(now, -now)
-    last = min(now + length, size(self%coming))
+    last = min(now + length, size(self%predicted))
     if (.not. any(force(now - length + 1:now) > 0) .or. last <= now) return
-    if (2*length > size(self%later)) call find_answer(self, 2*length)
+    if (2*length > size(self%later)) call find_unit_response(self, 2*length)
     if (length > direct_steps) then
       call fold_by_transform(self, force(now - length + 1:now), now, last)
     else
       do k = 1, length
-        self%coming(now + 1:last) = self%coming(now + 1:last) + force(now + 1 - k)*self%later(k:k + last - now - 1)
+        self%predicted(now + 1:last) = self%predicted(now + 1:last) + force(now + 1 - k)*self%later(k:k + last - now &
+          - 1)
       end do
     end if
-  end subroutine look_ahead
+  end subroutine predict_deflections
 
   !> The same by transforms twice as long as the block.
   pure subroutine fold_by_transform(self, force, now, last)
@@ -150,7 +151,8 @@ contains
       ! The conjugate of a conjugate's transform goes back.
       values = conjg(values*spectrum%value)
       call fourier(values, self%turns)
-      self%coming(now + 1:last) = self%coming(now + 1:last) + real(values(length + 1:length + last - now))/(2*length)
+      self%predicted(now + 1:last) = self%predicted(now + 1:last) + real(values(length + 1:length + last &
+                                                                                - now))/(2*length)
     end associate
   end subroutine fold_by_transform
 end module patch_responses

@@ -1,11 +1,11 @@
 !> A pilot calculation: the impactor against the modes of the plate, step by step as the run will take them. In
-!> milliseconds it tells force, duration and contacts to expect, and what a step or mesh is worth.
+!> milliseconds it gives force, duration and contacts to expect, and what a step or mesh is worth.
 module pilot_impacts
   use impact_parameters, only: impactor_parameters_t, indentation_law_t
   use kinds, only: wp
   use modal_plates, only: modal_plate_t
-  use patch_responses, only: patch_response_t, start_response, coming_deflection, look_ahead, block_steps
-  use tan_sun_indentation, only: indentation_t, indentation_force, indentation_stiffness, touch_indentation, &
+  use patch_responses, only: patch_response_t, start_response, predicted_deflection, predict_deflections, block_steps
+  use tan_sun_indentation, only: indentation_t, indentation_force, indentation_stiffness, zero_force_indentation, &
                                  commit_indentation
   implicit none
   private
@@ -38,12 +38,12 @@ module pilot_impacts
   !> Part of the largest force from which on that of a contact is like it.
   real(wp), parameter :: like_peaks = 0.9_wp
   !> Halvings and Newton steps for the force; Newton needs five.
-  integer, parameter :: most_iterations = 60
+  integer, parameter :: max_iterations = 60
 
 contains
 
   !> Runs a pilot calculation by the average acceleration, which is generalised-alpha without damping.
-  pure function run_pilot(plate, impactor, law, step, most_steps, to_the_end) result(pilot)
+  pure function run_pilot(plate, impactor, law, step, max_steps, to_the_end) result(pilot)
     !> Modes of the plate
     type(modal_plate_t), intent(in) :: plate
     !> The impactor
@@ -53,7 +53,7 @@ contains
     !> Step
     real(wp), intent(in) :: step
     !> Steps taken at most
-    integer, intent(in) :: most_steps
+    integer, intent(in) :: max_steps
     !> True: all steps are taken; false: the calculation ends once the contact is over
     logical, intent(in) :: to_the_end
     !> What was found
@@ -64,23 +64,23 @@ contains
     real(wp) :: ball(3), rigid, free(2), now, before, deflection
     integer :: i, active
 
-    patch = start_response(plate, step, most_steps, to_the_end)
-    allocate (force(most_steps), source=0.0_wp)
+    patch = start_response(plate, step, max_steps, to_the_end)
+    allocate (force(max_steps), source=0.0_wp)
     rigid = step**2/(4*impactor%mass)
     ball = [0.0_wp, impactor%velocity, impactor%gravity]
     pilot%step = step
     now = 0
     active = 0
-    do i = 1, most_steps
+    do i = 1, max_steps
       before = now
       free(1) = ball(1) + step*ball(2) + step**2/4*(ball(3) + impactor%gravity)
-      if (mod(i - 1, block_steps) == 0 .and. i > 1) call look_ahead(patch, i - 1, force)
-      free(2) = coming_deflection(patch, i, force)
-      call find_force(law, contact, free(1) - free(2), patch%at_once + rigid, now)
+      if (mod(i - 1, block_steps) == 0 .and. i > 1) call predict_deflections(patch, i - 1, force)
+      free(2) = predicted_deflection(patch, i, force)
+      call find_force(law, contact, free(1) - free(2), patch%immediate + rigid, now)
       ball(1) = free(1) - rigid*now
       ball(2) = ball(2) + step/2*(ball(3) + impactor%gravity - now/impactor%mass)
       ball(3) = impactor%gravity - now/impactor%mass
-      deflection = free(2) + patch%at_once*now
+      deflection = free(2) + patch%immediate*now
       call commit_indentation(law, contact, ball(1) - deflection)
       force(i) = now
       pilot%deflection = max(pilot%deflection, abs(deflection))
@@ -91,8 +91,8 @@ contains
       if (now > contact_part*pilot%peak) active = i
       if (i > waiting*active .and. active > 0 .and. .not. to_the_end) exit
     end do
-    pilot%complete = i <= most_steps
-    pilot%force = force(:min(i, most_steps))
+    pilot%complete = i <= max_steps
+    pilot%force = force(:min(i, max_steps))
     pilot%indentation = contact%alpha_max
     pilot%last_contact = active*step
     pilot%velocity = ball(2)
@@ -113,7 +113,7 @@ contains
     real(wp) :: low, high, rest, next, touch
     integer :: i
 
-    touch = touch_indentation(law, contact)
+    touch = zero_force_indentation(law, contact)
     if (free <= touch) then
       force = 0
       return
@@ -121,7 +121,7 @@ contains
     low = 0
     high = (free - touch)/compliance
     if (.not. (force > low .and. force < high)) force = high/2
-    do i = 1, most_iterations
+    do i = 1, max_iterations
       rest = indentation_force(law, contact, free - compliance*force) - force
       if (rest > 0) then
         low = force
@@ -136,7 +136,8 @@ contains
     force = next
   end subroutine find_force
 
-  !> What a summary of a run tells, in its order: largest force, its time, time in contact, largest deflection, velocity
+  !> What a summary of a run reports, in its order: largest force, its time, time in contact, largest deflection,
+  !> velocity
   !> of the impactor at the end.
   pure function figures_of(pilot) result(figures)
     !> The pilot
@@ -199,7 +200,7 @@ contains
   end function bound_of_difference
 
   !> What two pilots differ by around the largest force of the finer one, in the mean of squares, as a force. In a long
-  !> contact the errors of ripples at that very instant may be nil by chance; those beside it tell.
+  !> contact the errors of ripples at that very instant may be nil by chance; those beside it count.
   pure real(wp) function difference_at_peak(coarse, fine, ratio, beside) result(force)
     !> The pilot with the longer steps
     type(pilot_t), intent(in) :: coarse

@@ -31,10 +31,10 @@ contains
     real(wp), allocatable :: strains(:, :)
     integer :: zone, ply
 
-    if (.not. (model%map%layered .and. model%scene%has_ply_damage)) return
-    if (any(model%scene%delaminations%shear_cracks)) strains = element_strains(model, plies, displacement)
+    if (.not. (model%map%layered .and. model%setup%has_ply_damage)) return
+    if (any(model%setup%delaminations%shear_cracks)) strains = element_strains(model, plies, displacement)
     do zone = 1, size(model%mesh%zones)
-      associate (delamination => model%scene%delaminations(zone), below => model%mesh%zones(zone)%below_ply)
+      associate (delamination => model%setup%delaminations(zone), below => model%mesh%zones(zone)%below_ply)
         if (delamination%law /= law_cohesive) cycle
         do ply = below, below + 1
           associate (reach => block_thickness(model%plies, ply))
@@ -66,9 +66,9 @@ contains
     type(matrix_strengths_t) :: strengths
     real(wp) :: part
 
-    associate (scene => model%scene)
-      strengths = crack_strengths(model%plies, ply, scene%materials, scene%ply_damage)
-      part = shear_across_strength(strengths)/scene%delaminations(zone)%strength_shear
+    associate (setup => model%setup)
+      strengths = crack_strengths(model%plies, ply, setup%materials, setup%ply_damage)
+      part = shear_across_strength(strengths)/setup%delaminations(zone)%strength_shear
     end associate
     if (part < 1) call weaken_beside(interfaces%cohesive, model, zone, &
                                      sheared_cells(model, plies, strains, zone, ply, reach, strengths), &

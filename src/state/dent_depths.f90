@@ -33,7 +33,7 @@ contains
     integer :: i, point
 
     depth = 0
-    if (.not. (model%scene%has_impactor .and. model%scene%impactor%radius > 0)) return
+    if (.not. (model%setup%has_impactor .and. model%setup%impactor%radius > 0)) return
     call find_plane(model, displacement, plane, is_known)
     if (.not. is_known) return
     associate (mesh => model%mesh, owned => model%distribution%points(:model%distribution%owned))
@@ -41,7 +41,7 @@ contains
         point = owned(i)
         if (mesh%first_point(mesh%point_node(point)) /= point) cycle
         place = mesh%node_coordinates(:, mesh%point_node(point)) - mesh%struck
-        if (norm2(place) >= nearest*model%scene%impactor%radius) cycle
+        if (norm2(place) >= nearest*model%setup%impactor%radius) cycle
         depth = max(depth, displacement(3, i) - plane(1) - dot_product(plane(2:3), place))
       end do
     end associate
@@ -68,8 +68,8 @@ contains
           if (mesh%element_plies(1, global) /= 1) cycle
           point = mesh%connectivity(5, global)
           place = mesh%node_coordinates(:, mesh%point_node(point)) - mesh%struck
-          if (norm2(place) < nearest*model%scene%impactor%radius .or. &
-              norm2(place) > farthest*model%scene%impactor%radius) cycle
+          if (norm2(place) < nearest*model%setup%impactor%radius .or. &
+              norm2(place) > farthest*model%setup%impactor%radius) cycle
           area = mesh%cell_area(mesh%place_of(mesh%element_cell(global)))
         end associate
         w = displacement(3, model%distribution%local(point))

@@ -1,4 +1,4 @@
-!> Where the energy is. Every entry is of the whole plate, also under symmetry.
+!> Where the energy is. Every entry is of the full plate, also under symmetry.
 module energy_ledgers
   use kinds, only: wp
   use archives, only: archive_t

@@ -66,7 +66,7 @@ module states
     !> Internal forces and the energy that goes with them.
     procedure :: find_internal
     !> True once plies have failed or delaminations have grown.
-    procedure :: has_broken
+    procedure :: has_failures
     !> Counts a step and its iterations.
     procedure :: count_step
     !> Notes how a load step went.
@@ -95,9 +95,9 @@ contains
     energy = 0
     call self%interfaces%rig%add_springs(model, self%motion%displacement, self%motion%internal, energy)
     if (allocated(model%nose)) self%patch = model%patch
-    if (.not. model%scene%has_impactor .or. model%scene%has_static) return
-    self%impactor = new_impactor(model%scene%impactor)
-    self%ledger%impactor = impactor_energy(model%scene%impactor, self%impactor)
+    if (.not. model%setup%has_impactor .or. model%setup%has_static) return
+    self%impactor = new_impactor(model%setup%impactor)
+    self%ledger%impactor = impactor_energy(model%setup%impactor, self%impactor)
     self%ledger%initial = self%ledger%impactor
   end function new_state
 
@@ -113,7 +113,7 @@ contains
     self%small_state_t = old%small_state_t
     self%motion%displacement = old%motion%displacement
     ! Without damage no step changes them.
-    if (model%scene%has_ply_damage) self%plies = old%plies
+    if (model%setup%has_ply_damage) self%plies = old%plies
   end subroutine start_from
 
   !> Internal forces of layers and cohesive interfaces, and this rank's share of the energy that they store.
@@ -137,12 +137,12 @@ contains
   end subroutine find_internal
 
   !> True once plies have failed or delaminations have grown.
-  pure logical function has_broken(self)
+  pure logical function has_failures(self)
     !> The state
     class(state_t), intent(in) :: self
 
-    has_broken = self%ledger%ply_damage > 0 .or. self%ledger%delamination > 0
-  end function has_broken
+    has_failures = self%ledger%ply_damage > 0 .or. self%ledger%delamination > 0
+  end function has_failures
 
   !> Counts a step and its iterations.
   pure subroutine count_step(self, old)

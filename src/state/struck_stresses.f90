@@ -24,10 +24,10 @@ contains
     do i = 1, size(model%struck_elements)
       associate (element => model%struck_elements(i))
         if (model%map%layered) then
-          call mean_strains(model%elements, batch_of(element), model%scene%kinematics, model%motion_of(displacement), &
+          call mean_strains(model%elements, batch_of(element), model%setup%kinematics, model%motion_of(displacement), &
                             strains)
         else
-          call mean_strains(model%elements, batch_of(element), model%scene%kinematics, displacement, strains)
+          call mean_strains(model%elements, batch_of(element), model%setup%kinematics, displacement, strains)
         end if
         call sums(1)%add(strains(lane_of(element), 4))
         call sums(2)%add(strains(lane_of(element), 5))

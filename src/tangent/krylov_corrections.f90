@@ -4,29 +4,29 @@
 !>
 !> A factor that lags behind contacts, ties, cohesive points, cracked plies and von Karman's strains costs solves and
 !> no accuracy. Forces are held against each other by the diagonal of the tangent, so that forces and moments, plate and
-!> hard contacts compare. Where cohesive points soften, the directions found also tell of negative curvature.
+!> hard contacts compare. Where cohesive points soften, the directions found also show negative curvature.
 module krylov_corrections
   use kinds, only: wp
-  use descending_directions, only: find_descending
+  use descent_directions, only: find_descent_direction
   use errors, only: error_t
   use models, only: model_t
   use tangent_operators, only: tangent_operator_t
   use tangent_products, only: tangent_product_t
   implicit none
   private
-  public :: find_krylov_correction, most_directions
+  public :: find_krylov_correction, max_directions
 
   !> Directions of a correction at most: the solves take about as long as a factorization then.
-  integer, parameter :: most_directions = 30
+  integer, parameter :: max_directions = 30
 
   !> The space of motions, in rows of this rank.
   type :: krylov_space_t
     !> Motions, (rows, directions), and orthonormal forces, (rows, directions + 1)
     real(wp), allocatable :: motions(:, :), forces(:, :)
     !> The tangent's forces of the motions in terms of these, (directions + 1, directions)
-    real(wp) :: shares(most_directions + 1, most_directions) = 0
+    real(wp) :: coefficients(max_directions + 1, max_directions) = 0
     !> Directions found
-    integer :: kept = 0
+    integer :: directions = 0
     !> Weight of each force
     real(wp), allocatable :: weight(:)
   end type krylov_space_t
@@ -36,7 +36,7 @@ contains
   !> Correction of the displacement for a residual, ghosts included. Collective.
   subroutine find_krylov_correction(operator, model, tangent, diagonal, residual, tolerance, correction, error, &
                                     negative, &
-                             satisfied)
+                             converged)
     !> The factored operator
     type(tangent_operator_t), intent(inout) :: operator
     type(model_t), intent(in) :: model
@@ -55,28 +55,29 @@ contains
     !> True: the tangent has negative curvature, and the correction descends
     logical, intent(out), optional :: negative
     !> False: more than the tolerance is left
-    logical, intent(out), optional :: satisfied
+    logical, intent(out), optional :: converged
     type(krylov_space_t) :: space
-    real(wp) :: rows(operator%numbering%rows), solution(operator%numbering%rows), first, left
-    real(wp), allocatable :: shares(:)
-    logical :: falls
+    real(wp) :: rows(operator%numbering%rows), solution(operator%numbering%rows), initial_norm, remaining
+    real(wp), allocatable :: coefficients(:)
+    logical :: curved_down
 
     call operator%numbering%gather(residual, rows)
     if (present(negative)) negative = .false.
-    if (present(satisfied)) satisfied = .true.
+    if (present(converged)) converged = .true.
     if (tangent%is_factored() .and. .not. tangent%force_slope > 0) then
       call operator%solve_rows(rows, solution, error)
       operator%solves = operator%solves + 1
     else
       space%weight = 1/abs(operator%rows_of(diagonal))
-      call span_space(operator, model, tangent, rows, tolerance, space, first, shares, left, error)
+      call build_krylov_space(operator, model, tangent, rows, tolerance, space, initial_norm, coefficients, &
+                              remaining, error)
       if (allocated(error)) return
       if (present(negative) .and. tangent%softens) then
-        call look_for_falls(model, space, first, shares, falls)
-        negative = falls
+        call find_negative_curvature(model, space, initial_norm, coefficients, curved_down)
+        negative = curved_down
       end if
-      if (present(satisfied)) satisfied = left <= tolerance*first
-      solution = matmul(space%motions(:, :space%kept), shares)
+      if (present(converged)) converged = remaining <= tolerance*initial_norm
+      solution = matmul(space%motions(:, :space%directions), coefficients)
     end if
     if (allocated(error)) return
     call operator%numbering%scatter(solution, correction)
@@ -84,7 +85,8 @@ contains
   end subroutine find_krylov_correction
 
   !> Spans the space until a combination of its motions leaves little enough of the forces.
-  subroutine span_space(operator, model, tangent, rows, tolerance, space, first, shares, left, error)
+  subroutine build_krylov_space(operator, model, tangent, rows, tolerance, space, initial_norm, coefficients, &
+                                remaining, error)
     !> The factored operator
     type(tangent_operator_t), intent(inout) :: operator
     type(model_t), intent(in) :: model
@@ -97,34 +99,35 @@ contains
     !> The space
     type(krylov_space_t), intent(inout) :: space
     !> Size of the forces, and of what is left
-    real(wp), intent(out) :: first, left
+    real(wp), intent(out) :: initial_norm, remaining
     !> Shares of the motions in the best combination
-    real(wp), allocatable, intent(out) :: shares(:)
+    real(wp), allocatable, intent(out) :: coefficients(:)
     !> Set if a solve fails
     type(error_t), allocatable, intent(inout) :: error
-    real(wp) :: product(size(rows)), size_of_product
+    real(wp) :: product(size(rows)), norm_of_product
     integer :: k
 
-    allocate (space%motions(size(rows), most_directions), space%forces(size(rows), most_directions + 1))
-    first = size_of(model, space%weight, rows)
-    left = first
-    allocate (shares(0))
-    if (.not. first > 0) return
-    space%forces(:, 1) = rows/first
-    do k = 1, most_directions
+    allocate (space%motions(size(rows), max_directions), space%forces(size(rows), max_directions + 1))
+    initial_norm = norm_of(model, space%weight, rows)
+    remaining = initial_norm
+    allocate (coefficients(0))
+    if (.not. initial_norm > 0) return
+    space%forces(:, 1) = rows/initial_norm
+    do k = 1, max_directions
       call precondition(operator, tangent, space%forces(:, k), space%motions(:, k), error)
       if (allocated(error)) return
-      call tangent%multiply(space%motions(:, k), known_product(tangent, space%forces(:, k), space%motions(:, k)), &
+      call tangent%multiply(space%motions(:, k), factored_product(tangent, space%forces(:, k), space%motions(:, k)), &
                             product)
-      call make_orthogonal(model, space, k, product)
-      size_of_product = size_of(model, space%weight, product)
-      space%shares(k + 1, k) = size_of_product
-      space%kept = k
-      space%forces(:, k + 1) = product/max(size_of_product, tiny(first))
-      call least_squares(space%shares(:k + 1, :k), first, shares, left)
-      if (left <= tolerance*first .or. .not. size_of_product > epsilon(first)*norm2(space%shares(:k, k))) exit
+      call orthogonalize(model, space, k, product)
+      norm_of_product = norm_of(model, space%weight, product)
+      space%coefficients(k + 1, k) = norm_of_product
+      space%directions = k
+      space%forces(:, k + 1) = product/max(norm_of_product, tiny(initial_norm))
+      call least_squares(space%coefficients(:k + 1, :k), initial_norm, coefficients, remaining)
+      if (remaining <= tolerance*initial_norm &
+          .or. .not. norm_of_product > epsilon(initial_norm)*norm2(space%coefficients(:k, k))) exit
     end do
-  end subroutine span_space
+  end subroutine build_krylov_space
 
   !> Motion under forces by the factored operator, with the impactor's force that goes with it (Sherman and Morrison).
   subroutine precondition(operator, tangent, forces, motion, error)
@@ -147,7 +150,7 @@ contains
   end subroutine precondition
 
   !> The factored operator times a motion that it was asked for.
-  function known_product(tangent, forces, motion) result(product)
+  function factored_product(tangent, forces, motion) result(product)
     !> The tangent
     type(tangent_product_t), intent(in) :: tangent
     !> Forces that it was asked for
@@ -159,11 +162,11 @@ contains
 
     product = forces
     if (tangent%force_slope > 0) product = product - tangent%force_slope*tangent%mean(motion)*tangent%pattern
-  end function known_product
+  end function factored_product
 
   !> Frees a product from the forces of the space, twice, as digits are lost (L. Giraud, J. Langou, M. Rozloznik,
   !> Comput. Math. Appl. 50 (2005) 1069-1075), and notes their shares.
-  subroutine make_orthogonal(model, space, k, product)
+  subroutine orthogonalize(model, space, k, product)
     type(model_t), intent(in) :: model
     !> The space
     type(krylov_space_t), intent(inout) :: space
@@ -178,76 +181,77 @@ contains
       parts = matmul(space%weight*product, space%forces(:, :k))
       call model%communicator%sum(parts)
       product = product - matmul(space%forces(:, :k), parts)
-      space%shares(:k, k) = space%shares(:k, k) + parts
+      space%coefficients(:k, k) = space%coefficients(:k, k) + parts
     end do
-  end subroutine make_orthogonal
+  end subroutine orthogonalize
 
   !> Size of forces, the same on every rank.
-  real(wp) function size_of(model, weight, forces)
+  real(wp) function norm_of(model, weight, forces)
     type(model_t), intent(in) :: model
     !> Weight of each force
     real(wp), intent(in) :: weight(:)
     !> The forces
     real(wp), intent(in) :: forces(:)
 
-    size_of = sum(weight*forces**2)
-    call model%communicator%sum(size_of)
-    size_of = sqrt(size_of)
-  end function size_of
+    norm_of = sum(weight*forces**2)
+    call model%communicator%sum(norm_of)
+    norm_of = sqrt(norm_of)
+  end function norm_of
 
   !> Combination that leaves least: || first e_1 - H y ||, by Givens' rotations of H, which has one row below its
   !> diagonal.
-  pure subroutine least_squares(matrix, first, shares, left)
+  pure subroutine least_squares(matrix, initial_norm, coefficients, remaining)
     !> H, (k + 1, k)
     real(wp), intent(in) :: matrix(:, :)
     !> Size of the forces
-    real(wp), intent(in) :: first
+    real(wp), intent(in) :: initial_norm
     !> y, (k)
-    real(wp), allocatable, intent(out) :: shares(:)
+    real(wp), allocatable, intent(out) :: coefficients(:)
     !> What is left
-    real(wp), intent(out) :: left
-    real(wp) :: h(size(matrix, 1), size(matrix, 2)), right(size(matrix, 1)), turn(2, 2), length
+    real(wp), intent(out) :: remaining
+    real(wp) :: h(size(matrix, 1), size(matrix, 2)), right(size(matrix, 1)), rotation(2, 2), length
     integer :: k, n
 
     n = size(matrix, 2)
     h = matrix
     right = 0
-    right(1) = first
+    right(1) = initial_norm
     do k = 1, n
       length = max(norm2(h(k:k + 1, k)), tiny(length))
-      turn(1, :) = h(k:k + 1, k)/length
-      turn(2, :) = [-turn(1, 2), turn(1, 1)]
-      h(k:k + 1, k:) = matmul(turn, h(k:k + 1, k:))
-      right(k:k + 1) = matmul(turn, right(k:k + 1))
+      rotation(1, :) = h(k:k + 1, k)/length
+      rotation(2, :) = [-rotation(1, 2), rotation(1, 1)]
+      h(k:k + 1, k:) = matmul(rotation, h(k:k + 1, k:))
+      right(k:k + 1) = matmul(rotation, right(k:k + 1))
     end do
-    left = abs(right(n + 1))
-    allocate (shares(n))
+    remaining = abs(right(n + 1))
+    allocate (coefficients(n))
     do k = n, 1, -1
-      shares(k) = (right(k) - dot_product(h(k, k + 1:n), shares(k + 1:))) &
+      coefficients(k) = (right(k) - dot_product(h(k, k + 1:n), coefficients(k + 1:))) &
                   /sign(max(abs(h(k, k)), tiny(length)), h(k, k))
     end do
   end subroutine least_squares
 
   !> Looks for negative curvature in the space; where there is any the combination is one that descends.
-  subroutine look_for_falls(model, space, first, shares, falls)
+  subroutine find_negative_curvature(model, space, initial_norm, coefficients, curved_down)
     type(model_t), intent(in) :: model
     !> The space
     type(krylov_space_t), intent(in) :: space
     !> Size of the forces
-    real(wp), intent(in) :: first
+    real(wp), intent(in) :: initial_norm
     !> Shares of its motions
-    real(wp), intent(inout) :: shares(:)
+    real(wp), intent(inout) :: coefficients(:)
     !> True: there is negative curvature
-    logical, intent(out) :: falls
-    real(wp) :: works(space%kept, space%kept + 1)
+    logical, intent(out) :: curved_down
+    real(wp) :: works(space%directions, space%directions + 1)
     integer :: k
 
-    associate (n => space%kept)
+    associate (n => space%directions)
       do k = 1, n + 1
         works(:, k) = matmul(space%forces(:, k), space%motions(:, :n))
         call model%communicator%sum(works(:, k))
       end do
-      call find_descending(matmul(works, space%shares(:n + 1, :n)), works(:, :n), first*works(:, 1), shares, falls)
+      call find_descent_direction(matmul(works, space%coefficients(:n + 1, :n)), works(:, :n), initial_norm*works(:, &
+        1), coefficients, curved_down)
     end associate
-  end subroutine look_for_falls
+  end subroutine find_negative_curvature
 end module krylov_corrections

@@ -12,19 +12,19 @@ module operator_assembly
   use models, only: model_t
   implicit none
   private
-  public :: assemble_elements, assemble_diagonal, assemble_tangents, stays_positive
+  public :: assemble_elements, assemble_diagonal, assemble_tangents, is_positive_definite
 
 contains
 
   !> True if no operator of a model has a negative pivot: in time, with the secants of its laws, or without buckling
   !> and softening.
-  pure logical function stays_positive(model) result(positive)
+  pure logical function is_positive_definite(model) result(positive)
     type(model_t), intent(in) :: model
 
-    positive = .not. model%scene%has_static .or. model%scene%kinematics == kinematics_linear
-    if (model%scene%has_static .and. model%map%layered) &
-      positive = positive .and. .not. any(model%scene%delaminations%law == law_cohesive)
-  end function stays_positive
+    positive = .not. model%setup%has_static .or. model%setup%kinematics == kinematics_linear
+    if (model%setup%has_static .and. model%map%layered) &
+      positive = positive .and. .not. any(model%setup%delaminations%law == law_cohesive)
+  end function is_positive_definite
 
   !> Adds the elements' matrices and a lumped mass to a cleared solver; ghosts' diagonals go to their owners.
   subroutine assemble_elements(model, stiffness, numbering, displacement, stiffness_factor, mass_factor, solver, &
@@ -53,10 +53,10 @@ contains
     motion = model%motion_of(displacement)
     do b = 1, model%elements%batches
       if (allocated(model%free)) then
-        call tangent(model%elements, b, stiffness(:, :, b), model%scene%kinematics, motion, stiffness_factor, &
+        call tangent(model%elements, b, stiffness(:, :, b), model%setup%kinematics, motion, stiffness_factor, &
                      consistent_factor, matrices, model%free(:, :, b))
       else
-        call tangent(model%elements, b, stiffness(:, :, b), model%scene%kinematics, motion, stiffness_factor, &
+        call tangent(model%elements, b, stiffness(:, :, b), model%setup%kinematics, motion, stiffness_factor, &
                      consistent_factor, matrices)
       end if
       do column = 1, 45
@@ -72,13 +72,13 @@ contains
         call add_block(model, numbering, [point], mass_factor*nodal_mass(model%lumped(:, point)), solver, diagonal)
       end do
     end if
-    call add_held_lines(model, stiffness_factor, numbering, solver, diagonal)
+    call add_line_supports(model, stiffness_factor, numbering, solver, diagonal)
     call add_lines(model, numbering, solver, diagonal)
     call model%halo%accumulate(diagonal)
   end subroutine assemble_elements
 
   !> Adds the stiffness that holds lines: w on the edges of circular windows, and elastic edges.
-  subroutine add_held_lines(model, stiffness_factor, numbering, solver, diagonal)
+  subroutine add_line_supports(model, stiffness_factor, numbering, solver, diagonal)
     type(model_t), intent(in) :: model
     !> Factor of stiffness
     real(wp), intent(in) :: stiffness_factor
@@ -104,7 +104,7 @@ contains
       end do
       call add_to(numbering, model%rig%line_points(:, k), matrix, solver, diagonal)
     end do
-  end subroutine add_held_lines
+  end subroutine add_line_supports
 
   !> Adds the springs of lines whose displacement is prescribed. They hold at the end of a step and not on its way, so
   !> no factor of stiffness weighs them.

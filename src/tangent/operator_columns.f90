@@ -1,4 +1,4 @@
-!> What the history tells of the factored operator.
+!> What the history reports of the factored operator.
 module operator_columns
   use kinds, only: wp
   use result_tables, only: result_row_length

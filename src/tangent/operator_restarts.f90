@@ -31,14 +31,14 @@ contains
       if (model%has_bonds) &
         call archive%field('operator/added', share%points(:share%owned), model%mesh%points(), self%added)
     end associate
-    if (model%scene%has_ply_damage) call visit_stiffness(archive, 'operator/stiffness', model, self%stiffness)
-    if (archive%loading .and. self%ready) call remake(self, model, error)
+    if (model%setup%has_ply_damage) call visit_stiffness(archive, 'operator/stiffness', model, self%stiffness)
+    if (archive%loading .and. self%ready) call refactorize(self, model, error)
     call archive%item('operator/factorizations', self%factorizations)
     call archive%item('operator/solves', self%solves)
   end subroutine visit_operator
 
   !> Makes the factor again from what was loaded.
-  subroutine remake(self, model, error)
+  subroutine refactorize(self, model, error)
     !> The operator
     type(tangent_operator_t), intent(inout) :: self
     type(model_t), intent(in) :: model
@@ -51,5 +51,5 @@ contains
     call assemble_elements(model, self%stiffness, self%numbering, self%displacement, self%stiffness_factor, &
                            self%mass_factor, self%solver, self%diagonal)
     call self%factorize(model, error)
-  end subroutine remake
+  end subroutine refactorize
 end module operator_restarts

@@ -5,16 +5,16 @@ module operator_solvers
   use linear_solvers, only: linear_solver_t
   use models, only: model_t
   use numberings, only: numbering_t
-  use operator_assembly, only: stays_positive
+  use operator_assembly, only: is_positive_definite
   use timers, only: timer_set_t
   implicit none
   private
-  public :: set_solver_up, solve_field
+  public :: create_solver, solve_field
 
 contains
 
   !> Makes a solver for the pattern of an operator.
-  subroutine set_solver_up(model, numbering, factorization, solver, error)
+  subroutine create_solver(model, numbering, factorization, solver, error)
     type(model_t), intent(in) :: model
     !> Equations
     type(numbering_t), intent(in) :: numbering
@@ -28,8 +28,8 @@ contains
     allocate (solver)
     solver%factorization = factorization
     call solver%define(model%communicator, numbering%first_row, numbering%total, numbering%row_start, &
-                       numbering%columns, stays_positive(model), error)
-  end subroutine set_solver_up
+                       numbering%columns, is_positive_definite(model), error)
+  end subroutine create_solver
 
   !> Solution of an operator as it was factored, ghosts included.
   subroutine solve_field(model, numbering, solver, timers, name, force, solution, error)

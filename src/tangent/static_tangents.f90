@@ -40,7 +40,7 @@ contains
     tangent%model => model
     tangent%numbering => operator%numbering
     tangent%displacement => operator%displacement
-    if (allocated(cohesive%tangents)) call tangent%take_skew(cohesive%tangents)
+    if (allocated(cohesive%tangents)) call tangent%set_skew_part(cohesive%tangents)
     diagonal = operator%diagonal
     diagonal(:3, :) = diagonal(:3, :) + abs(operator%added)
     call find_krylov_correction(operator, model, tangent, diagonal, forces, left_over, solution, error)

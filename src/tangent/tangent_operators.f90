@@ -1,6 +1,6 @@
 !> The factored operator that turns a residual of equilibrium into a correction of the displacement.
 !> It is a preconditioner that may lag behind the state: with the exact internal force in the residual
-!> its age changes the number of iterations, never the converged answer.
+!> its age changes the number of iterations, never the converged solution.
 module tangent_operators
   use kinds, only: wp
   use errors, only: error_t
@@ -10,7 +10,7 @@ module tangent_operators
   use models, only: model_t
   use interface_states, only: interface_state_t
   use operator_assembly, only: assemble_elements, assemble_diagonal, assemble_tangents
-  use operator_solvers, only: set_solver_up, solve_field
+  use operator_solvers, only: create_solver, solve_field
   implicit none
   private
   public :: tangent_operator_t
@@ -57,7 +57,7 @@ module tangent_operators
     !> Rows of this rank from a field.
     procedure :: rows_of
     !> True if ties and contacts have changed too much.
-    procedure :: has_left
+    procedure :: has_outdated_constraints
     !> Factors what has been assembled.
     procedure :: factorize
     !> Frees the factors.
@@ -83,7 +83,7 @@ contains
     self%stiffness = model%elements%stiffness
     call number_equations(model%mesh, model%distribution, model%held, self%numbering, model%images)
     self%timers%profile = model%profile
-    call set_solver_up(model, self%numbering, factorization, self%solver, error)
+    call create_solver(model, self%numbering, factorization, self%solver, error)
     if (allocated(error)) return
     ! The solver has its own copy of this large list.
     deallocate (self%numbering%columns)
@@ -141,7 +141,7 @@ contains
     self%factorizations = self%factorizations + 1
     self%response = 0
     self%compliance = 0
-    if (model%scene%has_impactor) call self%find_response(model, error)
+    if (model%setup%has_impactor) call self%find_response(model, error)
   end subroutine factorize
 
   !> Finds the response to a unit force of the impactor.
@@ -199,7 +199,7 @@ contains
 
   !> True if ties and contacts have changed at more equations than a factorization takes solves: each takes a direction
   !> of its own in a Krylov space. Collective.
-  logical function has_left(self, model, wanted, most)
+  logical function has_outdated_constraints(self, model, wanted, most)
     !> The operator
     class(tangent_operator_t), intent(in) :: self
     type(model_t), intent(in) :: model
@@ -214,8 +214,8 @@ contains
                       .and. self%numbering%equation(:3, :owned) >= 0)
     end associate
     call model%communicator%sum(changed)
-    has_left = changed > most
-  end function has_left
+    has_outdated_constraints = changed > most
+  end function has_outdated_constraints
 
   !> Correction of the displacement for a residual, ghosts included.
   subroutine correct(self, model, residual, correction, error)

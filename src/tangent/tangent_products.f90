@@ -40,9 +40,9 @@ module tangent_products
     !> Mean deflection of the patch.
     procedure :: mean
     !> Takes the stiffness of the jumps.
-    procedure :: take_jumps
+    procedure :: set_jump_stiffness
     !> Takes the skew parts of the tangents of cohesive laws.
-    procedure :: take_skew
+    procedure :: set_skew_part
     procedure, private :: add_elements
     procedure, private :: add_jumps
   end type tangent_product_t
@@ -104,7 +104,7 @@ contains
 
   !> Takes the stiffness of the jumps: what ties, contacts and frames add to diagonals, and the tangents of cohesive
   !> laws. Collective.
-  subroutine take_jumps(self, factored, now, cohesive, tangents)
+  subroutine set_jump_stiffness(self, factored, now, cohesive, tangents)
     !> The tangent, whose elements are known
     class(tangent_product_t), intent(inout) :: self
     !> Diagonals in the factored operator, and now, (3, points)
@@ -132,14 +132,14 @@ contains
         self%jumps(k, k, i) = self%jumps(k, k, i) - factored(k, i)
       end do
     end do
-    call keep_if_any(self)
+    call drop_if_zero(self)
     some = merge(1.0_wp, 0.0_wp, self%softens)
     call self%model%communicator%maximum(some)
     self%softens = some > 0
-  end subroutine take_jumps
+  end subroutine set_jump_stiffness
 
   !> Takes the skew parts of the tangents of cohesive laws. Collective.
-  subroutine take_skew(self, tangents)
+  subroutine set_skew_part(self, tangents)
     !> The tangent
     class(tangent_product_t), intent(inout) :: self
     !> Force per jump, (3, 3, points)
@@ -150,11 +150,11 @@ contains
     do i = 1, self%numbering%owned
       if (self%model%zone(i) > 0) self%jumps(:, :, i) = (tangents(:, :, i) - transpose(tangents(:, :, i)))/2
     end do
-    call keep_if_any(self)
-  end subroutine take_skew
+    call drop_if_zero(self)
+  end subroutine set_skew_part
 
   !> Keeps the stiffness of jumps only if there is any. Collective.
-  subroutine keep_if_any(self)
+  subroutine drop_if_zero(self)
     !> The tangent
     type(tangent_product_t), intent(inout) :: self
     real(wp) :: largest
@@ -162,7 +162,7 @@ contains
     largest = maxval([0.0_wp, abs(self%jumps)])
     call self%model%communicator%maximum(largest)
     if (.not. largest > 0) deallocate (self%jumps)
-  end subroutine keep_if_any
+  end subroutine drop_if_zero
 
   !> True where a point's damage grows: its tangent then falls along the jump.
   pure logical function softens(tangent)
@@ -187,10 +187,10 @@ contains
     associate (model => self%model)
       allocate (columns(5, max(size(force, 2), model%borders%columns)), source=0.0_wp)
       if (associated(self%free)) then
-        call add_tangent_force(model%elements, self%stiffness, model%scene%kinematics, &
+        call add_tangent_force(model%elements, self%stiffness, model%setup%kinematics, &
                                model%motion_of(self%displacement), model%motion_of(motion), columns, self%free)
       else
-        call add_tangent_force(model%elements, self%stiffness, model%scene%kinematics, &
+        call add_tangent_force(model%elements, self%stiffness, model%setup%kinematics, &
                                model%motion_of(self%displacement), model%motion_of(motion), columns)
       end if
       call model%borders%add(columns)

@@ -11,7 +11,7 @@ import subprocess
 import sys
 import tempfile
 
-# Sun and Chen's case with Tan and Sun's indentation, patch of 5 mm. Linear: semi-analytic answer.
+# Sun and Chen's case with Tan and Sun's indentation, patch of 5 mm. Linear: semi-analytic response.
 # With von Karman's strains: 32 x 32 elements on the quarter and steps of 0.5 us.
 REFERENCE = {'linear': (298.87, 0.4312e-3), 'von_karman': (298.90, 0.42804e-3)}
 
@@ -52,7 +52,7 @@ GROUPS = {
 
 SUN_CHEN = pathlib.Path(__file__).resolve().parents[2]/'input'/'sun_chen.nml'
 
-# One thread, so that processor time is comparable; Open MPI refuses root unless told twice.
+# One thread, so that processor time is comparable; Open MPI refuses root unless asked twice.
 ENVIRONMENT = dict(os.environ, OMP_NUM_THREADS='1', OPENBLAS_NUM_THREADS='1',
                    OMPI_ALLOW_RUN_AS_ROOT='1', OMPI_ALLOW_RUN_AS_ROOT_CONFIRM='1')
 # A line of the log's table of times.
@@ -76,7 +76,7 @@ class Run:
             log = pathlib.Path(folder, 'bench.log').read_text()
             with open(pathlib.Path(folder, 'bench_history.csv')) as lines:
                 self.history = list(csv.DictReader(line for line in lines if not line.startswith('#')))
-        # Name, times, seconds on the wall, seconds of the processor.
+        # Name, times, seconds by the wall clock, seconds of the processor.
         self.phases = {name.strip(): (int(times), float(processor)) for name, times, wall, processor in
                        re.findall(PHASE, log, re.MULTILINE)}
         self.wall = {name.strip(): float(wall)/max(int(times), 1) for name, times, wall, processor in
@@ -111,7 +111,7 @@ def step_cost(program, arguments):
         factoring += run.phases['assembly'][1]
         print(f'{kinematics}: {run.unknowns} unknowns, {steps} steps, {run.phases["solve"][0]} solves of '
               f'{1e3*solve:.1f} ms, {factors} factorizations of {1e3*factoring/factors:.0f} ms')
-        print(f'  a step over a solve, on the wall: {run.wall["steps"]/run.wall["solve"]:.2f} (at most {target}); '
+        print(f'  a step over a solve, wall clock: {run.wall["steps"]/run.wall["solve"]:.2f} (at most {target}); '
               f'of the processor {seconds/steps/solve:.2f}; without factorizations '
               f'{(seconds - factoring)/steps/solve:.2f}')
         parts = [part for part in ('solve', 'solve in plane', 'factorization', 'assembly', 'element forces')
@@ -196,7 +196,7 @@ def instructions(program, text):
 
 
 def absent_physics(program, arguments):
-    """What an elastic scene costs with this program against an older one, run in turns; least and median times."""
+    """What an elastic model costs with this program against an older one, run in turns; least and median times."""
     old = os.path.abspath(arguments.old)
     text = arguments.deck.read_text()
     decks = {'linear': text, 'von_karman': text.replace("kinematics='linear'", "kinematics='von_karman'")}
@@ -224,7 +224,7 @@ def absent_physics(program, arguments):
 
 
 def groups(program, arguments):
-    """What each group of a deck adds to a scene in which nothing fails: processor time, or instructions as well."""
+    """What each group of a deck adds to a model in which nothing fails: processor time, or instructions as well."""
     print('| added | unknowns | iterations, factorizations | processor, s | instructions, 10^9 |')
     print('|---|---|---|---|---|')
     for name, changes in GROUPS.items():

@@ -100,8 +100,8 @@ def steps(program):
             rows, seconds = run(program, change_deck(THRESHOLD.read_text(encoding='utf-8'),
                                                      [f'time%step={step}e-6']), folder)
         area = rows[-1]['delaminated_area']
-        least, most = (bound(row['energy_algorithmic'] for row in rows)/(10*0.6313**2) for bound in (min, max))
-        print(f'| {step} | {1e6*area:.1f} | {1e3*math.sqrt(area/math.pi):.2f} | {least:.1e} to {most:.1e} | '
+        smallest, limit = (bound(row['energy_algorithmic'] for row in rows)/(10*0.6313**2) for bound in (min, max))
+        print(f'| {step} | {1e6*area:.1f} | {1e3*math.sqrt(area/math.pi):.2f} | {smallest:.1e} to {limit:.1e} | '
               f'{seconds:.0f} |', flush=True)
 
 

@@ -55,7 +55,7 @@ def numbers(text):
     yield 'rho_inf .25', ['time%rho_inf=.25']
     yield 'rho_inf .75', ['time%rho_inf=.75']
     yield 'stiffness of the interface times 1.5', ['delamination%stiffness=1.134e14']
-    yield 'patch 3.2 mm (of the scene)', ['mesh%patch=3.2e-3']
+    yield 'patch 3.2 mm (of the model)', ['mesh%patch=3.2e-3']
 
 
 def materials(text):

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Where the energy goes in the scenes of damaging_scenes.py, and what step and damping change of it.
+"""Where the energy goes in the models of damaging_models.py, and what step and damping change of it.
 Usage: damaging_energies.py IMPLAM SEED ...
 
 Prints a line a run: as it is, with half the step, with rho_inf=.99. Each has what integrators, plies and delaminations
@@ -11,22 +11,22 @@ import sys
 import tempfile
 from pathlib import Path
 
-from damaging_scenes import deck, ended, scene
+from damaging_models import deck, ended, model
 
 WAYS = (("as it is", 1, ""), ("half the step", 2, ""), ("rho_inf=.99", 1, "rho_inf=.99 "))
 
 
 def line(implam, seed, parts, damping):
-    """Run a scene; what is printed of it."""
-    s = scene(seed)
+    """Run a model; what is printed of it."""
+    s = model(seed)
     s["steps"] *= parts
     with tempfile.TemporaryDirectory() as name:
-        path = Path(name) / "scene.nml"
+        path = Path(name) / "model.nml"
         path.write_text(deck(s).replace("&time ", "&time " + damping), encoding="utf-8")
         code, said, seconds = ended([implam, path, "--output", name])
         if code:
             return f"ends with {code}: {said}"
-        with (Path(name) / "scene_history.csv").open(encoding="utf-8") as file:
+        with (Path(name) / "model_history.csv").open(encoding="utf-8") as file:
             rows = [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
     last = rows[-1]
     taken = " ".join(f"{100 * last['energy_' + of] / s['energy']:6.2f}"
@@ -37,7 +37,7 @@ def line(implam, seed, parts, damping):
 
 
 def main(implam, *seeds):
-    """Run the scenes."""
+    """Run the models."""
     for seed in seeds:
         for title, parts, damping in WAYS:
             print(f"{seed:>3} {title:14}", line(Path(implam).absolute(), int(seed), parts, damping), flush=True)

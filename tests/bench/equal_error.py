@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Least processor time for an error of the force history: Sun and Chen's plate against the semi-analytic answer."""
+"""Least processor time for an error of the force history: Sun and Chen's plate against the semi-analytic response."""
 import argparse
 
-from elastic_scenes import Run, deck_of
-from modal_impact import Scene, answer
+from elastic_models import Run, deck_of
+from modal_impact import Model, response
 
 END, PATCH = 1e-3, 5e-3
-SUN_CHEN = Scene((0.2, 0.2), [0, 90, 0, 90, 0, 0, 90, 0, 90, 0], 0.269e-3, (120e9, 7.9e9, 5.5e9, 5.5e9, 5.5e9, 0.3),
+SUN_CHEN = Model((0.2, 0.2), [0, 90, 0, 90, 0, 0, 90, 0, 90, 0], 0.269e-3, (120e9, 7.9e9, 5.5e9, 5.5e9, 5.5e9, 0.3),
                  1580, 8.537e-3, 3, 6.35e-3, 8.112e8, law='hertz', name='sun_chen')
 
 
@@ -19,7 +19,7 @@ def main():
     parser.add_argument('--steps', type=float, nargs='+', default=(8, 6, 5, 4, 3, 2), help='us')
     parser.add_argument('--repeat', type=int, default=5)
     options = parser.parse_args()
-    exact = answer(SUN_CHEN, PATCH, END)[:2]
+    exact = response(SUN_CHEN, PATCH, END)[:2]
     print('elements  step, us  peak, %  history, %  processor, s (least of the runs)')
     found = []
     for elements in options.elements:

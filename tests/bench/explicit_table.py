@@ -19,16 +19,16 @@ import numpy as np
 HERE = pathlib.Path(__file__).resolve().parent
 INPUT = HERE.parents[1]/'input'
 sys.path[:0] = [str(HERE), str(HERE.parent/'regress')]
-import breaking_scenes
+import breaking_models
 import cohesive_study
-import damaging_scenes
-import elastic_scenes
-from modal_impact import Scene, answer
+import damaging_models
+import elastic_models
+from modal_impact import Model, response
 from solver_runs import change_deck
 
 EXPLICIT = "integrator='central_difference'"
 IMPLICIT = "integrator='generalized_alpha'"
-ENVIRONMENT = dict(elastic_scenes.ENVIRONMENT, OMPI_MCA_mpi_yield_when_idle='1')
+ENVIRONMENT = dict(elastic_models.ENVIRONMENT, OMPI_MCA_mpi_yield_when_idle='1')
 MOST_STEPS = 1e6
 
 
@@ -105,30 +105,30 @@ def elastic(program, options):
     """Histories of elastic impacts against semi-analytic ones, on the meshes of accuracy='reference'."""
     moduli = (120e9, 7.9e9, 5.5e9, 5.5e9, 5.5e9, .3)
     steel = 206.8e9/2.56
-    scenes = [Scene((.2, .2), [0, 90, 0, 90, 0, 0, 90, 0, 90, 0], .269e-3, moduli, 1580, 8.537e-3, 3, 6.35e-3, 8.112e8,
+    models = [Model((.2, .2), [0, 90, 0, 90, 0, 0, 90, 0, 90, 0], .269e-3, moduli, 1580, 8.537e-3, 3, 6.35e-3, 8.112e8,
                     name='sun_chen'),
-              Scene((.2, .2), [0], 8e-3, (206.8e9, 206.8e9, steel, steel, steel, .28), 7833, .0328108, 1, .01,
+              Model((.2, .2), [0], 8e-3, (206.8e9, 206.8e9, steel, steel, steel, .28), 7833, .0328108, 1, .01,
                     1.49595e10, name='karas')]
-    scenes += elastic_scenes.random_scenes(options.count, 1)
+    models += elastic_models.random_models(options.count, 1)
     if options.only:
-        scenes = [scene for scene in scenes if scene.name in options.only]
+        models = [model for model in models if model.name in options.only]
     for scaling, bound in (('mass_scaling=1', .5), ('', 1)):
         held = run_count = 0
-        for scene in scenes:
-            text = elastic_scenes.deck_of(scene, case="accuracy='reference'", time=f'&time {EXPLICIT} {scaling} /')
+        for model in models:
+            text = elastic_models.deck_of(model, case="accuracy='reference'", time=f'&time {EXPLICIT} {scaling} /')
             steps = steps_of(program, text)
-            name = f'{scene.name}, {scaling or "default scaling"}'
+            name = f'{model.name}, {scaling or "default scaling"}'
             if steps is None or steps > options.most_steps:
                 row(name, f'{steps or 0:.2g} steps, not run')
                 continue
-            run = elastic_scenes.Run(program, text, scene.name, 3600)
+            run = elastic_models.Run(program, text, model.name, 3600)
             run_count += 1
             if run.code:
                 row(name, f'ends with {run.code}: {(run.said.splitlines() or [""])[-1][:80]}', '', False)
                 continue
             end, patch = run.key('time', 'end')[0], run.key('mesh', 'patch')[0]
-            fine = (20, 20) if end > 300*scene.contact_time() else (60, 50)
-            peak, history = (100*error for error in run.errors(*answer(scene, patch, end, *fine)[:2]))
+            fine = (20, 20) if end > 300*model.contact_time() else (60, 50)
+            peak, history = (100*error for error in run.errors(*response(model, patch, end, *fine)[:2]))
             scaled = run.key('time', 'mass_scaling')[0]
             held += history <= bound
             row(name, f'history {history:.2f} %, peak {peak:+.2f} %, scaling {scaled:g}, {run.steps} steps, '
@@ -160,10 +160,11 @@ def peanut(program, options):
                 return
             growth = run.summary['interfaces'][0]['first_growth']['force']
             found[way] = growth, run.summary['peak_force'], 1e6*run.summary['delaminated_area']
-            least, largest, contact = run.ledger()
+            smallest, largest, contact = run.ledger()
             row(f'peanut {cell} mm, {way}', '{:.0f} N, {:.0f} N, {:.1f} mm2'.format(*found[way]) +
-                f', ledger {100*least:.4f} to {100*largest:+.4f} %, contact {100*contact:.2f} %, {run.seconds:.0f} s',
-                '.2 %, +.05 %', way == 'implicit' or (least > -2e-3 and largest < 5e-4))
+                f', ledger {100*smallest:.4f} to {100*largest:+.4f} %, contact {100*contact:.2f} %, '
+                f'{run.seconds:.0f} s',
+                '.2 %, +.05 %', way == 'implicit' or (smallest > -2e-3 and largest < 5e-4))
         apart = [100*(b/a - 1) for a, b in zip(found['implicit'], found['explicit'], strict=True)]
         row(f'peanut {cell} mm: first growth, peak, area', '{:+.1f} %, {:+.1f} %, {:+.1f} %'.format(*apart), '2 %',
             max(map(abs, apart)) <= 2)
@@ -191,57 +192,57 @@ def thresholds(program, options):
         mean = np.mean([force for force, _ in growing])
         by_area = sum(force*area for force, area in growing)/sum(area for _, area in growing)
         ratio = mean/cohesive_study.CLOSED_FORM
-        least, largest, contact = run.ledger()
+        smallest, largest, contact = run.ledger()
         row(f'threshold {cell} mm', f'{mean:.0f} N over time, {by_area:.0f} N over area, peak '
-            f'{run.summary["peak_force"]:.0f} N, ledger {100*least:.4f} to {100*largest:+.4f} %, contact '
+            f'{run.summary["peak_force"]:.0f} N, ledger {100*smallest:.4f} to {100*largest:+.4f} %, contact '
             f'{100*contact:.2f} %, {run.seconds:.0f} s', '1756 N, 3 %', abs(ratio - 1) <= .03)
 
 
 def damaging(program, options):
-    """Random scenes whose interfaces delaminate."""
+    """Random models whose interfaces delaminate."""
     ended = quick = booked = closed = 0
     for seed in range(1, options.count + 1):
-        scene = damaging_scenes.scene(seed)
-        run = Run(program, explicit(damaging_scenes.deck(scene)), seconds=600)
+        model = damaging_models.model(seed)
+        run = Run(program, explicit(damaging_models.deck(model)), seconds=600)
         if run.wrong():
             row(f'damaging {seed}', run.wrong(), '', False)
             continue
         ended += 1
         quick += run.seconds < 20
         last = run.rows[-1]
-        area = last['delaminated_area'] - (run.rows[0]['delaminated_area'] if scene['starter'] else 0)
-        cost, energy = scene['G_c']*area, last['energy_delamination']
+        area = last['delaminated_area'] - (run.rows[0]['delaminated_area'] if model['starter'] else 0)
+        cost, energy = model['G_c']*area, last['energy_delamination']
         right = abs(energy - cost) <= 1e-6*max(cost, 1e-12)
         # What the tractions did beyond what is stored, booked as fracture, friction or lost where surfaces meet.
         beyond = last['energy_algorithmic']/energy if energy > 0 else 0
-        least, largest, contact = run.ledger()
-        good = least > -2e-3 and largest < 5e-4
+        smallest, largest, contact = run.ledger()
+        good = smallest > -2e-3 and largest < 5e-4
         booked += right
         closed += good
         row(f'damaging {seed}', f'{1e6*area:.1f} mm2, booked over G_c area - 1 '
             f'{energy/cost - 1 if cost > 0 else 0:.1e}, algorithmic {100*beyond:+.1f} % of fracture, ledger '
-            f'{100*least:.4f} to {100*largest:+.4f} %, contact {100*contact:.2f} %, {last["step"]:.0f} steps, '
+            f'{100*smallest:.4f} to {100*largest:+.4f} %, contact {100*contact:.2f} %, {last["step"]:.0f} steps, '
             f'{run.seconds:.1f} s', '', right and good and run.seconds < 20)
     row('damaging: end, under 20 s, G_c area to 1e-6, ledger', f'{ended}, {quick}, {booked}, {closed}',
         f'{options.count} each', min(ended, quick, booked, closed) == options.count)
 
 
 def breaking(program, options):
-    """Random scenes whose plies break."""
+    """Random models whose plies break."""
     held, worst = 0, [0.0, 0.0, 0.0]
     for seed in range(options.count):
-        run = Run(program, explicit(breaking_scenes.deck(seed, 1)), seconds=600)
+        run = Run(program, explicit(breaking_models.deck(seed, 1)), seconds=600)
         if run.wrong():
             row(f'breaking {seed}', run.wrong(), '', False)
             continue
-        least, largest, contact = run.ledger()
-        good = least > -2e-3 and largest < 5e-4 and contact < .02
+        smallest, largest, contact = run.ledger()
+        good = smallest > -2e-3 and largest < 5e-4 and contact < .02
         held += good
-        worst = [min(worst[0], least), max(worst[1], largest), max(worst[2], contact)]
-        row(f'breaking {seed}', f'ledger {100*least:.4f} to {100*largest:+.4f} %, contact {100*contact:.2f} %, '
+        worst = [min(worst[0], smallest), max(worst[1], largest), max(worst[2], contact)]
+        row(f'breaking {seed}', f'ledger {100*smallest:.4f} to {100*largest:+.4f} %, contact {100*contact:.2f} %, '
             f'{run.rows[-1]["fibre_failures"]:.0f} fibre failures, {run.rows[-1]["step"]:.0f} steps, '
             f'{run.seconds:.1f} s', '-.2 to +.05 %, 2 %', good)
-    row('breaking scenes', f'{held} of {options.count}; worst ' +
+    row('breaking models', f'{held} of {options.count}; worst ' +
         '{:.3f} %, {:+.4f} %, {:.2f} %'.format(*(100*value for value in worst)), '', held == options.count)
 
 
@@ -263,18 +264,18 @@ def halves(program, options):
         row(f'{name}: remainder with half the step', f'{half:.1e} of {whole:.1e}', 'half', half <= .55*whole)
     found = []
     for seed in range(10):
-        runs = [Run(program, explicit(breaking_scenes.deck(seed, 1), f'step_factor={part}')) for part in (.9, .45)]
+        runs = [Run(program, explicit(breaking_models.deck(seed, 1), f'step_factor={part}')) for part in (.9, .45)]
         if not any(run.wrong() for run in runs):
             found.append([remainder(run) for run in runs])
     whole, half = np.mean(found, axis=0)
-    row(f'{len(found)} breaking scenes: remainder with half the step', f'{half:.1e} of {whole:.1e}', 'no larger',
+    row(f'{len(found)} breaking models: remainder with half the step', f'{half:.1e} of {whole:.1e}', 'no larger',
         half <= 1.05*whole)
 
 
 def ranks(program, options):
     """Histories on several ranks, byte for byte."""
     mpirun = ('mpirun', '--allow-run-as-root', '--oversubscribe', '-n')
-    texts = {f'damaging {seed}': explicit(damaging_scenes.deck(damaging_scenes.scene(seed))) for seed in range(1, 6)}
+    texts = {f'damaging {seed}': explicit(damaging_models.deck(damaging_models.model(seed))) for seed in range(1, 6)}
     for name, text in texts.items():
         one = Run(program, text)
         same = [Run(program, text, (*mpirun, str(number))).history == one.history for number in (2, 3, 4)]
@@ -295,31 +296,32 @@ def panels(program, options):
     for name, deck, limit in decks:
         said = subprocess.run([program, 'check', '/dev/stdin'], env=ENVIRONMENT, capture_output=True, text=True,
                               input=deck, check=False).stdout
-        told = [line for line in said.splitlines() if line.startswith('About')]
-        row(name, ' '.join(told))
+        printed = [line for line in said.splitlines() if line.startswith('About')]
+        row(name, ' '.join(printed))
         if not options.run:
             continue
         run = Run(program, deck)
         if run.wrong():
             row(name, run.wrong(), '', False)
             continue
-        least, largest, contact = run.ledger()
+        smallest, largest, contact = run.ledger()
         row(name, f'peak {run.summary["peak_force"]:.0f} N, {1e3*run.summary["largest_deflection"]:.2f} mm, '
-            f'{1e6*run.summary["delaminated_area"]:.0f} mm2, ledger {100*least:.4f} to {100*largest:+.4f} %, contact '
+            f'{1e6*run.summary["delaminated_area"]:.0f} mm2, '
+            f'ledger {100*smallest:.4f} to {100*largest:+.4f} %, contact '
             f'{100*contact:.2f} %, {run.seconds:.0f} s', f'{limit} s, +.05 %, 1.5 %',
-            run.seconds <= limit and least > -2e-3 and largest < 5e-4 and contact < .015)
+            run.seconds <= limit and smallest > -2e-3 and largest < 5e-4 and contact < .015)
 
 
 def costs(program, options):
     """Cost of a step against the number of elements: two runs, one with three times the steps of the other."""
     text = cohesive_study.THRESHOLD.read_text(encoding='utf-8')
     for elements in (20, 40, 80, 160, 190)[:3 if options.quick else 5]:
-        least = max(20, 1_000_000//elements**2)
+        smallest = max(20, 1_000_000//elements**2)
         settings = [f'mesh%elements={elements}, {elements}', f'mesh%cell={.03/elements}']
         deck = explicit(change_deck(text, settings))
         step = 6.5e-3/steps_of(program, deck)
         deck = change_deck(deck, ['output%history_every=1', 'output%fields_every=1'])
-        runs = [Run(program, re.sub(r'\bend=\S+', f'end={steps*step}', deck)) for steps in (least, 3*least)]
+        runs = [Run(program, re.sub(r'\bend=\S+', f'end={steps*step}', deck)) for steps in (smallest, 3*smallest)]
         if any(run.wrong() for run in runs):
             row(f'{elements}x{elements}', runs[0].wrong() or runs[1].wrong(), '', False)
             continue
@@ -344,10 +346,10 @@ def scaling(program, options):
                 continue
             last = run.rows[-1]
             left = last['energy_impactor'] + last['energy_indentation']
-            least, largest, _ = run.ledger()
+            smallest, largest, _ = run.ledger()
             row(f'{name}, factor {factor}', f'peak {run.summary["peak_force"]:.1f} N, area '
                 f'{1e6*(run.summary.get("delaminated_area") or 0):.1f} mm2, absorbed '
-                f'{run.summary["energy_impact"] - left:.4g} J, ledger {100*least:.4f} to {100*largest:+.4f} %, '
+                f'{run.summary["energy_impact"] - left:.4g} J, ledger {100*smallest:.4f} to {100*largest:+.4f} %, '
                 f'{last["step"]:.0f} steps, {run.seconds:.1f} s')
 
 
@@ -394,7 +396,7 @@ def messages(program, options):
                     f'{far:.0f} bytes in all, a step')
 
 
-# Keys changed in the small scene of breaking plies and interfaces.
+# Keys changed in the small model of breaking plies and interfaces.
 EXTREMES = {
     'as it is': [],
     'plies of .02 mm beside a core of 10 mm': ['laminate%angles=0, 90, 0, 90, 0',
@@ -417,7 +419,7 @@ EXTREMES = {
 
 
 def extremes(program, options):
-    """A scene of breaking plies and interfaces, at extremes of its keys."""
+    """A model of breaking plies and interfaces, at extremes of its keys."""
     text = (INPUT/'small/breaking_rounds.nml').read_text(encoding='utf-8')
     for name, settings in EXTREMES.items():
         deck = change_deck(explicit(text), settings)
@@ -429,13 +431,13 @@ def extremes(program, options):
         if run.wrong():
             row(name, run.wrong(), 'a sentence', run.code == 2)
             continue
-        least, largest, contact = run.ledger()
+        smallest, largest, contact = run.ledger()
         warnings = sum(len(line) > 0 for line in re.findall('warning', run.said))
         row(name, f'{run.rows[-1]["step"]:.0f} steps ({steps or 0:.0f} foreseen), '
                   f'peak {run.summary["peak_force"]:.0f} N, '
-            f'{run.rows[-1]["fibre_failures"]:.0f} fibre failures, ledger {100*least:.4f} to {100*largest:+.4f} %, '
+            f'{run.rows[-1]["fibre_failures"]:.0f} fibre failures, ledger {100*smallest:.4f} to {100*largest:+.4f} %, '
             f'contact {100*contact:.2f} %, {warnings} warnings, {run.seconds:.0f} s', '1 %',
-            least > -.01 and largest < .01)
+            smallest > -.01 and largest < .01)
 
 
 PARTS = {part.__name__: part for part in (elastic, peanut, thresholds, damaging, breaking, halves, ranks, panels,
@@ -448,9 +450,9 @@ def main():
                                      epilog='\n'.join(f'{name:12}{part.__doc__}' for name, part in PARTS.items()))
     parser.add_argument('program')
     parser.add_argument('parts', nargs='*', choices=[*PARTS, []], metavar='PART', help='all if none is given')
-    parser.add_argument('--count', type=int, default=20, help='random scenes of a part')
+    parser.add_argument('--count', type=int, default=20, help='random models of a part')
     parser.add_argument('--most-steps', type=float, default=MOST_STEPS, help='longer elastic runs are left out')
-    parser.add_argument('--only', nargs='+', help='elastic scenes by name, as scene_3 or karas')
+    parser.add_argument('--only', nargs='+', help='elastic models by name, as model_3 or karas')
     parser.add_argument('--cells', type=float, nargs='+', help='of peanut and thresholds, mm')
     parser.add_argument('--quick', action='store_true', help='leave out the peanut of halves and the last of costs')
     parser.add_argument('--run', action='store_true', help='run the panels, in scaling too')

@@ -5,10 +5,10 @@ Usage: measured_panels.py IMPLAM 6.5J|25J FOLDER [GROUP%KEY=VALUE ...] [-GROUP .
 
 Runs the deck of input/experiments in FOLDER with the keys given, without the groups whose beginning stands behind a
 dash (those of one line, such as -ply_damage or '-support clamps') and with the groups written out behind a plus, such
-as +'&delamination below_ply=14 ... /'. Prints peak force, largest displacement of the tup, end of contact, projected
-area, absorbed energy, the forces at some displacements as the tup goes in, for 25 J the relative L2 error of the
-force history and the forces at some times, each beside the measured ones, what plies and delaminations took, steps
-and cost. Beside the projected area by the toughness that is gone it tells the area in which an interface has lost
+as +'&delamination below_ply=14 ... /'. Prints peak force, largest displacement of the impactor, end of contact,
+projected area, absorbed energy, the forces at some displacements as the impactor goes in, for 25 J the relative L2
+error of the force history and the forces at some times, each beside the measured ones, what plies and delaminations took, steps
+and cost. Beside the projected area by the toughness that is gone it reports the area in which an interface has lost
 half its stiffness, which has the process zones in it. Without IMPLAM it reads what a run has left in FOLDER."""
 
 import csv
@@ -55,7 +55,7 @@ def forces_at(rows):
 
 
 def forces_over(rows, name):
-    """Computed and measured force, kN, at some displacements in mm that the tup has gone in."""
+    """Computed and measured force, kN, at some displacements in mm that the impactor has gone in."""
     turned = max(range(len(rows)), key=lambda i: rows[i]["impactor_displacement"])
     computed = [[row[key] for row in rows[:turned + 1]] for key in ("impactor_displacement", "force")]
     measured = [list(row.values()) for row in rows_of(DECKS / f"t700_m21_{name}_force_displacement.csv")]

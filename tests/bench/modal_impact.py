@@ -1,4 +1,4 @@
-"""Semi-analytic answer of an elastic impact: a ball on a simply supported cross-ply plate, by Navier's modes.
+"""Semi-analytic response of an elastic impact: a ball on a simply supported cross-ply plate, by Navier's modes.
 
 The plate is Mindlin's with rotary inertia, the force is spread over a square patch in the middle, and the indentation
 is measured from the patch's mean deflection. Each mode moves exactly under a force that is linear over a step, and so
@@ -12,7 +12,7 @@ import numpy as np
 
 
 @dataclasses.dataclass
-class Scene:
+class Model:
     """One impact, in SI units. Plies are symmetric about the middle, angles 0 or 90."""
 
     length: tuple
@@ -28,7 +28,7 @@ class Scene:
     alpha_cr: float = 80.3e-6
     q: float = 2.5
     beta: float = 0.094
-    name: str = 'scene'
+    name: str = 'model'
 
     @property
     def thickness(self):
@@ -46,52 +46,52 @@ class Scene:
         return min(tau, 2.9432*(1.25*self.mass/self.k)**0.4/self.velocity**0.2/2)
 
 
-def section(scene):
+def section(model):
     """Bending stiffnesses D11, D12, D22, D66, shear stiffnesses xz and yz with 5/6, mass and rotary inertia."""
-    e1, e2, g12, g13, g23, nu12 = scene.moduli
+    e1, e2, g12, g13, g23, nu12 = model.moduli
     nu21 = nu12*e2/e1
     q11, q22, q12 = e1/(1 - nu12*nu21), e2/(1 - nu12*nu21), nu12*e2/(1 - nu12*nu21)
-    h = scene.thickness
-    z = np.cumsum(np.append(-h/2, scene.plies))
+    h = model.thickness
+    z = np.cumsum(np.append(-h/2, model.plies))
     third = (z[1:]**3 - z[:-1]**3)/3
-    along = np.array(scene.angles) == 0
+    along = np.array(model.angles) == 0
     bending = (sum(third*np.where(along, q11, q22)), q12*sum(third), sum(third*np.where(along, q22, q11)),
                g12*sum(third))
-    shear = (5/6*sum(scene.plies*np.where(along, g13, g23)), 5/6*sum(scene.plies*np.where(along, g23, g13)))
-    return bending, shear, scene.density*h, scene.density*h**3/12
+    shear = (5/6*sum(model.plies*np.where(along, g13, g23)), 5/6*sum(model.plies*np.where(along, g23, g13)))
+    return bending, shear, model.density*h, model.density*h**3/12
 
 
-def matrices(scene, m, n):
+def matrices(model, m, n):
     """Entries of the stiffness of modes m, n for deflection and two rotations, as arrays."""
-    (d11, d12, d22, d66), (sx, sy), _, _ = section(scene)
-    a, b = m*math.pi/scene.length[0], n*math.pi/scene.length[1]
+    (d11, d12, d22, d66), (sx, sy), _, _ = section(model)
+    a, b = m*math.pi/model.length[0], n*math.pi/model.length[1]
     return (sx*a**2 + sy*b**2, sx*a, sy*b, d11*a**2 + d66*b**2 + sx, (d12 + d66)*a*b, d66*a**2 + d22*b**2 + sy)
 
 
-def condensed(scene, m, n):
+def condensed(model, m, n):
     """Stiffness against deflection alone, the rotations free."""
-    k11, k12, k13, k22, k23, k33 = matrices(scene, m, n)
+    k11, k12, k13, k22, k23, k33 = matrices(model, m, n)
     det = k22*k33 - k23**2
     return k11 - (k12**2*k33 - 2*k12*k13*k23 + k13**2*k22)/det
 
 
-def patch_weight(scene, patch, m, n):
+def patch_weight(model, patch, m, n):
     """Square of a mode's mean over the patch, over its norm."""
-    x, y = m*patch/scene.length[0]/2, n*patch/scene.length[1]/2
-    return 4/np.prod(scene.length)*(np.sinc(x)*np.sinc(y))**2
+    x, y = m*patch/model.length[0]/2, n*patch/model.length[1]/2
+    return 4/np.prod(model.length)*(np.sinc(x)*np.sinc(y))**2
 
 
-def modes(scene, patch, cutoff):
+def modes(model, patch, cutoff):
     """Frequencies and weights of the modes up to a frequency, and the compliance of all others."""
-    _, _, mass, rotary = section(scene)
-    sizes = [int(6*length/patch) + 40 for length in scene.length]
+    _, _, mass, rotary = section(model)
+    sizes = [int(6*length/patch) + 40 for length in model.length]
     m, n = np.meshgrid(np.arange(1, sizes[0], 2.0), np.arange(1, sizes[1], 2.0), indexing='ij')
-    stiffness = condensed(scene, m, n)
-    weight = patch_weight(scene, patch, m, n)
+    stiffness = condensed(model, m, n)
+    weight = patch_weight(model, patch, m, n)
     static = np.sum(weight/stiffness)
     near = stiffness/mass < 4*cutoff**2
     m, n, weight = m[near], n[near], weight[near]
-    k11, k12, k13, k22, k23, k33 = matrices(scene, m, n)
+    k11, k12, k13, k22, k23, k33 = matrices(model, m, n)
     scale = np.array([mass, rotary, rotary])**-0.5
     full = np.array([[k11, k12, k13], [k12, k22, k23], [k13, k23, k33]]).transpose(2, 0, 1)*scale[:, None]*scale
     squares, vectors = np.linalg.eigh(full)
@@ -105,11 +105,11 @@ def modes(scene, patch, cutoff):
 class Contact:
     """The indentation law with its memory."""
 
-    def __init__(self, scene):
-        self.scene, self.alpha_max, self.dent, self.separated = scene, 0.0, 0.0, False
+    def __init__(self, model):
+        self.model, self.alpha_max, self.dent, self.separated = model, 0.0, 0.0, False
 
     def force(self, alpha):
-        s = self.scene
+        s = self.model
         if s.law == 'hertz' or alpha >= self.alpha_max:
             return s.k*max(alpha, 0.0)**1.5
         if alpha <= self.dent:
@@ -118,7 +118,7 @@ class Contact:
         return s.k*self.alpha_max**1.5*part**(1.5 if self.separated else s.q)
 
     def commit(self, alpha):
-        s = self.scene
+        s = self.model
         if alpha > self.alpha_max:
             self.alpha_max, self.separated = alpha, False
             if alpha > s.alpha_cr:
@@ -154,13 +154,13 @@ class Contact:
         return force
 
 
-def answer(scene, patch, end, fineness=100, cutoff=60):
-    """Times and forces of the answer, the ball's velocity and the patch's deflection, from touch to `end`."""
-    tau = scene.contact_time()
+def response(model, patch, end, fineness=100, cutoff=60):
+    """Times and forces of the response, the ball's velocity and the patch's deflection, from touch to `end`."""
+    tau = model.contact_time()
     dt = tau/fineness
     steps = math.ceil(end/dt)
     dt = end/steps
-    omega, weight, static = modes(scene, patch, cutoff/tau)
+    omega, weight, static = modes(model, patch, cutoff/tau)
     x = omega*dt
     c, s = np.cos(x), np.sin(x)
     # Under F0 + (F1 - F0) t/dt a mode ends at c q + s v/omega + start F0 + finish F1.
@@ -170,9 +170,9 @@ def answer(scene, patch, end, fineness=100, cutoff=60):
     rate_start = weight/omega*(s - (1 - c)/x)
     slow = s/omega
     q, v = np.zeros_like(omega), np.zeros_like(omega)
-    ball, speed = 0.0, scene.velocity
-    compliance = np.sum(finish) + static + dt**2/6/scene.mass
-    contact = Contact(scene)
+    ball, speed = 0.0, model.velocity
+    compliance = np.sum(finish) + static + dt**2/6/model.mass
+    contact = Contact(model)
     times, forces = np.arange(steps + 1)*dt, np.zeros(steps + 1)
     deflections, speeds = np.zeros(steps + 1), np.full(steps + 1, float(speed))
     force = 0.0
@@ -183,15 +183,15 @@ def answer(scene, patch, end, fineness=100, cutoff=60):
         v *= c
         v -= omega*s*q
         v += rate_start*force
-        ball_free = ball + dt*speed - dt**2/3/scene.mass*force
+        ball_free = ball + dt*speed - dt**2/3/model.mass*force
         patch_free = np.sum(free)
         new = contact.solve(ball_free - patch_free, compliance)
         q = free
         q += finish*new
         v += rate_finish*new
         deflections[i] = patch_free + (np.sum(finish) + static)*new
-        ball = ball_free - dt**2/6/scene.mass*new
-        speed -= dt*(force + new)/2/scene.mass
+        ball = ball_free - dt**2/6/model.mass*new
+        speed -= dt*(force + new)/2/model.mass
         force = new
         contact.commit(ball - deflections[i])
         forces[i], speeds[i] = force, speed
@@ -200,9 +200,9 @@ def answer(scene, patch, end, fineness=100, cutoff=60):
 
 if __name__ == '__main__':
     # Sun and Chen's case: 298.87 N at 39.9 us, contacts 0 to 220.2 and 344.0 to 415.0 us, -0.5178 m/s at 1000 us.
-    case = Scene((0.2, 0.2), [0, 90, 0, 90, 0, 0, 90, 0, 90, 0], 0.269e-3, (120e9, 7.9e9, 5.5e9, 5.5e9, 5.5e9, 0.3),
+    case = Model((0.2, 0.2), [0, 90, 0, 90, 0, 0, 90, 0, 90, 0], 0.269e-3, (120e9, 7.9e9, 5.5e9, 5.5e9, 5.5e9, 0.3),
                  1580, 8.537e-3, 3, 6.35e-3, 8.112e8)
     for law in ('hertz', 'tan_sun'):
-        t, f, u, _ = answer(dataclasses.replace(case, law=law), 5e-3, 1e-3)
+        t, f, u, _ = response(dataclasses.replace(case, law=law), 5e-3, 1e-3)
         begun = [round(1e6*t[i], 1) for i in range(1, len(t)) if (f[i] > 0) != (f[i - 1] > 0)]
         print(f'{law}: {f.max():.2f} N at {1e6*t[f.argmax()]:.1f} us, touch and release at {begun} us, {u[-1]:.4f} m/s')

@@ -44,17 +44,17 @@ def ring_figures(mesh, cells, ring):
     distances = np.hypot(*middles.T)
     areas = np.ptp(places[:, :, 0], axis=1) * np.ptp(places[:, :, 1], axis=1)
     in_ring = (distances >= ring[0]) & (distances < ring[1])
-    borne, radial, squares, largest = 0.0, 0.0, [], 0.0
+    supported, radial, squares, largest = 0.0, 0.0, [], 0.0
     for ply, angle in enumerate(ANGLES, 1):
         of_ply = in_ring & (mesh["cells/first_ply"][()] <= ply) & (mesh["cells/last_ply"][()] >= ply)
         stresses = {name: cells[f"ply_{ply}_{name}"][()][of_ply]
                     for name in ("sigma11", "sigma22", "tau12", "tau13", "tau23")}
         shear, membrane = ply_forces(stresses, angle, middles[of_ply] / distances[of_ply, None])
-        borne += 2 * np.pi * np.average(shear * distances[of_ply], weights=areas[of_ply])
+        supported += 2 * np.pi * np.average(shear * distances[of_ply], weights=areas[of_ply])
         radial += np.average(membrane, weights=areas[of_ply])
         squares.append(np.average(stresses["tau23"]**2, weights=areas[of_ply]))
         largest = max(largest, np.abs(stresses["tau23"]).max())
-    return abs(borne) / 1e3, radial / 1e3, np.mean(squares)**0.5 / 1e6, largest / 1e6
+    return abs(supported) / 1e3, radial / 1e3, np.mean(squares)**0.5 / 1e6, largest / 1e6
 
 
 def main(folder):

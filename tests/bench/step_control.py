@@ -11,7 +11,7 @@ import tempfile
 
 import numpy as np
 
-from elastic_scenes import ENVIRONMENT, deck_of, random_scenes
+from elastic_models import ENVIRONMENT, deck_of, random_models
 
 INPUT = pathlib.Path(__file__).resolve().parents[2] / 'input'
 # Time to the end of the run over that of the last contact: a run is to show the rebound and the plate after it.
@@ -27,21 +27,21 @@ def with_keys(text, group, **keys):
 
 
 def random_decks(program, numbers):
-    """Random elastic scenes with the mesh of the manual's advice, up to 2.4 times the end of the contact."""
-    scenes = random_scenes(max(numbers), 1)
+    """Random elastic models with the mesh of the manual's advice, up to 2.4 times the end of the contact."""
+    models = random_models(max(numbers), 1)
     for number in numbers:
-        scene = scenes[number - 1]
+        model = models[number - 1]
         said = subprocess.run([program, 'check', '/dev/stdin'], env=ENVIRONMENT, capture_output=True, text=True,
-                              input=deck_of(scene, case="accuracy='draft'"), check=False).stdout
+                              input=deck_of(model, case="accuracy='draft'"), check=False).stdout
         last = float(re.search(r'end of the last contact +(\S+)', said)[1])
-        tau = scene.contact_time()
-        mesh = f'&mesh elements=12, 12 patch={min(scene.thickness*1.5, min(scene.length)/8):.4g} /'
-        yield scene.name, deck_of(scene, mesh=mesh, impactor="integrator='trapezoidal'",
+        tau = model.contact_time()
+        mesh = f'&mesh elements=12, 12 patch={min(model.thickness*1.5, min(model.length)/8):.4g} /'
+        yield model.name, deck_of(model, mesh=mesh, impactor="integrator='trapezoidal'",
                                   time=f'&time end={BEYOND*last:.4g} step={tau/4:.4g} /'), tau/4
 
 
 def decks(program, numbers):
-    """Name, deck and a coarse step of each scene."""
+    """Name, deck and a coarse step of each model."""
     for name, kinematics in (('sun_chen_elastic', 'linear'), ('sun_chen_tan_sun', 'linear'),
                              ('sun_chen_tan_sun', 'von_karman')):
         text = with_keys((INPUT / 'verify' / (name + '.nml')).read_text(), 'mesh', elements='12,12')
@@ -56,7 +56,7 @@ class Run:
 
     def __init__(self, program, text):
         with tempfile.TemporaryDirectory() as folder:
-            deck = pathlib.Path(folder, 'scene.nml')
+            deck = pathlib.Path(folder, 'model.nml')
             deck.write_text(text)
             done = subprocess.run([program, deck, '--output', folder], env=ENVIRONMENT, capture_output=True, text=True,
                                   check=False)
@@ -95,14 +95,14 @@ def cost_at(error, runs, price):
 
 
 def main():
-    """Run all scenes."""
+    """Run all models."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('program')
     parser.add_argument('--price', type=float, default=30, help='a factorization over a solve')
     parser.add_argument('--errors', type=float, nargs='+', default=(2, 1), help='of the force history, %%')
-    parser.add_argument('--random', type=int, nargs='*', default=(1, 2, 3, 39, 11, 24), help='random elastic scenes')
+    parser.add_argument('--random', type=int, nargs='*', default=(1, 2, 3, 39, 11, 24), help='random elastic models')
     parser.add_argument('--tolerances', type=float, nargs='+', default=(1e-2, 3e-3, 1e-3, 3e-4))
-    parser.add_argument('--only', help='scenes whose names begin so')
+    parser.add_argument('--only', help='models whose names begin so')
     parser.add_argument('--verbose', action='store_true')
     options = parser.parse_args()
     program = os.path.abspath(options.program)

@@ -23,7 +23,7 @@ def decks(steps):
 
 
 def phases_of(program, ranks, text):
-    """How often each part of a run came, and its seconds on the wall."""
+    """How often each part of a run came, and its seconds by the wall clock."""
     with tempfile.TemporaryDirectory() as folder:
         pathlib.Path(folder, 'deck.nml').write_text(text)
         subprocess.run(['mpirun', '-n', str(ranks), program, f'{folder}/deck.nml', '--output', folder],

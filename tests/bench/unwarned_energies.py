@@ -9,7 +9,7 @@ import json
 import sys
 from pathlib import Path
 
-MUCH = 0.01
+TOLERANCE = 0.01
 
 
 def open_share(summary):
@@ -17,16 +17,16 @@ def open_share(summary):
     def of(name):
         return summary.get(name) or 0.0
 
-    most = max(of("energy_impact"), of("work_external"), of("energy_kinetic") + of("energy_strain"))
-    if most <= 0:
+    limit = max(of("energy_impact"), of("work_external"), of("energy_kinetic") + of("energy_strain"))
+    if limit <= 0:
         return 0.0
     fronts = sum(entry["energy"] for entry in summary.get("interfaces", []) if not entry["is_cohesive"])
     created = max(0.0, -of("energy_algorithmic") - fronts)
-    return max(created, of("energy_algorithmic"), abs(of("energy_error"))) / most
+    return max(created, of("energy_algorithmic"), abs(of("energy_error"))) / limit
 
 
 def warned(summary):
-    """Tell whether the run, not the deck, was warned of."""
+    """Report whether the run, not the deck, was warned of."""
     return any(entry["at"] is not None for entry in summary["warnings"])
 
 
@@ -37,7 +37,7 @@ def main(folders):
     for path in paths:
         summary = json.loads(path.read_text(encoding="utf-8"))
         share = open_share(summary)
-        if summary["exit"]["kind"] == "done" and share > MUCH and not warned(summary):
+        if summary["exit"]["kind"] == "done" and share > TOLERANCE and not warned(summary):
             found += 1
             print(f"{path}: {100 * share:.2g} %")
     print(f"{len(paths)} runs, {found} without a warning")

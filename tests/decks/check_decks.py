@@ -4,8 +4,8 @@
 usage: check_decks.py IMPLAM
 
 Every deck in bad/ begins with one comment for each fault, `! expect LINE: FRAGMENT`; the program must end with
-exit code 2 and tell exactly these faults, one a line, each as `FILE:LINE: ...FRAGMENT...` (LINE 0: the deck as a
-whole, told as `FILE: ...`). The decks in good/ must pass, with the warnings that `! expect-warning` lists.
+exit code 2 and report exactly these faults, one a line, each as `FILE:LINE: ...FRAGMENT...` (LINE 0: the deck as a
+whole, reported as `FILE: ...`). The decks in good/ must pass, with the warnings that `! expect-warning` lists.
 Files that no editor would write are made on the spot.
 """
 import os
@@ -35,12 +35,12 @@ def complaints(program, path, expected_code, errors, warnings):
     if any("backtrace" in line.lower() for line in lines):
         wrong.append("a backtrace")
     for kind, expected in (("error", errors), ("warning", warnings)):
-        told = [line for line in found if (": warning: " in line) == (kind == "warning")]
-        if len(told) != len(expected) and (kind == "error" or code == 0):
-            wrong.append(f"{len(told)} {kind}s instead of {len(expected)}")
+        printed = [line for line in found if (": warning: " in line) == (kind == "warning")]
+        if len(printed) != len(expected) and (kind == "error" or code == 0):
+            wrong.append(f"{len(printed)} {kind}s instead of {len(expected)}")
         for line_number, fragment in expected:
             head = f"{path}:{line_number}: " if line_number else f"{path}: "
-            if not any(line.startswith(head) and fragment in line for line in told):
+            if not any(line.startswith(head) and fragment in line for line in printed):
                 wrong.append(f"no {kind} `{head}... {fragment}`")
     if wrong:
         wrong.extend("  told: " + line[:200] for line in lines[:12])

@@ -60,9 +60,9 @@ def main(program):
         text = ''.join(line for line in path.read_text().splitlines(True) if line[0] != '!')
         for change in changes:
             text = changed(text, *change)
-        told = [line for line in warnings(program, path, text) if f' {key} =' in line and f' in {unit}.' in line]
-        named += bool(told)
-        print(f'{fault}: {told[0].split("warning: ")[1] if told else "not named"}')
+        printed = [line for line in warnings(program, path, text) if f' {key} =' in line and f' in {unit}.' in line]
+        named += bool(printed)
+        print(f'{fault}: {printed[0].split("warning: ")[1] if printed else "not named"}')
     for path in sorted(INPUT.glob('**/*.nml')):
         wrong += [line for line in warnings(program, path) if 'looks as if' in line]
     print(f'{named} of {len(ROWS)} named')

@@ -106,7 +106,7 @@ def spoil(deck, known, chance):
 
 
 def fault(program, path):
-    """What is wrong with the program's answer to a deck, or nothing."""
+    """What is wrong with the program's response to a deck, or nothing."""
     try:
         done = subprocess.run([program, "check", path], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=60)
     except subprocess.TimeoutExpired:
@@ -183,7 +183,7 @@ def main():
     known = vocabulary(os.path.abspath(asked.program))
     if not known:
         sys.exit("`implam explain` lists no keys.")
-    broken = 0
+    failed = 0
     with tempfile.TemporaryDirectory() as work:
         path = os.path.join(work, "fuzz.nml")
         for number in range(asked.count):
@@ -194,12 +194,12 @@ def main():
                 file.write(deck[:500000])
             wrong = (fault_of_run if asked.run else fault)(os.path.abspath(asked.program), path)
             if wrong:
-                broken += 1
+                failed += 1
                 kept = os.path.join(asked.keep, f"fuzz-{asked.seed}-{number}.nml")
                 os.replace(path, kept)
                 print(f"{kept}: {wrong}")
-    print(f"{asked.count} decks, {broken} broke the program")
-    return 1 if broken else 0
+    print(f"{asked.count} decks, {failed} broke the program")
+    return 1 if failed else 0
 
 
 if __name__ == "__main__":

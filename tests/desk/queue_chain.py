@@ -1,4 +1,4 @@
-"""Jobs of a real Slurm, started here on one node: an array of a sweep, of which a task is told to stop and comes again,
+"""Jobs of a real Slurm, started here on one node: an array of a sweep, of which a task is stopped and comes again,
 gives the table of the same sweep without a queue; a chain that is stopped by its limit again and again ends with the
 history of an undisturbed run, bit for bit.
 Usage: queue_chain.py IMPLAM FOLDER     (exit code 77: skipped, with the reason)"""
@@ -36,9 +36,9 @@ exec {HERE}/held.sh {folder}/results/deck_restart.h5 {implam} "$@" """)
     run([implam, "queue", "slurm", "deck.nml", "--chain", "--time", "0:01:00"], folder=folder)
     number = slurm.submit(folder, "deck.slurm", "--signal=B:USR1@50", IMPLAM=held)
     job = slurm.end_of(number, 800)
-    told = (folder / f"deck.{number}.txt").read_text(encoding="utf-8")
+    printed = (folder / f"deck.{number}.txt").read_text(encoding="utf-8")
     print(f"chain: {job['JobState']}, requeued {job['Restarts']} times")
-    require(job["JobState"] == "COMPLETED", f"The chain has ended with {job['JobState']}:\n{told}")
+    require(job["JobState"] == "COMPLETED", f"The chain has ended with {job['JobState']}:\n{printed}")
     require(int(job["Restarts"]) >= PARTS - 1, f"The chain has {job['Restarts']} requeues only.")
     history = (folder / "results/deck_history.csv").read_bytes()
     require(history == expected, "The history of the chain isn't that of the undisturbed run.")
@@ -63,13 +63,13 @@ def table_of(folder):
 
 
 def array(implam, slurm, folder):
-    """An array over a sweep, one task of which is told to stop."""
+    """An array over a sweep, one task of which is stopped."""
     folder.mkdir()
     shutil.copy(DECK, folder / "swept.nml")
     (folder / "sweep.toml").write_text(SWEEP, encoding="utf-8")
     sweep = [sys.executable, "-m", "implam_post.sweep", "sweep.toml"]
     run([*sweep, "--output", "plain", "--program", implam], folder=folder)
-    # The first task is held until it is told; the last word it is called with is the folder of its results.
+    # The first task is held until it is released; the last word it is called with is the folder of its results.
     held = write_program(folder / "held", f"""
 if [[ ${{SLURM_ARRAY_TASK_ID:-}} != 1 || ${{SLURM_RESTART_COUNT:-0}} != 0 ]]; then
   exec {implam} "$@"

@@ -27,7 +27,7 @@ def write_deck(folder, *settings):
 
 
 def check_requests(implam, folder):
-    """Ranks, memory and limits; nothing is overwritten; faults are told."""
+    """Ranks, memory and limits; nothing is overwritten; faults are reported."""
     write_deck(folder)
     run([implam, "queue", "slurm", "--time", "1:30:00"], folder=folder)  # the only deck of the folder
     script = (folder / "deck.slurm").read_text(encoding="utf-8")
@@ -49,8 +49,8 @@ def check_memory(implam, folder):
     """The estimate is no less than what a run takes, and no more than twice."""
     for settings in ([], ["mesh%elements=40,40"]):
         write_deck(folder, *settings, "time%end=50e-6")
-        told = run([implam, "check", folder / "deck.nml"])
-        estimate = int(re.search(r"and (\d+) MB of memory", told)[1])
+        printed = run([implam, "check", folder / "deck.nml"])
+        estimate = int(re.search(r"and (\d+) MB of memory", printed)[1])
         run([implam, folder / "deck.nml", "--output", folder])
         # The largest of the children so far, of which this is the largest.
         peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss * 1024 / 1e6
@@ -98,7 +98,7 @@ def check_chain_of_pbs(implam, folder):
 
 
 def check_signals(implam, folder):
-    """A single job that is told to stop passes the signal on and ends with 75; `restart` goes on."""
+    """A single job that is stopped passes the signal on and ends with 75; `restart` goes on."""
     write_deck(folder, "time%end=20e-3")
     run([implam, "queue", "slurm", "deck.nml"], folder=folder)
     script = folder / "deck.slurm"

@@ -66,10 +66,10 @@ def main():
     words = [sys.executable, "-m", "implam_post.sweep", str(folder / "sweep.toml"), "--program", implam, "--jobs", "2"]
     run([*words, "--output", folder / "alone"])
     killed, moments = folder / "killed", random.Random(1)
-    for least, everything in ((3, False), (12, True)):
+    for smallest, everything in ((3, False), (12, True)):
         process = subprocess.Popen([*words, "--output", str(killed)], stdin=subprocess.DEVNULL,
                                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        while ended(killed) < least:
+        while ended(killed) < smallest:
             require(process.poll() is None, "The sweep ended before it was killed.")
             time.sleep(0.01)
         time.sleep(moments.uniform(0, 0.2))
@@ -80,8 +80,8 @@ def main():
     run([*words, "--output", killed])
     rows, expected = table_of(killed), table_of(folder / "alone")
     require(len(rows) == CASES and rows == expected, "The table isn't that of the sweep left alone.")
-    told = [(output / "statistics.csv").read_text(encoding="utf-8") for output in (killed, folder / "alone")]
-    require(told[0] == told[1], "The statistics aren't those of the sweep left alone.")
+    printed = [(output / "statistics.csv").read_text(encoding="utf-8") for output in (killed, folder / "alone")]
+    require(printed[0] == printed[1], "The statistics aren't those of the sweep left alone.")
     print(f"{CASES} cases: the same table and statistics")
 
 

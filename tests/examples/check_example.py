@@ -90,8 +90,8 @@ class Workplace:
 
     def compile(self, sources, layers, flags=()):
         """Compiles sources that see what was compiled here before and the modules of some layers."""
-        seen = [f"-I{os.path.join(self.asked.modules, layer)}" for layer in layers]
-        run(self.asked.compiler, "-c", "-O0", *flags, "-I.", *seen, *sources, cwd=self.folder)
+        found = [f"-I{os.path.join(self.asked.modules, layer)}" for layer in layers]
+        run(self.asked.compiler, "-c", "-O0", *flags, "-I.", *found, *sources, cwd=self.folder)
         return [os.path.join(self.folder, os.path.splitext(os.path.basename(source))[0] + ".o") for source in sources]
 
     def link(self, name, objects):
@@ -109,10 +109,10 @@ def explain_keys(work, layers, patch):
     with open(os.path.join(work.folder, "explain_group.f90"), "w", encoding="utf-8") as source:
         source.write(EXPLAIN.format(group=added[0][0]))
     sources = [os.path.join(ROOT, "src", "case", "deck_table.f90"), "explain_group.f90"]
-    told = run(work.link("explain", work.compile(sources, layers)))
+    printed = run(work.link("explain", work.compile(sources, layers)))
     for _, key in added:
-        if not re.search(rf"^  {key} ", told, re.MULTILINE):
-            sys.exit(f"the table doesn't explain {key}:\n{told}")
+        if not re.search(rf"^  {key} ", printed, re.MULTILINE):
+            sys.exit(f"the table doesn't explain {key}:\n{printed}")
     return [f"{group}%{key}" for group, key in added]
 
 
@@ -160,8 +160,8 @@ def main():
         work = Workplace(place, asked)
         objects = work.compile(in_order(os.path.join(place, "src", folder)), lower, flags)
         keys = explain_keys(work, every, patch)
-        told = run_tests(work, every, [os.path.join(place, test) for test in tests], objects)
-    print(f"src/{folder} and its tests add {', '.join(keys)}; {told.strip().splitlines()[-1]}")
+        printed = run_tests(work, every, [os.path.join(place, test) for test in tests], objects)
+    print(f"src/{folder} and its tests add {', '.join(keys)}; {printed.strip().splitlines()[-1]}")
     return 0
 
 

@@ -63,7 +63,7 @@ contains
     class(test_run), intent(inout) :: this
     !> Name of the test
     character(len=*), intent(in) :: name
-    !> Number of processes that it wants
+    !> Number of processes that it requires
     integer, intent(in) :: processes
     integer :: colour, ignored
 

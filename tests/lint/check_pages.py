@@ -161,7 +161,7 @@ def first_missing(quote, lines):
 
 
 def check_diary(page, root):
-    """Breaches of pages that tell what was."""
+    """Breaches of pages that describe what was."""
     if page == root / "CHANGELOG.md" or page.parent == root / "doc" / "news":
         return
     for line, number in prose(page):

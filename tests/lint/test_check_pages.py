@@ -57,7 +57,7 @@ class PagesTest(unittest.TestCase):
         return code, output.getvalue()
 
     def assert_breach(self, text, sentence):
-        """Fail unless a page of this text is told of in this way, and in no other."""
+        """Fail unless a page of this text is reported in this way, and in no other."""
         code, said = self.said(page=text)
         self.assertEqual(code, 1)
         self.assertIn(sentence, said)

@@ -37,7 +37,7 @@ from solver_runs import checkpoint_of, history_of, read_history, require, run_de
 EXPLICIT = "time%integrator='central_difference'"
 # Plies and an interface that break, layers that follow their damage, turned halves on a frame that they may lift off,
 # plies that soften as fibres fail, and lines that hold, move and press.
-SCENES = {"breaking": ("../small/breaking_rounds.nml", [EXPLICIT]), "layers": ("../small/layers.nml", [EXPLICIT]),
+MODELS = {"breaking": ("../small/breaking_rounds.nml", [EXPLICIT]), "layers": ("../small/layers.nml", [EXPLICIT]),
           "turned": ("../small/turned.nml", [EXPLICIT, "time%end=150e-6"]),
           "softening": ("../small/crack_bands.nml", [EXPLICIT, "time%end=150e-6"]),
           "permanent": ("../small/crack_bands.nml", [EXPLICIT, "time%end=150e-6", "ply_damage%permanent_shear=.true.",
@@ -45,9 +45,9 @@ SCENES = {"breaking": ("../small/breaking_rounds.nml", [EXPLICIT]), "layers": ("
           "lines": ("three_point.nml", ["time%end=1e-4", EXPLICIT])}
 
 
-def deck_of(folder, scene, *settings):
-    """Write the deck of a scene and return its path."""
-    source, own = SCENES[scene]
+def deck_of(folder, model, *settings):
+    """Write the deck of a model and return its path."""
+    source, own = MODELS[model]
     deck = write_deck(folder, source, [*own, *settings])
     text = deck.read_text(encoding="utf-8")
     deck.write_text("\n".join(line for line in text.splitlines() if not line.startswith("&static")) + "\n",
@@ -57,18 +57,18 @@ def deck_of(folder, scene, *settings):
 
 def check_ranks(implam, folder, launcher):
     """All histories are the same, and so is one that goes on with another number of ranks."""
-    for scene in SCENES:
-        reference = run_deck(implam, deck_of(folder / scene / "1", scene))
+    for model in MODELS:
+        reference = run_deck(implam, deck_of(folder / model / "1", model))
         for ranks in ("2", "3"):
-            found = run_deck(implam, deck_of(folder / scene / ranks, scene), [*launcher, ranks])
-            require_same(found, reference, f"{scene} on {ranks} ranks")
+            found = run_deck(implam, deck_of(folder / model / ranks, model), [*launcher, ranks])
+            require_same(found, reference, f"{model} on {ranks} ranks")
         end = read_history(reference)["time"][-1]
-        split = deck_of(folder / scene / "split", scene, f"output%checkpoint_every={0.53 * end!r}")
+        split = deck_of(folder / model / "split", model, f"output%checkpoint_every={0.53 * end!r}")
         uninterrupted = run_deck(implam, split, [*launcher, "2"])
         for ranks in ("1", "3"):
             again = go_on(implam, copy_run(split.parent, split.parent.with_name(f"again_{ranks}")), [*launcher, ranks])
-            require_same(again, uninterrupted, f"{scene}: from 2 ranks to {ranks}")
-        print(f"{scene}: the same to the last bit on 1, 2 and 3 ranks", flush=True)
+            require_same(again, uninterrupted, f"{model}: from 2 ranks to {ranks}")
+        print(f"{model}: the same to the last bit on 1, 2 and 3 ranks", flush=True)
 
 
 def check_signal(implam, folder, _):
@@ -91,10 +91,10 @@ def check_signal(implam, folder, _):
 def check_kill(implam, folder, _):
     """Killed at random moments until the end is reached, while plies break and layers appear."""
     moments = random.Random(1)
-    for scene, every in (("breaking", 5e-6), ("layers", 8e-6)):
+    for model, every in (("breaking", 5e-6), ("layers", 8e-6)):
         settings = [f"output%checkpoint_every={every!r}"]
-        reference = run_deck(implam, deck_of(folder / scene / "uninterrupted", scene, *settings))
-        deck = deck_of(folder / scene / "killed", scene, *settings)
+        reference = run_deck(implam, deck_of(folder / model / "uninterrupted", model, *settings))
+        deck = deck_of(folder / model / "killed", model, *settings)
         process = start(implam, deck, "--output", deck.parent)
         for _ in range(5):
             before = stamp(deck.parent)
@@ -104,8 +104,8 @@ def check_kill(implam, folder, _):
             process.wait()
             process = start(implam, "restart", checkpoint_of(deck.parent))
         require(exit_code(process) == EXIT_DONE, f"The last run ended with {process.returncode}.")
-        require_same(history_of(deck.parent), reference, f"{scene}: kills")
-        print(f"{scene}: 5 kills; the same to the last bit", flush=True)
+        require_same(history_of(deck.parent), reference, f"{model}: kills")
+        print(f"{model}: 5 kills; the same to the last bit", flush=True)
 
 
 def check_events(implam, folder, _):

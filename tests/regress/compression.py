@@ -4,7 +4,7 @@ Usage: compression.py TRIAL IMPLAM FOLDER [LAUNCHER...]     (LAUNCHER takes the 
 chain    what the impact has left is there at the start, comes to rest, is pressed and fails; the ledger closes
 again    from a checkpoint in the midst, without the impact's: bitwise
 ranks    on two ranks: bitwise
-whole    the whole plate from the half that was struck: to rounding until it fails
+whole    the full plate from the half that was struck: to rounding until it fails
 buckling the elastic panel in the frame against the eigenvalue and the path beyond it of another program
 coupon   [0]8 fails at XC
 refused  another plate, a deck that cannot begin so, a checkpoint that is none: one sentence with both values each"""
@@ -31,7 +31,7 @@ from solver_runs import (
 IMPACT, COMPRESSION = "cai_impact", "cai_compression"
 CHECKPOINT = f"{IMPACT}_restart.h5"
 AREA = 40e-3 * 2.4e-3
-SETTLE, LENGTH = 80e-6, 60e-3
+REST_TIME, LENGTH = 80e-6, 60e-3
 # Of all energy. Measured: 2e-10 before plies and interfaces break again, 3.6e-3 in the collapse on these coarse cells.
 CLOSED, CLOSED_IN_COLLAPSE = 1e-8, 1e-2
 # Of the largest value up to half of the run. Measured: 4e-15.
@@ -70,7 +70,7 @@ def check_chain(implam, folder, _):
     for name in ("energy_delamination", "energy_ply_damage", "energy_friction"):
         require(rows[name][0] >= impact[name][-1] > 0 and rows[name][0] < 1.01 * impact[name][-1],
                 f"{name} is {rows[name][0]} at the start after {impact[name][-1]}.")
-    start = max(i for i, time in enumerate(rows["time"]) if time <= SETTLE)
+    start = max(i for i, time in enumerate(rows["time"]) if time <= REST_TIME)
     strongest = max(range(len(rows["time"])), key=lambda i: rows["far_field_stress"][i])
     total = max(sum(rows[f"energy_{name}"][i] for name in ENERGIES) for i in range(len(rows["time"])))
     before = max(abs(value) for value, time in zip(rows["energy_error"], rows["time"], strict=True)
@@ -114,7 +114,7 @@ def check_ranks(implam, folder, launcher):
 
 
 def check_whole(implam, folder, _):
-    """The whole plate, pressed from both ends, begins from the half."""
+    """The full plate, pressed from both ends, begins from the half."""
     strike(implam, folder)
     half = read_history(press(implam, folder))
     text = (folder / f"{COMPRESSION}.nml").read_text(encoding="utf-8")

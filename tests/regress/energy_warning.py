@@ -30,8 +30,8 @@ def main(implam, folder):
     folder = Path(folder)
     # Up to 10 % of the energy in the first step, which is a millionth of that at the end.
     for step in ("2e-6", "10e-6", "50e-6"):
-        told = warnings_of(implam, folder / f"ramp_{step}", "ramp", f"step={step}")
-        require(told == 0, f"A ramp with steps of {step} s warns although it creates no energy.")
+        printed = warnings_of(implam, folder / f"ramp_{step}", "ramp", f"step={step}")
+        require(printed == 0, f"A ramp with steps of {step} s warns although it creates no energy.")
     # The first step creates 4 %, the second takes out more.
     require(warnings_of(implam, folder / "step", "step", "step=10e-6") == 0, "A load at once warns in its first step.")
     # Half a period a step and no damping.

@@ -1,11 +1,11 @@
-"""Runs each row of extremes.toml as a deck: it has to end in the answer of an independent figure or bound, or in one
+"""Runs each row of extremes.toml as a deck: it has to end with the result of an independent figure or bound, or in one
 sentence with the exit code that the row says.
 
 usage: extremes.py IMPLAM FOLDER [--explicit] [NAME ...]    (rows whose names hold one of the words; with none of them
 all)
 
 With --explicit the rows in time that have no front run by central differences, those of more than 1e6 steps excepted:
-for these the check has to tell the number. Whatever a row asks for, a run that ends well has finite numbers only and a
+for these the check has to give the number. Whatever a row asks for, a run that ends well has finite numbers only and a
 ledger that closes.
 """
 
@@ -24,7 +24,7 @@ import numpy as np
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "bench"))
 
-from modal_impact import Scene, answer, condensed, patch_weight, section
+from modal_impact import Model, response, condensed, patch_weight, section
 from solver_runs import ENERGIES, TrialError, change_deck, exit_code_of, read_history, require
 
 LONGEST_ROW = 60  # seconds of the processor: a run that hangs ends
@@ -107,8 +107,8 @@ class Row:
         value = self.key(group, name)
         return value if isinstance(value, list) else [value]
 
-    def scene(self):
-        """The scene for Navier's modes: plies of one material and thickness, or of several thicknesses."""
+    def model(self):
+        """The model for Navier's modes: plies of one material and thickness, or of several thicknesses."""
         angles = [int(angle) for angle in self.numbers("laminate", "angles")]
         thickness = self.numbers("laminate", "thicknesses")
         moduli = [self.key("material", name) for name in ("E1", "E2", "G12", "G13", "G23", "nu12")]
@@ -116,26 +116,26 @@ class Row:
             young, poisson = self.key("material", "E"), self.key("material", "nu")
             moduli = [young, young] + 3 * [young / 2 / (1 + poisson)] + [poisson]
         law = self.key("indentation", "law", "hertz")
-        return Scene(tuple(self.numbers("plate", "length")), angles,
+        return Model(tuple(self.numbers("plate", "length")), angles,
                      thickness[0] if len(set(thickness)) == 1 else thickness * (len(angles) // len(thickness)),
                      tuple(moduli), self.key("material", "density"), self.key("impactor", "mass", 1.0),
                      self.key("impactor", "velocity", 1.0), self.key("impactor", "radius", 1.0) or 1.0,
                      self.key("indentation", "k", 1.0), law)
 
 
-def pressed_plate(scene, pressure, shape):
+def pressed_plate(model, pressure, shape):
     """Deflection of the middle of a simply supported plate under a pressure, by Navier's series of a Mindlin plate."""
     number = 1 if shape == "sine" else 201
     m, n = np.meshgrid(np.arange(1, number + 1, 2.0), np.arange(1, number + 1, 2.0), indexing="ij")
     load = pressure if shape == "sine" else 16 * pressure / (math.pi**2 * m * n)
-    return float(np.sum(load * np.sin(m * math.pi / 2) * np.sin(n * math.pi / 2) / condensed(scene, m, n)))
+    return float(np.sum(load * np.sin(m * math.pi / 2) * np.sin(n * math.pi / 2) / condensed(model, m, n)))
 
 
-def stiffness_of_middle(scene, patch):
+def stiffness_of_middle(model, patch):
     """Force per deflection of a simply supported plate that is loaded over a patch in its middle."""
-    sizes = [int(6 * length / patch) + 40 for length in scene.length]
+    sizes = [int(6 * length / patch) + 40 for length in model.length]
     m, n = np.meshgrid(np.arange(1, sizes[0], 2.0), np.arange(1, sizes[1], 2.0), indexing="ij")
-    return 1 / float(np.sum(patch_weight(scene, patch, m, n) / condensed(scene, m, n)))
+    return 1 / float(np.sum(patch_weight(model, patch, m, n) / condensed(model, m, n)))
 
 
 def spring_peak(row, stiffness):
@@ -150,7 +150,7 @@ def spring_peak(row, stiffness):
 
 
 def compare(what, found, expected, tolerance):
-    """Tell a relative difference; fail if it is too large."""
+    """Report a relative difference; fail if it is too large."""
     error = found / expected - 1
     require(abs(error) <= tolerance, f"{what} is {found:.6g} and should be {expected:.6g} ({100 * error:+.3g} %)")
     return f"{what} {100 * error:+.2g} %"
@@ -158,26 +158,26 @@ def compare(what, found, expected, tolerance):
 
 def check_modes(row, tolerances):
     """Peak and history of the force against Navier's modes."""
-    scene = row.scene()
+    model = row.model()
     end = row.history["time"][-1]
-    long = end > 300 * scene.contact_time()
-    times, forces, *_ = answer(scene, row.key("mesh", "patch"), end, *((20, 20) if long else (60, 50)))
+    long = end > 300 * model.contact_time()
+    times, forces, *_ = response(model, row.key("mesh", "patch"), end, *((20, 20) if long else (60, 50)))
     mine = np.interp(times, [0.0, *row.history["time"]], [0.0, *row.history["force"]])
     history = math.sqrt(np.sum((mine - forces)**2) / np.sum(forces**2))
-    told = compare("peak", max(row.history["force"]), forces.max(), tolerances[0])
+    printed = compare("peak", max(row.history["force"]), forces.max(), tolerances[0])
     require(history <= tolerances[1], f"the history of the force is {100 * history:.3g} % off")
-    return f"{told}, history {100 * history:.2g} %"
+    return f"{printed}, history {100 * history:.2g} %"
 
 
 def check_pressed(row, tolerance):
     """Deflection of a pressed, simply supported plate."""
-    expected = pressed_plate(row.scene(), row.key("pressure", "value"), row.key("pressure", "distribution"))
+    expected = pressed_plate(row.model(), row.key("pressure", "value"), row.key("pressure", "distribution"))
     return compare("deflection", row.history["deflection"][-1], expected, tolerance)
 
 
 def check_weakened(row, bounds):
     """Deflection of a pressed, simply supported plate of failed plies over what it was before."""
-    expected = pressed_plate(row.scene(), row.key("pressure", "value"), row.key("pressure", "distribution"))
+    expected = pressed_plate(row.model(), row.key("pressure", "value"), row.key("pressure", "distribution"))
     found = row.history["deflection"][-1] / expected
     require(bounds[0] <= found <= bounds[1], f"the deflection is {found:.6g} times that without damage")
     return f"deflection {found:.4g} times as large"
@@ -185,23 +185,23 @@ def check_weakened(row, bounds):
 
 def check_clamped(row, tolerance):
     """Deflection of a pressed, clamped, isotropic, thin plate: 1.26532e-3 q a**4/D (Taylor and Govindjee 2004)."""
-    scene = row.scene()
-    expected = 1.26532e-3 * row.key("pressure", "value") * scene.length[0]**4 / section(scene)[0][0]
+    model = row.model()
+    expected = 1.26532e-3 * row.key("pressure", "value") * model.length[0]**4 / section(model)[0][0]
     return compare("deflection", row.history["deflection"][-1], expected, tolerance)
 
 
 def check_strip(row, tolerance):
     """Deflection of a strip on two simple supports whose sides are free: a beam under its load, with its shear."""
-    scene = row.scene()
-    (d11, d12, d22, _), (shear, _), *_ = section(scene)
-    load, length = row.key("pressure", "value"), scene.length[0]
+    model = row.model()
+    (d11, d12, d22, _), (shear, _), *_ = section(model)
+    load, length = row.key("pressure", "value"), model.length[0]
     expected = 5 / 384 * load * length**4 / (d11 - d12**2 / d22) + load * length**2 / 8 / shear
     return compare("deflection", row.history["deflection"][-1], expected, tolerance)
 
 
 def check_spring(row, tolerance):
     """Peak force of a heavy ball: the plate is a spring."""
-    peak = spring_peak(row, stiffness_of_middle(row.scene(), row.key("mesh", "patch")))
+    peak = spring_peak(row, stiffness_of_middle(row.model(), row.key("mesh", "patch")))
     return compare("peak", max(row.history["force"]), peak, tolerance)
 
 
@@ -226,12 +226,12 @@ def check_fracture(row, starter):
 
 def check_within(row, bounds):
     """Columns' largest values between bounds."""
-    told = []
+    printed = []
     for name, (low, high) in bounds.items():
         found = max(row.history[name])
         require(low <= found <= high, f"the largest {name} is {found:.6g}, not within {low:g} to {high:g}")
-        told.append(f"{name} {found:.4g}")
-    return ", ".join(told)
+        printed.append(f"{name} {found:.4g}")
+    return ", ".join(printed)
 
 
 def check_warns(row, sentence):
@@ -256,9 +256,9 @@ def check_row(entry, row):
     """Hold a run against what its row says; return what was found."""
     if "exit" in entry:
         require(row.code == entry["exit"], f"exit code {row.code}, not {entry['exit']}: {row.said[-300:]}")
-        told = [line for line in row.said.splitlines() if re.search(entry["says"], line)]
-        require(len(told) == 1, f"'{entry['says']}' is told {len(told)} times: {row.said[-300:]}")
-        return told[0][:120]
+        printed = [line for line in row.said.splitlines() if re.search(entry["says"], line)]
+        require(len(printed) == 1, f"'{entry['says']}' is told {len(printed)} times: {row.said[-300:]}")
+        return printed[0][:120]
     require(row.code == 0, f"exit code {row.code}: {row.said[-300:]}")
     check_ledger(row)
     checks = [name for name in CHECKS if name in entry]
@@ -290,12 +290,12 @@ def run_explicit(implam, folder, entry, deck):
         return f"{steps[0]}, not run"
     row = Row(implam, folder, deck, 600)
     if row.code:
-        told = [line for line in row.said.splitlines() if line.startswith("implam: ")]
-        require(row.code == 3 and len(told) == 1, f"exit code {row.code}: {row.said[-300:]}")
-        return f"exit code 3: {told[0][:160]}"
+        printed = [line for line in row.said.splitlines() if line.startswith("implam: ")]
+        require(row.code == 3 and len(printed) == 1, f"exit code {row.code}: {row.said[-300:]}")
+        return f"exit code 3: {printed[0][:160]}"
     check_ledger(row, LEDGER_EXPLICIT)
-    told = [CHECKS[name](row, entry[name]) for name in CHECKS if name in entry and name != "warns"]
-    return ", ".join([steps[0], *told])
+    printed = [CHECKS[name](row, entry[name]) for name in CHECKS if name in entry and name != "warns"]
+    return ", ".join([steps[0], *printed])
 
 
 def check_units(implam, folder, deck, system, row):
@@ -326,7 +326,7 @@ def main(implam, folder, *words):
     for number, entry in enumerate(table["row"], 1):
         if words and not any(word in entry["name"] for word in words):
             continue
-        deck = change_deck(table["scene"][entry["scene"]], entry.get("set", []))
+        deck = change_deck(table["model"][entry["model"]], entry.get("set", []))
         deck = explicit(deck) if by_explicit else deck
         if deck is None:
             continue
@@ -338,9 +338,9 @@ def main(implam, folder, *words):
                 print(f"{entry['name']:44s} {run_explicit(implam, here, entry, deck)}", flush=True)
                 continue
             row = Row(implam, here, deck)
-            told = [check_row(entry, row)]
-            told += [check_units(implam, here, deck, system, row) for system in entry.get("units", [])]
-            found = ", ".join(told)
+            printed = [check_row(entry, row)]
+            printed += [check_units(implam, here, deck, system, row) for system in entry.get("units", [])]
+            found = ", ".join(printed)
         except TrialError as failure:
             failures.append(entry["name"])
             found = f"FAILS: {failure}"

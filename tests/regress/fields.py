@@ -17,7 +17,7 @@ TIMES = 1e-6 * np.arange(10, 61, 10)
 
 
 def check_fields(history_path):
-    """Fail unless both readers find the mesh and the deflection that the history tells."""
+    """Fail unless both readers find the mesh and the deflection that the history reports."""
     base = str(history_path).removesuffix("_history.csv")
     history = read_history(history_path)
     with h5py.File(base + ".h5") as file:

@@ -24,7 +24,7 @@ from solver_runs import (
 DECK = "../small/cohesive.nml"
 CRACKS = ["ply_damage%d=100", "material%XT=1517e6", "material%XC=1590e6", "material%YC=253e6", "material%Sf=500e6",
           "material%Sm23=105e6", "material%YT=46e6", "material%S12=105e6"]
-# Settings with cracks, the key by which they are flaws, and time at which a checkpoint is written. Steps are short enough
+# Settings with cracks, the key by which they are flaws, and time of a checkpoint. Steps are short enough
 # that none is rejected: whether a longer one finds equilibrium is within rounding while cracks open.
 WAYS = {"cracks_as_flaws": ([*CRACKS, "delamination%strength_opening=27e6", "delamination%strength_shear=60e6",
                              "time%end=200e-6", "time%step=2.5e-6", "solver%tolerance=1e-8"], 160e-6),
@@ -48,13 +48,13 @@ def check_whole(implam, folder, key, _):
         for name in ("force", "delaminated_area", "energy_delamination", "energy_ply_damage"):
             expected = found["none"][name]
             worst = max(abs(a - b) for a, b in zip(history[name], expected, strict=True))/max(expected)
-            require(worst <= 1e-6, f"{name} of '{symmetry}' differs from the whole plate's by {worst:.2g}.")
+            require(worst <= 1e-6, f"{name} of '{symmetry}' differs from the full plate's by {worst:.2g}.")
 
 
 def check_ranks(implam, folder, key, launcher):
     """One rank and two."""
     cracks, end = WAYS[key]
-    # Cracks of one rank have the other's points beside them only in the middle of a whole plate.
+    # Cracks of one rank have the other's points beside them only in the middle of a full plate.
     settings = [*cracks, f"delamination%{key}=.true.", "plate%symmetry='none'", "mesh%elements=12, 12",
                 f"time%end={end}"]
     one, two = (read_history(run_deck(implam, write_deck(folder / name, DECK, settings), launch))

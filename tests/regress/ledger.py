@@ -78,7 +78,7 @@ def check(implam, folder, load, parts):
 
 def trial(implam, folder):
     """All of them."""
-    faults, worst, broken = [], 0.0, set()
+    faults, worst, failed = [], 0.0, set()
     for name, text in LOADS.items():
         for history in ("ramp", "fixed") if "{}" in text else ("",):
             for parts in TOGETHER:
@@ -86,11 +86,11 @@ def trial(implam, folder):
                 try:
                     error, rows = check(implam, Path(folder) / case.replace(" ", "_"), text.format(history), parts)
                     worst = max(worst, error)
-                    broken |= {part for part in parts if part in BREAKS and rows[BREAKS[part]][-1] > 0}
+                    failed |= {part for part in parts if part in BREAKS and rows[BREAKS[part]][-1] > 0}
                     require(error < CLOSES, f"{error:.2g} of the work is not accounted for")
                 except TrialError as fault:
                     faults.append(f"{case}: {fault}")
-    require(broken == set(BREAKS), f"Only {sorted(broken)} break.")
+    require(failed == set(BREAKS), f"Only {sorted(failed)} break.")
     print(f"{worst:.2g} of the work at most")
     require(not faults, "\n".join(faults))
 

@@ -1,4 +1,4 @@
-"""Whether passing the model's limits is told once, with its time, and ends a strict run.
+"""Whether passing the model's limits is reported once, with its time, and ends a strict run.
 Usage: model_limits.py IMPLAM FOLDER"""
 
 import json
@@ -24,7 +24,7 @@ WEAK = """&plate length=0.1, 0.1  edges='clamped'  symmetry='quarter' /
 """
 ZONE = "&delamination below_ply=2  G_c=1  zone=40e-3, 40e-3  starter=15e-3 /\n"
 # What is passed, and the rest of the deck.
-SCENES = {
+MODELS = {
     "steeper than": "&impactor mass=2  velocity=14  radius=10e-3 /\n&time end=1e-3  step=10e-6 /\n",
     "indentation is deeper": "&impactor mass=0.05  velocity=10 /\n&indentation law='hertz'  k=2e6 /\n"
                              "&time end=1e-3  step=10e-6 /\n",
@@ -36,7 +36,7 @@ SCENES = {
                                       "&time end=1e-3  step=10e-6 /\n",
     "broken over an area as large as the contact": "&impactor mass=2  velocity=5  radius=10e-3 /\n"
                                                  "&time end=1e-3  step=10e-6 /\n",
-    "deflects by more than 3 thicknesses with broken fibres": "&impactor mass=2  velocity=5  radius=10e-3 /\n"
+    "deflects by more than 3 thicknesses with failed fibres": "&impactor mass=2  velocity=5  radius=10e-3 /\n"
                                                               "&time end=1e-3  step=10e-6 /\n",
     "kinetic energy is more than 5 %": "&line at=0 displacement=2e-4 rise=1e-5 /\n"
                                        "&time integrator='central_difference' end=1e-4 /\n",
@@ -51,22 +51,22 @@ AT = re.compile(r"(?:time|load factor) ([-\d.e]+\d)")
 
 
 def time_of(warning):
-    """The time that a warning tells."""
+    """The time that a warning reports."""
     return float(AT.search(warning)[1])
 
 
 def main(implam, folder):
     """Each limit in turn."""
-    for number, (sentence, rest) in enumerate(SCENES.items()):
+    for number, (sentence, rest) in enumerate(MODELS.items()):
         here = Path(folder) / str(number)
         here.mkdir(parents=True, exist_ok=True)
         deck = here / "deck.nml"
         plate = WEAK if "broken" in sentence or "&adapt" in rest else BEGINNING
         deck.write_text("&case name='limits' /\n" + plate + rest, "utf-8")
         said = run([implam, deck, "--output", here])
-        told = [line for line in said.splitlines() if line.startswith("implam: warning:") and sentence in line]
-        require(len(told) == 1, f"'{sentence}' is told {len(told)} times.")
-        since = time_of(told[0])
+        printed = [line for line in said.splitlines() if line.startswith("implam: warning:") and sentence in line]
+        require(len(printed) == 1, f"'{sentence}' is told {len(printed)} times.")
+        since = time_of(printed[0])
         closing = [warning for warning in json.loads((here / "limits_summary.json").read_text("utf-8"))["warnings"]
                    if sentence in json.dumps(warning)]
         require(len(closing) == 1, f"The summary doesn't tell of '{sentence}'.")

@@ -1,4 +1,4 @@
-"""Runs that are killed or told to stop at any moment, again and again, must end as the run that was left alone.
+"""Runs that are killed or stopped at any moment, again and again, must end as the run that was left alone.
 Usage: moments.py TRIAL IMPLAM FOLDER COUNT LAUNCHER...     (LAUNCHER takes the number of ranks as its last word)
 
 kills    SIGKILL COUNT times on one rank and COUNT times on two, every other one while a checkpoint is being written:
@@ -27,7 +27,7 @@ os.environ |= {"OMPI_MCA_mpi_yield_when_idle": "1", "OMPI_MCA_rmaps_base_oversub
                "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe",
                "PRTE_MCA_hwloc_default_binding_policy": "none"}
 # Fronts that grow while plies fail, a cohesive interface, and plies that soften; in each step a checkpoint.
-SCENES = {"fronts": ("../small/damage.nml", [*GROWING, "time%end=400e-6", "output%checkpoint_every=10e-6",
+MODELS = {"fronts": ("../small/damage.nml", [*GROWING, "time%end=400e-6", "output%checkpoint_every=10e-6",
                                              "output%fields_every=50e-6"]),
           "cohesive": ("../small/cohesive.nml", ["output%checkpoint_every=10e-6", "output%fields_every=50e-6"]),
           "softening": ("../small/crack_bands.nml", [*SOFTENING, "output%checkpoint_every=5e-6",
@@ -36,13 +36,13 @@ PATIENCE = 1800  # seconds, on a machine that others keep busy
 MPIRUN_STOPPED = 1  # what Open MPI's launcher ends with after TERM and INT
 
 
-class Scene:
+class Model:
     """A deck, its run that was left alone, and others that are not."""
 
     def __init__(self, implam, folder, name, launcher=()):
         """Run it once."""
         self.implam, self.folder, self.name, self.launcher = implam, folder / name, name, launcher
-        source, settings = SCENES[name]
+        source, settings = MODELS[name]
         self.settings = source, [*settings, "solver%tolerance=1e-9"]
         self.reference = run_deck(implam, write_deck(self.folder / "alone", *self.settings), launcher)
         self.damage = damage_of(self.reference)
@@ -135,10 +135,10 @@ def wait_for_rows(deck, process, more):
         time.sleep(0.002)
 
 
-def kill_once(scene, deck, moments, writing):
+def kill_once(model, deck, moments, writing):
     """Kill a run at a random moment; return whether it ran still, whether a checkpoint was being written, and whether
     the run has ended all the same."""
-    process = scene.start(deck)
+    process = model.start(deck)
     if writing:
         wait_for_writing(deck, process, moments.randrange(1, 6))
         time.sleep(moments.uniform(0, 0.004))
@@ -148,7 +148,7 @@ def kill_once(scene, deck, moments, writing):
         wait_for_rows(deck, process, moments.randrange(1, 9))
         time.sleep(moments.uniform(0, 0.03))
     running = session_of(process)
-    victims = moments.choice([running, [process.pid], scene.ranks(process)[:1]])
+    victims = moments.choice([running, [process.pid], model.ranks(process)[:1]])
     hit = bool(set(stop_all(running)) & set(victims))
     written = bool(list(deck.parent.glob("*_restart.h5.tmp")))
     send(victims, signal.SIGKILL)
@@ -162,34 +162,34 @@ def check_kills(implam, folder, count, launcher):
     """On one rank, then on two."""
     for ranks, launched in ((1, ()), (2, (*launcher, "2"))):
         moments = random.Random(ranks)
-        scenes = [Scene(implam, folder / str(ranks), name, launched) for name in SCENES]
+        models = [Model(implam, folder / str(ranks), name, launched) for name in MODELS]
         kills, writing, chains = 0, 0, 0
         while kills < count:
-            scene = scenes[chains % len(scenes)]
-            deck, ended, mine = scene.fresh(), False, 0
+            model = models[chains % len(models)]
+            deck, ended, mine = model.fresh(), False, 0
             # The last kill of all is followed by an undisturbed end.
             while not ended:
                 if kills >= count or mine >= 12:
-                    ended = end_of(scene.start(deck)) == EXIT_DONE
+                    ended = end_of(model.start(deck)) == EXIT_DONE
                     require(ended, "The run doesn't end when it is left alone.")
                     break
-                hit, written, ended = kill_once(scene, deck, moments, kills % 2 == 1)
+                hit, written, ended = kill_once(model, deck, moments, kills % 2 == 1)
                 kills, writing, mine = kills + hit, writing + (hit and written), mine + hit
-            scene.check_end(deck, f"{scene.name}, {ranks} rank(s), {mine} kills")
+            model.check_end(deck, f"{model.name}, {ranks} rank(s), {mine} kills")
             chains += 1
-            print(f"{scene.name}, {ranks} rank(s): {mine} kills, {kills} so far, {writing} of them within a checkpoint",
+            print(f"{model.name}, {ranks} rank(s): {mine} kills, {kills} so far, {writing} of them within a checkpoint",
                   flush=True)
         print(f"{ranks} rank(s): {kills} kills, {writing} while a checkpoint was being written, in {chains} chains: "
               f"{'to 1e-9' if launched else 'the same to the last bit'}, no file left over", flush=True)
 
 
-def told(scene, deck, target, stop, times, rows):
-    """Tell a run to stop; return the exit code."""
-    process = scene.start(deck)
+def printed(model, deck, target, stop, times, rows):
+    """Stop a run; return the exit code."""
+    process = model.start(deck)
     wait_until(lambda: list(deck.parent.glob("*.log")), process)
     if rows:
         wait_for_rows(deck, process, rows)
-    chosen = {"mpirun": [process.pid], "one rank": scene.ranks(process)[:1]}.get(target) or scene.ranks(process)
+    chosen = {"mpirun": [process.pid], "one rank": model.ranks(process)[:1]}.get(target) or model.ranks(process)
     for _ in range(times):
         send(chosen, stop)
         time.sleep(0.002)
@@ -199,15 +199,15 @@ def told(scene, deck, target, stop, times, rows):
 def check_signals(implam, folder, count, launcher):
     """Every signal to every target; the run then goes on undisturbed."""
     moments = random.Random(3)
-    alone = Scene(implam, folder / "1", "fronts")
-    both = Scene(implam, folder / "2", "fronts", (*launcher, "2"))
-    for scene, target in ((alone, "the program"), (both, "one rank"), (both, "both ranks"), (both, "mpirun")):
+    alone = Model(implam, folder / "1", "fronts")
+    both = Model(implam, folder / "2", "fronts", (*launcher, "2"))
+    for model, target in ((alone, "the program"), (both, "one rank"), (both, "both ranks"), (both, "mpirun")):
         for stop in (signal.SIGTERM, signal.SIGINT, signal.SIGUSR1):
             for times in (1, 2):
                 checkpoints = 0
                 for _ in range(count):
-                    deck = scene.fresh()
-                    code = told(scene, deck, target, stop, times, moments.randrange(12))
+                    deck = model.fresh()
+                    code = printed(model, deck, target, stop, times, moments.randrange(12))
                     saved = bool(list(deck.parent.glob("*_restart.h5")))
                     what = f"{stop.name} {'twice' if times == 2 else 'once'} to {target}"
                     if target == "mpirun" and stop != signal.SIGUSR1:
@@ -215,8 +215,8 @@ def check_signals(implam, folder, count, launcher):
                     else:
                         require(code == EXIT_STOPPED and saved, f"{what}: code {code}, checkpoint: {saved}.")
                     checkpoints += saved
-                    require(end_of(scene.start(deck)) == EXIT_DONE, f"{what}: it doesn't go on.")
-                    scene.check_end(deck, what)
+                    require(end_of(model.start(deck)) == EXIT_DONE, f"{what}: it doesn't go on.")
+                    model.check_end(deck, what)
                 print(f"{what}: code {code}, a checkpoint {checkpoints} of {count} times", flush=True)
 
 
@@ -225,25 +225,25 @@ def check_early(implam, folder, _, launcher):
     library = folder / "early.so"
     folder.mkdir(parents=True)
     run(["cc", "-shared", "-fPIC", "-o", library, HERE.parent / "support/early_signals.c", "-ldl"])
-    scenes = {1: Scene(implam, folder / "1", "fronts"), 2: Scene(implam, folder / "2", "fronts", (*launcher, "2"))}
+    models = {1: Model(implam, folder / "1", "fronts"), 2: Model(implam, folder / "2", "fronts", (*launcher, "2"))}
     cases = [("load", stop, 1) for stop in (signal.SIGTERM, signal.SIGINT, signal.SIGUSR1)]
     for moment, stop, ranks in (*cases, ("metis", signal.SIGTERM, 2)):
-        scene, mark = scenes[ranks], folder / "mark"
-        deck = scene.fresh()
-        # The launcher and its shells must not be told too.
+        model, mark = models[ranks], folder / "mark"
+        deck = model.fresh()
+        # The launcher and its shells must not be signalled too.
         words = {"EARLY_MOMENT": moment, "EARLY_SIGNAL": str(int(stop)), "EARLY_MARK": str(mark)}
         wrapper = folder / Path(implam).name
         wrapper.write_text(f'#!/bin/sh\nLD_PRELOAD={library} exec {implam} "$@"\n', encoding="utf-8")
         wrapper.chmod(0o755)
-        scene.implam = wrapper
-        code = end_of(scene.start(deck, **words))
-        scene.implam = implam
+        model.implam = wrapper
+        code = end_of(model.start(deck, **words))
+        model.implam = implam
         require(mark.exists(), f"{stop.name} was never sent at the moment {moment}.")
         mark.unlink()
         saved = bool(list(deck.parent.glob("*_restart.h5")))
         require(code == EXIT_STOPPED and saved, f"{stop.name} ({moment}): code {code}, checkpoint: {saved}.")
-        require(end_of(scene.start(deck)) == EXIT_DONE, f"{stop.name} ({moment}): it doesn't go on.")
-        scene.check_end(deck, f"{stop.name} ({moment})")
+        require(end_of(model.start(deck)) == EXIT_DONE, f"{stop.name} ({moment}): it doesn't go on.")
+        model.check_end(deck, f"{stop.name} ({moment})")
         print(f"{stop.name} ({moment}): code {code}, with a checkpoint")
 
 

@@ -60,8 +60,8 @@ def check_broken_files(implam, folder):
         ended = subprocess.run([implam, deck, "--output", folder], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
                                stderr=subprocess.PIPE, text=True, timeout=60, check=False)
         require(ended.returncode == EXIT_FILES, f"A full {name} ended with {ended.returncode}: {ended.stderr}")
-        told = [line for line in ended.stderr.splitlines() if line.startswith("implam: ")]
-        require(len(told) == 1 and told_of in told[0], f"A full {name} told {told}.")
+        printed = [line for line in ended.stderr.splitlines() if line.startswith("implam: ")]
+        require(len(printed) == 1 and told_of in printed[0], f"A full {name} told {printed}.")
         require((folder / "ply_damage_history.csv").stat().st_size > 0, "The history was lost.")
 
 

@@ -4,7 +4,7 @@ import h5py
 import numpy as np
 
 CORNERS = 4  # the first nodes of an element in the file
-PLACE = 1e-9  # lengths that are told apart
+PLACE = 1e-9  # lengths that are distinguished
 DIGITS = 5  # of a cohesive cell's part that is gone
 
 
@@ -48,7 +48,7 @@ def mirrored(damage):
 
 
 def folded(damage, part="quarter"):
-    """Return the damage of a whole plate as that of a part of it; nothing if the parts differ."""
+    """Return the damage of a full plate as that of a part of it; nothing if the parts differ."""
     parts = {}
     for (name, layer, x, y), value in damage.items():
         left, below = x < 0 and part != "half_y", y < 0 and part in ("quarter", "half_y")

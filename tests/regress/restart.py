@@ -7,7 +7,7 @@ ranks        on 2 ranks, and from 1 rank to 2 and back: to 1e-9
 rejected     from checkpoints on either side of rejected steps: bitwise
 signal       SIGTERM ends a run with a checkpoint and its own exit code: bitwise
 ranks_signal two ranks that get TERM twice, as from a queue, and mpirun that gets USR1, end the same way: to 1e-9
-limit        the time on the wall ends runs in time with a checkpoint and that exit code: bitwise
+limit        the wall-clock limit ends runs in time with a checkpoint and that exit code: bitwise
 kill         SIGKILL at any moment leaves a checkpoint that can be used: bitwise
 found        without a file the newest whole checkpoint of a folder is taken, and results keep the name of the case
 mixed        results of another run are neither gone on with nor left with a checkpoint that isn't theirs
@@ -162,7 +162,8 @@ def split_next_to_rejections(implam, folder, deck, settings, period, periods):
         raise TrialError(f"No number of iterations rejects steps and yet reaches the end: {failure}") from None
     before, after, histories = 0, 0, []
     # Half a period after a checkpoint would not show a forgotten step: the halved one and the full one both fit in.
-    for end in sorted({number + share for number in sorted(found)[:2] for share in (0.9999, 1.9999) if number + share > 1}):
+    ends = {number + share for number in sorted(found)[:2] for share in (0.9999, 1.9999) if number + share > 1}
+    for end in sorted(ends):
         reference, again = run_split(implam, folder / f"end_{end}", deck, [*settings, f"time%end={end * period!r}"])
         require_same(again, reference, f"end after {end} periods")
         histories.append(reference)
@@ -177,13 +178,13 @@ def check_next_to_rejections(implam, folder, deck, settings, period, periods):
     until there have been both; return all histories."""
     settings = [*settings, f"output%checkpoint_every={period!r}"]
     before, after, histories = 0, 0, []
-    for most in FEW_ITERATIONS:
-        few = [*settings, f"solver%max_iterations={most}"]
-        found, just_before, just_after = split_next_to_rejections(implam, folder / f"iterations_{most}", deck, few,
+    for limit in FEW_ITERATIONS:
+        few = [*settings, f"solver%max_iterations={limit}"]
+        found, just_before, just_after = split_next_to_rejections(implam, folder / f"iterations_{limit}", deck, few,
                                                                   period, periods)
         before, after, histories = before + just_before, after + just_after, histories + found
         if before and after:
-            print(f"Down to {most} iterations at most, checkpoints just before a rejected step: {before}, just after: "
+            print(f"Down to {limit} iterations at most, checkpoints just before a rejected step: {before}, just after: "
                   f"{after}; the same to the last bit")
             return histories
     raise TrialError("No checkpoint was next to a rejected step: the trial proves nothing.")
@@ -298,11 +299,11 @@ def check_ranks_signal(implam, folder, launcher):
 
 
 def stop_by_limit(implam, folder, command, seconds):
-    """Run a command that the time on the wall must end; return the rows written."""
+    """Run a command that the wall-clock limit must end; return the rows written."""
     begun = time.monotonic()
     said = run([implam, *command], EXIT_STOPPED)
     took = time.monotonic() - begun
-    require("time on the wall" in said, f"The sentence does not name the time on the wall: {said}")
+    require("wall-clock time" in said, f"The sentence does not name the wall-clock time: {said}")
     require(took < seconds or seconds == 0, f"With {seconds} s the run took {took:.2f} s.")
     rows = len(read_history(history_of(folder))["time"])
     print(f"Stopped after {took:.2f} of {seconds} s with {rows} rows", flush=True)
@@ -310,7 +311,7 @@ def stop_by_limit(implam, folder, command, seconds):
 
 
 def check_limit(implam, folder, _):
-    """Stopped by the time on the wall: by the deck's, by the command line's, and after every single step."""
+    """Stopped by the wall-clock limit: by the deck's, by the command line's, and after every single step."""
     # Two seconds of each limit are kept for the start and the end of the program, so the whole must take longer.
     took, step = 0, 1e-6
     while took < 4:

@@ -111,16 +111,16 @@ def check_explicit(implam, folder, _):
     history = read_history(reference)
     require(history["energy_ply_damage"][-1] > 0 and history["force_filtered"][-1] > 0, "The trial proves nothing.")
     deck = write_deck(folder / "look_by_look", "../small/crack_bands.nml", EXPLICIT)
-    words, looks = [deck, "--output", deck.parent], 0
+    words, checks = [deck, "--output", deck.parent], 0
     while run_to_look(implam, words) == EXIT_STOPPED:
-        words, looks = ["restart", checkpoint_of(deck.parent)], looks + 1
-    require(looks >= len(history["time"]), f"The run stopped {looks} times only: the trial proves nothing.")
+        words, checks = ["restart", checkpoint_of(deck.parent)], checks + 1
+    require(checks >= len(history["time"]), f"The run stopped {checks} times only: the trial proves nothing.")
     require_same(history_of(deck.parent), reference, "a run for each look")
-    print(f"Stopped {looks} times and gone on with: the same to the last bit")
+    print(f"Stopped {checks} times and gone on with: the same to the last bit")
 
 
 def run_to_look(implam, words):
-    """Go on until the time on the wall is looked at; return the exit code."""
+    """Go on until the time by the wall clock is looked at; return the exit code."""
     return exit_code(start(implam, *words, *SINGLE_STEP))
 
 
@@ -157,8 +157,8 @@ def split_around_growth(implam, folder, name, choices):
     settings = [*GROWING, *choices]
     scout = write_deck(folder / name, DECK, [*settings, f"time%end={20 * STEP!r}"])
     grown = growth(read_history(run_deck(implam, scout)))
-    most = 1 + max(range(len(grown)), key=grown.__getitem__)
-    for step in (most - 1, most):
+    limit = 1 + max(range(len(grown)), key=grown.__getitem__)
+    for step in (limit - 1, limit):
         reference, again = run_split(implam, folder / f"{name}_{step}", DECK, split_after(step, settings))
         require_same(again, reference, f"{name} split after step {step}")
         require(damage_of(again) == damage_of(reference), f"{name}: other cells delaminated.")
@@ -181,7 +181,7 @@ def lines_before_rows(path):
 
 
 def stop_during(implam, deck, step, stop, delay):
-    """Send a signal some seconds after a step has begun; tell whether it was still being computed by what the run
+    """Send a signal some seconds after a step has begun; return whether it was still being computed by what the run
     leaves."""
     process = start(implam, deck, "--output", deck.parent)
     wait_until(lambda: rows_written(deck.parent) >= step - 1, process)

@@ -5,7 +5,7 @@ Usage: same_history.py ranks IMPLAM DECK FOLDER TOLERANCE LAUNCHER... [-- SETTIN
        same_history.py tolerances IMPLAM DECK FOLDER TOLERANCE [-- SETTING...]
 
 ranks: on 1, 2 and 4 ranks, LAUNCHER taking the number of ranks as its last word. PART: a part of the plate, quarter,
-half_x, half_y or point, against the whole plate with twice the elements along the directions halved. mirror: against
+half_x, half_y or point, against the full plate with twice the elements along the directions halved. mirror: against
 the plate with x and y exchanged. tolerances: with residuals of 1e-9 against .8e-9 and 2e-9, so that steps take other
 numbers of iterations and operators are renewed at other times. Where an interface delaminates or plies fail, it must
 grow, and the same cells and plies be the ones at the end."""
@@ -34,7 +34,7 @@ def histories_of_ranks(implam, deck, folder, launcher, settings):
 
 
 def histories_of_part(part, implam, deck, folder, settings):
-    """Yield name and history of a part and of the whole plate."""
+    """Yield name and history of a part and of the full plate."""
     modelled = write_deck(folder / part, deck, [*settings, f"plate%symmetry='{part}'"])
     history = run_deck(implam, modelled)
     yield part, read_history(history), damage_of(history)

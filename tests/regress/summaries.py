@@ -6,7 +6,7 @@ contact  duration of contact and rebound of a ball on a rigid base against Hertz
 restart  a run taken up again says what the undisturbed one says, to the last bit; warnings and onsets too
 ranks    two ranks say what one says, to 1e-9
 endings  runs that were stopped or failed say so, with what they reached
-errors   a plate that deflects far, with an accuracy: a coarser run tells the errors, and a finer one bears them out
+errors   a plate that deflects far, with an accuracy: a coarser run reports the errors, and a finer one bears them out
 static   the release rate under a static load grows with its square and is that of the compliance"""
 
 import json
@@ -111,9 +111,9 @@ def check_against_history(folder):
     close(sum(entry["energy"] for entry in summary["interfaces"]), summary["energy_delamination"], 1e-9, "The energy")
     log = next(folder.glob("*.log")).read_text(encoding="utf-8")
     rounded = float(f"{peak:.3e}")
-    told = [line.split() for line in log.splitlines() if line.startswith("  peak force ")]
-    require(len(told) == 1 and float(told[0][2]) == rounded, f"The log says {told}, not {rounded}.")
-    require(float(told[0][5]) == float(f"{summary['peak_force_at']:.3e}"), f"The log says {told}.")
+    printed = [line.split() for line in log.splitlines() if line.startswith("  peak force ")]
+    require(len(printed) == 1 and float(printed[0][2]) == rounded, f"The log says {printed}, not {rounded}.")
+    require(float(printed[0][5]) == float(f"{summary['peak_force_at']:.3e}"), f"The log says {printed}.")
     for warning in summary["warnings"]:
         require(log.count(warning["text"]) >= 1, f"The log's end lacks: {warning['text']}")
     print(f"{folder.name}: {summary['peak_force']:.4g}, {[entry['first_growth'] for entry in summary['interfaces']]}")

@@ -11,7 +11,7 @@ from solver_runs import EXIT_DONE, EXIT_STOPPED, exit_code_of, read_history, req
 DECK = "../small/delamination.nml"
 SHORT = ["case%name='plate'", "time%end=120e-6"]
 BY_HAND = [*SHORT, "mesh%elements=12,12", "time%step=5e-6"]
-# A limit on the wall that is up after the first step, on every machine.
+# A limit by the wall clock that is up after the first step, on every machine.
 AT_ONCE = ["--wall-limit", "1e-9"]
 
 
@@ -26,7 +26,7 @@ def main(implam, folder):
     folder = Path(folder)
     deck = write_deck(folder / "whole", DECK, SHORT)
     command = [implam, deck, "--verify", "--output", deck.parent]
-    told = run(command)
+    printed = run(command)
     by_hand = read_history(run_deck(implam, write_deck(folder / "by_hand", DECK, BY_HAND)))
     finer = read_history(deck.parent / "plate_finer1_history.csv")
     require(finer == by_hand, "The finer run isn't that of a deck refined by hand.")
@@ -36,7 +36,7 @@ def main(implam, folder):
     for name, value in (("plate", force["as_it_is"]), ("plate_finer1", force["finer"])):
         require(value == max(read_history(deck.parent / f"{name}_history.csv")["force"]),
                 f"The peak force of {name} isn't that of its history.")
-    line, = [line for line in told.splitlines() if line.startswith("  peak force") and line.endswith("%")]
+    line, = [line for line in printed.splitlines() if line.startswith("  peak force") and line.endswith("%")]
     change = 100 * (force["finer"] / force["as_it_is"] - 1)
     require(abs(float(line.split()[-2]) - change) <= 0.05 * abs(change), f"The change isn't {change} %: {line}")
     require(set(figures) >= {"impactor_velocity", "largest_deflection", "delaminated_area"}, f"Only {list(figures)}.")

@@ -1,7 +1,7 @@
 !> Decks of one group, for the tests of the folder that brings its rows.
 module deck_groups
   use deck_problems, only: problems_t
-  use deck_rules, only: settle
+  use deck_rules, only: resolve_settings
   use deck_scanner, only: scan_t, scan_deck
   use deck_settings, only: settings_t
   use deck_vocabulary, only: vocabulary_t, load_vocabulary
@@ -22,6 +22,6 @@ contains
     call problems%begin('deck')
     call load_vocabulary([group_row], key_rows, vocabulary)
     call scan_deck(content, scan, problems)
-    call settle(scan, vocabulary, settings, problems)
+    call resolve_settings(scan, vocabulary, settings, problems)
   end subroutine read_group
 end module deck_groups

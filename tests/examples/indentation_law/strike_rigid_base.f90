@@ -6,7 +6,7 @@ program strike_rigid_base
   use impactor_integrators, only: predict, advance
   use impactors, only: impactor_t, new_impactor, impactor_energy
   use kinds, only: wp
-  use yigit_christoforou, only: plastic_law_t, plastic_contact_t, touch_indentation, contact_force, &
+  use yigit_christoforou, only: plastic_law_t, plastic_contact_t, zero_force_indentation, contact_force, &
                                 contact_stiffness, mean_force, commit
   implicit none
   type(plastic_law_t), parameter :: law = plastic_law_t(k=8e8_wp, yield=20e-6_wp)
@@ -16,7 +16,7 @@ program strike_rigid_base
   real(wp) :: lost, before
 
   call commit(law, contact, 60e-6_wp)
-  call require('dent is where no force is left', contact_force(law, contact, touch_indentation(law, contact)), 0.0_wp, &
+  call require('dent is where no force is left', contact_force(law, contact, zero_force_indentation(law, contact)), 0.0_wp, &
                1e-10_wp)
   call require('the way back starts where the way in ends', contact_force(law, contact, 60e-6_wp*(1 - 1e-12_wp)), &
                contact_force(law, contact, 60e-6_wp), 1e-8_wp)
@@ -33,7 +33,7 @@ program strike_rigid_base
   ball%integrator = integrator_conserving
   impactor = new_impactor(ball)
   before = impactor_energy(ball, impactor)
-  do while (impactor%velocity > 0 .or. impactor%displacement > touch_indentation(law, contact))
+  do while (impactor%velocity > 0 .or. impactor%displacement > zero_force_indentation(law, contact))
     call step(5e-6_wp)
   end do
   lost = before - impactor_energy(ball, impactor)

@@ -6,7 +6,7 @@ module yigit_christoforou
   use kinds, only: wp
   implicit none
   private
-  public :: plastic_law_t, plastic_contact_t, touch_indentation, contact_force, contact_stiffness, mean_force, commit
+  public :: plastic_law_t, plastic_contact_t, zero_force_indentation, contact_force, contact_stiffness, mean_force, commit
 
   !> Constants of the law.
   type :: plastic_law_t
@@ -30,14 +30,14 @@ module yigit_christoforou
 contains
 
   !> Indentation below which the force is zero: the dent.
-  pure real(wp) function touch_indentation(law, state) result(touch)
+  pure real(wp) function zero_force_indentation(law, state) result(touch)
     !> The law
     type(plastic_law_t), intent(in) :: law
     !> Committed state
     type(plastic_contact_t), intent(in) :: state
 
     touch = max(0.0_wp, state%alpha_max**1.5_wp - loading_force(law, state%alpha_max)/law%k)**(2/3.0_wp)
-  end function touch_indentation
+  end function zero_force_indentation
 
   !> Force at an indentation reached in one direction from the committed one.
   pure real(wp) function contact_force(law, state, alpha) result(force)
@@ -66,7 +66,7 @@ contains
     real(wp), intent(in) :: alpha
 
     stiffness = 0
-    if (alpha <= touch_indentation(law, state)) return
+    if (alpha <= zero_force_indentation(law, state)) return
     stiffness = 1.5_wp*law%k*sqrt(alpha)
     if (alpha > state%alpha_max) stiffness = min(stiffness, 1.5_wp*law%k*sqrt(law%yield))
   end function contact_stiffness
@@ -136,7 +136,7 @@ contains
     real(wp), intent(in) :: alpha
     real(wp) :: touch, back
 
-    touch = touch_indentation(law, state)
+    touch = zero_force_indentation(law, state)
     back = max(touch, min(alpha, state%alpha_max))
     work = (loading_force(law, state%alpha_max) - law%k*state%alpha_max**1.5_wp)*(back - touch) &
            + 0.4_wp*law%k*(back**2.5_wp - touch**2.5_wp)

@@ -33,7 +33,7 @@ contains
     !> Set if the file cannot be written
     type(error_t), allocatable, intent(inout) :: error
 
-    if (output%wants('energy')) call fields%write_cell_field( &
+    if (output%requests('energy')) call fields%write_cell_field( &
       'strain_energy_density', strain_energy_density(model, stiffness, displacement), error)
   end subroutine write_energy_fields
 
@@ -54,7 +54,7 @@ contains
     allocate (density(1, model%elements%elements), source=0.0_wp)
     motion = model%motion_of(displacement)
     do b = 1, model%elements%batches
-      call gauss_strains(model%elements, b, model%scene%kinematics, motion, strains)
+      call gauss_strains(model%elements, b, model%setup%kinematics, motion, strains)
       do lane = 1, model%elements%lanes_used(b)
         energy = 0
         do point = 1, 9

@@ -1,4 +1,4 @@
-!> The field of a bent plate, held against the strain energy of the whole plate, written by the writer of the results
+!> The field of a bent plate, held against the strain energy of the full plate, written by the writer of the results
 !> and read back: `write_energy DECK`.
 program write_energy
   use communicators, only: communicator_t, start_mpi, finish_mpi
@@ -32,7 +32,7 @@ program write_energy
   call start_mpi(communicator)
   call get_command_argument(1, path)
   call read_deck(trim(path), deck, problems)
-  call create_model(deck%scene_t, communicator, model, error)
+  call create_model(deck%setup_t, communicator, model, error)
   if (allocated(error)) stop 2
   allocate (bent(5, size(model%distribution%points)), force(5, size(model%distribution%points)), source=0.0_wp)
   do i = 1, size(bent, 2)

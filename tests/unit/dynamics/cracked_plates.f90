@@ -10,7 +10,7 @@ module cracked_plates
   use material_parameters, only: material_t
   use delamination_parameters, only: contact_none
   use front_energy_release, only: front_energy_release_t, release_along_front
-  use stepped_scenes, only: stepped_scene_t, build_model
+  use stepped_setups, only: stepped_setup_t, build_model
   use models, only: model_t
   use states, only: state_t, new_state
   use tangent_operators, only: tangent_operator_t
@@ -35,7 +35,7 @@ module cracked_plates
     !> Convergence asked for
     type(equilibrium_t) :: equilibrium
   contains
-    !> Builds the model of a scene, without forces and delaminated cells.
+    !> Builds the model of a setup, without forces and delaminated cells.
     procedure :: create
     !> Delaminates cells.
     procedure :: release
@@ -46,7 +46,7 @@ module cracked_plates
     !> Softens the layers of all cells of some columns.
     procedure :: soften
     !> Finds equilibrium.
-    procedure :: settle
+    procedure :: equilibrate
     !> Strain energy of the modelled part.
     procedure :: energy
     !> Energy release rates along the front.
@@ -56,7 +56,7 @@ module cracked_plates
 contains
 
   !> A strip along x, clamped at its far end, with linear strains; its first ply is the upper arm.
-  pure function strip(materials, angles, thickness, below_ply, length, width, elements) result(scene)
+  pure function strip(materials, angles, thickness, below_ply, length, width, elements) result(setup)
     !> Materials, of which all plies have the first
     type(material_t), intent(in) :: materials(:)
     !> Angle and thickness of each ply
@@ -67,78 +67,78 @@ contains
     real(wp), intent(in) :: length, width
     !> Cells along the strip, an even number
     integer, intent(in) :: elements
-    !> The scene
-    type(stepped_scene_t) :: scene
+    !> The setup
+    type(stepped_setup_t) :: setup
 
-    scene = layered(materials, angles, thickness, below_ply)
-    scene%plate%length = [length, width]
-    scene%plate%edges = [edge_free, edge_clamped, edge_free, edge_free]
-    scene%plate%symmetry = symmetry_none
-    scene%mesh%elements = [elements, 1]
-    scene%delaminations%zone(1) = 2*length
-    scene%delaminations%zone(2) = 2*width
+    setup = layered(materials, angles, thickness, below_ply)
+    setup%plate%length = [length, width]
+    setup%plate%edges = [edge_free, edge_clamped, edge_free, edge_free]
+    setup%plate%symmetry = symmetry_none
+    setup%mesh%elements = [elements, 1]
+    setup%delaminations%zone(1) = 2*length
+    setup%delaminations%zone(2) = 2*width
   end function strip
 
   !> A quarter of a clamped square of two equal plies, loaded on a square patch in its middle.
-  pure function disc(material, thickness, side, patch, elements) result(scene)
+  pure function disc(material, thickness, side, patch, elements) result(setup)
     !> The material
     type(material_t), intent(in) :: material
     !> Thickness, side, and side of the patch
     real(wp), intent(in) :: thickness, side, patch
     !> Cells along half a side
     integer, intent(in) :: elements
-    !> The scene
-    type(stepped_scene_t) :: scene
+    !> The setup
+    type(stepped_setup_t) :: setup
 
-    scene = layered([material], [0.0_wp, 0.0_wp], [thickness, thickness]/2, 1)
-    scene%plate%length = side
-    scene%plate%edges = edge_clamped
-    scene%plate%symmetry = symmetry_quarter
-    scene%mesh%elements = elements
-    scene%mesh%patch = patch
-    scene%mesh%grading = 1
-    scene%delaminations%zone(1) = 0.9_wp*side
-    scene%delaminations%zone(2) = 0.9_wp*side
+    setup = layered([material], [0.0_wp, 0.0_wp], [thickness, thickness]/2, 1)
+    setup%plate%length = side
+    setup%plate%edges = edge_clamped
+    setup%plate%symmetry = symmetry_quarter
+    setup%mesh%elements = elements
+    setup%mesh%patch = patch
+    setup%mesh%grading = 1
+    setup%delaminations%zone(1) = 0.9_wp*side
+    setup%delaminations%zone(2) = 0.9_wp*side
   end function disc
 
   !> A laminate with one interface, all intact.
-  pure function layered(materials, angles, thickness, below_ply) result(scene)
+  pure function layered(materials, angles, thickness, below_ply) result(setup)
     !> Materials, of which all plies have the first
     type(material_t), intent(in) :: materials(:)
     !> Angle and thickness of each ply
     real(wp), intent(in) :: angles(:), thickness(:)
     !> Plies above the interface
     integer, intent(in) :: below_ply
-    !> The scene, without plate and mesh
-    type(stepped_scene_t) :: scene
+    !> The setup, without plate and mesh
+    type(stepped_setup_t) :: setup
 
-    scene%kinematics = kinematics_linear
-    allocate (scene%materials, source=materials)
-    allocate (scene%laminate%material(size(angles)), source=1)
-    allocate (scene%laminate%angle, source=angles)
-    allocate (scene%laminate%thickness, source=thickness)
-    scene%has_static = .true.
-    scene%has_pressure = .true.
-    scene%stepping%equilibrium%tolerance = 1.0e-9_wp
-    allocate (scene%delaminations(1))
-    scene%delaminations%below_ply = below_ply
-    scene%delaminations%toughness = 1
-    scene%delaminations%contact = contact_none
+    setup%kinematics = kinematics_linear
+    allocate (setup%materials, source=materials)
+    allocate (setup%laminate%material(size(angles)), source=1)
+    allocate (setup%laminate%angle, source=angles)
+    allocate (setup%laminate%thickness, source=thickness)
+    setup%has_static = .true.
+    setup%has_pressure = .true.
+    setup%stepping%equilibrium%tolerance = 1.0e-9_wp
+    allocate (setup%delaminations(1))
+    setup%delaminations%below_ply = below_ply
+    setup%delaminations%toughness = 1
+    setup%delaminations%contact = contact_none
   end function layered
 
-  !> Builds the model of a scene, without forces and delaminated cells.
-  subroutine create(self, scene)
+  !> Builds the model of a setup, without forces and delaminated cells.
+  subroutine create(self, setup)
     class(cracked_plate_t), intent(out) :: self
-    type(stepped_scene_t), intent(in) :: scene
+    type(stepped_setup_t), intent(in) :: setup
     type(error_t), allocatable :: error
 
     ! These tests run on one process also where there are more.
-    call build_model(scene, communicator_from_handle(MPI_COMM_SELF%mpi_val), self%model, error)
+    call build_model(setup, communicator_from_handle(MPI_COMM_SELF%mpi_val), self%model, error)
     if (allocated(error)) error stop 'no model'
     self%model%pressure = 0
     self%state = new_state(self%model)
     self%stiffness = self%model%elements%stiffness
-    self%equilibrium = scene%stepping%equilibrium
+    self%equilibrium = setup%stepping%equilibrium
     call self%operator%create(self%model, factorization_mumps, error)
     if (allocated(error)) error stop 'no operator'
   end subroutine create
@@ -228,7 +228,7 @@ contains
   end subroutine soften
 
   !> Finds equilibrium from rest.
-  subroutine settle(self)
+  subroutine equilibrate(self)
     class(cracked_plate_t), intent(inout) :: self
     type(state_t) :: rest
     type(static_step_t) :: problem
@@ -243,7 +243,7 @@ contains
     problem = new_static_step(self%model, 1.0_wp, 1.0_wp)
     call solve_step(problem, self%model, self%equilibrium, self%operator, rest, self%state, converged, error)
     if (allocated(error) .or. .not. converged) error stop 'no equilibrium'
-  end subroutine settle
+  end subroutine equilibrate
 
   !> Strain energy of the modelled part.
   real(wp) function energy(self)

@@ -3,7 +3,7 @@
 !> How it is spread is found from the last accepted state and holds through the next step, so force and deflection
 !> under the impactor do the same work. As the spreading changes, the deflection and with it the indentation go on from
 !> what they were: no energy appears.
-module contact_following
+module contact_updates
   use errors, only: error_t
   use kinds, only: wp
   use models, only: model_t
@@ -12,9 +12,9 @@ module contact_following
   use tangent_operators, only: tangent_operator_t
   implicit none
   private
-  public :: follow_contact, take_contact
+  public :: update_contact_area, set_contact_area
 
-  !> Part of the way to what the last state asks for that a step goes: the plate answers to the change, and a whole
+  !> Part of the way to what the last state asks for that a step goes: the plate responds to the change, and a whole
   !> way would overshoot where it gives way more than the nose is indented. doc/theory/impact.md has figures.
   real(wp), parameter :: relaxation = 0.2_wp
   !> Sum of the changes of weights, of one, that are not worth a solve.
@@ -23,7 +23,7 @@ module contact_following
 contains
 
   !> Spreads the force as a new state asks for. Collective.
-  subroutine follow_contact(model, now, operator, error)
+  subroutine update_contact_area(model, now, operator, error)
     !> The model; receives how the force is spread
     type(model_t), intent(inout) :: model
     !> The state reached; remembers it
@@ -41,11 +41,11 @@ contains
       now%patch = model%patch + change
       now%patch_offset = now%patch_offset - total_of(model%communicator, change*w)
     end associate
-    call take_contact(model, now, operator, error)
-  end subroutine follow_contact
+    call set_contact_area(model, now, operator, error)
+  end subroutine update_contact_area
 
   !> Spreads the force as a state has it. Collective.
-  subroutine take_contact(model, now, operator, error)
+  subroutine set_contact_area(model, now, operator, error)
     !> The model; receives how the force is spread
     type(model_t), intent(inout) :: model
     !> The state
@@ -59,5 +59,5 @@ contains
     call model%spread_force(now%patch, now%patch_offset)
     if (.not. operator%ready) return
     call operator%find_response(model, error)
-  end subroutine take_contact
-end module contact_following
+  end subroutine set_contact_area
+end module contact_updates

@@ -1,14 +1,14 @@
 !> A direction that descends where the tangent of a step is not positive definite: Newton's, with the sizes of the
 !> eigenvalues in a small space of motions (J. Nocedal, S. J. Wright, Numerical Optimization, 2006, section 3.4; Y. N.
 !> Dauphin et al., Advances in Neural Information Processing Systems 27 (2014) 2933-2941).
-module descending_directions
+module descent_directions
   use kinds, only: wp
   implicit none
   private
-  public :: find_descending
+  public :: find_descent_direction
 
   !> Size of an eigenvalue over the largest below which it counts as that: what lies along it is unknown by rounding.
-  real(wp), parameter :: least_eigenvalue = 1.0e-10_wp
+  real(wp), parameter :: min_eigenvalue = 1.0e-10_wp
 
   interface
     !> LAPACK: eigenvalues and eigenvectors of A x = lambda B x.
@@ -30,7 +30,7 @@ module descending_directions
 contains
 
   !> Shares of motions in a direction that descends, if the tangent has negative curvature along any of them.
-  subroutine find_descending(tangent, metric, forces, shares, negative)
+  subroutine find_descent_direction(tangent, metric, forces, coefficients, negative)
     !> Work of the tangent's forces on the motions, (motions, motions); its symmetric part counts
     real(wp), intent(in) :: tangent(:, :)
     !> The same of a positive operator that is near to it
@@ -38,7 +38,7 @@ contains
     !> Work of the forces out of balance on the motions, (motions)
     real(wp), intent(in) :: forces(:)
     !> Shares of the motions, left alone without negative curvature, (motions)
-    real(wp), intent(inout) :: shares(:)
+    real(wp), intent(inout) :: coefficients(:)
     !> True: there is negative curvature
     logical, intent(out) :: negative
     real(wp) :: vectors(size(forces), size(forces)), factor(size(forces), size(forces)), values(size(forces))
@@ -50,9 +50,9 @@ contains
     call dsygv(1, 'V', 'L', size(forces), vectors, size(forces), factor, size(forces), values, work, size(work), info)
     negative = .false.
     if (info /= 0) return
-    negative = values(1) < -least_eigenvalue*maxval(abs(values))
+    negative = values(1) < -min_eigenvalue*maxval(abs(values))
     if (.not. negative) return
     values = abs(values)
-    shares = matmul(vectors, matmul(forces, vectors)/max(values, least_eigenvalue*maxval(values)))
-  end subroutine find_descending
-end module descending_directions
+    coefficients = matmul(vectors, matmul(forces, vectors)/max(values, min_eigenvalue*maxval(values)))
+  end subroutine find_descent_direction
+end module descent_directions

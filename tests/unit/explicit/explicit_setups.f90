@@ -1,5 +1,5 @@
 !> Small plates moved by central differences, for the tests of these.
-module explicit_scenes
+module explicit_setups
   use central_difference_energies, only: book_energies
   use central_difference_parameters, only: central_difference_parameters_t
   use central_differences, only: central_difference_t
@@ -12,7 +12,7 @@ module explicit_scenes
   use model_building, only: create_model
   use models, only: model_t
   use plate_options, only: kinematics_linear, mass_lumped
-  use scenes, only: scene_t
+  use setups, only: setup_t
   use states, only: new_state, state_t
   implicit none
   private
@@ -42,13 +42,13 @@ module explicit_scenes
 contains
 
   !> A free plate of 40 mm by 30 mm of carbon and epoxy with linear strains.
-  pure function laminated_plate(angles, thickness, elements) result(scene)
+  pure function laminated_plate(angles, thickness, elements) result(setup)
     !> Angles of the plies, degrees, and thickness of them all
     real(wp), intent(in) :: angles(:), thickness
     !> Elements along both sides
     integer, intent(in) :: elements(2)
-    !> The scene
-    type(scene_t) :: scene
+    !> The setup
+    type(setup_t) :: setup
     type(material_t) :: material
 
     material%name = 'ply'
@@ -59,35 +59,35 @@ contains
     material%g13 = 4.5e9_wp
     material%g23 = 2.98e9_wp
     material%nu12 = 0.309_wp
-    scene%kinematics = kinematics_linear
-    scene%plate%length = [0.04_wp, 0.03_wp]
-    scene%plate%edges = edge_free
-    scene%plate%in_plane_fixed = .false.
-    scene%mesh%elements = elements
-    scene%mesh%mass = mass_lumped
-    scene%materials = [material]
-    allocate (scene%laminate%material(size(angles)), source=1)
-    allocate (scene%laminate%thickness(size(angles)), source=thickness/size(angles))
-    scene%laminate%angle = angles
+    setup%kinematics = kinematics_linear
+    setup%plate%length = [0.04_wp, 0.03_wp]
+    setup%plate%edges = edge_free
+    setup%plate%in_plane_fixed = .false.
+    setup%mesh%elements = elements
+    setup%mesh%mass = mass_lumped
+    setup%materials = [material]
+    allocate (setup%laminate%material(size(angles)), source=1)
+    allocate (setup%laminate%thickness(size(angles)), source=thickness/size(angles))
+    setup%laminate%angle = angles
   end function laminated_plate
 
   !> Holds all plies together by cohesive laws all over the plate.
-  pure subroutine add_interfaces(scene, strength, toughness)
-    !> The scene
-    type(scene_t), intent(inout) :: scene
+  pure subroutine add_interfaces(setup, strength, toughness)
+    !> The setup
+    type(setup_t), intent(inout) :: setup
     !> Strength, and toughness of opening and of shear
     real(wp), intent(in) :: strength, toughness(2)
     integer :: i
 
-    allocate (scene%delaminations(size(scene%laminate%angle) - 1))
-    do i = 1, size(scene%delaminations)
-      scene%delaminations(i)%below_ply = i
-      scene%delaminations(i)%law = law_cohesive
-      scene%delaminations(i)%strength_opening = strength
-      scene%delaminations(i)%strength_shear = strength
-      scene%delaminations(i)%toughness_opening = toughness(1)
-      scene%delaminations(i)%toughness_shear = toughness(2)
-      scene%delaminations(i)%zone = 2*scene%plate%length
+    allocate (setup%delaminations(size(setup%laminate%angle) - 1))
+    do i = 1, size(setup%delaminations)
+      setup%delaminations(i)%below_ply = i
+      setup%delaminations(i)%law = law_cohesive
+      setup%delaminations(i)%strength_opening = strength
+      setup%delaminations(i)%strength_shear = strength
+      setup%delaminations(i)%toughness_opening = toughness(1)
+      setup%delaminations(i)%toughness_shear = toughness(2)
+      setup%delaminations(i)%zone = 2*setup%plate%length
     end do
   end subroutine add_interfaces
 
@@ -99,31 +99,31 @@ contains
     scattered = sin(real(37*number, wp))
   end function scattered
 
-  !> Builds the model of a scene.
-  subroutine build(scene, model)
-    !> The scene
-    type(scene_t), intent(in) :: scene
+  !> Builds the model of a setup.
+  subroutine build(setup, model)
+    !> The setup
+    type(setup_t), intent(in) :: setup
     !> Its model on this rank alone
     type(model_t), intent(out) :: model
     type(communicator_t) :: alone
     type(error_t), allocatable :: error
 
-    call create_model(scene, alone, model, error)
+    call create_model(setup, alone, model, error)
     if (allocated(error)) error stop 'There is no such plate.'
   end subroutine build
 
   !> Puts the plate at rest.
-  subroutine begin(self, scene, parameters, softness)
+  subroutine begin(self, setup, parameters, softness)
     !> The run
     class(explicit_run_t), intent(out) :: self
-    !> The scene
-    type(scene_t), intent(in) :: scene
+    !> The setup
+    type(setup_t), intent(in) :: setup
     !> How steps are taken
     type(central_difference_parameters_t), intent(in) :: parameters
     !> Part of the elements' stiffness that is left
     real(wp), intent(in), optional :: softness
 
-    call build(scene, self%model)
+    call build(setup, self%model)
     self%now = new_state(self%model)
     if (present(softness)) self%now%plies%stiffness = softness*self%now%plies%stiffness
     call self%method%start(self%model, parameters, self%now)
@@ -185,4 +185,4 @@ contains
     call book_energies(self%method, self%model, self%now)
     error = self%now%ledger%error()
   end function ledger_error
-end module explicit_scenes
+end module explicit_setups

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Holds meshes and steps that `&case accuracy` chooses against semi-analytic answers. See README.md."""
+"""Holds meshes and steps that `&case accuracy` chooses against semi-analytic responses. See README.md."""
 import argparse
 import csv
 import json
@@ -13,9 +13,9 @@ import tempfile
 
 import numpy as np
 
-from modal_impact import Scene, answer
+from modal_impact import Model, response
 
-# One thread, so that processor time is comparable; Open MPI refuses root unless told twice.
+# One thread, so that processor time is comparable; Open MPI refuses root unless asked twice.
 ENVIRONMENT = dict(os.environ, OMP_NUM_THREADS='1', OPENBLAS_NUM_THREADS='1',
                    OMPI_ALLOW_RUN_AS_ROOT='1', OMPI_ALLOW_RUN_AS_ROOT_CONFIRM='1')
 
@@ -37,15 +37,15 @@ def limit_time(seconds):
     resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
 
 
-def random_scenes(count, seed):
+def random_models(count, seed):
     """Cross-ply plates and balls of all sizes that low-velocity impact knows, all laws."""
     random = np.random.default_rng(seed)
 
     def spread(low, high):
         return float(f'{math.exp(random.uniform(math.log(low), math.log(high))):.4g}')
 
-    scenes = []
-    while len(scenes) < count:
+    models = []
+    while len(models) < count:
         plies = int(random.integers(1, 25))
         half = [int(90*random.integers(0, 2)) for _ in range((plies + 1)//2)]
         angles = half + half[:plies//2][::-1]
@@ -54,27 +54,27 @@ def random_scenes(count, seed):
         length = (longer, float(f'{longer*random.uniform(0.5, 1):.4g}'))
         moduli = (spread(40e9, 200e9), spread(6e9, 12e9), spread(3e9, 7e9), spread(3e9, 7e9), spread(2.5e9, 5e9), 0.3)
         radius = spread(3e-3, 30e-3)
-        scene = Scene(length, angles, ply, moduli, spread(1400, 2000), spread(1e-4, 10), spread(0.3, 30), radius,
+        model = Model(length, angles, ply, moduli, spread(1400, 2000), spread(1e-4, 10), spread(0.3, 30), radius,
                       float(f'{4/3*math.sqrt(radius)*moduli[1]:.5g}'),
-                      str(random.choice(['hertz', 'tan_sun', 'yang_sun'])), name=f'scene_{len(scenes) + 1}')
-        if 10 < min(length)/scene.thickness < 1000:
-            scenes.append(scene)
-    return scenes
+                      str(random.choice(['hertz', 'tan_sun', 'yang_sun'])), name=f'model_{len(models) + 1}')
+        if 10 < min(length)/model.thickness < 1000:
+            models.append(model)
+    return models
 
 
-def deck_of(scene, case='', mesh='', impactor='', time='', more=''):
-    """The scene as a deck."""
-    law = ("law='hertz'" if scene.law == 'hertz' else
-           f"law='tan_sun' dent='{scene.law}' q={scene.q} alpha_cr={scene.alpha_cr} " +
-           (f'beta={scene.beta}' if scene.law == 'tan_sun' else ''))
-    fields = {key: getattr(scene, key) for key in ('name', 'length', 'moduli', 'density', 'ply', 'mass', 'velocity',
+def deck_of(model, case='', mesh='', impactor='', time='', more=''):
+    """The model as a deck."""
+    law = ("law='hertz'" if model.law == 'hertz' else
+           f"law='tan_sun' dent='{model.law}' q={model.q} alpha_cr={model.alpha_cr} " +
+           (f'beta={model.beta}' if model.law == 'tan_sun' else ''))
+    fields = {key: getattr(model, key) for key in ('name', 'length', 'moduli', 'density', 'ply', 'mass', 'velocity',
                                                    'radius', 'k')}
-    return DECK.format(**fields, angles=','.join(map(str, scene.angles)), law=law, case=case, mesh=mesh,
+    return DECK.format(**fields, angles=','.join(map(str, model.angles)), law=law, case=case, mesh=mesh,
                        impactor=impactor, time=time, more=more)
 
 
 class Run:
-    """One run: exit code, processor time, log, history, and how far it is from the semi-analytic answer."""
+    """One run: exit code, processor time, log, history, and how far it is from the semi-analytic response."""
 
     def __init__(self, program, deck, name, seconds=60):
         with tempfile.TemporaryDirectory() as folder:
@@ -121,28 +121,28 @@ def over_estimates(summary, answered):
             for name, value in exact.items()]
 
 
-def compare(program, scene, case, seconds=60):
+def compare(program, model, case, seconds=60):
     """One row of the table: the run with some keys of the case, its errors, and these over its estimates."""
-    run = Run(program, deck_of(scene, case=case), scene.name, seconds)
+    run = Run(program, deck_of(model, case=case), model.name, seconds)
     if run.code:
         return run, None, None
-    tau = scene.contact_time()
+    tau = model.contact_time()
     end = run.key('time', 'end')[0]
-    # A long contact answers to low modes: its peak and history change by less than 0.1 % with twice as many.
+    # A long contact depends on low modes: its peak and history change by less than 0.1 % with twice as many.
     long = end > 300*tau
-    answered = answer(scene, run.key('mesh', 'patch')[0], end, *((20, 20) if long else (60, 50)))
+    answered = response(model, run.key('mesh', 'patch')[0], end, *((20, 20) if long else (60, 50)))
     return run, run.errors(*answered[:2]), over_estimates(run.summary, answered)
 
 
 def named_by(said, summary, bound):
-    """What tells a user that a scene may miss: a warning of the check, or the run's estimate beyond the bound, %."""
+    """What informs a user that a model may miss: a warning of the check, or the run's estimate beyond the bound, %."""
     estimate = summary.get('estimated_errors', {}).get('peak_force') or 0
     beyond = summary and 100*estimate > bound*summary['peak_force']
     return [name for name, tells in (('check', ': warning:' in said), ('estimate', beyond)) if tells]
 
 
 def main():
-    """Run the scenes and print the table."""
+    """Run the models and print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('program')
     parser.add_argument('--accuracy', default="'standard'", help="a name in quotes of the deck, or a number in %%")
@@ -150,25 +150,25 @@ def main():
     parser.add_argument('--count', type=int, default=40)
     parser.add_argument('--seed', type=int, default=1)
     parser.add_argument('--longest', type=float, default=2000,
-                        help='contacts that last more rises than this have no answer here')
+                        help='contacts that last more rises than this have no response here')
     parser.add_argument('--seconds', type=int, default=60, help='processor time after which a run is ended')
-    parser.add_argument('--only', type=int, nargs='+', help='numbers of scenes')
+    parser.add_argument('--only', type=int, nargs='+', help='numbers of models')
     parser.add_argument('--case', default='', help='more keys of &case')
-    parser.add_argument('--at-least', type=int, default=0, help='scenes within the bounds, or else exit code 1')
+    parser.add_argument('--at-least', type=int, default=0, help='models within the bounds, or else exit code 1')
     options = parser.parse_args()
-    within, held, seconds, answered, told = 0, 0, [], 0, np.zeros(4, int)
-    print('scene      peak, %  history, %  elements  steps  in a rise  end/rise  processor, s  over the estimates')
-    for number, scene in enumerate(random_scenes(options.count, options.seed), 1):
+    within, held, seconds, answered, printed = 0, 0, [], 0, np.zeros(4, int)
+    print('model      peak, %  history, %  elements  steps  in a rise  end/rise  processor, s  over the estimates')
+    for number, model in enumerate(random_models(options.count, options.seed), 1):
         if options.only and number not in options.only:
             continue
-        tau = scene.contact_time()
+        tau = model.contact_time()
         said = subprocess.run([options.program, 'check', '/dev/stdin'], env=ENVIRONMENT, capture_output=True, text=True,
-                              input=deck_of(scene, case=f'accuracy={options.accuracy}'), check=False).stdout
+                              input=deck_of(model, case=f'accuracy={options.accuracy}'), check=False).stdout
         last = re.search(r'end of the last contact +(\S+)', said)
         if last and float(last[1]) > options.longest*tau:
-            print(f'{scene.name:9s}  the contact lasts {float(last[1])/tau:.0f} rises', *named_by(said, {}, 0))
+            print(f'{model.name:9s}  the contact lasts {float(last[1])/tau:.0f} rises', *named_by(said, {}, 0))
             continue
-        run, errors, ratios = compare(options.program, scene, f'accuracy={options.accuracy} {options.case}',
+        run, errors, ratios = compare(options.program, model, f'accuracy={options.accuracy} {options.case}',
                                      options.seconds)
         seconds.append(run.seconds)
         answered += 1
@@ -176,20 +176,20 @@ def main():
         held += bool(names)
         if run.code:
             lines = run.said.splitlines() or ['']
-            print(f'{scene.name:9s}  exit code {run.code}: {lines[-1][:90]}', *names, flush=True)
+            print(f'{model.name:9s}  exit code {run.code}: {lines[-1][:90]}', *names, flush=True)
             continue
         good = abs(errors[0])*100 <= options.bounds[0] and errors[1]*100 <= options.bounds[1]
         within += good
         held += good and not names
         elements = 'x'.join(f'{n:.0f}' for n in run.key('mesh', 'elements'))
         step = run.key('time', 'step')[0]
-        print(f'{scene.name:9s}  {100*errors[0]:+7.2f}  {100*errors[1]:10.2f}  {elements:>8s}  {run.steps:5d}'
+        print(f'{model.name:9s}  {100*errors[0]:+7.2f}  {100*errors[1]:10.2f}  {elements:>8s}  {run.steps:5d}'
               f'  {tau/step:9.1f}  {run.time[-1]/tau:8.1f}  {run.seconds:12.2f}  '
               f'{" ".join(f"{ratio:5.2f}" for ratio in ratios)}{"" if good else "  misses"}', *names, flush=True)
-        told += np.array(ratios) <= 2
+        printed += np.array(ratios) <= 2
     print(f'{within} of {answered} within {options.bounds[0]:g} % and {options.bounds[1]:g} %; {held} within '
-          f'or named; processor time of the median scene {np.median(seconds):.2f} s')
-    print('within twice the estimate: peak {}, its time {}, time in contact {}, velocity {}'.format(*told))
+          f'or named; processor time of the median model {np.median(seconds):.2f} s')
+    print('within twice the estimate: peak {}, its time {}, time in contact {}, velocity {}'.format(*printed))
     if within < options.at_least:
         raise SystemExit(1)
 

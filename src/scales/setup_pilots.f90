@@ -1,31 +1,31 @@
-!> What a step and a mesh are worth for a scene, by pilot calculations: the largest step and the largest elements that
+!> What a step and a mesh are worth for a setup, by pilot calculations: the largest step and the largest elements that
 !> keep peak and history of the force within an error.
-module scene_pilots
+module setup_pilots
   use kinds, only: wp
   use mathematical_constants, only: pi
   use modal_plates, only: modal_plate_t, reduced
   use pilot_impacts, only: pilot_t, run_pilot, difference, bound_of_difference, difference_at_peak, &
                            figures_of
-  use scene_scales, only: scene_scales_t, plate_modes, contact_side
-  use scenes, only: scene_t
+  use setup_scales, only: setup_scales_t, plate_modes, contact_side
+  use setups, only: setup_t
   implicit none
   private
-  public :: scene_pilot_t, scene_outlook_t, start_pilot, contact_end, largest_step, largest_cell, outlook_of
+  public :: setup_pilot_t, expected_scales_t, start_pilot, contact_end, largest_step, largest_cell, expected_scales_of
 
-  !> A scene made ready for pilot calculations.
-  type :: scene_pilot_t
-    !> The scene
-    type(scene_t) :: scene
+  !> A setup made ready for pilot calculations.
+  type :: setup_pilot_t
+    !> The setup
+    type(setup_t) :: setup
     !> Its scales
-    type(scene_scales_t) :: scales
+    type(setup_scales_t) :: scales
     !> The plate with all modes that any step considered follows
     type(modal_plate_t) :: plate
-  end type scene_pilot_t
+  end type setup_pilot_t
 
   !> What a run with the mesh and step of the deck is to show.
-  type :: scene_outlook_t
-    !> Scales of the scene
-    type(scene_scales_t) :: scales
+  type :: expected_scales_t
+    !> Scales of the setup
+    type(setup_scales_t) :: scales
     !> True: there is an impact to look at, and the rest holds
     logical :: of_impact = .false.
     !> Largest force, indentation and deflection
@@ -38,12 +38,13 @@ module scene_pilots
     real(wp) :: edge = 0
     !> Relative errors of the force's peak and history, by the step and by the mesh; negative: not known
     real(wp) :: step_error(2) = -1, mesh_error(2) = -1
-    !> Errors by step and mesh together of the figures that a summary tells, in the order of `figures_of`; negative: not
+    !> Errors by step and mesh together of the figures that a summary reports, in the order of `figures_of`; negative:
+    !> not
     !> known
     real(wp) :: figure_error(5) = -1
     !> Side of the area that carries the contact force, and what a larger patch changes of peak and history
     real(wp) :: contact_side = 0, patch_error(2) = -1
-  end type scene_outlook_t
+  end type expected_scales_t
 
   !> Modes are listed up to this part of the inverse of a step; beyond, a step follows none and they act by stiffness.
   real(wp), parameter :: followed = 5
@@ -54,13 +55,13 @@ module scene_pilots
   !> method is of second order, and a step of a tenth of the contact time is about 1 % off.
   real(wp), parameter :: first_steps = 2, fine_steps = 4.5_wp
   !> Steps in one contact time up to which modes are kept at hand.
-  real(wp), parameter :: most_fine = 128
+  real(wp), parameter :: max_fine = 128
   !> Most steps of a pilot: they take a tenth of a second, and a run of as many hours.
-  integer, parameter :: most_steps = 262144
+  integer, parameter :: max_steps = 262144
   !> Steps that a contact takes at least.
-  integer, parameter :: least_steps = 24
+  integer, parameter :: min_steps = 24
   !> Elements in a wave of first contact with an error of 1 %, and the power of the error that their side grows with.
-  !> With 3.1 and 3.5 the peak of two random scenes was 1.33 and 1.09 % off; the history's error falls with the power
+  !> With 3.1 and 3.5 the peak of two random setups was 1.33 and 1.09 % off; the history's error falls with the power
   !> 3.6 of their number.
   real(wp), parameter :: wave_elements = 4.5_wp, wave_power = 1/3.6_wp
   !> The fewest elements in a wave that this holds for.
@@ -74,24 +75,24 @@ module scene_pilots
 
 contains
 
-  !> Makes a scene ready.
-  pure function start_pilot(scene, scales) result(pilot)
-    !> The scene, with an impactor that has a velocity
-    type(scene_t), intent(in) :: scene
+  !> Makes a setup ready.
+  pure function start_pilot(setup, scales) result(pilot)
+    !> The setup, with an impactor that has a velocity
+    type(setup_t), intent(in) :: setup
     !> Its scales
-    type(scene_scales_t), intent(in) :: scales
+    type(setup_scales_t), intent(in) :: scales
     !> The pilot
-    type(scene_pilot_t) :: pilot
+    type(setup_pilot_t) :: pilot
 
-    pilot%scene = scene
+    pilot%setup = setup
     pilot%scales = scales
-    pilot%plate = plate_modes(scene, followed*most_fine/scales%contact_time)
+    pilot%plate = plate_modes(setup, followed*max_fine/scales%contact_time)
   end function start_pilot
 
   !> A pilot calculation with some step; `complete` is false where it would take too long.
   pure function run_of(self, step, end, cell) result(run)
     !> The pilot
-    type(scene_pilot_t), intent(in) :: self
+    type(setup_pilot_t), intent(in) :: self
     !> Step
     real(wp), intent(in) :: step
     !> End; 0: that of the contact
@@ -105,78 +106,78 @@ contains
 
     plate = reduced(self%plate, followed/step)
     if (cell > 0) call disperse(plate, cell)
-    steps = most_steps
+    steps = max_steps
     if (end > 0) steps = min(steps, max(1, nint(end/step)))
-    run = run_pilot(plate, self%scene%impactor, self%scene%indentation, step, steps, end > 0)
+    run = run_pilot(plate, self%setup%impactor, self%setup%indentation, step, steps, end > 0)
     if (end > 0) run%complete = steps >= nint(end/step)
   end function run_of
 
   !> The contact from touch to end by a first, coarse pilot; looked at no longer than the run lasts. Where a heavy
-  !> impactor rests on the plate for longer than such steps can tell, they are longer.
+  !> impactor rests on the plate for longer than such steps can resolve, they are longer.
   pure function contact_end(self, end) result(run)
     !> The pilot
-    type(scene_pilot_t), intent(in) :: self
+    type(setup_pilot_t), intent(in) :: self
     !> End of the run; 0: not known
     real(wp), intent(in) :: end
     !> What was found
     type(pilot_t) :: run
-    real(wp) :: looked_at
+    real(wp) :: horizon
 
-    looked_at = end
-    if (.not. end > 0) looked_at = waited*pi*sqrt(self%scene%impactor%mass*self%scales%compliance)
-    run = run_of(self, max(self%scales%contact_time/first_steps, looked_at/most_steps), end, 0.0_wp)
+    horizon = end
+    if (.not. end > 0) horizon = waited*pi*sqrt(self%setup%impactor%mass*self%scales%compliance)
+    run = run_of(self, max(self%scales%contact_time/first_steps, horizon/max_steps), end, 0.0_wp)
   end function contact_end
 
   !> What a run is to show with a step and elements of some side. The method is of second order in the step.
-  pure function outlook_of(scene, scales, step, end, edge) result(outlook)
-    !> The scene, with an impactor that has a velocity
-    type(scene_t), intent(in) :: scene
+  pure function expected_scales_of(setup, scales, step, end, edge) result(expected)
+    !> The setup, with an impactor that has a velocity
+    type(setup_t), intent(in) :: setup
     !> Its scales
-    type(scene_scales_t), intent(in) :: scales
+    type(setup_scales_t), intent(in) :: scales
     !> Step and end of the run
     real(wp), intent(in) :: step, end
     !> Side of the elements near the struck point
     real(wp), intent(in) :: edge
     !> Forces, times and errors
-    type(scene_outlook_t) :: outlook
-    type(scene_pilot_t) :: pilot
+    type(expected_scales_t) :: expected
+    type(setup_pilot_t) :: pilot
     type(pilot_t) :: coarse, fine, meshed
 
-    outlook%of_impact = .true.
-    outlook%edge = edge
-    pilot%scene = scene
+    expected%of_impact = .true.
+    expected%edge = edge
+    pilot%setup = setup
     pilot%scales = scales
-    pilot%plate = plate_modes(scene, max(followed/step, min(2*followed/step, excited/scales%contact_time)))
+    pilot%plate = plate_modes(setup, max(followed/step, min(2*followed/step, excited/scales%contact_time)))
     coarse = run_of(pilot, step, end, 0.0_wp)
-    if (nint(end/(step/2)) <= most_steps) then
+    if (nint(end/(step/2)) <= max_steps) then
       fine = run_of(pilot, step/2, end, 0.0_wp)
-      outlook%step_error = difference(coarse, fine, 2)*4/3
+      expected%step_error = difference(coarse, fine, 2)*4/3
     else
       fine = coarse
     end if
     if (coarse%complete) then
       meshed = run_of(pilot, step, end, edge)
-      outlook%mesh_error = difference(meshed, coarse, 1)
-      if (outlook%step_error(1) >= 0) outlook%figure_error = errors_of_figures(scales, edge, coarse, fine, meshed)
+      expected%mesh_error = difference(meshed, coarse, 1)
+      if (expected%step_error(1) >= 0) expected%figure_error = errors_of_figures(scales, edge, coarse, fine, meshed)
     end if
-    outlook%force = fine%peak
-    outlook%indentation = fine%indentation
-    outlook%deflection = fine%deflection
-    outlook%contacts = fine%contacts
-    outlook%last_contact = fine%last_contact
-    outlook%contact_side = contact_side(scene, fine%indentation)
-    if (.not. scene%mesh%patch > outlook%contact_side) return
-    pilot%scene%mesh%patch = outlook%contact_side
-    pilot%plate = plate_modes(pilot%scene, followed/step)
-    outlook%patch_error = difference(run_of(pilot, step, end, 0.0_wp), coarse, 1)
-  end function outlook_of
+    expected%force = fine%peak
+    expected%indentation = fine%indentation
+    expected%deflection = fine%deflection
+    expected%contacts = fine%contacts
+    expected%last_contact = fine%last_contact
+    expected%contact_side = contact_side(setup, fine%indentation)
+    if (.not. setup%mesh%patch > expected%contact_side) return
+    pilot%setup%mesh%patch = expected%contact_side
+    pilot%plate = plate_modes(pilot%setup, followed/step)
+    expected%patch_error = difference(run_of(pilot, step, end, 0.0_wp), coarse, 1)
+  end function expected_scales_of
 
-  !> Errors by step and mesh together of what a summary tells. That of the largest force is at least what the forces
+  !> Errors by step and mesh together of what a summary reports. That of the largest force is at least what the forces
   !> beside it are off, and, where the force of first contact is the largest, what its waves miss in the elements around
   !> the patch.
   pure function errors_of_figures(scales, edge, coarse, fine, meshed) result(errors)
-    !> Scales of the scene
-    type(scene_scales_t), intent(in) :: scales
+    !> Scales of the setup
+    type(setup_scales_t), intent(in) :: scales
     !> Side of the elements near the struck point
     real(wp), intent(in) :: edge
     !> Pilots with the step of the run, with half of it, and with the mesh
@@ -196,8 +197,8 @@ contains
 
   !> Side of the elements around the patch with which the waves of first contact miss a part of its force.
   pure real(wp) function edge_for(scales, error) result(edge)
-    !> Scales of the scene
-    type(scene_scales_t), intent(in) :: scales
+    !> Scales of the setup
+    type(setup_scales_t), intent(in) :: scales
     !> That part
     real(wp), intent(in) :: error
 
@@ -206,8 +207,8 @@ contains
 
   !> The part of the force of first contact that its waves miss with such elements: `edge_for`, inverted.
   pure real(wp) function error_with(scales, edge) result(error)
-    !> Scales of the scene
-    type(scene_scales_t), intent(in) :: scales
+    !> Scales of the setup
+    type(setup_scales_t), intent(in) :: scales
     !> Side of the elements
     real(wp), intent(in) :: edge
 
@@ -217,7 +218,7 @@ contains
   !> The largest step whose errors stay within bounds.
   pure subroutine largest_step(self, end, bounds, step, error)
     !> The pilot
-    type(scene_pilot_t), intent(in) :: self
+    type(setup_pilot_t), intent(in) :: self
     !> Time looked at
     real(wp), intent(in) :: end
     !> Relative errors of peak and history allowed
@@ -232,14 +233,14 @@ contains
 
     ! Coarse pilots could agree on what both miss, so each is held against the finest that can be had.
     finer = 1
-    do while (2*2**finer*least_steps <= most_steps)
-      if (2**finer*least_steps*self%scales%contact_time >= fine_steps/sqrt(bounds(1))*end) exit
+    do while (2*2**finer*min_steps <= max_steps)
+      if (2**finer*min_steps*self%scales%contact_time >= fine_steps/sqrt(bounds(1))*end) exit
       finer = finer + 1
     end do
     ratio = 2**finer
-    finest = run_of(self, end/(ratio*least_steps), end, 0.0_wp)
+    finest = run_of(self, end/(ratio*min_steps), end, 0.0_wp)
     do
-      steps = least_steps*2**finer/ratio
+      steps = min_steps*2**finer/ratio
       step = end/steps
       error = bound_of_difference(run_of(self, step, end, 0.0_wp), finest, ratio)/(1 - 1/real(ratio, wp)**2)
       if (all(error <= bounds) .or. ratio == 2) exit
@@ -251,7 +252,7 @@ contains
       coarse = run_of(self, longer, end, 0.0_wp)
       if (abs(coarse%peak/finest%peak - 1) <= bounds(1)) step = longer
     else if (finest%complete) then
-      ! The finest is better by the order of the method.
+      ! The error of the finest is less by the order of the method.
       step = finest%step
       error = error/4
     else
@@ -262,14 +263,14 @@ contains
   !> The largest elements whose errors stay within bounds.
   pure function largest_cell(self, step, end, bounds, follows) result(cell)
     !> The pilot
-    type(scene_pilot_t), intent(in) :: self
+    type(setup_pilot_t), intent(in) :: self
     !> Step
     real(wp), intent(in) :: step
     !> Time looked at
     real(wp), intent(in) :: end
     !> Relative errors of peak and history allowed
     real(wp), intent(in) :: bounds(2)
-    !> True: the step follows the impact within these bounds; a longer one tells nothing of the elements needed
+    !> True: the step follows the impact within these bounds; a longer one says nothing of the elements needed
     logical, intent(in) :: follows
     !> Side of the elements
     real(wp) :: cell
@@ -280,9 +281,9 @@ contains
     longer = 1
     if (follows) longer = max(1.0_wp, first_steps*step/self%scales%contact_time)
     exact = run_of(self, step, end, 0.0_wp)
-    ! Modes tell what waves do on the mesh, not what the first of them do in the elements around the patch. Steps longer
+    ! Modes give what waves do on the mesh, not what the first of them do in the elements around the patch. Steps longer
     ! than the rise pass over these; the shortest waves that they follow are longer by the root.
-    cell = min(minval(self%scene%plate%length)/4, &
+    cell = min(minval(self%setup%plate%length)/4, &
                edge_for(self%scales, bounds(1))*sqrt(longer))
     do while (cell > self%scales%wave_length/20)
       if (all(bound_of_difference(run_of(self, step, end, cell), exact, 1) <= bounds)) exit
@@ -302,4 +303,4 @@ contains
     rise = 1 + dispersion*maxval(plate%wave_number*cell, 1)**4
     plate%frequency = plate%frequency*rise
   end subroutine disperse
-end module scene_pilots
+end module setup_pilots

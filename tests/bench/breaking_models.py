@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Random scenes whose plies break: the energy that integrators lose, and what half the step changes.
-Usage: breaking_scenes.py IMPLAM [COUNT]
+"""Random models whose plies break: the energy that integrators lose, and what half the step changes.
+Usage: breaking_models.py IMPLAM [COUNT]
 
-Prints a line a run: scene, 1 for half the step, energy_algorithmic at the end, least and largest, energy_ply_damage
+Prints a line a run: model, 1 for half the step, energy_algorithmic at the end, least and largest, energy_ply_damage
 (all in % of the impact), fibre failures, steps, steps tried again, peak force."""
 
 import csv
@@ -16,14 +16,14 @@ LAYUPS = ("0,90,90,0", "0,90,0,90,90,0,90,0", "90,0,0,90", "0,0,90,90,90,90,0,0"
 
 
 def deck(seed, part):
-    """Return the deck of a scene with a part of its step."""
+    """Return the deck of a model with a part of its step."""
     chance = random.Random(seed)
     angles = chance.choice(LAYUPS)
     thickness = chance.uniform(1e-3, 3e-3)
     mass = chance.uniform(0.05, 0.8)
     energy = chance.uniform(2, 6) * (thickness / 1e-3)**1.5 * chance.choice([0.6, 1, 1.5])
     end = min(max(3.2 * (mass / (4e6 * thickness / 2e-3))**0.5, 480e-6), 3e-3)
-    return f"""&case name='scene' /
+    return f"""&case name='model' /
 &plate length={chance.uniform(0.03, 0.1)},{chance.uniform(0.03, 0.08)} edges='{chance.choice(["clamped", "simple"])}'
   in_plane='{chance.choice(["fixed", "free"])}' symmetry='quarter' /
 &mesh elements={chance.randint(6, 10)},{chance.randint(6, 10)} grading={chance.uniform(1, 3)}
@@ -42,11 +42,11 @@ def deck(seed, part):
 
 
 def figures(implam, folder, seed, part):
-    """Run a scene; return what is printed of it."""
-    path = Path(folder) / "scene.nml"
+    """Run a model; return what is printed of it."""
+    path = Path(folder) / "model.nml"
     path.write_text(deck(seed, part), encoding="utf-8")
     subprocess.run([implam, path, "--output", folder], check=True, capture_output=True)
-    with (Path(folder) / "scene_history.csv").open(encoding="utf-8") as file:
+    with (Path(folder) / "model_history.csv").open(encoding="utf-8") as file:
         rows = [{name: float(value) for name, value in row.items()} for row in csv.DictReader(file)]
     impact = max(row["energy_impactor"] for row in rows)
     lost = [100 * row["energy_algorithmic"] / impact for row in rows]
@@ -56,7 +56,7 @@ def figures(implam, folder, seed, part):
 
 
 def main(implam, count="20"):
-    """Run the scenes."""
+    """Run the models."""
     worst = 0
     with tempfile.TemporaryDirectory() as folder:
         for seed in range(int(count)):

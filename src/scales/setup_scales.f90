@@ -1,5 +1,5 @@
-!> Scales of a scene from its parameters alone: what its mesh and its steps have to resolve.
-module scene_scales
+!> Scales of a setup from its parameters alone: what its mesh and its steps have to resolve.
+module setup_scales
   use delamination_parameters, only: toughnesses
   use interface_strengths, only: interlaminar_strengths
   use interlaminar_stresses, only: unit_stresses_t, unit_stresses_of
@@ -9,21 +9,21 @@ module scene_scales
   use modal_plates, only: modal_plate_t, modal_plate_of
   use packed_matrices, only: unpacked, inverse
   use plies, only: ply_t
-  use scenes, only: scene_t
+  use setups, only: setup_t
   use stacking, only: section_t, stacked_plies, section_of
   use support_parameters, only: window_none, window_rectangle, window_circle
   use threshold_forces, only: effective_bending_stiffness, threshold_force
   implicit none
   private
-  public :: scene_scales_t, scales_of, plate_modes, contact_side, free_span, has_blow
+  public :: setup_scales_t, scales_of, plate_modes, contact_side, free_span, has_impact_velocity
 
-  !> Scales of a scene. It has many components because each is one line of the table that users read.
-  type :: scene_scales_t
+  !> Scales of a setup. It has many components because each is one line of the table that users read.
+  type :: setup_scales_t
     !> Thickness and mass per area of the laminate
     real(wp) :: thickness = 0, area_mass = 0
     !> Mean bending stiffness (E1 + E2)/2 h**3/12 as the section has it, (D11 + D22)/2
     real(wp) :: bending = 0
-    !> Mass of the whole plate
+    !> Mass of the full plate
     real(wp) :: plate_mass = 0
     !> Period of the plate's first bending, without rigid motion
     real(wp) :: first_period = 0
@@ -39,7 +39,7 @@ module scene_scales
     real(wp) :: threshold = 0
     !> Force at which interlaminar stresses reach the strength beside the patch; 0: no strength or no patch is known
     real(wp) :: onset = 0
-  end type scene_scales_t
+  end type setup_scales_t
 
   !> Hertz' contact of two bodies that move freely lasts 2.943 alpha_max/v, Goldsmith 1960.
   real(wp), parameter :: hertz_duration = 2.943_wp
@@ -48,33 +48,33 @@ module scene_scales
 
 contains
 
-  !> The scales. A scene without impactor has only those of its plate.
-  pure function scales_of(scene) result(scales)
-    !> The scene, checked
-    type(scene_t), intent(in) :: scene
+  !> The scales. A setup without impactor has only those of its plate.
+  pure function scales_of(setup) result(scales)
+    !> The setup, checked
+    type(setup_t), intent(in) :: setup
     !> Its scales
-    type(scene_scales_t) :: scales
+    type(setup_scales_t) :: scales
     type(section_t) :: section
     type(modal_plate_t) :: plate
     real(wp) :: bent
 
-    section = bending_section(scene)
-    scales%thickness = sum(scene%laminate%thickness)
+    section = bending_section(setup)
+    scales%thickness = sum(setup%laminate%thickness)
     scales%area_mass = section%mass(1)
     scales%bending = (section%stiffness(13) + section%stiffness(16))/2
-    scales%plate_mass = section%mass(1)*product(scene%plate%length)
-    plate = modal_plate_of(free_span(scene), free_edges(scene), section%stiffness, [1.0_wp, 0.0_wp, 0.0_wp], &
-                           loaded_side(scene), all_modes)
+    scales%plate_mass = section%mass(1)*product(setup%plate%length)
+    plate = modal_plate_of(free_span(setup), free_edges(setup), section%stiffness, [1.0_wp, 0.0_wp, 0.0_wp], &
+                           loaded_side(setup), all_modes)
     bent = minval(plate%frequency, mask=plate%frequency > 1.0e-6_wp*maxval(plate%frequency))
     if (section%mass(1) > 0) scales%first_period = 2*pi*sqrt(section%mass(1))/bent
     scales%compliance = sum(plate%weight/plate%frequency**2, mask=plate%frequency >= bent)
-    if (allocated(scene%delaminations)) &
-      scales%threshold = growth_threshold(scene, effective_bending_stiffness(section%stiffness))
-    scales%onset = onset_force(scene)
-    if (.not. has_blow(scene)) return
-    associate (m => scene%impactor%mass, v => scene%impactor%velocity, k => scene%indentation%k)
+    if (allocated(setup%delaminations)) &
+      scales%threshold = growth_threshold(setup, effective_bending_stiffness(section%stiffness))
+    scales%onset = onset_force(setup)
+    if (.not. has_impact_velocity(setup)) return
+    associate (m => setup%impactor%mass, v => setup%impactor%velocity, k => setup%indentation%k)
       scales%energy = m*v**2/2
-      ! The plate answers waves like a dashpot of 8 sqrt(D rho h) (Boussinesq; Olsson 1992).
+      ! The plate responds to waves like a dashpot of 8 sqrt(D rho h) (Boussinesq; Olsson 1992).
       scales%contact_time = min((8*sqrt(scales%bending*scales%area_mass)*v/k)**(2.0_wp/3)/v, &
                                 hertz_duration/2*(1.25_wp*m*v**2/k)**0.4_wp/v)
       scales%wave_length = 2*pi*(scales%bending/scales%area_mass)**0.25_wp*sqrt(scales%contact_time/pi)
@@ -82,23 +82,23 @@ contains
   end function scales_of
 
   !> True: an impactor comes with a velocity.
-  pure logical function has_blow(scene)
-    !> The scene
-    type(scene_t), intent(in) :: scene
+  pure logical function has_impact_velocity(setup)
+    !> The setup
+    type(setup_t), intent(in) :: setup
 
-    has_blow = scene%has_impactor .and. scene%impactor%mass > 0 .and. scene%impactor%velocity > 0 .and. &
-               scene%indentation%k > 0
-  end function has_blow
+    has_impact_velocity = setup%has_impactor .and. setup%impactor%mass > 0 .and. setup%impactor%velocity > 0 .and. &
+               setup%indentation%k > 0
+  end function has_impact_velocity
 
   !> Section of the laminate as it bends where its plane is free to stretch: D - B inverse(A) B (Reissner and Stavsky).
-  pure function bending_section(scene) result(section)
-    !> The scene
-    type(scene_t), intent(in) :: scene
+  pure function bending_section(setup) result(section)
+    !> The setup
+    type(setup_t), intent(in) :: setup
     !> Stiffness and mass
     type(section_t) :: section
     real(wp) :: extension(3, 3), coupling(3, 3), bending(3, 3)
 
-    section = section_of(stacked_plies(scene%laminate, scene%materials), scene%laminate%shear_correction)
+    section = section_of(stacked_plies(setup%laminate, setup%materials), setup%laminate%shear_correction)
     extension = unpacked(section%stiffness(1:6))
     coupling = unpacked(section%stiffness(7:12))
     bending = unpacked(section%stiffness(13:18)) - matmul(coupling, matmul(inverse(extension), coupling))
@@ -106,35 +106,35 @@ contains
                                 bending(3, 3)]
   end function bending_section
 
-  !> Modes of the scene's plate up to a frequency.
-  pure function plate_modes(scene, cutoff) result(plate)
-    !> The scene
-    type(scene_t), intent(in) :: scene
+  !> Modes of the setup's plate up to a frequency.
+  pure function plate_modes(setup, cutoff) result(plate)
+    !> The setup
+    type(setup_t), intent(in) :: setup
     !> Circular frequency
     real(wp), intent(in) :: cutoff
     !> The modes
     type(modal_plate_t) :: plate
     type(section_t) :: section
 
-    section = bending_section(scene)
-    plate = modal_plate_of(free_span(scene), free_edges(scene), section%stiffness, section%mass, &
-                           loaded_side(scene), cutoff)
+    section = bending_section(setup)
+    plate = modal_plate_of(free_span(setup), free_edges(setup), section%stiffness, section%mass, &
+                           loaded_side(setup), cutoff)
   end function plate_modes
 
   !> Lengths of what bends of the plate: all of it, or the window of its frame. A circular window counts as the square
   !> with the same first frequency, simply supported: 4.977/(radius)**2 for nu = .3 (Leissa, Vibration of Plates, NASA
   !> SP-160, 1969, table 2.4) and 2 pi**2/side**2.
-  pure function free_span(scene) result(length)
-    !> The scene
-    type(scene_t), intent(in) :: scene
+  pure function free_span(setup) result(length)
+    !> The setup
+    type(setup_t), intent(in) :: setup
     !> Along x and y
     real(wp) :: length(2)
     integer :: i
 
-    length = scene%plate%length
-    if (.not. allocated(scene%supports)) return
-    do i = 1, size(scene%supports)
-      associate (support => scene%supports(i))
+    length = setup%plate%length
+    if (.not. allocated(setup%supports)) return
+    do i = 1, size(setup%supports)
+      associate (support => setup%supports(i))
         if (support%shape == window_rectangle) length = min(length, support%window)
         if (support%shape == window_circle) length = min(length, sqrt(2/4.977_wp)*pi*support%radius)
       end associate
@@ -142,81 +142,81 @@ contains
   end function free_span
 
   !> Supports of its edges: a frame bears it simply.
-  pure function free_edges(scene) result(edges)
-    !> The scene
-    type(scene_t), intent(in) :: scene
+  pure function free_edges(setup) result(edges)
+    !> The setup
+    type(setup_t), intent(in) :: setup
     !> In the order of the deck
     integer :: edges(4)
 
-    edges = scene%plate%edges
-    if (.not. allocated(scene%supports)) return
-    if (any(scene%supports%shape /= window_none)) edges = edge_simple
+    edges = setup%plate%edges
+    if (.not. allocated(setup%supports)) return
+    if (any(setup%supports%shape /= window_none)) edges = edge_simple
   end function free_edges
 
-  !> Side of the loaded square; where the deck has none, as small as plate theory can tell.
-  pure real(wp) function loaded_side(scene) result(side)
-    !> The scene
-    type(scene_t), intent(in) :: scene
+  !> Side of the loaded square; where the deck has none, as small as plate theory can resolve.
+  pure real(wp) function loaded_side(setup) result(side)
+    !> The setup
+    type(setup_t), intent(in) :: setup
 
-    side = scene%mesh%patch
-    if (.not. side > 0) side = min(sum(scene%laminate%thickness), minval(scene%plate%length))
+    side = setup%mesh%patch
+    if (.not. side > 0) side = min(sum(setup%laminate%thickness), minval(setup%plate%length))
   end function loaded_side
 
   !> Side of the square in the plate's middle plane that carries the contact force. It is as large as the circle of
   !> contact by Hertz, and the force spreads at 45 degrees from the struck face down to the middle plane. What is
   !> smaller than the thickness isn't the plate's: the indentation law stands for it.
-  pure real(wp) function contact_side(scene, indentation) result(side)
-    !> The scene
-    type(scene_t), intent(in) :: scene
+  pure real(wp) function contact_side(setup, indentation) result(side)
+    !> The setup
+    type(setup_t), intent(in) :: setup
     !> Largest indentation
     real(wp), intent(in) :: indentation
     real(wp) :: radius
 
-    radius = scene%impactor%radius
+    radius = setup%impactor%radius
     ! Without a radius, that of the k which Sun's formula would give for a rigid ball.
     if (.not. radius > 0) &
-      radius = (0.75_wp*scene%indentation%k/scene%materials(scene%laminate%material(1))%e2)**2
-    side = sqrt(pi*radius*indentation) + sum(scene%laminate%thickness)
+      radius = (0.75_wp*setup%indentation%k/setup%materials(setup%laminate%material(1))%e2)**2
+    side = sqrt(pi*radius*indentation) + sum(setup%laminate%thickness)
   end function contact_side
 
-  !> Force at the middle under which the least tough of the scene's interfaces begin to grow.
-  pure real(wp) function growth_threshold(scene, bending) result(force)
-    !> The scene
-    type(scene_t), intent(in) :: scene
+  !> Force at the middle under which the least tough of the setup's interfaces begin to grow.
+  pure real(wp) function growth_threshold(setup, bending) result(force)
+    !> The setup
+    type(setup_t), intent(in) :: setup
     !> Effective bending stiffness
     real(wp), intent(in) :: bending
     real(wp) :: toughness(2), least
     integer :: i
 
     least = huge(least)
-    do i = 1, size(scene%delaminations)
-      toughness = toughnesses(scene%delaminations(i))
+    do i = 1, size(setup%delaminations)
+      toughness = toughnesses(setup%delaminations(i))
       least = min(least, toughness(2))
     end do
     force = 0
-    if (size(scene%delaminations) > 0) force = threshold_force(bending, least, size(scene%delaminations))
+    if (size(setup%delaminations) > 0) force = threshold_force(bending, least, size(setup%delaminations))
   end function growth_threshold
 
   !> Force at which stresses between two plies reach the strength just beside the loaded patch. The shear force is
   !> spread evenly over the patch's four sides, and decreases from there on as round a circle of that circumference.
-  pure real(wp) function onset_force(scene) result(force)
-    !> The scene
-    type(scene_t), intent(in) :: scene
+  pure real(wp) function onset_force(setup) result(force)
+    !> The setup
+    type(setup_t), intent(in) :: setup
     type(ply_t), allocatable :: plies(:)
     type(unit_stresses_t) :: unit
     real(wp) :: decrease, index
 
     force = 0
-    plies = stacked_plies(scene%laminate, scene%materials)
-    if (size(plies) < 2 .or. .not. scene%mesh%patch > 0) return
+    plies = stacked_plies(setup%laminate, setup%materials)
+    if (size(plies) < 2 .or. .not. setup%mesh%patch > 0) return
     unit = unit_stresses_of(plies)
     ! Q = P/(2 pi r): along the radius it decreases by Q/r, across it grows by as much.
-    decrease = pi/(2*scene%mesh%patch)
-    associate (strengths => interlaminar_strengths(plies, scene%materials, scene%delaminations), &
+    decrease = pi/(2*setup%mesh%patch)
+    associate (strengths => interlaminar_strengths(plies, setup%materials, setup%delaminations), &
                gradient => reshape([-decrease, 0.0_wp, 0.0_wp, decrease], [2, 2]))
       index = max(maxval(unit%onset_indices(strengths, [1.0_wp, 0.0_wp], gradient)), &
                   maxval(unit%onset_indices(strengths, [0.0_wp, 1.0_wp], -gradient)))
     end associate
-    if (index > 0) force = 4*scene%mesh%patch/index
+    if (index > 0) force = 4*setup%mesh%patch/index
   end function onset_force
-end module scene_scales
+end module setup_scales

@@ -1,5 +1,5 @@
-!> Small plates for the tests of dynamics: scenes, vibration modes, and plates released from a shape.
-module small_scenes
+!> Small plates for the tests of dynamics: setups, vibration modes, and plates released from a shape.
+module small_setups
   use kinds, only: wp
   use errors, only: error_t
   use communicators, only: communicator_t
@@ -8,7 +8,7 @@ module small_scenes
   use material_parameters, only: material_t
   use impact_parameters, only: law_hertz, integrator_conserving
   use pressure_loads, only: distribution_sine
-  use stepped_scenes, only: stepped_scene_t
+  use stepped_setups, only: stepped_setup_t
   use models, only: model_t
   use interface_states, only: new_interface_state
   use linear_solver_parameters, only: factorization_mumps
@@ -55,7 +55,7 @@ contains
   end function cross_ply_material
 
   !> A simply supported unit square with linear strains and no load.
-  pure function unit_plate(material, angles, thickness, elements, quarter) result(scene)
+  pure function unit_plate(material, angles, thickness, elements, quarter) result(setup)
     !> The material of all plies
     type(material_t), intent(in) :: material
     !> Angles of the plies, degrees, and thickness of them all
@@ -64,49 +64,49 @@ contains
     integer, intent(in) :: elements
     !> True: a quarter is modelled
     logical, intent(in) :: quarter
-    !> The scene
-    type(stepped_scene_t) :: scene
+    !> The setup
+    type(stepped_setup_t) :: setup
     integer :: plies
 
     plies = size(angles)
-    scene%kinematics = kinematics_linear
-    scene%plate%length = 1
-    scene%plate%edges = edge_simple
-    scene%plate%symmetry = merge(symmetry_quarter, symmetry_none, quarter)
-    scene%mesh%elements = elements
-    scene%materials = [material]
-    allocate (scene%laminate%material(plies), source=1)
-    scene%laminate%angle = angles
-    allocate (scene%laminate%thickness(plies), source=thickness/plies)
-    scene%stepping%equilibrium%tolerance = 1.0e-12_wp
+    setup%kinematics = kinematics_linear
+    setup%plate%length = 1
+    setup%plate%edges = edge_simple
+    setup%plate%symmetry = merge(symmetry_quarter, symmetry_none, quarter)
+    setup%mesh%elements = elements
+    setup%materials = [material]
+    allocate (setup%laminate%material(plies), source=1)
+    setup%laminate%angle = angles
+    allocate (setup%laminate%thickness(plies), source=thickness/plies)
+    setup%stepping%equilibrium%tolerance = 1.0e-12_wp
   end function unit_plate
 
   !> Adds a pressure of one half-sine along each side.
-  pure subroutine press(scene, value)
-    !> The scene
-    type(stepped_scene_t), intent(inout) :: scene
+  pure subroutine press(setup, value)
+    !> The setup
+    type(stepped_setup_t), intent(inout) :: setup
     !> Largest pressure
     real(wp), intent(in) :: value
 
-    scene%has_pressure = .true.
-    scene%pressure%value = value
-    scene%pressure%distribution = distribution_sine
+    setup%has_pressure = .true.
+    setup%pressure%value = value
+    setup%pressure%distribution = distribution_sine
   end subroutine press
 
   !> Adds an impactor that falls on a patch a fifth of the side wide.
-  pure subroutine coupling(scene, mass, velocity, k)
-    !> The scene
-    type(stepped_scene_t), intent(inout) :: scene
+  pure subroutine coupling(setup, mass, velocity, k)
+    !> The setup
+    type(stepped_setup_t), intent(inout) :: setup
     !> Mass and velocity of the impactor, contact stiffness
     real(wp), intent(in) :: mass, velocity, k
 
-    scene%has_impactor = .true.
-    scene%mesh%patch = 0.2_wp
-    scene%impactor%mass = mass
-    scene%impactor%velocity = velocity
-    scene%impactor%integrator = integrator_conserving
-    scene%indentation%law = law_hertz
-    scene%indentation%k = k
+    setup%has_impactor = .true.
+    setup%mesh%patch = 0.2_wp
+    setup%impactor%mass = mass
+    setup%impactor%velocity = velocity
+    setup%impactor%integrator = integrator_conserving
+    setup%indentation%law = law_hertz
+    setup%indentation%k = k
   end subroutine coupling
 
   !> Factors an operator of a model without separated layers.
@@ -208,4 +208,4 @@ contains
     stepper%now%ledger%strain = energy*model%mesh%multiplicity
     stepper%now%ledger%initial = stepper%now%ledger%strain
   end subroutine release_from
-end module small_scenes
+end module small_setups

@@ -1,5 +1,5 @@
-!> All that a deck asks to be modelled, as plain parameters. What a scene does not have costs nothing.
-module scenes
+!> All that a deck asks to be modelled, as plain parameters. What a setup does not have costs nothing.
+module setups
   use plate_options, only: kinematics_von_karman
   use mesh_parameters, only: plate_t, mesh_t
   use support_parameters, only: support_t
@@ -15,10 +15,10 @@ module scenes
   use pressure_loads, only: pressure_t
   implicit none
   private
-  public :: scene_t
+  public :: setup_t
 
-  !> One scene, with many components because a deck has that many groups.
-  type :: scene_t
+  !> One setup, with many components because a deck has that many groups.
+  type :: setup_t
     !> kinematics_von_karman or kinematics_linear
     integer :: kinematics = kinematics_von_karman
     !> Plate, mesh, materials and stacking
@@ -62,14 +62,14 @@ module scenes
     procedure :: load_factor_at
     !> Part that is left of what the plate has beyond its supports and lines at the start.
     procedure :: offset_left
-  end type scene_t
+  end type setup_t
 
 contains
 
   !> True: plies soften by their fracture energies, instead of losing stiffness at once.
   pure logical function has_crack_bands(self)
-    !> The scene
-    class(scene_t), intent(in) :: self
+    !> The setup
+    class(setup_t), intent(in) :: self
     integer :: i
 
     has_crack_bands = .false.
@@ -80,8 +80,8 @@ contains
 
   !> Ramps of lines over their full values at a time of a run by central differences.
   pure real(wp) function load_factor_at(self, time) result(load_factor)
-    !> The scene
-    class(scene_t), intent(in) :: self
+    !> The setup
+    class(setup_t), intent(in) :: self
     !> The time
     real(wp), intent(in) :: time
 
@@ -91,12 +91,12 @@ contains
   !> Part that is left at a time of what the motion had beyond supports and lines as the run began: smoothly it goes to
   !> zero until these begin to load. Without time for that it stays.
   pure real(wp) function offset_left(self, time) result(left)
-    !> The scene
-    class(scene_t), intent(in) :: self
+    !> The setup
+    class(setup_t), intent(in) :: self
     !> The time
     real(wp), intent(in) :: time
 
     left = 1
     if (self%load_start > 0) left = 1 - smooth_step(time/self%load_start, 0)
   end function offset_left
-end module scenes
+end module setups

@@ -1,13 +1,13 @@
 !> Straight falls of stress over strain, from the onset of damage to failure.
-module softening_falls
+module linear_softening
   use kinds, only: wp
   use ply_damage_parameters, only: fibre_tension
   implicit none
   private
-  public :: softening_t, fall_of, worse, damage_at, share_growth, weights_of_signs
+  public :: softening_t, linear_softening_of, more_damaged, damage_at, share_growth, weights_of_signs
 
   !> Least strain at failure over that at the onset: a longer element would snap back.
-  real(wp), parameter, public :: least_ratio = 1.25_wp
+  real(wp), parameter, public :: min_ratio = 1.25_wp
 
   !> One straight fall of stress over strain.
   type :: softening_t
@@ -41,18 +41,18 @@ contains
   end function weights_of_signs
 
   !> That of two falls with the larger damage.
-  pure function worse(signs)
+  pure function more_damaged(signs)
     !> Tension and compression
     type(softening_t), intent(in) :: signs(2)
     !> One of them
-    type(softening_t) :: worse
+    type(softening_t) :: more_damaged
 
-    worse = signs(1)
-    if (damage_at(signs(2)) > damage_at(signs(1))) worse = signs(2)
-  end function worse
+    more_damaged = signs(1)
+    if (damage_at(signs(2)) > damage_at(signs(1))) more_damaged = signs(2)
+  end function more_damaged
 
   !> The fall of a mode whose stress, undamaged, would stand at an exposure and store an energy.
-  pure function fall_of(exposure, energy, toughness, length, mode) result(fall)
+  pure function linear_softening_of(exposure, energy, toughness, length, mode) result(softening)
     !> Undamaged stress over that of the onset
     real(wp), intent(in) :: exposure
     !> Energy per volume that the strain would store undamaged
@@ -64,25 +64,25 @@ contains
     !> The mode
     integer, intent(in) :: mode
     !> The fall
-    type(softening_t) :: fall
+    type(softening_t) :: softening
 
-    fall%mode = mode
-    fall%exposure = exposure
+    softening%mode = mode
+    softening%exposure = exposure
     if (.not. exposure > 1) return
-    fall%ratio = max(least_ratio, toughness/length/(energy/exposure**2))
-    fall%energy = fall%ratio*(energy/exposure**2)
-  end function fall_of
+    softening%ratio = max(min_ratio, toughness/length/(energy/exposure**2))
+    softening%energy = softening%ratio*(energy/exposure**2)
+  end function linear_softening_of
 
   !> Damage on a fall: d = N (f - 1)/(f (N - 1)).
-  pure real(wp) function damage_at(fall) result(damage)
+  pure real(wp) function damage_at(softening) result(damage)
     !> The fall
-    type(softening_t), intent(in) :: fall
+    type(softening_t), intent(in) :: softening
 
     damage = 0
-    if (fall%exposure >= fall%ratio) then
+    if (softening%exposure >= softening%ratio) then
       damage = 1
-    else if (fall%exposure > 1) then
-      damage = min(1.0_wp, fall%ratio*(fall%exposure - 1)/(fall%exposure*(fall%ratio - 1)))
+    else if (softening%exposure > 1) then
+      damage = min(1.0_wp, softening%ratio*(softening%exposure - 1)/(softening%exposure*(softening%ratio - 1)))
     end if
   end function damage_at
 
@@ -98,4 +98,4 @@ contains
     to = ratio*(1 - damage_to) + damage_to
     growth = ratio*(damage_to - damage_from)/(from*to)
   end function share_growth
-end module softening_falls
+end module linear_softening

@@ -1,6 +1,6 @@
-!> How far layers have to reach that follow their damage: some cells ahead of it, over the cells next to them where half
+!> How far adaptive layers have to reach: some cells ahead of it, over the cells next to them where half
 !> of the interface's strength is reached by equilibrium through the thickness, and to any cell where all of it is.
-module layer_demand
+module required_zones
   use interface_fields, only: delaminated_above
   use interface_states, only: interface_state_t
   use joined_stacks, only: joined_stacks_of
@@ -10,7 +10,7 @@ module layer_demand
   use onset_index, only: onset_of_joined_cells
   implicit none
   private
-  public :: demanded_extents
+  public :: required_extents
 
   !> Part by which rounding may carry a length beyond another.
   real(wp), parameter :: rounded_off = 1.0e-9_wp
@@ -20,7 +20,7 @@ contains
   !> Extents that the zones have to have from now on: what any that follows needs all have, as intact layers beside a
   !> damaged interface yield otherwise than plies that are joined. What has to grow gets cells in store. Collective; the
   !> same on every rank.
-  function demanded_extents(model, stiffness, interfaces, displacement) result(extents)
+  function required_extents(model, stiffness, interfaces, displacement) result(extents)
     type(model_t), intent(in) :: model
     !> Section stiffness left in the elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
@@ -34,9 +34,9 @@ contains
     integer :: zone
 
     do zone = 1, size(extents, 2)
-      extents(:, zone) = model%scene%delaminations(zone)%zone
+      extents(:, zone) = model%setup%delaminations(zone)%zone
     end do
-    associate (follows => spread(model%scene%delaminations%follows, 1, 2))
+    associate (follows => spread(model%setup%delaminations%follows, 1, 2))
       if (.not. any(follows)) return
       needed = max(around_onset(model, stiffness, interfaces, displacement), &
                    with_margin(model, around_damage(model, interfaces), cells_ahead, &
@@ -46,7 +46,7 @@ contains
       where (follows .and. needed > extents*(1 + rounded_off)) &
         extents = with_margin(model, needed, cells_at_once, 0.0_wp)
     end associate
-  end function demanded_extents
+  end function required_extents
 
   !> Extents over the joined cells that the onset index asks for.
   function around_onset(model, stiffness, interfaces, displacement) result(extents)
@@ -65,7 +65,7 @@ contains
     onset = onset_of_joined_cells(model, joined_stacks_of(model, stiffness, delaminated_above(model, interfaces), &
                                                           displacement))
     do zone = 1, size(extents, 2)
-      extents(:, zone) = model%scene%delaminations(zone)%zone
+      extents(:, zone) = model%setup%delaminations(zone)%zone
       call extend(model, onset(:, zone), extents(:, zone))
     end do
   end function around_onset
@@ -152,4 +152,4 @@ contains
                         widened_extent(model%mesh%y_edges - model%mesh%struck(2), extents(2, zone), cells, least)]
     end do
   end function with_margin
-end module layer_demand
+end module required_zones

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 """Random impacts whose interfaces delaminate by the cohesive law, each run in several ways that must not matter.
-Usage: damaging_scenes.py IMPLAM [COUNT] [FIRST] [LEFT_OUT]     (ways to leave out, as two_ranks,three_ranks)
+Usage: damaging_models.py IMPLAM [COUNT] [FIRST] [LEFT_OUT]     (ways to leave out, as two_ranks,three_ranks)
 
-A scene is run as it is, and in the ways two_ranks, three_ranks, units (mm-t-s), turned by a right angle, mirrored,
+A model is run as it is, and in the ways two_ranks, three_ranks, units (mm-t-s), turned by a right angle, mirrored,
 stopped and gone on with, and perturbed: with G_c larger by 1e-12. What differs there is chaotic: a rounding elsewhere
-does the same. A scene passes if the run ends with 0, or with 3 and a sentence; if the energy dissipated is G_c times
+does the same. A model passes if the run ends with 0, or with 3 and a sentence; if the energy dissipated is G_c times
 the area to 1e-6; if it takes under a minute of the processor;
 and if all ways part the same points of the interfaces, fail the same plies of the same elements, and give its
-delaminated area. How far the areas are apart is told."""
+delaminated area. How far the areas are apart is reported."""
 
 import csv
 import os
@@ -35,8 +35,8 @@ os.environ |= {"OMP_NUM_THREADS": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1",
                "PRTE_MCA_hwloc_default_binding_policy": "none"}
 
 
-def scene(seed):
-    """Return the choices that make a scene, in SI."""
+def model(seed):
+    """Return the choices that make a model, in SI."""
     chance = random.Random(seed)
     layup = chance.choice(LAYUPS)
     thickness = chance.uniform(1e-3, 3e-3)
@@ -73,7 +73,7 @@ def deck(s, turned=False, mirrored=False, scale=(1, 1, 1)):
     groups = "\n".join(f"&delamination below_ply={below} G_c={s['G_c'] * toughness} law='cohesive' {starter} "
                        f"zone={s['zone'][x] * length},{s['zone'][y] * length} contact='{s['contact']}' "
                        f"friction={s['friction']} /" for below in s["interfaces"])
-    return f"""&case name='scene' kinematics='{s["kinematics"]}' /
+    return f"""&case name='model' kinematics='{s["kinematics"]}' /
 &plate length={s["length"][x] * length},{s["length"][y] * length} edges={",".join(f"'{edge}'" for edge in edges)} /
 &mesh elements={s["elements"][x]},{s["elements"][y]} patch={s["patch"] * length} cell={s["cell"] * length}
   core={s["zone"][x] * length},{s["zone"][y] * length} /
@@ -94,7 +94,7 @@ def deck(s, turned=False, mirrored=False, scale=(1, 1, 1)):
 
 
 def ended(command, stop_after=None):
-    """Run a command, told to stop after some seconds; return exit code, last line and processor time."""
+    """Run a command, stopped after some seconds; return exit code, last line and processor time."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     process = subprocess.Popen([str(word) for word in command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                                text=True)
@@ -108,7 +108,7 @@ def ended(command, stop_after=None):
 
 def row_of(folder, number):
     """Return a row of the history."""
-    with (folder / "scene_history.csv").open(encoding="utf-8") as file:
+    with (folder / "model_history.csv").open(encoding="utf-8") as file:
         return {name: float(value) for name, value in list(csv.DictReader(file))[number].items()}
 
 
@@ -118,9 +118,9 @@ def names_of(points):
 
 
 def damage_of(folder, place, unit):
-    """Return the points parted and the plies failed at the end, by where they are: `place` gives x and y in the scene
+    """Return the points separated and the plies failed at the end, by place: `place` gives x and y in the model
     as it is, `unit` that of length."""
-    with h5py.File(folder / "scene.h5") as file:
+    with h5py.File(folder / "model.h5") as file:
         last = file["times"][max(file["times"])]
         mesh = file["meshes"][max(file["meshes"])]
         points = mesh["coordinates"][:] / unit
@@ -135,15 +135,15 @@ def damage_of(folder, place, unit):
 def run_in(folder, text, implam, launcher=(), stop_after=None):
     """Run a deck; return exit code, last line, processor time and the last row of the history, if there is one."""
     folder.mkdir()
-    (folder / "scene.nml").write_text(text, encoding="utf-8")
-    code, said, seconds = ended([*launcher, implam, folder / "scene.nml", "--output", folder, "--profile"], stop_after)
+    (folder / "model.nml").write_text(text, encoding="utf-8")
+    code, said, seconds = ended([*launcher, implam, folder / "model.nml", "--output", folder, "--profile"], stop_after)
     if stop_after and code == EXIT_STOPPED:
         code, said, _ = ended([implam, "restart", folder])
-    return code, said, seconds, row_of(folder, -1) if (folder / "scene_history.csv").exists() else None
+    return code, said, seconds, row_of(folder, -1) if (folder / "model_history.csv").exists() else None
 
 
 def ways(s, seconds, implam, folder, left_out):
-    """Yield each way to run a scene: its name, exit code, last row, and the place and unit of its points."""
+    """Yield each way to run a model: its name, exit code, last row, and the place and unit of its points."""
     # Several ranks share the cores; a rank alone that yields would wait for everybody.
     mpirun = ("env", "OMPI_MCA_mpi_yield_when_idle=1", "mpirun", "--allow-run-as-root", "-n")
     changed = s | {"G_c": s["G_c"] * (1 + 1e-12)}
@@ -159,13 +159,13 @@ def ways(s, seconds, implam, folder, left_out):
 
 
 def as_it_is(x, y):
-    """Return a place of the scene as it is."""
+    """Return a place of the model as it is."""
     return x, y
 
 
 def faults_of(seed, implam, folder, left_out):
-    """Run a scene in all ways; return what is told of it, and what is wrong."""
-    s = scene(seed)
+    """Run a model in all ways; return what is reported of it, and what is wrong."""
+    s = model(seed)
     code, said, seconds, row = run_in(folder / "plain", deck(s), implam)
     if code == EXIT_CONVERGENCE and said:
         return f"ends with 3: {said}", []
@@ -196,14 +196,14 @@ def faults_of(seed, implam, folder, left_out):
 
 
 def main(implam, count="40", first="1", left_out=""):
-    """Print a line a scene, and how many pass."""
+    """Print a line a model, and how many pass."""
     passed = 0
     for seed in range(int(first), int(first) + int(count)):
         with tempfile.TemporaryDirectory() as folder:
-            told, faults = faults_of(seed, Path(implam).absolute(), Path(folder), left_out.split(","))
+            printed, faults = faults_of(seed, Path(implam).absolute(), Path(folder), left_out.split(","))
         passed += not faults
-        print(f"{seed}: {'; '.join([told, *faults])}", flush=True)
-    print(f"{passed} of {count} scenes pass.")
+        print(f"{seed}: {'; '.join([printed, *faults])}", flush=True)
+    print(f"{passed} of {count} models pass.")
 
 
 if __name__ == "__main__":

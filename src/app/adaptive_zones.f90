@@ -1,7 +1,7 @@
 !> Zones that grow in a run: layers where the damage needs them, said in the log, and kept with the checkpoint.
-module layer_following
+module adaptive_zones
   use archives, only: archive_t
-  use contact_following, only: take_contact
+  use contact_updates, only: take_contact
   use deck_contents, only: deck_t
   use delamination_parameters, only: delamination_t
   use errors, only: error_t
@@ -39,7 +39,7 @@ contains
     call advance_with_layers(model, stepper, deck%linear_solver, event, switched, error)
     if (allocated(error) .or. .not. switched) return
     do zone = 1, size(model%mesh%zones)
-      associate (interface => model%scene%delaminations(zone))
+      associate (interface => model%setup%delaminations(zone))
         if (interface%follows) call log%note('Layers below ply '//to_text(interface%below_ply)//': '// &
                                              short_text(interface%zone(1))//' x '//short_text(interface%zone(2))// &
                                              ' from '//moment(deck, stepper%now%time)//' on.')
@@ -58,12 +58,12 @@ contains
     !> Set if the factored operator cannot be made again
     type(error_t), allocatable, intent(out) :: error
 
-    call visit_zones(model%scene%delaminations, archive)
+    call visit_zones(model%setup%delaminations, archive)
     call stepper%visit(archive, model, error)
     if (archive%loading .and. .not. allocated(error)) call take_contact(model, stepper%now, stepper%operator, error)
   end subroutine visit_evolving
 
-  !> Saves the zones that follow their damage, or loads them: a model has to be built with them.
+  !> Saves the adaptive zones, or loads them: a model has to be built with them.
   subroutine visit_zones(delaminations, archive)
     !> The interfaces
     type(delamination_t), intent(inout) :: delaminations(:)
@@ -83,4 +83,4 @@ contains
       delaminations(zone)%zone = extents(2*zone - 1:2*zone)
     end do
   end subroutine visit_zones
-end module layer_following
+end module adaptive_zones
