@@ -53,7 +53,7 @@ contains
     type(model_t), intent(inout) :: model
     !> What evolves
     type(time_stepper_t), intent(inout) :: stepper
-    !> Where to or where from
+    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     !> Set if the factored operator cannot be made again
     type(error_t), allocatable, intent(out) :: error
@@ -67,7 +67,7 @@ contains
   subroutine visit_zones(delaminations, archive)
     !> The interfaces
     type(delamination_t), intent(inout) :: delaminations(:)
-    !> Where to or where from
+    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     real(wp), allocatable :: extents(:)
     integer :: zone

@@ -77,7 +77,7 @@ contains
   subroutine visit(self, archive)
     !> The record
     class(compression_record_t), intent(inout) :: self
-    !> Where to or where from
+    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
 
     call archive%item('compression/strength', self%strength)

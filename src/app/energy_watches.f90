@@ -39,7 +39,7 @@ contains
     class(energy_watch_t), intent(inout) :: self
     !> The ledger after an accepted step
     type(ledger_t), intent(in) :: ledger
-    !> Energy booked as fracture that the fronts have not set free yet: no integrator made it
+    !> Energy booked as fracture that the fronts have not released yet: no integrator made it
     real(wp), intent(in) :: deficit
     !> Load over its full value: the energies to come are larger by its square, which small ones are judged by
     real(wp), intent(in) :: amplitude
@@ -64,7 +64,7 @@ contains
   subroutine visit(self, archive)
     !> The watch
     class(energy_watch_t), intent(inout) :: self
-    !> Where to or where from
+    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
 
     call archive%item('energy_watch/largest', self%largest)

@@ -90,7 +90,7 @@ contains
     type(model_t), intent(in) :: model
     !> The state reached
     type(state_t), intent(in) :: now
-    !> Steps between two looks at the interfaces
+    !> Steps between two checks of the interfaces
     integer, intent(in) :: between_stages
     integer :: stages(size(self%stage)), zone
 
@@ -221,7 +221,7 @@ contains
   subroutine visit(self, archive)
     !> The record
     class(run_record_t), intent(inout) :: self
-    !> Where to or where from
+    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
 
     call archive%item('record/peak_force', self%peak_force)

@@ -222,7 +222,7 @@ contains
   subroutine visit(self, archive, rows, error)
     !> The run
     class(simulation_t), intent(inout) :: self
-    !> Where to or where from
+    !> Archive of the checkpoint
     type(checkpoint_archive_t), intent(inout) :: archive
     !> Rows of the history
     integer, intent(inout) :: rows

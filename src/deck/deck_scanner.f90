@@ -43,8 +43,8 @@ contains
     type(problems_t), intent(inout) :: problems
     type(cursor_t) :: cursor
     type(token_t) :: token
-    character(len=:), allocatable :: deck, junk
-    integer :: junk_line
+    character(len=:), allocatable :: deck, unknown_word
+    integer :: unknown_line
     logical :: readable
 
     allocate (scan%blocks(0), scan%entries(0))
@@ -54,8 +54,8 @@ contains
     if (index(deck, byte_order_mark()) == 1) cursor%at = 4
     do while (.not. problems%is_full() .and. scan%values < max_values)
       if (.not. scan%open) then
-        call skip_to_group(deck, cursor, junk, junk_line)
-        if (junk_line > 0) call problems%error(junk_line, '', '', shown(junk)// &
+        call skip_to_group(deck, cursor, unknown_word, unknown_line)
+        if (unknown_line > 0) call problems%error(unknown_line, '', '', shown(unknown_word)// &
           ' stands outside of a group, where Fortran would skip it; allowed: comments with ! and groups &name ... /')
         if (cursor%at > len(deck)) exit
       end if

@@ -92,19 +92,19 @@ contains
   end subroutine skip_blanks
 
   !> Passes everything up to the next group or the end, between groups.
-  pure subroutine skip_to_group(deck, cursor, junk, junk_line)
+  pure subroutine skip_to_group(deck, cursor, unknown_word, unknown_line)
     !> Text of the deck
     character(len=*), intent(in) :: deck
     !> Moved to the & of the next group
     type(cursor_t), intent(inout) :: cursor
     !> First word that is neither a comment nor a group, or empty
-    character(len=:), allocatable, intent(out) :: junk
+    character(len=:), allocatable, intent(out) :: unknown_word
     !> Its line
-    integer, intent(out) :: junk_line
+    integer, intent(out) :: unknown_line
     integer :: start
 
-    junk = ''
-    junk_line = 0
+    unknown_word = ''
+    unknown_line = 0
     do
       call skip_blanks(deck, cursor)
       if (cursor%at > len(deck)) return
@@ -115,9 +115,9 @@ contains
         if (starts_group(deck, cursor%at)) exit
         cursor%at = cursor%at + 1
       end do
-      if (junk_line > 0) cycle
-      junk = deck(start:cursor%at - 1)
-      junk_line = cursor%line
+      if (unknown_line > 0) cycle
+      unknown_word = deck(start:cursor%at - 1)
+      unknown_line = cursor%line
     end do
   end subroutine skip_to_group
 

@@ -31,7 +31,7 @@ module cohesive_faces
     procedure :: slopes
     !> Diagonal for a factored operator.
     procedure :: diagonal
-    !> Most that friction bears.
+    !> Friction limit.
     procedure :: friction_limit
   end type cohesive_faces_t
 
@@ -107,7 +107,7 @@ contains
     diagonal(:2) = diagonal(:2) + [slopes(1, 1), slopes(2, 2)]
   end function diagonal
 
-  !> Most that friction bears once a step is accepted: Coulomb's part of the pressure, on the part of the point that is
+  !> Friction limit once a step is accepted: Coulomb's part of the pressure, on the part of the point that is
   !> damaged (G. Alfano, E. Sacco 2006).
   pure real(wp) function friction_limit(self, jumps, point) result(limit)
     !> The faces

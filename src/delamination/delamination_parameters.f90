@@ -83,7 +83,7 @@ module delamination_parameters
   end type delamination_t
 
   !> Cells at least over which a front is smoothed. On stepped discs rates then scatter by 2 to 7 % about their mean,
-  !> with 3 cells by 4 to 13 %; a cross-ply with cells of 1 mm sets free .97 of what it books, with 2.6 cells .84.
+  !> with 3 cells by 4 to 13 %; a cross-ply with cells of 1 mm releases .97 of what it books, with 2.6 cells .84.
   integer, parameter, public :: min_smoothed_cells = 5
 
   !> What two runs must have in common for one to begin with the damage of the other, by its names in the deck.

@@ -82,7 +82,7 @@ contains
     real(wp), intent(in) :: gaps, pressures
     !> Largest pressure
     real(wp), intent(in) :: largest_pressure
-    !> True: the pressures go with the gaps, the step is done
+    !> True: the pressures agree with the gaps, the step has converged
     logical, intent(in) :: converged
 
     decay = 0

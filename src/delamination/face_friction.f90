@@ -14,7 +14,7 @@ module face_friction
   type :: sliding_t
     !> Jumps along the faces at which friction would not act
     real(wp) :: slip(2) = 0
-    !> Most that friction bears, force per area
+    !> Friction limit, force per area
     real(wp) :: limit = 0
     !> Energy that slipping has turned into heat, per area
     real(wp) :: heat = 0

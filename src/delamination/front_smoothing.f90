@@ -11,7 +11,7 @@ module front_smoothing
   use layered_meshes, only: layered_mesh_t
   implicit none
   private
-  public :: smooth_front_t, beside_front_t, create_smooth_front
+  public :: smooth_front_t, near_front_t, create_smooth_front
 
   !> Cells within which the edges about one of them make its piece of the line. With 4 in place of 3 the rates of
   !> stepped discs change by 1.5 % at most.
@@ -43,14 +43,14 @@ module front_smoothing
   end type smooth_front_t
 
   !> Nodes beside a front, each with the edge nearest to it; one that has several edges comes several times.
-  type :: beside_front_t
+  type :: near_front_t
     !> Node, and segment, (places)
     integer, allocatable :: node(:), segment(:)
     !> Distance of the node ahead of the line, (places)
     real(wp), allocatable :: distance(:)
     !> Part of the node that belongs to the segment, (places)
     real(wp), allocatable :: share(:)
-  end type beside_front_t
+  end type near_front_t
 
 contains
 
@@ -190,7 +190,7 @@ contains
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> The nodes
-    type(beside_front_t) :: nodes
+    type(near_front_t) :: nodes
     real(wp), allocatable :: least(:)
     integer, allocatable :: count(:)
     real(wp) :: away

@@ -1,5 +1,6 @@
-!> One step of plate and impactor together in time. The impact force is found anew within each iteration of
-!> equilibrium, from the compliance of impactor and plate.
+!> One time step of plate and impactor together. Each equilibrium iteration solves for the impact force by the
+!> compliance
+!> of impactor and plate.
 module dynamic_steps
   use kinds, only: wp
   use errors, only: error_t, exit_convergence
@@ -18,39 +19,40 @@ module dynamic_steps
   use krylov_corrections, only: find_krylov_correction
   use tangent_products, only: tangent_product_t
   use energy_balance, only: book_step
-  use line_motions, only: has_moved_lines, keep_lines, move_lines, line_displacement
-  use motion_forces, only: weigh, weigh_start, weigh_rest
+  use line_motions, only: has_moved_lines, prescribe_lines, move_lines, line_displacement
+  use motion_forces, only: weight_forces, weight_start_forces, find_internal_forces
   implicit none
   private
   public :: dynamic_step_t, new_dynamic_step
 
-  !> Distance of pressures and gaps from contact (complementarity) at which they have settled: the gaps left are
-  !> this part of the largest pressure over the layers' stiffness.
+  !> Tolerance of complementarity of pressures and gaps, relative to the largest pressure; in terms of gaps, to that
+  !> pressure over the stiffness of the layers.
   real(wp), parameter :: contact_tolerance = 5.0e-7_wp
 
-  !> Steps of which one finds the internal forces from the displacement, so that rounding does not add up.
+  !> Interval of steps at which internal forces are computed from the displacement, so that round-off does not
+  !> accumulate.
   integer, parameter :: between_checks = 16
 
   !> A step in time.
   type, extends(step_problem_t) :: dynamic_step_t
     !> Time step
     real(wp) :: step = 0
-    !> Changed ties and contacts with which the operator is renewed
+    !> Number of changed ties and contacts at which the operator is factorized again
     integer :: renewal = huge(1)
     !> True: the last correction took as many solves as a factorization costs
     logical :: correction_is_costly = .false.
     !> Integrator of the plate
     type(plate_integrator_t) :: integrator
-    !> Displacement to start from, (5, points); unallocated: the motion goes on as it was
+    !> Predictor of the displacement, (5, points); unallocated: constant velocity
     real(wp), allocatable :: guess(:, :)
-    !> True: the first guess is the displacement of the start, whose forces are known; or it goes on with the velocity
-    !> of the start, so its inertia forces are
+    !> True: the predictor is the initial displacement, so that internal forces are known; or constant velocity, so that
+    !> inertia forces are
     logical :: keeps_displacement = .false., keeps_velocity = .false.
-    !> True: internal forces follow from the motion, as one correction solves the step
-    logical :: spares = .false.
-    !> Square of the patch's shares, of this rank's points
+    !> True: internal forces follow from the equation of motion, as one correction solves the step
+    logical :: skips_elements = .false.
+    !> Sum of the squared patch weights of this rank's points
     real(wp) :: patch_square = 0
-    !> The impactor's side of the step
+    !> Coupling to the impactor
     type(impact_coupling_t) :: coupling
   contains
     !> True: one correction finds equilibrium.
@@ -73,7 +75,7 @@ contains
     type(plate_integrator_t), intent(in) :: integrator
     !> Time step
     real(wp), intent(in) :: step
-    !> Changed ties and contacts with which the operator is renewed
+    !> Number of changed ties and contacts at which the operator is factorized again
     integer, intent(in) :: renewal
     !> The problem
     type(dynamic_step_t) :: self
@@ -84,14 +86,14 @@ contains
     self%renewal = renewal
   end function new_dynamic_step
 
-  !> First guess. Where the operator is exact any guess will do, and the plate stays where it is: that spares sums over
-  !> elements. Else the velocity stays what it is: a guess by the acceleration makes energy where the contact is stiff.
-  !> Touching faces stay together, and held jumps stay where they are, also those glued in motion.
+  !> Predictor. With an exact operator any predictor will do; the displacement is kept, which saves element loops.
+  !> Otherwise the velocity is kept: a predictor by the acceleration adds energy where contact is stiff. Closed contacts
+  !> stay closed, and tied jumps keep their values.
   subroutine begin(self, model, operator, old, new)
     !> The problem
     class(dynamic_step_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> The factored operator, with its memory of iterations
+    !> The factored operator, with its record of iterations
     type(tangent_operator_t), intent(inout) :: operator
     !> State at the start
     type(state_t), intent(in) :: old
@@ -100,15 +102,16 @@ contains
 
     new%time = old%time + self%step
     new%load_factor = new%time/model%setup%ramp_time
-    call new%interfaces%ties%fade(model, self%step)
+    call new%interfaces%ties%ramp_down(model, self%step)
     self%patch_square = sum((model%patch(model%patch_points)/model%mesh%multiplicity)**2)
     if (model%setup%has_impactor) self%coupling = begin_coupling(model, self%integrator, old, self%step)
     self%keeps_velocity = model%setup%has_impactor .and. .not. (allocated(self%guess) .or. model%has_bonds)
     self%keeps_displacement = self%keeps_velocity .and. self%is_solved_at_once(model, operator)
-    self%spares = self%keeps_displacement .and. modulo(old%step + 1, between_checks) > 0 &
+    self%skips_elements = self%keeps_displacement .and. modulo(old%step + 1, between_checks) > 0 &
       .and. .not. (model%map%layered .or. &
       allocated(model%rig%held_by) .or. allocated(model%pressure) .or. size(model%lines) > 0)
-    if (self%spares) self%spares = self%coupling%forces_agree() .and. .not. any(operator%numbering%leader > 0)
+    if (self%skips_elements) self%skips_elements = self%coupling%forces_agree() &
+      .and. .not. any(operator%numbering%leader > 0)
     if (allocated(self%guess)) then
       new%motion%displacement = self%guess
     else if (.not. self%keeps_displacement) then
@@ -117,7 +120,7 @@ contains
       new%motion%displacement = old%motion%displacement + new%motion%displacement
       call new%interfaces%keep_contact_closed(model, new%motion%displacement)
       if (has_moved_lines(model)) &
-        call keep_lines(model, new%interfaces, new%time, line_displacement, new%motion%displacement)
+        call prescribe_lines(model, new%interfaces, new%time, line_displacement, new%motion%displacement)
     end if
     if (.not. self%keeps_velocity) call self%complete(old, new)
     new%iterations = 0
@@ -128,7 +131,7 @@ contains
     self%searches_lines = allocated(new%interfaces%cohesive%cohesive)
   end subroutine begin
 
-  !> True: forces are linear in the motion but for the impactor's, and the operator knows all of them.
+  !> True: all forces but the impactor's are linear, and the operator is exact.
   pure logical function is_solved_at_once(self, model, operator) result(solved)
     !> The problem
     class(dynamic_step_t), intent(in) :: self
@@ -159,11 +162,11 @@ contains
     associate (m => self%integrator%alpha_m, f => self%integrator%alpha_f)
       if (self%keeps_displacement .and. new%iterations == 0) then
         energy = 0
-        call weigh_start(size(residual), [(1 - m)/(self%integrator%beta*self%step), &
+        call weight_start_forces(size(residual), [(1 - m)/(self%integrator%beta*self%step), &
           (1 - m)*0.5_wp/self%integrator%beta - 1], old%motion%momentum, old%motion%inertia, old%motion%internal, &
                          residual)
-      else if (self%spares .and. new%iterations == 1) then
-        call follow_motion(self, model, old, new, energy)
+      else if (self%skips_elements .and. new%iterations == 1) then
+        call find_internal_from_motion(self, model, old, new, energy)
         residual = 0
         return
       else
@@ -174,16 +177,17 @@ contains
         else
           call model%inertia(new%motion%acceleration, new%motion%inertia)
         end if
-        call weigh(size(residual), [1 - m, m, 1 - f, f], new%motion%inertia, old%motion%inertia, new%motion%internal, &
+        call weight_forces(size(residual), [1 - m, m, 1 - f, f], new%motion%inertia, old%motion%inertia, &
+                           new%motion%internal, &
                    old%motion%internal, residual)
       end if
-      call model%push_patch(self%coupling%load(), residual)
+      call model%add_contact_force(self%coupling%load(), residual)
       if (size(model%lines) > 0) then
         allocate (lines, lines_before, mold=residual)
         call model%line_forces(new%motion%displacement, new%load_factor, lines, prescribed=.false.)
         call model%line_forces(old%motion%displacement, old%load_factor, lines_before, prescribed=.false.)
         residual = residual + (1 - f)*lines + f*lines_before
-        ! What moves or holds a line acts with one force over the step.
+        ! Prescribed lines act with a constant force over the step.
         call model%line_forces(new%motion%displacement, new%load_factor, lines, prescribed=.true.)
         residual = residual + lines
       end if
@@ -193,9 +197,8 @@ contains
     end associate
   end subroutine find_residual
 
-  !> Internal forces as the equation of motion leaves them, after a correction that solves it to rounding: a sum over
-  !> elements less.
-  subroutine follow_motion(self, model, old, new, energy)
+  !> Internal forces from the equation of motion, after a correction that solves it to round-off: saves an element loop.
+  subroutine find_internal_from_motion(self, model, old, new, energy)
     !> The problem
     class(dynamic_step_t), intent(in) :: self
     type(model_t), intent(in) :: model
@@ -209,32 +212,33 @@ contains
     call model%inertia(new%motion%acceleration, new%motion%inertia)
     associate (m => self%integrator%alpha_m, f => self%integrator%alpha_f)
       new%motion%internal = 0
-      call model%push_patch(self%coupling%load(), new%motion%internal)
-      call weigh_rest(size(new%motion%internal), [1 - m, m, 1 - f, f], new%motion%inertia, old%motion%inertia, &
+      call model%add_contact_force(self%coupling%load(), new%motion%internal)
+      call find_internal_forces(size(new%motion%internal), [1 - m, m, 1 - f, f], new%motion%inertia, &
+                                old%motion%inertia, &
                       old%motion%internal, new%motion%internal)
     end associate
     energy = model%product(new%motion%displacement, new%motion%internal)/2
-  end subroutine follow_motion
+  end subroutine find_internal_from_motion
 
   !> Residual relative to internal, inertia and impact forces.
   real(wp) function residual_norm(self, model, equilibrium, operator, residual, new)
     !> The problem
     class(dynamic_step_t), intent(in) :: self
     type(model_t), intent(in) :: model
-    !> Convergence asked for
+    !> Required convergence
     type(equilibrium_t), intent(in) :: equilibrium
     !> The factored operator
     type(tangent_operator_t), intent(in) :: operator
     !> Residual at the owned points, (5, points)
     real(wp), intent(in) :: residual(:, :)
-    !> State at the end; remembers its largest forces
+    !> State at the end; stores its largest forces
     type(state_t), intent(inout) :: new
 
     if (self%keeps_displacement .and. new%iterations == 0) then
-      ! An iteration follows in any case.
+      ! At least one iteration is needed.
       residual_norm = huge(residual_norm)
       return
-    else if (self%spares .and. new%iterations == 1) then
+    else if (self%skips_elements .and. new%iterations == 1) then
       residual_norm = 0
       return
     end if
@@ -258,7 +262,7 @@ contains
     may_stop = new%iterations > 0 .or. .not. model%setup%has_impactor
   end function may_stop
 
-  !> Finds a correction by the tangent, and with it the impactor's force.
+  !> Solves for a correction by the tangent, and for the impactor's force.
   subroutine find_correction(self, model, operator, old, new, residual, tolerance, correction, negative_curvature, &
                              error)
     !> The problem
@@ -273,17 +277,17 @@ contains
     type(state_t), target, intent(inout) :: new
     !> The residual at the owned points, (5, points)
     real(wp), intent(in) :: residual(:, :)
-    !> Part of the residual that may be left
+    !> Required reduction of the residual
     real(wp), intent(in) :: tolerance
     !> Correction of the displacement, (5, points)
     real(wp), intent(inout) :: correction(:, :)
-    !> True: it goes along negative curvature of the tangent
+    !> True: it is a direction of negative curvature of the tangent
     logical, intent(out) :: negative_curvature
     !> Set if a solve fails or numbers are not finite
     type(error_t), allocatable, intent(inout) :: error
     type(tangent_product_t) :: tangent
     real(wp), allocatable :: diagonal(:, :)
-    logical :: satisfied
+    logical :: converged
 
     negative_curvature = .false.
     call find_tangent(model, operator, old, new, [self%integrator%stiffness_factor(), &
@@ -294,12 +298,11 @@ contains
     if (model%setup%has_impactor .and. .not. tangent%is_factored()) &
       call add_force_slope(model, operator, self%coupling, old, new, tangent)
     call find_krylov_correction(operator, model, tangent, diagonal, residual, tolerance, correction, error, &
-                                negative_curvature, &
-                                satisfied)
+                                negative_curvature, converged)
     if (allocated(error)) return
-    self%correction_is_costly = .not. satisfied
+    self%correction_is_costly = .not. converged
     if (model%setup%has_impactor) then
-      ! The correction holds the linear part of the force's change; the law asks for the rest.
+      ! The correction includes the linear part of the change of the force; the law gives the rest.
       self%coupling%unknown = self%coupling%unknown &
                               - tangent%force_slope*model%patch_mean(correction)/self%coupling%share
       call self%coupling%solve(model, operator, old, new, correction, error)

@@ -1,5 +1,4 @@
-!> The tangent of a step in time where its iteration has come to, beside the factored operator that is its
-!> preconditioner.
+!> The current tangent of a time step, for which the factored operator is the preconditioner.
 module dynamic_tangents
   use errors, only: error_t
   use impact_coupling, only: impact_coupling_t
@@ -15,9 +14,8 @@ module dynamic_tangents
 
 contains
 
-  !> The tangent, but for the impactor's force, after the operator was renewed if that is due: where that is required,
-  !> or
-  !> where ties and contacts have left it.
+  !> The tangent without the impactor's force. The operator is factorized again if required, or if ties and contacts
+  !> differ too much from it.
   subroutine find_tangent(model, operator, old, new, factors, required, max_changes, uses_element_tangents, tangent, &
                           diagonal, &
                           error)
@@ -31,11 +29,11 @@ contains
     type(state_t), target, intent(in) :: new
     !> Factors of stiffness and mass
     real(wp), intent(in) :: factors(2)
-    !> True: renewed in any case
+    !> True: factorized again in any case
     logical, intent(in) :: required
-    !> Changes of ties and contacts that are left to the iteration
+    !> Changes of ties and contacts that the iteration may account for
     integer, intent(in) :: max_changes
-    !> True: the factor has left too much of the forces, so elements are asked also where they change slowly
+    !> True: element tangents are used, as the factored operator reduces the residual too little
     logical, intent(in) :: uses_element_tangents
     !> The tangent
     type(tangent_product_t), intent(out) :: tangent
@@ -43,14 +41,14 @@ contains
     real(wp), allocatable, intent(out) :: diagonal(:, :)
     !> Set if the operator is singular
     type(error_t), allocatable, intent(inout) :: error
-    real(wp), allocatable :: wanted(:, :)
+    real(wp), allocatable :: current_stiffness(:, :)
     logical :: due
 
     due = required
     if (model%has_bonds) then
-      allocate (wanted, mold=operator%added)
-      call new%interfaces%added_stiffness(model, operator%diagonal, factors(1), wanted)
-      if (.not. due) due = operator%has_outdated_constraints(model, wanted, max_changes)
+      allocate (current_stiffness, mold=operator%added)
+      call new%interfaces%added_stiffness(model, operator%diagonal, factors(1), current_stiffness)
+      if (.not. due) due = operator%has_outdated_constraints(model, current_stiffness, max_changes)
     end if
     if (due) call operator%renew(model, new%plies%stiffness, new%interfaces, new%motion%displacement, factors(1), &
                                  factors(2), error)
@@ -67,11 +65,11 @@ contains
                                                                               .or. model%has_bonds)
     tangent%elements = .not. due .and. (model%setup%has_ply_damage .or. tangent%elements)
     if (model%has_bonds) &
-      call tangent%set_jump_stiffness(operator%added, wanted, new%interfaces%cohesive%cohesive, factors(1)* &
+      call tangent%set_jump_stiffness(operator%added, current_stiffness, new%interfaces%cohesive%cohesive, factors(1)* &
         new%interfaces%cohesive%tangents_at(model, old%interfaces%cohesive, new%motion%displacement))
     if (tangent%is_factored()) return
     diagonal = operator%diagonal
-    if (model%has_bonds) diagonal(:3, :) = diagonal(:3, :) + wanted
+    if (model%has_bonds) diagonal(:3, :) = diagonal(:3, :) + current_stiffness
   end subroutine find_tangent
   !> Adds the slope of the impactor's force to a tangent.
   subroutine add_force_slope(model, operator, coupling, old, new, tangent)

@@ -13,7 +13,7 @@ module energy_balance
   public :: book_step, book_failures
 
   !> Numbers whose products are summed together: a multiple of what the processor takes at once, as in residual_norms
-  integer, parameter :: together = 8
+  integer, parameter :: block_length = 8
 
   !> Products of the step's fields that the energies are made of, summed over the modelled part.
   type :: products_t
@@ -201,7 +201,7 @@ contains
     type(motion_t), intent(inout) :: new
     !> The products
     real(wp), intent(out) :: sums(7)
-    real(wp) :: works(together, 4), jerks(together, 3)
+    real(wp) :: works(block_length, 4), jerks(block_length, 3)
 
     works = 0
     call add_works(5*owned, step*[1 - integrator%gamma, integrator%gamma], old%displacement, old%internal, &
@@ -227,11 +227,11 @@ contains
     !> Mass times velocity at the end
     real(wp), intent(inout) :: p_new(number)
     !> Sums of the four products
-    real(wp), intent(inout) :: sums(together, 4)
+    real(wp), intent(inout) :: sums(block_length, 4)
     integer :: start, k, n
 
-    do start = 0, number - 1, together
-      do k = 1, min(together, number - start)
+    do start = 0, number - 1, block_length
+      do k = 1, min(block_length, number - start)
         n = start + k
         p_new(n) = p(n) + (weights(1)*i(n) + weights(2)*i_new(n))
         sums(k, 1) = sums(k, 1) + v_new(n)*p_new(n)
@@ -251,11 +251,11 @@ contains
     !> The same at the end
     real(wp), intent(in) :: a_new(number), i_new(number)
     !> Sums of the three products
-    real(wp), intent(inout) :: sums(together, 3)
+    real(wp), intent(inout) :: sums(block_length, 3)
     integer :: start, k, n
 
-    do start = 0, number - 1, together
-      do k = 1, min(together, number - start)
+    do start = 0, number - 1, block_length
+      do k = 1, min(block_length, number - start)
         n = start + k
         sums(k, 1) = sums(k, 1) + a_new(n)*i_new(n)
         sums(k, 2) = sums(k, 2) + a(n)*i(n)

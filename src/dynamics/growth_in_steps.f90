@@ -23,7 +23,7 @@ contains
     !> The step
     type(dynamic_step_t), intent(inout) :: problem
     type(model_t), intent(in) :: model
-    !> Convergence asked for
+    !> Required convergence
     type(equilibrium_t), intent(in) :: equilibrium
     !> The factored operator
     type(tangent_operator_t), intent(inout) :: operator

@@ -117,7 +117,7 @@ contains
     class(impact_coupling_t), intent(in) :: self
     !> Indentation law
     type(indentation_law_t), intent(in) :: law
-    !> Memory of the indentation at the start of the step
+    !> History variables of the indentation at the start of the step
     type(indentation_t), intent(in) :: indentation
     !> Mean deflection of the patch
     real(wp), intent(in) :: patch_mean
@@ -142,7 +142,7 @@ contains
     class(impact_coupling_t), intent(inout) :: self
     !> Indentation law
     type(indentation_law_t), intent(in) :: law
-    !> Memory of the indentation at the start of the step
+    !> History variables of the indentation at the start of the step
     type(indentation_t), intent(in) :: indentation
     !> Mean deflection of the patch with the force assumed
     real(wp), intent(in) :: patch_mean

@@ -1,4 +1,4 @@
-!> The start of a run from the end of another, by central differences: what was taken over finds its forces, supports
+!> The start of a run from the end of another, by central differences: what was taken finds its forces, supports
 !> and lines begin from where the plate is, and the ledger from the energies that it has.
 module inherited_starts
   use central_difference_energies, only: book_energies
@@ -14,7 +14,7 @@ module inherited_starts
 
 contains
 
-  !> Begins from a state that was taken over. Collective.
+  !> Begins from a state that was taken. Collective.
   subroutine begin_inherited(model, transfer, motion, stepper, error)
     !> The model; receives how an impactor's force would be spread
     type(model_t), intent(inout) :: model

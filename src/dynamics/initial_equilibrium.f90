@@ -8,7 +8,7 @@ module initial_equilibrium
   use errors, only: error_t, fail, exit_convergence
   use kinds, only: wp
   use mathematical_constants, only: pi
-  use line_motions, only: has_moved_lines, keep_lines, line_displacement, move_lines
+  use line_motions, only: has_moved_lines, prescribe_lines, line_displacement, move_lines
   use models, only: model_t
   use residual_norms, only: relative_residual
   use states, only: state_t
@@ -85,7 +85,7 @@ contains
     allocate (residual, correction, lines, mold=state%motion%displacement)
     correction = 0
     before = state
-    if (moved) call keep_lines(model, state%interfaces, 0.0_wp, line_displacement, state%motion%displacement)
+    if (moved) call prescribe_lines(model, state%interfaces, 0.0_wp, line_displacement, state%motion%displacement)
     largest = 0
     force_square = square_of_forces(model)
     do iteration = 0, max_iterations

@@ -25,7 +25,7 @@ module layer_switches
   private
   public :: advance_with_layers, move_with_plate
 
-  !> Steps of central differences between two looks at the layers that damage asks for.
+  !> Steps of central differences between two checks of the layers that damage asks for.
   integer, parameter :: steps_between_zone_checks = 16
 
 contains

@@ -33,7 +33,7 @@ contains
     type(model_t), intent(in) :: model
     !> The state reached
     type(state_t), intent(in) :: now
-    !> A value a column, the same on every rank; none without lines
+    !> One value per column, the same on every rank; none without lines
     real(wp), allocatable :: values(:)
     integer :: i
 
@@ -83,7 +83,7 @@ contains
     type(model_t), intent(in) :: model
     !> Load factor, then force and displacement of every line
     real(wp), intent(in) :: values(:)
-    !> A value a column; none without such lines
+    !> One value per column; none without such lines
     real(wp), allocatable :: ends(:)
     real(wp) :: sides(size(model%lines))
     logical :: on(size(model%lines)), halved(2)

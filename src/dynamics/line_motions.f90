@@ -1,6 +1,6 @@
 !> Motion of the lines that the deck prescribes in a run in time.
 !>
-!> Their springs hold the displacement at the end of each step by one force over the step, whatever the integrator, as
+!> Their springs hold the displacement at the end of each step by one force over the step, for any integrator, as
 !> contact does. Newmark's formulas would make a velocity and an acceleration of the displacements that alternate about
 !> the right ones from step to step, for a spectral radius of 1 without end; the prescribed ones take their place.
 module line_motions
@@ -10,7 +10,7 @@ module line_motions
   use motions, only: motion_t
   implicit none
   private
-  public :: keep_lines, has_moved_lines, move_lines
+  public :: prescribe_lines, has_moved_lines, move_lines
 
   !> Derivatives of the displacement.
   integer, parameter, public :: line_displacement = 1, line_velocity = 2, line_acceleration = 3
@@ -25,8 +25,8 @@ contains
     has_moved_lines = any([(model%lines(i)%load%prescribed, i=1, size(model%lines))])
   end function has_moved_lines
 
-  !> Gives the lines their displacement, velocity or acceleration at a time. Jumps and unknowns that are held stay.
-  subroutine keep_lines(model, interfaces, time, derivative, field)
+  !> Gives the lines their displacement, velocity or acceleration at a time. Jumps and constrained unknowns stay.
+  subroutine prescribe_lines(model, interfaces, time, derivative, field)
     type(model_t), intent(in) :: model
     !> Knows which jumps are held
     type(interface_state_t), intent(in) :: interfaces
@@ -53,7 +53,7 @@ contains
     call interfaces%faces%hold(model, change)
     call model%halo%update(change)
     field = field + change
-  end subroutine keep_lines
+  end subroutine prescribe_lines
 
   !> Gives the lines their velocity and acceleration at a time, and gives the energy that this brings: the work of the
   !> forces that move them.
@@ -71,14 +71,14 @@ contains
 
     allocate (change, source=motion%velocity)
     allocate (momentum, mold=motion%velocity)
-    call keep_lines(model, interfaces, time, line_velocity, motion%velocity)
+    call prescribe_lines(model, interfaces, time, line_velocity, motion%velocity)
     change = motion%velocity - change
     call model%inertia(change, momentum)
     work = model%product(change, motion%momentum) + model%product(change, momentum)/2
     call model%communicator%sum(work)
     work = work*model%mesh%multiplicity
     motion%momentum = motion%momentum + momentum
-    call keep_lines(model, interfaces, time, line_acceleration, motion%acceleration)
+    call prescribe_lines(model, interfaces, time, line_acceleration, motion%acceleration)
     call model%inertia(motion%acceleration, motion%inertia)
   end subroutine move_lines
 end module line_motions

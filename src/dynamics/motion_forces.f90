@@ -4,12 +4,12 @@ module motion_forces
   use kinds, only: wp
   implicit none
   private
-  public :: weigh, weigh_start, weigh_rest
+  public :: weight_forces, weight_start_forces, find_internal_forces
 
 contains
 
   !> Forces against the motion.
-  pure subroutine weigh(number, weights, new_inertia, old_inertia, new_internal, old_internal, residual)
+  pure subroutine weight_forces(number, weights, new_inertia, old_inertia, new_internal, old_internal, residual)
     !> Number of unknowns
     integer, intent(in) :: number
     !> Weights of the four forces
@@ -24,10 +24,10 @@ contains
       residual(i) = -weights(1)*new_inertia(i) - weights(2)*old_inertia(i) - weights(3)*new_internal(i) &
                     - weights(4)*old_internal(i)
     end do
-  end subroutine weigh
+  end subroutine weight_forces
 
   !> Forces against a plate that stays where it is, with Newmark's acceleration for that.
-  pure subroutine weigh_start(number, weights, momentum, inertia, internal, residual)
+  pure subroutine weight_start_forces(number, weights, momentum, inertia, internal, residual)
     !> Number of unknowns
     integer, intent(in) :: number
     !> Weights of the first two
@@ -41,10 +41,10 @@ contains
     do i = 1, number
       residual(i) = weights(1)*momentum(i) + weights(2)*inertia(i) - internal(i)
     end do
-  end subroutine weigh_start
+  end subroutine weight_start_forces
 
   !> Internal forces at the end of a step, as the equation of motion leaves them.
-  pure subroutine weigh_rest(number, weights, new_inertia, old_inertia, old_internal, new_internal)
+  pure subroutine find_internal_forces(number, weights, new_inertia, old_inertia, old_internal, new_internal)
     !> Number of unknowns
     integer, intent(in) :: number
     !> Weights of inertia and internal forces, at the end and at the start of the step
@@ -59,5 +59,5 @@ contains
       new_internal(i) = (new_internal(i) - weights(1)*new_inertia(i) - weights(2)*old_inertia(i) &
                          - weights(4)*old_internal(i))/weights(3)
     end do
-  end subroutine weigh_rest
+  end subroutine find_internal_forces
 end module motion_forces

@@ -1,5 +1,5 @@
-!> Size of a residual of equilibrium relative to the reference force; translations and rotations apart,
-!> since their units differ.
+!> Norm of a residual relative to the reference force, separately for translations and rotations, as their units
+!> differ.
 module residual_norms
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_positive_inf
   use kinds, only: wp
@@ -10,17 +10,17 @@ module residual_norms
   public :: relative_residual
 
   !> Points whose squares are summed together
-  integer, parameter :: together = 8
+  integer, parameter :: block_length = 8
 
 contains
 
-  !> Residual over the largest of the reference forces, the larger of translations and rotations; infinite if
-  !> any number is not finite. The same on every rank.
+  !> Residual over the largest reference force, the larger of translations and rotations; infinite if a number is not
+  !> finite. The same on every rank.
   real(wp) function relative_residual(communicator, numbering, residual, first, second, load, diagonal, displacement, &
                                       may_end, tolerance, length, largest) result(norm)
     !> The ranks
     type(communicator_t), intent(in) :: communicator
-    !> Knows which unknowns are held
+    !> Knows which unknowns are constrained
     type(numbering_t), intent(in) :: numbering
     !> Residual at the owned points, (5, points)
     real(wp), contiguous, intent(in) :: residual(:, :)
@@ -31,17 +31,17 @@ contains
     !> Diagonal of the operator, and the unknowns: the residual cannot fall below the last digit of their products,
     !> however exact the solution, (5, points): a thin plate's shear forces are small differences of large numbers
     real(wp), intent(in) :: diagonal(:, :), displacement(:, :)
-    !> False: the iteration goes on whatever the residual is, so that limit is not asked for
+    !> False: the iteration continues for any residual, so that limit is not needed
     logical, intent(in) :: may_end
-    !> Relative residual that will be accepted
+    !> Tolerance of the relative residual
     real(wp), intent(in) :: tolerance
     !> Lever arm that makes moments of forces, the laminate's thickness: moments balance among themselves, so
     !> those left over say nothing of the reference moments
     real(wp), intent(in) :: length
-    !> Largest forces so far, translations and rotations: judged by these once forces have faded
+    !> Largest forces so far, translations and rotations: used as the reference once forces have become small
     real(wp), intent(inout) :: largest(2)
     real(wp) :: squares(8), limits(2), scale(2)
-    real(wp), parameter :: faded = 1.0e-6_wp, last_digits = 32*epsilon(1.0_wp)
+    real(wp), parameter :: force_floor = 1.0e-6_wp, last_digits = 32*epsilon(1.0_wp)
 
     squares = [sums_of_squares(numbering, residual), sums_of_squares(numbering, first), &
                sums_of_squares(numbering, second), load, 0.0_wp]
@@ -49,7 +49,7 @@ contains
     norm = ieee_value(norm, ieee_positive_inf)
     if (.not. all(squares <= huge(norm))) return
     squares = sqrt(squares)
-    scale = max(squares(3:4), squares(5:6), squares(7:8), faded*largest)
+    scale = max(squares(3:4), squares(5:6), squares(7:8), force_floor*largest)
     scale(2) = max(scale(2), length*scale(1))
     largest = max(largest, scale)
     scale = max(scale, tiny(norm))
@@ -79,9 +79,9 @@ contains
     end do
   end function forces_to_round
 
-  !> Sums of squares over this rank's unknowns that are not held.
+  !> Sums of squares over this rank's unconstrained unknowns.
   pure function sums_of_squares(numbering, force) result(squares)
-    !> Knows which unknowns are held
+    !> Knows which unknowns are constrained
     type(numbering_t), intent(in) :: numbering
     !> Nodal forces, (5, points)
     real(wp), contiguous, intent(in) :: force(:, :)
@@ -101,13 +101,13 @@ contains
   !> The same of points that give no other one its motion. Eight points at a time, each with its own sums, which the
   !> processor takes together.
   pure function plain_sums(numbering, force) result(squares)
-    !> Knows which unknowns are held
+    !> Knows which unknowns are constrained
     type(numbering_t), intent(in) :: numbering
     !> Nodal forces, (5, points)
     real(wp), contiguous, intent(in) :: force(:, :)
     !> Of u, v, w and of theta_x, theta_y
     real(wp) :: squares(2)
-    real(wp) :: sums(5, together)
+    real(wp) :: sums(5, block_length)
 
     sums = 0
     call add_squares(5*numbering%owned, numbering%equation, force, sums)
@@ -123,11 +123,11 @@ contains
     !> The numbers
     real(wp), intent(in) :: values(number)
     !> The sums
-    real(wp), intent(inout) :: sums(5*together)
+    real(wp), intent(inout) :: sums(5*block_length)
     integer :: start, i
 
-    do start = 0, number - 5*together, 5*together
-      do i = 1, 5*together
+    do start = 0, number - 5*block_length, 5*block_length
+      do i = 1, 5*block_length
         sums(i) = sums(i) + merge(values(start + i)**2, 0.0_wp, equation(start + i) >= 0)
       end do
     end do

@@ -11,12 +11,12 @@ module slow_impactors
   use tangent_operators, only: tangent_operator_t
   implicit none
   private
-  public :: push_plate, find_push, force_mismatch, travel_for, move_slow_impactor
+  public :: add_impactor_force, find_force_change, force_mismatch, travel_for, move_slow_impactor
 
 contains
 
   !> Adds the impactor's force to loads.
-  pure subroutine push_plate(model, force, loads)
+  pure subroutine add_impactor_force(model, force, loads)
     type(model_t), intent(in) :: model
     !> The force, of the whole impactor
     real(wp), intent(in) :: force
@@ -24,11 +24,11 @@ contains
     real(wp), intent(inout) :: loads(:, :)
 
     if (model%setup%has_impactor) loads(3, :) = loads(3, :) + force/model%mesh%multiplicity*model%patch
-  end subroutine push_plate
+  end subroutine add_impactor_force
 
   !> Finds the force that goes with the travel and with the plate's response to it, and adds this response to a
   !> correction.
-  subroutine find_push(model, operator, part, new, correction, error)
+  subroutine find_force_change(model, operator, part, new, correction, error)
     !> Mesh, numbering and interfaces of the plate
     type(model_t), target, intent(in) :: model
     !> The factored operator
@@ -48,7 +48,7 @@ contains
     allocate (push, response, mold=correction)
     push = 0
     response = 0
-    call push_plate(model, 1.0_wp, push)
+    call add_impactor_force(model, 1.0_wp, push)
     call solve_tangent(operator, model, new%interfaces%cohesive, push, response, error)
     if (allocated(error)) return
     compliance = model%patch_mean(response)
@@ -61,7 +61,7 @@ contains
     new%force_iterations = new%force_iterations + iterations
     correction = correction + (force - new%force)*response
     new%force = new%force + part*(force - new%force)
-  end subroutine find_push
+  end subroutine find_force_change
 
   !> How far the force is from that of the indentation, over the larger of them.
   real(wp) function force_mismatch(model, new) result(mismatch)

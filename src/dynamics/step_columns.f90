@@ -58,7 +58,7 @@ module step_columns
     'total_iterations | integer | - | Sum of iterations over the accepted steps.', &
     'total_force_iterations | integer | - | Sum of force_iterations over the accepted steps.', &
     'total_contact_iterations | integer | - | Sum of contact_iterations over the accepted steps.', &
-    'rejected | integer | - | Steps tried in vain so far; each was tried again with half its length.']
+    'rejected | integer | - | Rejected steps so far; each was repeated with half its length.']
 
   !> What joined the ledger later.
   character(len=result_row_length), parameter, public :: heat_rows(*) = [character(len=result_row_length) :: &
@@ -81,7 +81,7 @@ contains
   pure function motion_values(now) result(values)
     !> The state reached
     type(state_t), intent(in) :: now
-    !> A value a column
+    !> One value per column
     real(wp) :: values(size(motion_rows))
 
     values = [now%time, real(now%step, wp), now%force, now%indentation%alpha, now%impactor%displacement, &
@@ -92,7 +92,7 @@ contains
   pure function ledger_values(ledger) result(values)
     !> The ledger
     type(ledger_t), intent(in) :: ledger
-    !> A value a column
+    !> One value per column
     real(wp) :: values(size(ledger_rows))
 
     values = [ledger%impactor, ledger%kinetic, ledger%strain, ledger%indentation, ledger%delamination, &
@@ -103,7 +103,7 @@ contains
   pure function heat_values(ledger) result(values)
     !> The ledger
     type(ledger_t), intent(in) :: ledger
-    !> A value a column
+    !> One value per column
     real(wp) :: values(size(heat_rows))
 
     values = [ledger%friction, ledger%layers]
@@ -115,7 +115,7 @@ contains
     type(state_t), intent(in) :: now
     !> Length of the last step
     real(wp), intent(in) :: length
-    !> A value a column
+    !> One value per column
     real(wp) :: values(size(step_rows))
 
     values = [now%patch_mean, now%ledger%external_work, shown_time(length), now%stress]
@@ -125,9 +125,9 @@ contains
   pure function iteration_values(now, rejected) result(values)
     !> The state reached
     type(state_t), intent(in) :: now
-    !> Steps tried in vain
+    !> Rejected steps
     integer, intent(in) :: rejected
-    !> A value a column
+    !> One value per column
     real(wp) :: values(size(iteration_rows))
 
     values = real([now%iterations, now%force_iterations, now%contact_iterations, now%all_iterations, &

@@ -193,7 +193,7 @@ contains
   subroutine visit(self, archive, model)
     !> The estimate
     class(step_error_t), intent(inout) :: self
-    !> Where to or where from
+    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
 
@@ -214,7 +214,7 @@ contains
   subroutine visit_deflections(self, archive, model)
     !> The estimate
     class(step_error_t), intent(inout) :: self
-    !> Where to or where from
+    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
     real(wp), allocatable :: field(:, :)

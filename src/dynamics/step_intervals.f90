@@ -15,7 +15,7 @@ module step_intervals
   real(wp), parameter :: seconds_between_checks = 1
   !> Most steps between two looks. With these their costs, those of about one step, do not count.
   integer, parameter :: max_between_checks = 64
-  !> Steps of central differences between two looks at what of the interfaces is damaged. A look costs a twentieth of a
+  !> Steps of central differences between two checks of what of the interfaces is damaged. A look costs a twentieth of a
   !> step, and damage is found as late as a hundredth of the time in which the force of a blow rises.
   integer, parameter :: between_stages = 8
 
@@ -33,7 +33,7 @@ contains
       (seconds_per_element*elements))))
   end function steps_between_checks
 
-  !> Steps between two looks at what of the interfaces is damaged.
+  !> Steps between two checks of what of the interfaces is damaged.
   pure integer function steps_between_stages(stepping) result(steps)
     !> How steps are taken
     type(stepping_t), intent(in) :: stepping

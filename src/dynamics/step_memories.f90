@@ -36,7 +36,7 @@ contains
     self%step_error = stepper%step_error
   end function save_state
 
-  !> Takes an accepted step back; it counts as tried in vain.
+  !> Takes an accepted step back; it counts as rejected.
   subroutine restore_state(self, stepper)
     !> The memory of the stepper before the step
     class(step_memory_t), intent(in) :: self

@@ -1,4 +1,4 @@
-!> Time stepping, or stepping through loads: steps are tried, accepted or tried again shorter.
+!> Time or load stepping: steps are tried, and accepted or repeated with a shorter length.
 module time_stepping
   use kinds, only: wp
   use errors, only: error_t, fail, exit_convergence
@@ -31,7 +31,7 @@ module time_stepping
   private
   public :: time_stepper_t
 
-  !> Largest energy that a step dissipates, over that of the step before: from it the first guess is made.
+  !> Largest ratio of the energies that consecutive steps dissipate: the predictor is scaled by it.
   real(wp), parameter :: max_growth = 4
   !> All that evolves during a run.
   type :: time_stepper_t
@@ -41,11 +41,11 @@ module time_stepping
     type(tangent_operator_t) :: operator
     !> The step controller
     type(step_controller_t) :: controller
-    !> Error that each step adds
+    !> Error estimate of steps
     type(step_error_t) :: step_error
-    !> The last one over its tolerance; and what the last step missed of how plies break, over the most that it may
+    !> Last error relative to its tolerance, and the lag of damage in the last step relative to its limit
     real(wp), private :: error = 0, damage_lag = 0
-    !> True: the last step errs beyond the tolerance, and none is to be shorter
+    !> True: the error of the last step exceeds the tolerance at the shortest step
     logical :: errs = .false.
     !> Integrator of the plate
     type(plate_integrator_t) :: integrator
@@ -53,11 +53,11 @@ module time_stepping
     type(stepping_t) :: stepping
     !> Factorizations and solves when the present step was begun
     integer, private :: factorizations_at_start = 0, solves_at_start = 0
-    !> Steps that were tried in vain
+    !> Rejected steps
     integer :: rejected = 0
-    !> Unknowns that are free to move
+    !> Number of unconstrained unknowns
     integer :: unknowns = 0
-    !> Room for the state that is being tried
+    !> The trial state
     type(state_t), allocatable, private :: trial
     !> Central differences; unallocated: steps are implicit
     type(central_difference_t), allocatable :: explicit
@@ -80,7 +80,7 @@ module time_stepping
 
 contains
 
-  !> Puts the plate at rest and the impactor at first touch.
+  !> Initial state: the plate at rest and the impactor at first contact.
   subroutine start(self, model, stepping, linear_solver, resumed, error)
     !> The time stepper
     class(time_stepper_t), intent(out) :: self
@@ -368,7 +368,7 @@ contains
   subroutine visit(self, archive, model, error)
     !> The time stepper
     class(time_stepper_t), intent(inout) :: self
-    !> Where to or where from
+    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
     !> Set if the operator cannot be made again

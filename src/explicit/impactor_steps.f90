@@ -147,7 +147,7 @@ contains
   subroutine visit(self, archive)
     !> The impactor
     class(impactor_steps_t), intent(inout) :: self
-    !> Where to or where from
+    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
 
     call self%patch%visit(archive)

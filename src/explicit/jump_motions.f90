@@ -1,4 +1,4 @@
-!> Jumps between layers in a step: they move, damage follows them, and what the forces on them do is booked.
+!> Jumps between layers in a step: motion, damage, and work of the forces on them.
 module jump_motions
   use cohesive_faces, only: cohesive_faces_t
   use cohesive_interfaces, only: cohesive_interfaces_t
@@ -14,7 +14,7 @@ module jump_motions
 
 contains
 
-  !> Moves the jumps of a stack without damage, and finds where some begins.
+  !> Moves the jumps of an undamaged stack, and finds the onset of damage.
   subroutine advance_intact(stacks, i, model, steps, forces, cohesive, u, v)
     !> The stacks
     type(interface_stacks_t), intent(inout) :: stacks
@@ -58,7 +58,7 @@ contains
     end do
   end subroutine advance_intact
 
-  !> Damage of a point under new jumps; the energy that it takes is booked with the losses.
+  !> Damage of a point under new jumps; the dissipated energy is booked.
   subroutine damage_point(stacks, model, p, jumps, limit, cohesive)
     !> The stacks
     type(interface_stacks_t), intent(inout) :: stacks
@@ -67,7 +67,7 @@ contains
     integer, intent(in) :: p
     !> Its jumps at the end of the step
     real(wp), intent(in) :: jumps(3)
-    !> Most that friction bears, force per area
+    !> Friction limit, force per area
     real(wp), intent(in) :: limit
     !> The interfaces
     type(cohesive_interfaces_t), intent(inout) :: cohesive
@@ -117,7 +117,7 @@ contains
     type(model_t), intent(in) :: model
     !> The step and the one before
     type(step_lengths_t), intent(in) :: steps
-    !> Most that friction bears, force, (n)
+    !> Friction limit, force, (n)
     real(wp), intent(in) :: limit(:)
     !> Forces on the jumps, (3, n)
     real(wp), intent(in) :: forces(:, :)

@@ -110,7 +110,7 @@ contains
   subroutine visit(self, archive, owned, points)
     !> The frames
     class(rig_steps_t), intent(inout) :: self
-    !> Where to or where from
+    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     !> Points of the mesh that this rank owns, and all points
     integer, intent(in) :: owned(:), points

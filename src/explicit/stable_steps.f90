@@ -39,7 +39,7 @@ contains
   !> Highest angular frequency of any element of all ranks, and the element of the mesh that has it. Collective.
   subroutine highest_element_frequency(model, stiffness, scaling, omega, element, of_elements)
     type(model_t), intent(in) :: model
-    !> Section stiffness left in the elements, (lanes, 21, batches)
+    !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     !> Factor of in-plane and rotary inertia
     real(wp), intent(in) :: scaling
@@ -78,7 +78,7 @@ contains
   !> larger of A_xx and A_yy of the undamaged section. Collective.
   real(wp) function stiffened_frequency(model, stiffness, of_elements, scaling, motion) result(omega)
     type(model_t), intent(in) :: model
-    !> Section stiffness left in the elements, (lanes, 21, batches)
+    !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), contiguous, intent(in) :: stiffness(:, :, :)
     !> Square of the highest frequency of each element without motion, (lanes, batches)
     real(wp), contiguous, intent(in) :: of_elements(:, :)

@@ -15,7 +15,7 @@ contains
   pure subroutine factorize(stiffness, diagonal, beside, factors)
     !> k, (n)
     real(wp), intent(in) :: stiffness(:)
-    !> H C: its diagonal (n), and the entries beside it (n, the last without meaning)
+    !> H C: its diagonal (n), and the off-diagonal entries (n, the last without meaning)
     real(wp), intent(in) :: diagonal(:), beside(:)
     !> Inverse pivot, and multiplier to the row below, (2, n)
     real(wp), intent(out) :: factors(:, :)
@@ -59,7 +59,7 @@ contains
     integer, intent(in) :: n
     !> k and g, (n)
     real(wp), intent(in) :: stiffness(n), given(n)
-    !> H C: its diagonal, and the entries beside it, (n)
+    !> H C: its diagonal, and the off-diagonal entries, (n)
     real(wp), intent(in) :: diagonal(n), beside(n)
     !> Jumps without tractions, (n)
     real(wp), intent(in) :: jumps(n)

@@ -84,7 +84,8 @@ contains
     end do
   end function new_cohesive_interfaces
 
-  !> Adds the forces of the tractions on the jumps, and finds what the points remember if the jumps are accepted.
+  !> Adds the forces of the tractions on the jumps, and finds the history variables of the points if the jumps are
+  !> accepted.
   pure subroutine add_forces(self, model, old, displacement, force, energy)
     !> The interfaces
     class(cohesive_interfaces_t), intent(inout) :: self
@@ -364,7 +365,7 @@ contains
   subroutine visit(self, archive, model)
     !> The interfaces
     class(cohesive_interfaces_t), intent(inout) :: self
-    !> Where to or where from
+    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
     real(wp), allocatable :: fields(:, :)

@@ -10,22 +10,23 @@ module cohesive_sliding
   private
   public :: heat_since, update_friction_limits, visit_friction
 
-  !> Change of a limit over the largest one at which load steps take limits for settled.
+  !> Relative change of a friction limit at which load steps have converged.
   real(wp), parameter :: limit_tolerance = 1.0e-6_wp
 
 contains
 
-  !> Makes the most that friction bears go with pressures and damage. A step in time goes on with it in the next; a load
-  !> step is solved again until it stays what it was.
+  !> Updates the friction limits by pressures and damage. A time step uses them in the next step; a load step is
+  !> repeated
+  !> until they have converged.
   subroutine update_friction_limits(interfaces, model, displacement, updates, converged)
     !> The interfaces
     type(cohesive_interfaces_t), intent(inout) :: interfaces
     type(model_t), intent(in) :: model
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
-    !> Counts the times that there was something to settle
+    !> Number of updates before convergence
     integer, intent(inout) :: updates
-    !> False on return if it has not settled
+    !> False on return if it has not converged
     logical, intent(inout) :: converged
     type(cohesive_faces_t) :: faces
     real(wp) :: limit, largest(2)
@@ -76,7 +77,7 @@ contains
   subroutine visit_friction(interfaces, archive, model)
     !> The interfaces
     type(cohesive_interfaces_t), intent(inout) :: interfaces
-    !> Where to or where from
+    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
     real(wp), allocatable :: fields(:, :)

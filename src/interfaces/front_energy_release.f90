@@ -4,7 +4,7 @@ module front_energy_release
   use delamination_parameters, only: release_two_state, default_smoothing
   use delamination_fronts, only: front_segment_t, find_front
   use virtual_crack_closure, only: closure_moments, closure_rates, closure_figures, closure_odd
-  use front_smoothing, only: smooth_front_t, beside_front_t, create_smooth_front
+  use front_smoothing, only: smooth_front_t, near_front_t, create_smooth_front
   use benzeggagh_kenane, only: release_ratio
   use motions, only: motion_t
   use contact_and_ties, only: contact_and_ties_t
@@ -31,7 +31,7 @@ contains
   !> Energy release rates along the front of a zone.
   function release_along_front(model, stiffness, faces, motion, zone, method) result(front)
     type(model_t), intent(in) :: model
-    !> Section stiffness left in the elements, (lanes, 21, batches)
+    !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     !> Delaminated cells
     type(contact_and_ties_t), intent(in) :: faces
@@ -104,7 +104,7 @@ contains
     type(smooth_front_t), intent(in) :: line
     !> Sums of the figures of nodes, (figures, segments)
     real(wp), allocatable :: figures(:, :)
-    type(beside_front_t) :: nodes
+    type(near_front_t) :: nodes
     real(wp), allocatable :: sums(:)
     real(wp) :: weight
     integer :: i, k

@@ -16,7 +16,7 @@ module interface_columns
     'delaminated_area | real | area | Delaminated area of all interfaces together, their starters included; &
       &with a cohesive law the area dissipated.']
 
-  !> How near the fronts are to growth, what growth has set free, and how well faces meet.
+  !> How near the fronts are to growth, what growth has released, and how well faces meet.
   character(len=result_row_length), parameter, public :: release_rows(*) = [character(len=result_row_length) :: &
     'release_ratio | real | - | Largest energy release rate on all fronts over its critical value; in a static &
       &analysis they do not grow whatever it is.', &
@@ -58,20 +58,20 @@ contains
     type(model_t), intent(in) :: model
     !> The interfaces
     type(interface_state_t), intent(in) :: interfaces
-    !> A value a column, of the full plate
+    !> One value per column, of the full plate
     real(wp) :: values(size(area_rows))
 
     values = [sum(interfaces%faces%area(model)) + sum(interfaces%cohesive%area(model))]
   end function area_values
 
-  !> How near the fronts are to growth, what growth has set free, and how well faces meet. Collective.
+  !> How near the fronts are to growth, what growth has released, and how well faces meet. Collective.
   function release_values(model, interfaces, displacement) result(values)
     type(model_t), intent(in) :: model
     !> The interfaces
     type(interface_state_t), intent(in) :: interfaces
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
-    !> A value a column, the same on every rank
+    !> One value per column, the same on every rank
     real(wp) :: values(size(release_rows))
 
     values = [interfaces%release_ratio, sum(interfaces%ties%set_free), &
@@ -84,7 +84,7 @@ contains
     type(model_t), intent(in) :: model
     !> The interfaces
     type(interface_state_t), intent(in) :: interfaces
-    !> A value a column
+    !> One value per column
     real(wp) :: values(size(border_rows))
 
     values = [merge(1.0_wp, 0.0_wp, any(interfaces%border_reached)), interfaces%projected_area(model)]
@@ -99,7 +99,7 @@ contains
     type(motion_t), intent(in) :: motion
     !> Forces of pressure and lines at the owned points, (5, points)
     real(wp), intent(in) :: loads(:, :)
-    !> A value a column
+    !> One value per column
     real(wp) :: values(size(rig_rows))
 
     values = interfaces%rig%reactions(model, motion%displacement, motion%internal, motion%inertia, loads)
@@ -110,7 +110,7 @@ contains
     type(model_t), intent(in) :: model
     !> The interfaces
     type(interface_state_t), intent(in) :: interfaces
-    !> A value a column and interface
+    !> One value per column and interface
     real(wp) :: values(size(interface_rows)*size(model%mesh%zones))
     type(interface_figures_t) :: figures(size(model%mesh%zones))
     integer :: zone

@@ -47,7 +47,7 @@ contains
   !> Writes the fields that are wanted.
   subroutine write_interface_fields(model, stiffness, interfaces, motion, output, fields, error)
     type(model_t), intent(in) :: model
-    !> Section stiffness left in the elements, (lanes, 21, batches)
+    !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     !> The interfaces
     type(interface_state_t), intent(in) :: interfaces
@@ -110,7 +110,7 @@ contains
   !> Writes where delaminations would begin.
   subroutine write_onset(model, stiffness, interfaces, motion, fields, error)
     type(model_t), intent(in) :: model
-    !> Section stiffness left in the elements, (lanes, 21, batches)
+    !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     !> The interfaces
     type(interface_state_t), intent(in) :: interfaces
@@ -215,7 +215,7 @@ contains
   !> front has reached the border of its zone there is no such cell, and the last delaminated one shows it.
   function release_ahead(model, stiffness, faces, motion) result(ratio)
     type(model_t), intent(in) :: model
-    !> Section stiffness left in the elements, (lanes, 21, batches)
+    !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     !> What has delaminated
     type(contact_and_ties_t), intent(in) :: faces

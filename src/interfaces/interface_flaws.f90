@@ -131,7 +131,7 @@ contains
   subroutine visit_flaws(interfaces, archive, model)
     !> The interfaces
     type(cohesive_interfaces_t), intent(inout) :: interfaces
-    !> Where to or where from
+    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
     real(wp), allocatable :: fields(:, :)

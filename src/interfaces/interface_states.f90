@@ -41,11 +41,11 @@ module interface_states
     procedure :: projected_area
     !> Takes the contact pressures found as the next estimates.
     procedure :: update_contact
-    !> Keeps what touches together in a first guess.
+    !> Keeps what touches together in the predictor.
     procedure :: keep_contact_closed
     !> Work of contact and penalty ties in a step.
     procedure :: contact_work
-    !> Energy booked as fracture that fronts have not set free.
+    !> Energy booked as fracture that fronts have not released.
     procedure :: unreleased
     !> Stiffness that ties, contact and cohesive laws add to the diagonal.
     procedure :: added_stiffness
@@ -70,7 +70,7 @@ contains
     if (model%map%layered) self%cohesive = new_cohesive_interfaces(model, self%faces%free)
   end function new_interface_state
 
-  !> Adds the forces of ties and contact to a residual and takes the residual of held jumps out of it.
+  !> Adds the forces of ties and contact to a residual and takes the residual of tied jumps out of it.
   subroutine act(self, model, displacement, residual)
     !> The state
     class(interface_state_t), intent(inout) :: self
@@ -92,9 +92,9 @@ contains
     type(model_t), intent(in) :: model
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
-    !> Complementarity at which they have settled
+    !> Tolerance of complementarity
     real(wp), intent(in) :: tolerance
-    !> Counts the times that there was something to settle
+    !> Number of updates before convergence
     integer, intent(inout) :: updates
     !> True if they have
     logical, intent(out) :: converged
@@ -109,12 +109,12 @@ contains
     if (converged) call update_friction_limits(self%cohesive, model, displacement, updates, converged)
   end subroutine update_contact
 
-  !> Keeps touching faces together and what rests on a frame there, in a first guess.
+  !> Keeps touching faces together and what rests on a frame there, in the predictor.
   subroutine keep_contact_closed(self, model, guess)
     !> The state
     class(interface_state_t), intent(in) :: self
     type(model_t), intent(in) :: model
-    !> Guess of the unknowns at its end, (5, points)
+    !> Predictor of the unknowns at its end, (5, points)
     real(wp), intent(inout) :: guess(:, :)
 
     call self%faces%keep_contact_closed(model, guess)
@@ -226,7 +226,7 @@ contains
     end function in_delaminated_cell
   end function delaminated_areas
 
-  !> Energy booked as fracture that fronts in equilibrium have not set free: no integrator made it.
+  !> Energy booked as fracture that fronts in equilibrium have not released: no integrator made it.
   pure real(wp) function unreleased(self, model)
     !> The state
     class(interface_state_t), intent(in) :: self
@@ -266,7 +266,7 @@ contains
   subroutine visit(self, archive, model)
     !> The state
     class(interface_state_t), intent(inout) :: self
-    !> Where to or where from
+    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
     integer, allocatable :: reached(:)

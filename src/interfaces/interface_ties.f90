@@ -29,7 +29,7 @@ module interface_ties
     procedure :: bond
     !> Owned points whose faces press on each other where they meet.
     procedure :: in_contact
-    !> Keeps held jumps as they are.
+    !> Keeps tied jumps as they are.
     procedure :: hold
     !> Largest penetration.
     procedure :: penetration
@@ -123,7 +123,7 @@ contains
     end associate
   end function in_contact
 
-  !> Keeps held jumps as they are.
+  !> Keeps tied jumps as they are.
   pure subroutine hold(self, model, correction)
     !> The bonds
     class(interface_ties_t), intent(in) :: self
@@ -181,7 +181,7 @@ contains
   subroutine visit(self, archive, model)
     !> The bonds
     class(interface_ties_t), intent(inout) :: self
-    !> Where to or where from
+    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
     integer :: zone

@@ -24,7 +24,7 @@ contains
   !> together and find the same.
   function joined_stacks_of(model, stiffness, delaminated, displacement) result(self)
     type(model_t), intent(in) :: model
-    !> Section stiffness left in the elements, (lanes, 21, batches)
+    !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     !> Part of each element's area that has delaminated above it, (1, elements)
     real(wp), intent(in) :: delaminated(:, :)
@@ -60,7 +60,7 @@ contains
   !> Shear forces, their derivatives and delaminated parts of all elements of the mesh. All ranks must call together.
   function gathered(model, stiffness, delaminated, displacement) result(everywhere)
     type(model_t), intent(in) :: model
-    !> Section stiffness left in the elements, (lanes, 21, batches)
+    !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     !> Part of each element's area that has delaminated above it, (1, elements)
     real(wp), intent(in) :: delaminated(:, :)

@@ -22,7 +22,7 @@ contains
   !> same on every rank.
   function required_extents(model, stiffness, interfaces, displacement) result(extents)
     type(model_t), intent(in) :: model
-    !> Section stiffness left in the elements, (lanes, 21, batches)
+    !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     !> The interfaces
     type(interface_state_t), intent(in) :: interfaces
@@ -51,7 +51,7 @@ contains
   !> Extents over the joined cells that the onset index asks for.
   function around_onset(model, stiffness, interfaces, displacement) result(extents)
     type(model_t), intent(in) :: model
-    !> Section stiffness left in the elements, (lanes, 21, batches)
+    !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     !> The interfaces
     type(interface_state_t), intent(in) :: interfaces

@@ -33,7 +33,7 @@ module rig_contact
     procedure :: update_contact
     !> Work of the pressure in a step.
     procedure :: work
-    !> Keeps what rests on a frame there in a first guess.
+    !> Keeps what rests on a frame there in the predictor.
     procedure :: keep_contact_closed
     !> Stiffness that frames and clamps add to the diagonal.
     procedure :: add_stiffness
@@ -115,16 +115,16 @@ contains
     end do
   end subroutine add_springs
 
-  !> Takes the pressures found as the next estimates; they have settled once they go with the gaps.
+  !> Takes the pressures found as the next estimates; they have converged once they agree with the gaps.
   subroutine update_contact(self, model, displacement, tolerance, updates, converged)
     !> The state
     class(rig_contact_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
-    !> Complementarity at which they have settled
+    !> Tolerance of complementarity
     real(wp), intent(in) :: tolerance
-    !> Counts the times that there was something to settle
+    !> Number of updates before convergence
     integer, intent(inout) :: updates
     !> True if they have
     logical, intent(out) :: converged
@@ -159,12 +159,12 @@ contains
     end associate
   end function work
 
-  !> Keeps what rests on a frame there in a first guess, and keeps the rest from passing into it.
+  !> Keeps what rests on a frame there in the predictor, and keeps the rest from passing into it.
   subroutine keep_contact_closed(self, model, guess)
     !> The state
     class(rig_contact_t), intent(in) :: self
     type(model_t), intent(in) :: model
-    !> Guess of the unknowns at its end, (5, points)
+    !> Predictor of the unknowns at its end, (5, points)
     real(wp), intent(inout) :: guess(:, :)
     integer, allocatable :: points(:)
 
@@ -237,7 +237,7 @@ contains
   subroutine visit(self, archive, model)
     !> The state
     class(rig_contact_t), intent(inout) :: self
-    !> Where to or where from
+    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
     real(wp), allocatable :: fields(:, :)

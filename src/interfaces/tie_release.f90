@@ -1,9 +1,8 @@
-!> Ties that have been released: their forces fade, and what the faces set free meanwhile is added up.
+!> Released ties: their forces are ramped down, and the energy released meanwhile is summed.
 !>
-!> A tie that vanished at once would be a blow: the energy that it set free would stay in the motion and, the shorter
-!> the steps, the less of it would show as work against the tie. Its force therefore fades, in proportion to time,
-!> while waves of shear cross a few elements; where a step is longer than that it is gone at the end of the step. The
-!> work against the fading force is the energy that is really released.
+!> Sudden removal of a tie would excite the plate: the energy would remain as kinetic energy, and the shorter the steps,
+!> the less of it would appear as work against the tie. The force is therefore ramped down linearly in time, while shear
+!> waves cross a few elements, or within one step if that is longer. The work against it is the energy released.
 module tie_release
   use kinds, only: wp
   use archives, only: archive_t
@@ -13,25 +12,25 @@ module tie_release
   private
   public :: tie_release_t, new_tie_release
 
-  !> Forces of released ties, and the energy that they set free.
+  !> Forces of released ties, and the energy that they release.
   type :: tie_release_t
     !> Forces on the jumps when the ties were released, (3, local points)
     real(wp), allocatable :: force(:, :)
-    !> Part of them that is still there, (local points)
+    !> Remaining fraction of these forces, (local points)
     real(wp), allocatable :: share(:)
-    !> Time in which they fade, (zones)
+    !> Duration of the ramp, (zones)
     real(wp), allocatable :: duration(:)
-    !> Energy that released faces set free, full plate, (zones)
+    !> Energy that released faces released, full plate, (zones)
     real(wp), allocatable :: set_free(:)
-    !> Time until the last of them is gone, the same on every rank
+    !> Time until the last of them is zero, the same on every rank
     real(wp) :: left = 0
   contains
     !> Releases ties.
     procedure :: release
-    !> Energy that ties just released set free as they first open.
+    !> Energy that ties just released released as they first open.
     procedure :: first_opening
-    !> Fades the forces over a step.
-    procedure :: fade
+    !> Reduces the forces over a step.
+    procedure :: ramp_down
     !> Adds the forces to a residual.
     procedure :: act
     !> Books the work against the forces in a step.
@@ -47,7 +46,7 @@ contains
     type(model_t), intent(in) :: model
     !> The ties
     type(tie_release_t) :: self
-    !> Elements that waves of shear cross while a tie fades. With 10 the energy set free is the same to some percent
+    !> Elements that waves of shear cross while a tie fades. With 10 the energy released is the same to some percent
     !> for all shorter steps.
     real(wp), parameter :: elements_crossed = 10
     real(wp) :: slowness
@@ -85,7 +84,7 @@ contains
     self%left = maxval(self%duration)
   end subroutine release
 
-  !> Energy that ties just released set free as they first open, once the step has been computed again without them.
+  !> Energy that ties just released released as they first open, once the step has been computed again without them.
   !> What cells released later in the same step make of the opening is theirs.
   function first_opening(self, model, free_before, free, opening) result(energy)
     !> The ties at the end of the step
@@ -110,8 +109,8 @@ contains
     energy = energy*model%mesh%multiplicity
   end function first_opening
 
-  !> Fades the forces over a step.
-  pure subroutine fade(self, model, step)
+  !> Reduces the forces over a step.
+  pure subroutine ramp_down(self, model, step)
     !> The ties
     class(tie_release_t), intent(inout) :: self
     type(model_t), intent(in) :: model
@@ -132,7 +131,7 @@ contains
     end do
     self%left = max(0.0_wp, self%left - step)
     if (.not. self%left > 0) self%share = 0
-  end subroutine fade
+  end subroutine ramp_down
 
   !> Adds the forces to a residual.
   pure subroutine act(self, model, residual)
@@ -150,7 +149,7 @@ contains
   end subroutine act
 
   !> Books the work against the forces in a step: as the step had it, the force at its end acting throughout, and as
-  !> what is set free has it, with the mean of the forces at its start and end. Of ties released in this step the
+  !> the energy released has it, with the mean of the forces at its start and end. Of ties released in this step the
   !> difference is that of `first_opening`.
   subroutine book(self, model, old, change, taken)
     !> The ties at the end of the step
@@ -186,7 +185,7 @@ contains
   subroutine visit(self, archive, model)
     !> The ties
     class(tie_release_t), intent(inout) :: self
-    !> Where to or where from
+    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
     real(wp), allocatable :: fields(:, :)

@@ -1,10 +1,10 @@
-!> Energy release rates along a front by Eq. 11 with its sign put right, from the states on both sides of it.
+!> Energy release rates along a front by Eq. 11 with its sign corrected, from the states on both sides of it.
 !>
 !> The steps are those of section 3.3.3 of the paper: strains are carried to the nodes of the front from inside the
 !> cells on either side of it; they are smoothed along the front, never across it; the smooth states give G at the
 !> nodes, and the mean of its three nodes is a segment's. To smooth G in place of the states would take what differs
 !> between neighbours for released: where a front turns around an intact cell its legs have unlike states, and on discs
-!> that grow cell by cell the rates would add up to 1.32 of the energy set free, 1.18 with smooth states.
+!> that grow cell by cell the rates would add up to 1.32 of the energy released, 1.18 with smooth states.
 !>
 !> Where plies have cracked on one side only, the strains across the front jump there without any delamination. The
 !> states are then compared in the stiffness of the stiffer side, to which they are carried by the forces across the
@@ -27,7 +27,7 @@ contains
   !> Rates of the segments of a front.
   function two_state_rates(model, section_stiffness, motion, zone, segments) result(modes)
     type(model_t), intent(in) :: model
-    !> Section stiffness left in the elements, (lanes, 21, batches)
+    !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: section_stiffness(:, :, :)
     !> Motion
     type(motion_t), intent(in) :: motion
@@ -179,7 +179,7 @@ contains
   !> rank has the element. Every batch is computed once.
   subroutine front_states(model, section_stiffness, field, segments, elements, strains, stiffness)
     type(model_t), intent(in) :: model
-    !> Section stiffness left in the elements, (lanes, 21, batches)
+    !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: section_stiffness(:, :, :)
     !> Motion of every layer, (5, points)
     real(wp), intent(in) :: field(:, :)

@@ -23,7 +23,7 @@ module petsc_matrices
     !> True between `define` and `release`
     logical, private :: defined = .false.
     !> First code that PETSc returned for an added matrix, 0 for success
-    integer, private :: trouble = 0
+    integer, private :: first_error = 0
   contains
     !> Makes the matrix, with a place for every entry of the pattern.
     procedure :: define
@@ -102,7 +102,7 @@ contains
   subroutine clear(self)
     class(petsc_matrix_t), intent(inout) :: self
 
-    call MatZeroEntries(self%object, self%trouble)
+    call MatZeroEntries(self%object, self%first_error)
   end subroutine clear
 
   !> Adds an element's matrix; each element is added by one rank only.
@@ -115,7 +115,7 @@ contains
     integer :: ierr
 
     call MatSetValues(self%object, size(equations), equations, size(equations), equations, values, ADD_VALUES, ierr)
-    if (self%trouble == 0) self%trouble = ierr
+    if (self%first_error == 0) self%first_error = ierr
   end subroutine add
 
   !> Brings the matrix together.
@@ -125,7 +125,7 @@ contains
     type(error_t), allocatable, intent(inout) :: error
     integer :: ierr(3)
 
-    ierr(1) = self%trouble
+    ierr(1) = self%first_error
     call MatAssemblyBegin(self%object, MAT_FINAL_ASSEMBLY, ierr(2))
     call MatAssemblyEnd(self%object, MAT_FINAL_ASSEMBLY, ierr(3))
     if (any(ierr /= 0)) &

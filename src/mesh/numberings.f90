@@ -47,7 +47,7 @@ module numberings
 
 contains
 
-  !> Numbers the unknowns that are not held and finds the pattern of this rank's rows.
+  !> Numbers the unconstrained unknowns and finds the pattern of this rank's rows.
   subroutine number_equations(mesh, distribution, held, self, images)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
@@ -204,7 +204,8 @@ contains
     end do
   end subroutine gather
 
-  !> Field of motion over the owned points from the rows of this rank; held unknowns become zero, ghosts are left alone.
+  !> Field of motion over the owned points from the rows of this rank; constrained unknowns become zero, ghosts are left
+  !> alone.
   pure subroutine scatter(self, vector, field)
     !> The numbering
     class(numbering_t), intent(in) :: self

@@ -87,7 +87,7 @@ contains
     type(layered_mesh_t), intent(in) :: mesh
     !> Those to be held: along x, along y, turning
     logical, intent(in) :: motions(3)
-    !> Table of held unknowns
+    !> Table of constrained unknowns
     logical, intent(inout) :: held(:, :)
     integer :: node
     logical :: left(3)

@@ -30,7 +30,7 @@ module model_building
   public :: create_model, zones_of
 
   !> Stiffness of a line of a rigid frame over that of the laminate through its thickness: its part of the deflection is
-  !> far below that of rounding and tolerance, and the matrix still loses no more digits than held jumps cost it.
+  !> far below that of rounding and tolerance, and the matrix still loses no more digits than tied jumps cost it.
   real(wp), parameter :: rigid = 1.0e3_wp
 
 contains

@@ -121,7 +121,7 @@ module models
     procedure :: inertia
     !> Mean deflection of the patch, and nodal forces of a force on it.
     procedure :: patch_mean
-    procedure :: push_patch
+    procedure :: add_contact_force
     !> Deflection under the impactor, the area that it presses on, and how its force is spread from now on.
     procedure :: contact_deflection
     procedure :: pressed_area
@@ -149,7 +149,7 @@ contains
   !> Internal forces at the owned points and this rank's share of the strain energy.
   subroutine internal(self, stiffness, displacement, force, energy, law, free)
     class(model_t), intent(in) :: self
-    !> Section stiffness left in the elements, (lanes, 21, batches)
+    !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), contiguous, intent(in) :: stiffness(:, :, :)
     !> Displacement, ghosts up to date, (5, points)
     real(wp), contiguous, intent(in) :: displacement(:, :)
@@ -181,7 +181,7 @@ contains
   !> Adds the internal forces of this rank's elements on the motion of their layers.
   subroutine add_elements(self, stiffness, displacement, field, energy, law, free)
     class(model_t), intent(in) :: self
-    !> Section stiffness left in the elements, (lanes, 21, batches)
+    !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), contiguous, intent(in) :: stiffness(:, :, :)
     !> Displacement, ghosts up to date, (5, points)
     real(wp), contiguous, intent(in) :: displacement(:, :)
@@ -359,7 +359,7 @@ contains
   end subroutine spread_force
 
   !> Adds the nodal forces of a force on the full plate's patch.
-  pure subroutine push_patch(self, force, forces)
+  pure subroutine add_contact_force(self, force, forces)
     class(model_t), intent(in) :: self
     !> The force
     real(wp), intent(in) :: force
@@ -372,7 +372,7 @@ contains
         forces(3, point) = forces(3, point) + force/self%mesh%multiplicity*self%patch(point)
       end associate
     end do
-  end subroutine push_patch
+  end subroutine add_contact_force
 
   !> Deflection at the struck point, the same on every rank.
   real(wp) function deflection(self, displacement) result(w)

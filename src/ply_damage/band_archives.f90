@@ -1,4 +1,4 @@
-!> Saves and loads what plies that soften remember.
+!> Saves and loads what softening plies store as history variables.
 module band_archives
   use archives, only: archive_t
   use crack_bands, only: band_state_t
@@ -13,7 +13,7 @@ contains
 
   !> Saves or loads the states of all plies. Collective.
   subroutine visit_bands(archive, model, range, states)
-    !> Where to or where from
+    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
     !> First and last ply of each element, (2, elements)

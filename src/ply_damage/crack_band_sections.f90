@@ -152,7 +152,7 @@ contains
 
   !> Stiffness of the sections of a batch under trial strains.
   subroutine soften(self, b, weight, strains, stiffness, free)
-    !> The plies; remember the trial
+    !> The plies; store the trial state
     class(crack_band_sections_t), intent(inout) :: self
     !> Number of the batch
     integer, intent(in) :: b
@@ -383,7 +383,7 @@ contains
   subroutine visit(self, archive, model)
     !> The plies
     class(crack_band_sections_t), intent(inout) :: self
-    !> Where to or where from
+    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
     integer :: element, ply

@@ -31,7 +31,7 @@ contains
     type(model_t), intent(in) :: model
     !> Failures of the plies
     type(ply_failure_t), intent(in) :: plies
-    !> A value a column, the same on every rank
+    !> One value per column, the same on every rank
     real(wp) :: values(size(ply_rows))
 
     values = [real(plies%counts(model), wp), plies%dissipated]
@@ -41,7 +41,7 @@ contains
   pure function permanent_values(plies) result(values)
     !> Failures of the plies
     type(ply_failure_t), intent(in) :: plies
-    !> A value a column
+    !> One value per column
     real(wp) :: values(size(permanent_rows))
 
     values = [plies%permanent_shear]

@@ -18,7 +18,7 @@ contains
   !> criterion is met. Roots of the criteria's values, so that they grow with the load.
   function failure_measures(model, stiffness, element, elasticity, strains) result(measures)
     type(model_t), intent(in) :: model
-    !> Section stiffness left in the elements, (lanes, 21, batches)
+    !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     !> Element of this rank
     integer, intent(in) :: element
@@ -54,7 +54,7 @@ contains
 
   !> Shear forces of an element, Q = S gamma.
   pure function shear_force(stiffness, element, strain) result(force)
-    !> Section stiffness left in the elements, (lanes, 21, batches)
+    !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     !> Element of this rank
     integer, intent(in) :: element

@@ -28,7 +28,7 @@ module ply_failures
     type(failed_modes_t) :: modes
     !> Plies that soften by their fracture energies; unallocated: they fail at once
     type(crack_band_sections_t), allocatable :: bands
-    !> Section stiffness left in the elements, (lanes, 21, batches)
+    !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), allocatable :: stiffness(:, :, :)
     !> Resultants of strains without stress that this stiffness leaves, (lanes, 7, batches); unallocated: there are none
     real(wp), allocatable :: free(:, :, :)
@@ -88,7 +88,7 @@ contains
 
   !> Internal forces of the plate, with the stiffness that softening leaves under this displacement.
   subroutine find_forces(self, model, displacement, force, energy)
-    !> The failures; remember the trial
+    !> The failures; store the trial state
     class(ply_failure_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Displacement, ghosts up to date, (5, points)
@@ -334,7 +334,7 @@ contains
   subroutine visit(self, archive, model)
     !> The failures
     class(ply_failure_t), intent(inout) :: self
-    !> Where to or where from
+    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
     integer :: mode, element

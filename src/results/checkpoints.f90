@@ -62,7 +62,7 @@ contains
     self%path = path
     call self%file%create(communicator, aside(path), head_length)
     call write_provenance(self%file, 'provenance', provenance)
-    if (allocated(self%file%trouble)) call self%close(error)
+    if (allocated(self%file%failure)) call self%close(error)
   end subroutine open_for_saving
 
   !> Opens a checkpoint, after making sure that it is one and whole.
@@ -83,8 +83,8 @@ contains
     if (allocated(error)) return
     call self%file%open(communicator, path, writable=.false.)
     call read_provenance(self%file, 'provenance', self%provenance)
-    if (.not. allocated(self%file%trouble)) return
-    call fail(error, exit_files, "Can't read the checkpoint "//path//': '//self%file%trouble//'.')
+    if (.not. allocated(self%file%failure)) return
+    call fail(error, exit_files, "Can't read the checkpoint "//path//': '//self%file%failure//'.')
     call self%file%close()
   end subroutine open_for_loading
 
@@ -96,9 +96,9 @@ contains
     type(error_t), allocatable, intent(inout) :: error
 
     call self%file%close()
-    if (allocated(self%file%trouble)) then
+    if (allocated(self%file%failure)) then
       call fail(error, exit_files, "Can't "//trim(merge('read ', 'write', self%loading))//' the checkpoint ' &
-                //self%path//': '//self%file%trouble//'.')
+                //self%path//': '//self%file%failure//'.')
       if (.not. self%loading .and. self%file%communicator%is_root()) call remove_file(aside(self%path))
     else if (.not. self%loading) then
       if (self%file%communicator%is_root()) call put_in_place(self%path, error)
@@ -214,7 +214,7 @@ contains
 
     if (self%loading) then
       call read_reals(self%file, items//name, found, [integer ::])
-      if (self%file%well()) value = found(1)
+      if (self%file%succeeded()) value = found(1)
     else
       call write_reals(self%file, items//name, [value], [integer ::])
     end if
@@ -232,7 +232,7 @@ contains
 
     if (self%loading) then
       call read_integers(self%file, items//name, found, [integer ::])
-      if (self%file%well()) value = found(1)
+      if (self%file%succeeded()) value = found(1)
     else
       call write_integers(self%file, items//name, [value], [integer ::])
     end if
@@ -265,7 +265,7 @@ contains
 
     if (self%loading) then
       call read_reals(self%file, items//name, found, extents_of(self, name, 1))
-      if (self%file%well()) call move_alloc(found, value)
+      if (self%file%succeeded()) call move_alloc(found, value)
     else if (allocated(value)) then
       call write_reals(self%file, items//name, value, shape(value))
     else
@@ -285,7 +285,7 @@ contains
 
     if (self%loading) then
       call read_integers(self%file, items//name, found, extents_of(self, name, 1))
-      if (self%file%well()) call move_alloc(found, value)
+      if (self%file%succeeded()) call move_alloc(found, value)
     else if (allocated(value)) then
       call write_integers(self%file, items//name, value, shape(value))
     else
@@ -307,7 +307,7 @@ contains
     if (self%loading) then
       extents = extents_of(self, name, 2)
       call read_reals(self%file, items//name, found, extents)
-      if (self%file%well()) value = reshape(found, extents(1:2))
+      if (self%file%succeeded()) value = reshape(found, extents(1:2))
     else if (allocated(value)) then
       call write_reals(self%file, items//name, pack(value, .true.), shape(value))
     else

@@ -131,7 +131,7 @@ contains
     if (.not. present) return
     call file%open(communicator, base//'.h5', writable=.false.)
     call read_text(file, 'provenance/deck', found)
-    if (file%well() .and. found /= deck) &
+    if (file%succeeded() .and. found /= deck) &
       call fail(error, exit_files, 'The fields '//base//'.h5 are those of another deck than the checkpoint''s; '// &
                 'move them away, or take the checkpoint of that run.')
     call file%close()
@@ -345,7 +345,7 @@ contains
     type(error_t), allocatable, intent(inout) :: error
 
     call self%file%open(self%communicator, self%base//'.h5', writable=.true.)
-    if (allocated(self%file%trouble)) call self%close_file(error)
+    if (allocated(self%file%failure)) call self%close_file(error)
   end subroutine open_file
 
   !> Closes NAME.h5. If what was added can't be written, as when the disk is full, it is taken out again, so that what
@@ -358,7 +358,7 @@ contains
     !> Group that was added
     character(len=*), intent(in), optional :: added
 
-    if (allocated(self%file%trouble) .and. present(added)) call self%file%discard(added)
+    if (allocated(self%file%failure) .and. present(added)) call self%file%discard(added)
     call self%file%close()
     call report(self, error)
   end subroutine close_file
@@ -370,8 +370,8 @@ contains
     !> Raised if there was
     type(error_t), allocatable, intent(inout) :: error
 
-    if (allocated(self%file%trouble)) call fail(error, exit_files, &
-      'Trouble with the field file '//self%base//'.h5: '//self%file%trouble//'.')
+    if (allocated(self%file%failure)) call fail(error, exit_files, &
+      'Trouble with the field file '//self%base//'.h5: '//self%file%failure//'.')
   end subroutine report
 
   !> Drops the times after a checkpoint and describes the others.

@@ -35,7 +35,7 @@ contains
     shape_of_cells = stored_shape(file, mesh//'/connectivity')
     shape_of_points = stored_shape(file, mesh//'/coordinates')
     grid = ''
-    if (.not. file%well()) return
+    if (.not. file%succeeded()) return
     grid = line(2, '<Grid Name="plate" GridType="Uniform">') &
       //line(3, '<Time Value="'//to_text(time(1))//'"/>') &
       //line(3, '<Information Name="step" Value="'//to_text(step(1))//'"/>') &

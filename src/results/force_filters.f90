@@ -69,7 +69,7 @@ contains
   subroutine visit(self, archive)
     !> The filter
     class(force_filter_t), intent(inout) :: self
-    !> Where to or where from
+    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     real(wp), allocatable :: numbers(:)
 

@@ -23,7 +23,7 @@ contains
     integer(hid_t) :: dataset
     integer :: statuses(2), status
 
-    if (.not. file%well()) return
+    if (.not. file%succeeded()) return
     statuses = 0
     call h5dopen_f(file%id, name, dataset, status)
     if (status >= 0) then

@@ -92,7 +92,7 @@ contains
     integer(hid_t) :: text_type
     integer :: i, status
 
-    if (.not. file%well()) return
+    if (.not. file%succeeded()) return
     allocate (buffer(max(1, len(value))), source=' ')
     do i = 1, len(value)
       buffer(i) = value(i:i)
@@ -117,10 +117,10 @@ contains
     integer :: i, status, closed
 
     value = ''
-    if (.not. file%well()) return
+    if (.not. file%succeeded()) return
     call h5dopen_f(file%id, name, dataset, status)
     call file%check_status(status, name//' is missing')
-    if (.not. file%well()) return
+    if (.not. file%succeeded()) return
     call h5dget_type_f(dataset, text_type, status)
     call h5tget_size_f(text_type, length, status)
     call h5dclose_f(dataset, closed)
@@ -175,7 +175,7 @@ contains
     allocate (buffer(height*size(columns) + 1), source=0.0_wp)
     call get(file, name, h5t_native_double, c_loc(buffer), table_extents(height, global_columns), &
              columns(order))
-    if (.not. file%well()) return
+    if (.not. file%succeeded()) return
     do i = 1, size(columns)
       values(:, order(i)) = buffer((i - 1)*height + 1:i*height)
     end do

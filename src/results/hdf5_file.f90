@@ -22,7 +22,7 @@ module hdf5_file
   !> An open file.
   type :: hdf5_file_t
     !> What could not be done; unallocated while all is well
-    character(len=:), allocatable :: trouble
+    character(len=:), allocatable :: failure
     !> The ranks that share the file
     type(communicator_t) :: communicator
     !> Handle of the file
@@ -44,7 +44,7 @@ module hdf5_file
     procedure, private :: give_up_reserve
     procedure :: close
     procedure :: check_status
-    procedure :: well
+    procedure :: succeeded
     procedure :: exists
     procedure :: make_group
     procedure :: remove
@@ -69,7 +69,7 @@ contains
 
     call start_over(self, communicator)
     call self%hold_reserve(path)
-    if (allocated(self%trouble)) return
+    if (allocated(self%failure)) return
     call prepare(self, access_list)
     call h5pcreate_f(h5p_file_create_f, creation_list, status)
     call h5pset_userblock_f(creation_list, int(head, hsize_t), status)
@@ -95,7 +95,7 @@ contains
 
     call start_over(self, communicator)
     if (writable) call self%hold_reserve(path)
-    if (allocated(self%trouble)) return
+    if (allocated(self%failure)) return
     call prepare(self, access_list)
     call h5fopen_f(path, merge(h5f_acc_rdwr_f, h5f_acc_rdonly_f, writable), self%id, status, access_list)
     self%is_open = status == 0
@@ -110,7 +110,7 @@ contains
     !> The ranks that share the file
     type(communicator_t), intent(in) :: communicator
 
-    if (allocated(self%trouble)) deallocate (self%trouble)
+    if (allocated(self%failure)) deallocate (self%failure)
     self%communicator = communicator
   end subroutine start_over
 
@@ -129,7 +129,7 @@ contains
       call stream%close()
     end if
     call self%check_status(merge(-1, 0, stream%failed), 'the folder cannot be written to or the disk is full')
-    if (allocated(self%trouble)) call self%give_up_reserve()
+    if (allocated(self%failure)) call self%give_up_reserve()
   end subroutine hold_reserve
 
   !> Removes the reserve.
@@ -233,25 +233,25 @@ contains
   end function files_left_open
 
   !> Agrees on whether the last step failed on any rank.
-  subroutine check_status(self, status, trouble)
+  subroutine check_status(self, status, failure)
     !> The file
     class(hdf5_file_t), intent(inout) :: self
     !> Status the library returned on this rank; negative means failed
     integer, intent(in) :: status
     !> What could not be done, if it failed; equal on all ranks
-    character(len=*), intent(in) :: trouble
+    character(len=*), intent(in) :: failure
 
-    if (allocated(self%trouble)) return
-    if (self%communicator%any(status < 0)) self%trouble = trouble
+    if (allocated(self%failure)) return
+    if (self%communicator%any(status < 0)) self%failure = failure
   end subroutine check_status
 
   !> Whether nothing has failed so far.
-  pure logical function well(self)
+  pure logical function succeeded(self)
     !> The file
     class(hdf5_file_t), intent(in) :: self
 
-    well = self%is_open .and. .not. allocated(self%trouble)
-  end function well
+    succeeded = self%is_open .and. .not. allocated(self%failure)
+  end function succeeded
 
   !> Whether there is a group or dataset of that path.
   logical function exists(self, path)
@@ -262,7 +262,7 @@ contains
     integer :: status
 
     exists = .false.
-    if (.not. self%well()) return
+    if (.not. self%succeeded()) return
     call h5lexists_f(self%id, path, exists, status)
     exists = exists .and. status == 0
   end function exists
@@ -276,7 +276,7 @@ contains
     integer(hid_t) :: group
     integer :: status
 
-    if (.not. self%well()) return
+    if (.not. self%succeeded()) return
     call h5gcreate_f(self%id, path, group, status, lcpl_id=self%with_groups)
     if (status == 0) call h5gclose_f(group, status)
     call self%check_status(status, 'group '//path//' could not be made')
@@ -290,7 +290,7 @@ contains
     character(len=*), intent(in) :: path
     integer :: status
 
-    if (.not. self%well()) return
+    if (.not. self%succeeded()) return
     call h5ldelete_f(self%id, path, status)
     call self%check_status(status, path//' could not be removed')
   end subroutine remove

@@ -56,11 +56,11 @@ contains
     integer(hid_t) :: dataset, space, memory
     integer :: status, closed
 
-    if (.not. file%well()) return
+    if (.not. file%succeeded()) return
     call make_spaces(extents, columns, space, memory)
     call h5dcreate_f(file%id, name, stored_type, space, dataset, status, file%undated, file%with_groups)
     call file%check_status(status, name//' could not be made')
-    if (file%well()) then
+    if (file%succeeded()) then
       call h5dwrite_f(dataset, native_type, address, status, memory, space, file%together)
       call h5dclose_f(dataset, closed)
     end if
@@ -88,14 +88,14 @@ contains
     type(c_ptr) :: place
     integer :: status, closed
 
-    if (.not. file%well()) return
+    if (.not. file%succeeded()) return
     call h5dopen_f(file%id, name, dataset, status)
     call file%check_status(status, name//' is missing')
     found = stored_shape(file, name)
     status = -1
     if (size(found) == size(extents)) status = merge(0, -1, all(found == extents))
     call file%check_status(status, name//' has another shape')
-    if (.not. file%well()) return
+    if (.not. file%succeeded()) return
     call make_spaces(extents, columns, space, memory)
     place = address
     call h5dread_f(dataset, native_type, place, status, memory, space, file%together)

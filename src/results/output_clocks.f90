@@ -93,7 +93,7 @@ contains
   subroutine visit(self, archive, name)
     !> The clock
     class(clock_t), intent(inout) :: self
-    !> Where to or where from
+    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     !> Name of the clock
     character(len=*), intent(in) :: name

@@ -18,7 +18,8 @@ module crack_flaws
 
 contains
 
-  !> Weakens interfaces within a block's thickness of where the ply above or below has cracked across its fibres.
+  !> Reduces the strength of interfaces within a block's thickness of where the ply above or below has cracked across
+  !> its fibres.
   !> Collective.
   subroutine note_flaws(model, plies, displacement, interfaces)
     type(model_t), intent(in) :: model
@@ -49,7 +50,8 @@ contains
     end do
   end subroutine note_flaws
 
-  !> Weakens an interface beside cracks of transverse shear in a ply: what bears no more shear cannot hand it on, so its
+  !> Reduces the strength of an interface beside cracks of transverse shear in a ply: what bears no more shear cannot
+  !> hand it on, so its
   !> strength is that of the ply to transverse shear. Collective.
   subroutine weaken_by_shear(model, plies, strains, zone, ply, reach, interfaces)
     type(model_t), intent(in) :: model

@@ -53,7 +53,7 @@ contains
   subroutine visit(self, archive)
     !> The ledger
     class(ledger_t), intent(inout) :: self
-    !> Where to or where from
+    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
 
     call archive%item('ledger/impactor', self%impactor)

@@ -12,11 +12,11 @@ module inherited_states
 
 contains
 
-  !> Saves or loads what is taken over, under the names that it has in a checkpoint.
+  !> Saves or loads what is taken, under the names that it has in a checkpoint.
   subroutine visit_inheritance(state, archive, model)
     !> The state
     type(state_t), intent(inout) :: state
-    !> Where to or where from
+    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
     integer :: points

@@ -4,7 +4,7 @@ module initial_state_parameters
   private
   public :: initial_state_t
 
-  !> What of the plate's motion is taken over: nothing, or its velocities.
+  !> What of the plate's motion is taken: nothing, or its velocities.
   integer, parameter, public :: motion_rest = 1, motion_kept = 2
 
   !> The state that another run has left.

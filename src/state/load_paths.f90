@@ -29,7 +29,7 @@ contains
   subroutine visit(self, archive, model)
     !> The path
     class(load_path_t), intent(inout) :: self
-    !> Where to or where from
+    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
 

@@ -28,7 +28,7 @@ module states
     type(load_path_t) :: path
     !> The impactor
     type(impactor_t) :: impactor
-    !> Memory of the indentation
+    !> History variables of the indentation
     type(indentation_t) :: indentation
     !> The interfaces
     type(interface_state_t) :: interfaces
@@ -50,7 +50,7 @@ module states
     integer :: iterations = 0, force_iterations = 0, contact_iterations = 0
     !> Their sums over all steps
     integer :: all_iterations = 0, all_force_iterations = 0, all_contact_iterations = 0
-    !> Largest forces so far, by which a residual is judged when forces fade: translations, rotations
+    !> Largest forces so far, the reference of the residual when forces are small: translations, rotations
     real(wp) :: largest_forces(2) = 0
   end type small_state_t
 
@@ -61,7 +61,7 @@ module states
     !> Failures of the plies and the stiffness they have left
     type(ply_failure_t) :: plies
   contains
-    !> Becomes the state from which a step starts, but for what the step finds anew.
+    !> Becomes the state from which a step starts, but for what the step computes again.
     procedure :: start_from
     !> Internal forces and the energy that goes with them.
     procedure :: find_internal
@@ -77,7 +77,7 @@ module states
 
 contains
 
-  !> The plate at rest, the impactor at first touch.
+  !> The plate at rest, the impactor at first contact.
   function new_state(model) result(self)
     type(model_t), intent(in) :: model
     !> The state
@@ -102,12 +102,12 @@ contains
   end function new_state
 
   !> Becomes the state from which a step starts. Of the motion that is the displacement: velocity, acceleration and
-  !> forces are found anew.
+  !> forces are computed again.
   pure subroutine start_from(self, model, old)
     !> The state
     class(state_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> The state that is taken over
+    !> The state that is taken
     type(state_t), intent(in) :: old
 
     self%small_state_t = old%small_state_t
@@ -178,7 +178,7 @@ contains
   subroutine visit(self, archive, model)
     !> The state
     class(state_t), intent(inout) :: self
-    !> Where to or where from
+    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
 
@@ -212,7 +212,7 @@ contains
   subroutine visit_patch(self, archive, model)
     !> The state
     type(state_t), intent(inout) :: self
-    !> Where to or where from
+    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
     real(wp), allocatable :: weights(:, :)
@@ -230,7 +230,7 @@ contains
   subroutine visit_motion(motion, archive, model)
     !> The motion
     type(motion_t), intent(inout) :: motion
-    !> Where to or where from
+    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
     integer :: points

@@ -17,7 +17,7 @@ module tangent_operators
 
   !> A factor of `stiffness_factor*tangent + mass_factor*mass`, with many components because it keeps what made it.
   type :: tangent_operator_t
-    !> Equations of the unknowns that are not held
+    !> Equations of the unconstrained unknowns
     type(numbering_t) :: numbering
     !> The linear solver that holds the factor
     class(linear_solver_t), allocatable :: solver
@@ -95,7 +95,7 @@ contains
     !> The operator
     class(tangent_operator_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> Section stiffness left in the elements, (lanes, 21, batches)
+    !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     !> Ties, contacts and cohesive laws
     type(interface_state_t), intent(in) :: interfaces
@@ -199,22 +199,22 @@ contains
 
   !> True if ties and contacts have changed at more equations than a factorization takes solves: each takes a direction
   !> of its own in a Krylov space. Collective.
-  logical function has_outdated_constraints(self, model, wanted, most)
+  logical function has_outdated_constraints(self, model, current, max_changes)
     !> The operator
     class(tangent_operator_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> Stiffness added to the jumps now, (3, points)
-    real(wp), intent(in) :: wanted(:, :)
+    real(wp), intent(in) :: current(:, :)
     !> Changes that may be left to the iteration
-    integer, intent(in) :: most
+    integer, intent(in) :: max_changes
     real(wp) :: changed
 
     associate (owned => model%distribution%owned)
-      changed = count(abs(wanted(:, :owned) - self%added(:, :owned)) > self%diagonal(:3, :owned) &
+      changed = count(abs(current(:, :owned) - self%added(:, :owned)) > self%diagonal(:3, :owned) &
                       .and. self%numbering%equation(:3, :owned) >= 0)
     end associate
     call model%communicator%sum(changed)
-    has_outdated_constraints = changed > most
+    has_outdated_constraints = changed > max_changes
   end function has_outdated_constraints
 
   !> Correction of the displacement for a residual, ghosts included.

@@ -16,7 +16,8 @@ program strike_rigid_base
   real(wp) :: lost, before
 
   call commit(law, contact, 60e-6_wp)
-  call require('dent is where no force is left', contact_force(law, contact, zero_force_indentation(law, contact)), 0.0_wp, &
+  call require('dent is where no force is left', contact_force(law, contact, zero_force_indentation(law, contact)), &
+               0.0_wp, &
                1e-10_wp)
   call require('the way back starts where the way in ends', contact_force(law, contact, 60e-6_wp*(1 - 1e-12_wp)), &
                contact_force(law, contact, 60e-6_wp), 1e-8_wp)

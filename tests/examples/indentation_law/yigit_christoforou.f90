@@ -6,7 +6,8 @@ module yigit_christoforou
   use kinds, only: wp
   implicit none
   private
-  public :: plastic_law_t, plastic_contact_t, zero_force_indentation, contact_force, contact_stiffness, mean_force, commit
+  public :: plastic_law_t, plastic_contact_t, zero_force_indentation, contact_force, contact_stiffness, mean_force, &
+    commit
 
   !> Constants of the law.
   type :: plastic_law_t
@@ -107,7 +108,7 @@ contains
   subroutine visit(self, archive)
     !> The state
     class(plastic_contact_t), intent(inout) :: self
-    !> Where to or where from
+    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
 
     call archive%item('indentation/alpha', self%alpha)

@@ -103,7 +103,7 @@ contains
   subroutine visit(self, archive)
     !> The state
     class(bdf2_impactor_t), intent(inout) :: self
-    !> Where to or where from
+    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
 
     call self%impactor_t%visit(archive)

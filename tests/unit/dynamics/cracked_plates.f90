@@ -30,9 +30,9 @@ module cracked_plates
     type(state_t) :: state
     !> The operator
     type(tangent_operator_t) :: operator
-    !> Section stiffness left in the elements, (lanes, 21, batches)
+    !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), allocatable :: stiffness(:, :, :)
-    !> Convergence asked for
+    !> Required convergence
     type(equilibrium_t) :: equilibrium
   contains
     !> Builds the model of a setup, without forces and delaminated cells.

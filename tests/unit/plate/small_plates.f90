@@ -217,7 +217,7 @@ contains
     real(wp), intent(in) :: load(:, :)
     !> Unknowns that are held (5, points)
     logical, intent(in) :: held(:, :)
-    !> Values of the held unknowns on entry, solution on return (5, points)
+    !> Values of the constrained unknowns on entry, solution on return (5, points)
     real(wp), contiguous, intent(inout) :: u(:, :)
     real(wp), allocatable :: matrix(:, :), reduced(:, :), right(:)
     real(wp) :: full(size(u)), forces(5, size(u, 2))
