@@ -223,7 +223,7 @@ contains
     case (warning_border)
       text = 'The delamination below ply '//to_text(deck%delaminations(zone)%below_ply)// &
              ' has reached the border of its zone at '//at// &
-             ' and cannot grow on there: if it would, make the zone larger.'
+             ' and cannot grow further: make the zone larger.'
     case (warning_core)
       text = 'The layers below ply '//to_text(deck%delaminations(zone)%below_ply)// &
              ' grow with the damage beyond the core of the mesh since '//at// &
@@ -239,27 +239,27 @@ contains
                                                                           is_explicit(deck%stepping)))
     case (warning_kinetic)
       text = 'The plate''s kinetic energy is more than '//short_text(100*max_kinetic)//' % of the work since '// &
-             at//': the motion is too fast to stand for a quasi-static test; take a longer end, or a longer rise.'
+             at//': the motion is too fast for a quasi-static test; take a longer end or rise.'
     case (warning_scaled)
-      text = 'Motions whose inertia mass_scaling raises have held more than '//short_text(100*max_scaled)// &
+      text = 'Motions with scaled inertia have held more than '//short_text(100*max_scaled)// &
              ' % of the energy since '//at//': take a smaller mass_scaling, or compare with 1.'
     case (warning_indentation)
-      text = 'The indentation is deeper than the laminate is thick since '//at// &
-             ': no contact law holds there; give a lighter blow or a blunter nose.'
+      text = 'The indentation exceeds the thickness of the laminate since '//at// &
+             ': no contact law is valid there; take less energy or a larger radius.'
     case (warning_slopes)
-      text = 'The plate is steeper than '//to_text(steepest)//' since '//at// &
-             ': its strains are those of small rotations, so distrust what follows.'
+      text = 'The slope of the plate exceeds '//to_text(steepest)//' since '//at// &
+             ': its strains assume small rotations; later results are not valid.'
     case (warning_steps)
-      text = 'Steps err by more than the tolerance of &adapt since '//at// &
-             ' and get no shorter, as no step follows all waves of what breaks: an eighth of that tolerance halves '// &
-             'them and shows what that changes.'
+      text = 'The error of steps exceeds the tolerance of &adapt since '//at// &
+             ' at the smallest step, too long for the waves of failures: an eighth of that tolerance halves the &
+               &steps and shows the effect.'
     case (warning_torn)
       text = 'The clamped plate deflects by more than '//to_text(deepest)// &
              ' thicknesses with failed fibres since '//at// &
-             ': membrane forces carry it, and the model tears no plies; distrust what follows.'
+             ': membrane forces carry it, and plies do not tear in the model; later results are not valid.'
     case (warning_hole)
       text = 'The fibres of every ply have failed over an area as large as the contact since '//at// &
-             ': the impactor perforates the plate, and the model has no hole; distrust what follows.'
+             ': the impactor perforates the plate, and the model has no hole; later results are not valid.'
     end select
 
   contains
@@ -276,7 +276,7 @@ contains
       if (deck%has_static) then
         words = 'Load steps have '//what//' more than '//short_text(100*energy_tolerance)//' % of the energy by '// &
           at// &
-                ' (energy_algorithmic): take more steps, unless failures or snaps set it free, as motion takes that.'
+                ' (energy_algorithmic): take more steps, unless failures or snap-through release it as kinetic energy.'
       else if (is_explicit(deck%stepping)) then
         words = 'Central differences have '//what//' more than '//short_text(100*energy_tolerance)// &
           ' % of the energy by '//at &

@@ -25,7 +25,7 @@ module case_deck
     'case | accuracy | choice or real | 1 | % | none | draft standard reference, >= 0.01, <= 20 | &
       &Error of the peak force allowed; what &mesh and &time leave out follows. By name 5, 1 and 0.2.', &
     'case | units | choice | 1 | - | none | SI mm-t-s mm-kg-ms mm-mN-kg-s | &
-      &Units that the deck is in: the check holds its values against them, and results name them.', &
+      &Units that the deck is in: the check compares its values with them, and results name them.', &
     'case | strict | logical | 1 | - | .false. | .true. .false. | &
       &Whether a run ends with exit code 3 where it passes the model''s limits, instead of a warning.', &
     'case | error_estimate | logical | 1 | - | none | .true. .false. | &

@@ -74,7 +74,7 @@ contains
                     deck%inherits .or. loads(deck%lines) .or. problems%concern(line_group) .or. &
                     problems%concern(static_group) .or. problems%concern(impactor_group) .or. &
                     problems%concern(pressure_group))) then
-      call problems%error(0, pressure_group, '', 'nothing loads the plate; give &impactor, &pressure or &line.')
+      call problems%error(0, pressure_group, '', 'the plate has no load; give &impactor, &pressure or &line.')
     end if
   end subroutine check_loads
 
@@ -87,11 +87,11 @@ contains
 
     if (.not. deck%settings%is_given(impactor_group, key_travel)) then
       if (.not. problems%concern(impactor_group, key_travel)) &
-        call report(deck%settings, problems, static_group, '', 'an impactor needs time, or a way to go; give '// &
-                  '&impactor travel, or leave out &static or &impactor.')
+        call report(deck%settings, problems, static_group, '', &
+                    'an impactor needs &time, or a travel; give &impactor travel, or leave out &static or &impactor.')
     else if (deck%has_pressure .or. loads(deck%lines)) then
-      call report(deck%settings, problems, impactor_group, key_travel, 'beside it a static analysis takes no other '// &
-                'load; leave out &pressure, and lines that move or press.')
+      call report(deck%settings, problems, impactor_group, key_travel, &
+                  'with it a static analysis has no other load; leave out &pressure, and lines that move or press.')
     end if
     call remark_idle(deck%settings, problems, impactor_group, key_mass//' '//key_gravity//' '//key_integrator//' '// &
                      keys_of_motion(deck%settings), 'has no effect on a static analysis.')

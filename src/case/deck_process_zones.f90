@@ -85,8 +85,8 @@ contains
       least = minval([(shear_across_strength(crack_strengths(plies, ply, deck%materials, deck%ply_damage)), &
                        ply=delamination%below_ply, delamination%below_ply + 1)])
       if (least < delamination%strength_shear) return
-      call remark_idle(deck%settings, problems, delamination_group, key_shear_cracks, 'has no effect as the plies '// &
-                       'bear more transverse shear than the interface.', delamination%group)
+      call remark_idle(deck%settings, problems, delamination_group, key_shear_cracks, &
+        'has no effect, as the shear strength of the plies exceeds that of the interface.', delamination%group)
     else
       call remark_idle(deck%settings, problems, delamination_group, key_shear_cracks, 'has no effect without '// &
                        '&ply_damage.', delamination%group)

@@ -30,7 +30,7 @@ module delamination_deck
                                             ' '//key_shear_cracks
   !> Row of the group.
   character(len=group_row_length), parameter, public :: delamination_group_row = &
-    'delamination | several | Interfaces that may delaminate; one group for those that are alike.'
+    'delamination | several | Interfaces that may delaminate; one group for equal ones.'
   !> Rows of the keys.
   character(len=key_row_length), parameter, public :: delamination_rows(*) = [character(len=key_row_length) :: &
     'delamination | below_ply | integer | 1 or more | - | required | >= 1, <= 1000, or ''all'', &
@@ -67,7 +67,7 @@ module delamination_deck
     'delamination | shear_cracks | logical | 1 | - | .false. | .true. .false. | &
       &Damage starts beside cracks by transverse shear in the neighbouring plies at their shear strength.', &
     'delamination | energy_release | choice | 1 | - | ''vcct'' | two_state vcct | &
-      &Energy release rate: Eq. 11 with its sign put right, or virtual crack closure.', &
+      &Energy release rate: Eq. 11 with its sign corrected, or virtual crack closure.', &
     'delamination | growth | choice | 1 | - | ''equilibrium'' | equilibrium one_per_step | &
       &Release at a frozen time until no front is above G_c, or one cell a step.', &
     'delamination | tie | choice | 1 | - | ''eliminate'' | eliminate penalty | &
@@ -297,8 +297,8 @@ contains
     if (toughness_objection(delamination) /= '') then
       call report(settings, problems, group, '', toughness_objection(delamination)//'.', place)
     else if (delamination%energy_release == release_two_state .and. delamination%toughness <= 0) then
-      call report(settings, problems, group, 'energy_release', 'Eq. 11 does not part the modes; give G_c, or take '// &
-                '''vcct''.', place)
+      call report(settings, problems, group, 'energy_release', &
+                  'Eq. 11 does not separate the modes; give G_c, or take ''vcct''.', place)
     end if
   end subroutine check_toughness
 

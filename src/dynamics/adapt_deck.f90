@@ -18,17 +18,17 @@ module adapt_deck
     'adapt | on | logical | 1 | - | .true. | .true. .false. | &
       &Whether the time step adapts; left-out group: .false.', &
     'adapt | rule | choice | 1 | - | = ''local_error'', with stress_change ''stress_rate'' | stress_rate local_error | &
-      &What the step follows: the stress rate at the struck point, or the error of each step.', &
+      &Control of the step: the stress rate at the struck point, or the error of each step.', &
     'adapt | tolerance | real | 1 | - | 0.001 | > 0, <= 1 | &
-      &Error wanted of a step, as a fraction of the largest force and deflection (local_error).', &
+      &Required error of a step, as a fraction of the largest force and deflection (local_error).', &
     'adapt | refactor | choice | 1 | - | ''iterations'' | deflection iterations | &
-      &What renews the factored stiffness: the deflection''s growth, or slow convergence.', &
+      &When the stiffness is factorized again: as the deflection grows, or convergence slows.', &
     'adapt | stiffness_update | real | 1 | - | 0.003 | > 0, <= 10 | &
       &Growth of the struck point''s deflection that renews it, as a fraction of the thickness.', &
     'adapt | stress_change | real | 1 | - | 0.05 | > 0, <= 1 | &
-      &Change of the struck point''s stress wanted in a step, as a fraction of its largest so far (stress_rate).', &
+      &Change of the struck point''s stress required in a step, as a fraction of its largest so far (stress_rate).', &
     'adapt | iterations | integer | 1 | - | 16 | >= 1, <= 1000 | &
-      &Iterations lost to an old factored stiffness that pay for a new one.', &
+      &Additional iterations with an old factorization that are worth a new one.', &
     'adapt | growth_step | real | 1 | - | 0.25 | > 0, <= 1 | &
       &Smallest part of a step to which growth = ''one_per_step'' shortens it; 1: not at all.']
 

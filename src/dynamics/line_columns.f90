@@ -23,7 +23,7 @@ module line_columns
   character(len=result_row_length), parameter, public :: end_rows(*) = [character(len=result_row_length) :: &
     'far_field_stress | real | pressure | Load over the width and thickness of the plate, positive in compression, the &
       &mean of the ends that lines move; only with lines that move ends of the plate in its plane.', &
-    'shortening | real | length | How much closer to each other the ends of the plate are than at the start.', &
+    'shortening | real | length | Reduction of the distance between the ends of the plate.', &
     'nominal_strain | real | - | Shortening over the length of the plate.']
 
 contains

@@ -15,7 +15,7 @@ module static_deck
   !> Rows of the keys.
   character(len=key_row_length), parameter, public :: static_rows(*) = [character(len=key_row_length) :: &
     'static | steps | integer | 1 | - | 1 | >= 1, <= 100000 | &
-      &Equal steps in which the load is put on.', &
+      &Number of equal load steps.', &
     'static | dissipation | real | 1 | energy | none | > 0 | &
       &Energy dissipated by cohesive interfaces at which the run ends; given: steps are taken by it as damage grows.']
 

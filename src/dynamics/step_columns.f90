@@ -17,16 +17,16 @@ module step_columns
     'force | real | force | Contact force between impactor and plate, positive where they press on each other.', &
     'indentation | real | length | Displacement of the impactor less the mean deflection of the patch; &
       &negative: a gap.', &
-    'impactor_displacement | real | length | Displacement of the impactor towards the plate since first touch.', &
+    'impactor_displacement | real | length | Displacement of the impactor towards the plate since first contact.', &
     'impactor_velocity | real | length/time | Velocity of the impactor, positive towards the plate.', &
     'deflection | real | length | Deflection of the struck point on the struck side, positive along the impact.']
 
   !> The energy ledger. These columns and their order are the public interface.
   character(len=result_row_length), parameter, public :: ledger_rows(*) = [character(len=result_row_length) :: &
-    'energy_impactor | real | energy | Kinetic energy of the impactor and its potential in gravity; the latter is 0 at &
-      &first touch.', &
+    'energy_impactor | real | energy | Kinetic energy of the impactor and its potential in gravity; the latter is 0 &
+      &at first contact.', &
     'energy_kinetic | real | energy | Kinetic energy of the plate.', &
-    'energy_strain | real | energy | Strain energy of the plate with the stiffness that failures have left.', &
+    'energy_strain | real | energy | Strain energy of the plate with its damaged stiffness.', &
     'energy_indentation | real | energy | Work of the contact force on the indentation so far, stored and lost.', &
     'energy_delamination | real | energy | Fracture energy of the delaminated cells: critical energy release &
       &rate times area.', &
@@ -34,8 +34,8 @@ module step_columns
     'energy_contact | real | energy | Work done against contact of separated faces and penalty ties, and what &
       &faces and frame lose as they meet.', &
     'energy_algorithmic | real | energy | Algorithmic dissipation: energy that time integrators, implicit &
-      &interfaces and fading ties took out of the motion, less energy_delamination.', &
-    'energy_error | real | energy | What the ledger fails to account for: the sum of the eight energies before, &
+      &interfaces and released ties took out of the motion, less energy_delamination.', &
+    'energy_error | real | energy | Energy imbalance: the sum of the eight energies before, &
       &energy_friction, energy_layers and energy_damping, less work_external and the energy at the start.']
 
   !> The rest of the state and the length of the step.
@@ -72,8 +72,8 @@ module step_columns
 
   !> Contact with the impactor.
   character(len=result_row_length), parameter, public :: contact_rows(*) = [character(len=result_row_length) :: &
-    'contact_area | real | area | Area that the impactor presses on when it does: the patch, and what its nose has &
-      &come to touch beside it.']
+    'contact_area | real | area | Contact area of the impactor: the patch, and the area around it that its nose &
+      &touches.']
 
 contains
 

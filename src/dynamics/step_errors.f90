@@ -46,7 +46,7 @@ module step_errors
 
 contains
 
-  !> The plate at rest, the impactor in free flight up to first touch.
+  !> The plate at rest, the impactor in free flight up to first contact.
   subroutine start(self, model, step)
     !> The estimate
     class(step_error_t), intent(inout) :: self

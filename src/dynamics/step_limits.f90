@@ -41,7 +41,7 @@ contains
     ratio = largest_growth_ratio
     if (.not. (is_error_controlled(adapt) .or. model%setup%has_crack_bands() .and. .not. adapt%on)) return
     ratio = 1024
-    if (has_gear(model)) ratio = merge(2, 1, controller%equal >= equal_of_gear)
+    if (has_gear(model)) ratio = merge(2, 1, controller%equal_steps >= equal_of_gear)
   end function growth_limit
 
   !> True: Gear's method moves the impactor.

@@ -233,7 +233,7 @@ contains
     call archive%item('indentation/work', self%work)
   end subroutine visit_indentation
 
-  !> Unloading or reloading curve, whichever applies; empty for Hertz and before the first touch.
+  !> Unloading or reloading curve, whichever applies; empty for Hertz and before the first contact.
   pure function current_branch(law, state) result(branch)
     !> The law
     type(indentation_law_t), intent(in) :: law

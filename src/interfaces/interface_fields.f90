@@ -28,7 +28,7 @@ module interface_fields
     'contact_pressure | points | pressure | '//field_contact_pressure//' | &delamination | Contact pressure in the &
       &interface on top of a layer.', &
     'delaminated_above | cells | - | '//field_delamination//' | &delamination | 1 in elements whose interface on top &
-      &has delaminated, else 0; with a cohesive law the part of its toughness that is gone.', &
+      &has delaminated, else 0; with a cohesive law the dissipated part of its toughness.', &
     'damage_above | points | - | '//field_delamination//' | &delamination | Damage of the cohesive interface on top of &
       &a layer: part of its stiffness that is lost, 0 to 1; 0 where fronts release ties.', &
     'dissipated_above | points | - | '//field_delamination//' | &delamination | Share of the toughness that the &

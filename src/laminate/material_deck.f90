@@ -36,45 +36,45 @@ module material_deck
     'material | E1 | real | 1 | pressure | none | > 0 | &
       &Young''s modulus along the fibres.', &
     'material | E2 | real | 1 | pressure | none | > 0 | &
-      &Young''s modulus across the fibres.', &
+      &Transverse Young''s modulus.', &
     'material | G12 | real | 1 | pressure | none | > 0 | &
-      &Shear modulus in the plane of the ply.', &
+      &In-plane shear modulus.', &
     'material | G13 | real | 1 | pressure | = G12 | > 0 | &
       &Shear modulus between the fibres and the normal.', &
     'material | G23 | real | 1 | pressure | none | > 0 | &
-      &Shear modulus across the fibres.', &
+      &Transverse shear modulus.', &
     'material | nu12 | real | 1 | - | none | > -10, < 10 | &
-      &Contraction across per extension along the fibres; its size stays below sqrt(E1/E2).', &
+      &Major Poisson''s ratio; its magnitude is below sqrt(E1/E2).', &
     'material | nu23 | real | 1 | - | 0 | > -1, < 1 | &
-      &Poisson''s ratio across the fibres; plane stress does without it.', &
+      &Transverse Poisson''s ratio; not needed in plane stress.', &
     'material | XT | real | 1 | pressure | none | > 0 | &
       &Tensile strength along the fibres.', &
     'material | XC | real | 1 | pressure | none | > 0 | &
-      &Compressive strength along the fibres, a positive number; left out: XT serves.', &
+      &Compressive strength along the fibres, a positive number; left out: XT is used.', &
     'material | YT | real | 1 | pressure | none | > 0 | &
-      &Tensile strength across the fibres.', &
+      &Transverse tensile strength.', &
     'material | YC | real | 1 | pressure | none | > 0 | &
-      &Compressive strength across the fibres, a positive number.', &
+      &Transverse compressive strength, a positive number.', &
     'material | S12 | real | 1 | pressure | none | > 0 | &
-      &Shear strength in the plane of the ply.', &
+      &In-plane shear strength.', &
     'material | Sf | real | 1 | pressure | none | > 0 | &
-      &Shear strength that counts in fibre failure.', &
+      &Shear strength in the criterion of fibre failure.', &
     'material | Sm23 | real | 1 | pressure | none | > 0 | &
-      &Shear strength in the 2-3 plane that counts in matrix failure.', &
+      &Shear strength in the 2-3 plane in the criterion of matrix failure.', &
     'material | G_ft | real | 1 | energy/area | none | > 0 | &
-      &Energy that breaking fibres in tension takes per area of crack; with G_fc, G_mt and G_mc plies soften by it.', &
+      &Fracture energy of fibres in tension; with G_fc, G_mt and G_mc plies soften.', &
     'material | G_fc | real | 1 | energy/area | none | > 0 | &
-      &Energy that breaking fibres in compression takes per area of crack.', &
+      &Fracture energy of fibres in compression.', &
     'material | G_mt | real | 1 | energy/area | none | > 0 | &
-      &Energy that cracking the matrix by tension across the fibres takes per area of crack.', &
+      &Fracture energy of the matrix in transverse tension.', &
     'material | G_mc | real | 1 | energy/area | none | > 0 | &
-      &Energy that failing the matrix by shear or by compression across the fibres takes per area of crack.', &
+      &Fracture energy of the matrix in shear or transverse compression.', &
     'material | shear_failure_strain | real | 1 | - | none | > 0 | &
       &Shear strain in the plane at S12; left out: S12/G12, shear is linear.', &
     'material | alpha1 | real | 1 | 1/temperature | 0 | any | &
       &Thermal expansion along the fibres.', &
     'material | alpha2 | real | 1 | 1/temperature | 0 | any | &
-      &Thermal expansion across the fibres.']
+      &Transverse thermal expansion.']
   !> Keys of the fracture energies in the order of the modes.
   character(len=*), parameter, public :: toughness_keys(4) = [character(len=4) :: 'G_ft', 'G_fc', 'G_mt', 'G_mc']
 

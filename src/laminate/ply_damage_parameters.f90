@@ -26,7 +26,7 @@ module ply_damage_parameters
   type :: ply_damage_t
     !> Divisor of the elastic constants that a mode of failure takes away
     real(wp) :: d = 100
-    !> Least value left of an elastic constant, as a fraction of the undamaged one
+    !> Smallest value of an elastic constant, as a fraction of the undamaged one
     real(wp) :: e = 1.0e-3_wp
     !> criteria_hou, criteria_hashin or criteria_puck
     integer :: criteria = criteria_hou

@@ -19,7 +19,7 @@ module linear_solver_deck
     'solver | factorization | choice | 1 | - | ''automatic'' | automatic mumps cholmod | &
       &Direct solver; automatic takes cholmod where no load step buckles or softens and ranks share no large model.', &
     'solver | petsc_options | text | 1 | - | '''' | any text | &
-      &Options handed to PETSc as they are.']
+      &Options passed to PETSc.']
 
   !> What options for PETSc begin with in a deck.
   character(len=*), parameter :: beginnings(*) = [character(len=16) :: '-ksp_', '-pc_', '-mat_', '-indefinite_ksp_', &

@@ -27,11 +27,11 @@ module plate_deck
     'plate | edge_stiffness | real | 1 | pressure | none | > 0 | &
       &Force per length of an elastic edge and deflection of it; left out: it holds the deflection.', &
     'plate | edge_rotation_stiffness | real | 1 | force | none | > 0 | &
-      &Moment per length of an elastic edge and rotation about it; left out: it turns freely.', &
+      &Moment per length of an elastic edge and rotation about it; left out: it rotates freely.', &
     'plate | in_plane | choice | 1 | - | ''fixed'' | fixed free | &
-      &Whether the supported edges also hold the plate in its plane.', &
+      &Whether the supported edges also fix in-plane motion.', &
     'plate | symmetry | choice | 1 | - | ''none'' | none quarter half_x half_y point | &
-      &Part that is modelled: all, x >= 0 and y >= 0, x >= 0, y >= 0, or x >= 0 of one that a half turn leaves as is.']
+      &Part that is modelled: all, x >= 0 and y >= 0, x >= 0, y >= 0, or x >= 0 of a plate with point symmetry.']
 
   !> What elastic edges need, against deflection and against rotation.
   character(len=*), parameter :: stiffness_keys(2) = [character(len=23) :: 'edge_stiffness', 'edge_rotation_stiffness']

@@ -13,16 +13,14 @@ module ply_columns
     'fibre_failures | integer | - | Plies of elements whose fibres have failed, counted over the full plate.', &
     'matrix_cracks | integer | - | Plies of elements whose matrix has cracked, counted over the full plate.', &
     'matrix_crushings | integer | - | Plies of elements whose matrix was crushed, counted over the full plate.', &
-    'energy_fibre_tension | real | energy | Part of energy_ply_damage that breaking fibres in tension took.', &
-    'energy_fibre_compression | real | energy | Part of energy_ply_damage that breaking fibres in compression took.', &
-    'energy_matrix_cracking | real | energy | Part of energy_ply_damage that cracking took, where tension acts across &
-      &the fibres.', &
-    'energy_matrix_crushing | real | energy | Part of energy_ply_damage that failure of the matrix took, where &
-      &compression acts across the fibres.']
+    'energy_fibre_tension | real | energy | Part of energy_ply_damage by fibre failure in tension.', &
+    'energy_fibre_compression | real | energy | Part of energy_ply_damage by fibre failure in compression.', &
+    'energy_matrix_cracking | real | energy | Part of energy_ply_damage by matrix cracking in transverse tension.', &
+    'energy_matrix_crushing | real | energy | Part of energy_ply_damage by matrix failure in transverse compression.']
 
   !> Permanent strains of plies that soften.
   character(len=result_row_length), parameter, public :: permanent_rows(*) = [character(len=result_row_length) :: &
-    'energy_permanent_shear | real | energy | Part of energy_ply_damage that permanent shear strains of plies took.']
+    'energy_permanent_shear | real | energy | Part of energy_ply_damage by permanent shear strains of plies.']
 
 contains
 

@@ -218,8 +218,8 @@ def absent_physics(program, arguments):
             costs = {path: cost(path, deck) for path in order}
             pairs.append((costs[old][0], costs[program][0]))
         counts = ' and '.join(', '.join(costs[path][1]) for path in (old, program))
-        least_old, least_new = (min(times) for times in zip(*pairs, strict=True))
-        print(f'| {kinematics} | {least_old:.3f} | {least_new:.3f} | {least_new/least_old:.3f} | '
+        smallest_old, smallest_new = (min(times) for times in zip(*pairs, strict=True))
+        print(f'| {kinematics} | {smallest_old:.3f} | {smallest_new:.3f} | {smallest_new/smallest_old:.3f} | '
               f'{statistics.median(new/before for before, new in pairs):.3f} | {counts} |', flush=True)
 
 

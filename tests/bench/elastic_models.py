@@ -138,7 +138,7 @@ def named_by(said, summary, bound):
     """What informs a user that a model may miss: a warning of the check, or the run's estimate beyond the bound, %."""
     estimate = summary.get('estimated_errors', {}).get('peak_force') or 0
     beyond = summary and 100*estimate > bound*summary['peak_force']
-    return [name for name, tells in (('check', ': warning:' in said), ('estimate', beyond)) if tells]
+    return [name for name, warns in (('check', ': warning:' in said), ('estimate', beyond)) if warns]
 
 
 def main():

@@ -29,7 +29,7 @@ from solver_runs import change_deck
 EXPLICIT = "integrator='central_difference'"
 IMPLICIT = "integrator='generalized_alpha'"
 ENVIRONMENT = dict(elastic_models.ENVIRONMENT, OMPI_MCA_mpi_yield_when_idle='1')
-MOST_STEPS = 1e6
+MAX_STEPS = 1e6
 
 
 class Run:
@@ -118,7 +118,7 @@ def elastic(program, options):
             text = elastic_models.deck_of(model, case="accuracy='reference'", time=f'&time {EXPLICIT} {scaling} /')
             steps = steps_of(program, text)
             name = f'{model.name}, {scaling or "default scaling"}'
-            if steps is None or steps > options.most_steps:
+            if steps is None or steps > options.max_steps:
                 row(name, f'{steps or 0:.2g} steps, not run')
                 continue
             run = elastic_models.Run(program, text, model.name, 3600)
@@ -424,7 +424,7 @@ def extremes(program, options):
     for name, settings in EXTREMES.items():
         deck = change_deck(explicit(text), settings)
         steps = steps_of(program, deck)
-        if steps is not None and steps > options.most_steps:
+        if steps is not None and steps > options.max_steps:
             row(name, f'{steps:.3g} steps foreseen, not run')
             continue
         run = Run(program, deck)
@@ -451,7 +451,7 @@ def main():
     parser.add_argument('program')
     parser.add_argument('parts', nargs='*', choices=[*PARTS, []], metavar='PART', help='all if none is given')
     parser.add_argument('--count', type=int, default=20, help='random models of a part')
-    parser.add_argument('--most-steps', type=float, default=MOST_STEPS, help='longer elastic runs are left out')
+    parser.add_argument('--max-steps', type=float, default=MAX_STEPS, help='longer elastic runs are left out')
     parser.add_argument('--only', nargs='+', help='elastic models by name, as model_3 or karas')
     parser.add_argument('--cells', type=float, nargs='+', help='of peanut and thresholds, mm')
     parser.add_argument('--quick', action='store_true', help='leave out the peanut of halves and the last of costs')

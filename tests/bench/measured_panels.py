@@ -7,8 +7,8 @@ Runs the deck of input/experiments in FOLDER with the keys given, without the gr
 dash (those of one line, such as -ply_damage or '-support clamps') and with the groups written out behind a plus, such
 as +'&delamination below_ply=14 ... /'. Prints peak force, largest displacement of the impactor, end of contact,
 projected area, absorbed energy, the forces at some displacements as the impactor goes in, for 25 J the relative L2
-error of the force history and the forces at some times, each beside the measured ones, what plies and delaminations took, steps
-and cost. Beside the projected area by the toughness that is gone it reports the area in which an interface has lost
+error of the force history and the forces at some times, each beside the measured ones, what plies and delaminations
+took, steps and cost. Beside the projected area by the toughness that is gone it reports the area in which an interface has lost
 half its stiffness, which has the process zones in it. Without IMPLAM it reads what a run has left in FOLDER."""
 
 import csv

@@ -102,7 +102,7 @@ def check_interrupt(implam, folder):
     output_of(implam, str(folder / "small.nml"), *options, code=EXIT_STOPPED)
     printed = output_of(implam, "restart", str(folder / "short"))
     require("a deck file changed since then is not read" in printed, printed)
-    print(f"interrupt: told after {answered:.2f} s, ended after {ended:.1f} s")
+    print(f"interrupt: reported after {answered:.2f} s, ended after {ended:.1f} s")
 
 
 def check_pages(implam, folder):

@@ -104,7 +104,7 @@ def check_signals(implam, folder):
     script = folder / "deck.slurm"
     job = subprocess.Popen(["bash", script], cwd=folder, stdout=subprocess.PIPE, text=True)
     while not (folder / "results/deck_history.csv").exists():
-        require(job.poll() is None, "The job ended before it was told to.")
+        require(job.poll() is None, "The job ended before its signal.")
         time.sleep(0.05)
     job.send_signal(10)
     said = job.communicate(timeout=60)[0]

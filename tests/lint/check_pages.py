@@ -167,7 +167,7 @@ def check_diary(page, root):
     for line, number in prose(page):
         found = DIARY.search(line)
         if found:
-            yield f'{page}:{number}: "{found.group()}" tells what was; say what holds'
+            yield f'{page}:{number}: "{found.group()}" describes what was; say what holds'
 
 
 def title(page):

@@ -71,7 +71,7 @@ NAMES = {
 }
 # Names of decks, results and libraries that stay, as they stand in the text.
 PUBLIC = (
-    r"least_squares|at_(?:least|most)",
+    r"least_squares|at_(?:least|most)|(?:os|pty)\.fork|broken_strip",
     r"(?:key_|%|&time |`|\|\s*|')settle\b",
     r"settle\s*=",
     r"^.*\bsettle => .*$",

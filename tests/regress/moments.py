@@ -69,7 +69,7 @@ class Model:
             require_close(history, self.reference, what)
         else:
             require_same(history, self.reference, what)
-        require(damage_of(history) == self.damage, f"{what}: other cells have come apart or other plies failed.")
+        require(damage_of(history) == self.damage, f"{what}: other cells have delaminated or other plies failed.")
         left = {path.name for path in deck.parent.iterdir()} - {path.name for path in self.reference.parent.iterdir()}
         require(not left, f"{what}: {sorted(left)} are left over.")
 
