@@ -8,8 +8,8 @@ dash (those of one line, such as -ply_damage or '-support clamps') and with the 
 as +'&delamination below_ply=14 ... /'. Prints peak force, largest displacement of the impactor, end of contact,
 projected area, absorbed energy, the forces at some displacements as the impactor goes in, for 25 J the relative L2
 error of the force history and the forces at some times, each beside the measured ones, what plies and delaminations
-took, steps and cost. Beside the projected area by the toughness that is gone it reports the area in which an interface has lost
-half its stiffness, which has the process zones in it. Without IMPLAM it reads what a run has left in FOLDER."""
+took, steps and cost. Beside the projected area by the dissipated toughness it reports the area in which an interface
+has lost half its stiffness, which includes the process zones. Without IMPLAM it reads the results in FOLDER."""
 
 import csv
 import json
