@@ -285,7 +285,7 @@ contains
         call solve_step(by_dissipation, model, self%stepping%equilibrium, self%operator, now, self%trial, converged, &
                         error)
         ! Farther away there are other branches of equilibrium, which no path leads to.
-        if (converged) converged = abs(self%trial%load_factor - now%load_factor) <= by_dissipation%farthest
+        if (converged) converged = abs(self%trial%load_factor - now%load_factor) <= by_dissipation%max_load_change
       else
         by_load = new_static_step(model, now%time + step, now%load_factor + step)
         call solve_step(by_load, model, self%stepping%equilibrium, self%operator, now, self%trial, converged, error)

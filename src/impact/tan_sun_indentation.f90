@@ -19,7 +19,7 @@ module tan_sun_indentation
   public :: indentation_t, zero_force_indentation, indentation_of, indentation_force, indentation_stiffness, &
             mean_indentation_force, indentation_work, stiffening, commit_indentation
 
-  !> What the contact remembers; changes only when a step is accepted.
+  !> History variables of the contact; changed only when a step is accepted.
   type :: indentation_t
     !> Indentation of the last accepted step (impactor displacement minus patch-mean deflection;
     !> negative: a gap)
