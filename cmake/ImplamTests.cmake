@@ -7,7 +7,7 @@ set(IMPLAM_TEST_ENVIRONMENT OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
   OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_hwloc_base_binding_policy=none
   PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe PRTE_MCA_hwloc_default_binding_policy=none)
 execute_process(COMMAND id -u OUTPUT_VARIABLE user OUTPUT_STRIP_TRAILING_WHITESPACE)
-if(user EQUAL 0) # Open MPI refuses to start for root unless told twice
+if(user EQUAL 0) # Open MPI refuses to start for root unless asked twice
   list(APPEND IMPLAM_TEST_ENVIRONMENT OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1)
 endif()
 
@@ -39,7 +39,7 @@ function(implam_add_unit_tests)
       continue()
     endif()
     set(arguments "")
-    implam_wants_processes(processes ${tests})
+    implam_needs_processes(processes ${tests})
     if(processes)
       list(APPEND arguments MAX_PES 4)
     endif()
@@ -80,8 +80,8 @@ function(implam_follow_layers target)
   endforeach()
 endfunction()
 
-# implam_wants_processes(<variable> <test file>...): does any of the files test on several processes?
-function(implam_wants_processes variable)
+# implam_needs_processes(<variable> <test file>...): does any of the files test on several processes?
+function(implam_needs_processes variable)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${ARGN})
   set(found "")
   foreach(name IN LISTS ARGN)

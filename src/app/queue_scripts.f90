@@ -226,7 +226,7 @@ contains
     call append(script, '"${in_time[@]}" "${command[@]}" & run=$!')
     call append(script, 'if [[ $signalled ]]; then kill -USR1 "$run"; fi')
     call append(script, 'wait "$run"; code=$?')
-    call append(script, 'while [[ $signalled ]]; do signalled=; wait "$run"; code=$?; done  # a signal ends wait, not the run')
+    call append(script, 'while [[ $signalled ]]; do signalled=; wait "$run"; code=$?; done  # signals end wait only')
     call append(script, 'if ((code == 138)); then code=75; fi  # stopped before the program could handle it')
     if (job%chain) then
       call append(script, 'if ((code == 75 && parts < '//to_text(max_parts)//')); then again; fi')

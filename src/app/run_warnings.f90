@@ -226,7 +226,7 @@ contains
              ' and cannot grow further: make the zone larger.'
     case (warning_core)
       text = 'The layers below ply '//to_text(deck%delaminations(zone)%below_ply)// &
-             ' follow their damage beyond the core of the mesh since '//at// &
+             ' grow with the damage beyond the core of the mesh since '//at// &
              ', where its cells grow: make the core larger.'
     case (warning_energy)
       text = energy_text('created', 'take smaller steps, &impactor integrator=''conserving'', or more damping '// &
@@ -247,11 +247,12 @@ contains
       text = 'The indentation exceeds the thickness of the laminate since '//at// &
              ': no contact law is valid there; take less energy or a larger radius.'
     case (warning_slopes)
-      text = 'The plate is steeper than '//to_text(steepest)//' since '//at// &
+      text = 'The slope of the plate exceeds '//to_text(steepest)//' since '//at// &
              ': its strains assume small rotations; later results are not valid.'
     case (warning_steps)
       text = 'The error of steps exceeds the tolerance of &adapt since '//at// &
-             ' at the smallest step, too long for the waves of failures: an eighth of that tolerance halves the steps and shows the effect.'
+             ' at the smallest step, too long for the waves of failures: an eighth of that tolerance halves the &
+               &steps and shows the effect.'
     case (warning_torn)
       text = 'The clamped plate deflects by more than '//to_text(deepest)// &
              ' thicknesses with failed fibres since '//at// &

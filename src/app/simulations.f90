@@ -282,7 +282,7 @@ contains
     class(simulation_t), intent(inout) :: self
     !> Set if the run ends
     type(error_t), allocatable, intent(out) :: error
-    character(len=*), parameter :: causes(*) = ['as the wall-clock time is up', 'by a signal                  ']
+    character(len=*), parameter :: causes(*) = [character(len=29) :: 'as the wall-clock time is up', 'by a signal']
     logical :: signalled, late
 
     signalled = self%communicator%any(stop_signal() /= 0)

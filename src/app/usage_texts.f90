@@ -14,45 +14,45 @@ module usage_texts
   !> Commands: what is typed behind `implam`, and what it does.
   character(len=text_length), parameter, public :: command_rows(2, 11) = reshape([character(len=text_length) :: &
     '[run] DECK.nml', 'run a deck', &
-    'check DECK.nml', 'read and check a deck, list every fault, run nothing', &
+    'check DECK.nml', 'read and check a deck and list every fault, without a run', &
     'new [NAME.nml]', 'write a commented deck to start from, which runs as it is, with --rig that of a rig; &
       &no file is overwritten', &
-    'explain [GROUP [KEY]]', 'what a deck can say: keys, units, defaults, meaning; GROUP.KEY and GROUP%KEY will &
-      &do too', &
-    'explain history|fields', 'what results hold: names, units, meaning', &
-    'explain materials', 'published materials that a deck can name, with the source of each value', &
-    'restart [FILE]', 'go on from a checkpoint (NAME_restart.h5), or from the newest of a folder: the one named, &
-      &that of --output, or this one; the deck is that of the checkpoint, and its file is not read again', &
+    'explain [GROUP [KEY]]', 'groups and keys of a deck: units, defaults, meaning; GROUP.KEY and GROUP%KEY are &
+      &accepted too', &
+    'explain history|fields', 'contents of the results: names, units, meaning', &
+    'explain materials', 'published materials for decks, with the source of each value', &
+    'restart [FILE]', 'resume from a checkpoint (NAME_restart.h5), or from the newest one of a folder: that named, &
+      &that of --output, or the current one; the deck is that of the checkpoint, and its file is not read again', &
     'queue slurm|pbs [DECK.nml]', 'write a job script with ranks and memory from the deck; with --chain jobs '// &
     'follow each other until the run has ended; array.txt of a sweep instead of a deck makes a job array', &
-    'completion bash|zsh', 'print what lets a shell complete commands, groups and keys', &
+    'completion bash|zsh', 'print a script by which a shell completes commands, groups and keys', &
     'man', 'print this page and all keys as a manual page of Unix: implam man | man -l -', &
     'help [GROUP [KEY]]', 'this page, or the same as explain'], [2, 11])
   !> Options.
   character(len=text_length), parameter, public :: option_rows(2, 12) = reshape([character(len=text_length) :: &
-    '--rig d7136', 'the deck that new writes is that of a rig: a drop-weight test after ASTM D7136', &
+    '--rig d7136', 'new writes the deck of a test rig: a drop-weight test after ASTM D7136', &
     '--output DIR', 'folder of the results, instead of the deck''s', &
     '--wall-limit SECONDS', 'end with a checkpoint before so many wall-clock seconds have passed', &
-    '--verify', 'run the deck, then once more with half the elements'' sides and half the steps, and report what &
-      &figures change by; the same command goes on where it was stopped', &
-    '--profile', 'tell in log and summary where time and memory of the run went, part by part', &
+    '--verify', 'run the deck, then again with elements and time steps half as long, and report the changes of &
+      &the figures; the same command resumes where it was stopped', &
+    '--profile', 'print in log and summary the time and memory of each part of the run', &
     '--ranks N', 'ranks of the job that queue writes, instead of what the deck''s size suggests', &
     '--time H:MM:SS', 'its wall-clock limit; a day without', &
-    '--chain', 'it comes again, from its checkpoint, until the run has ended', &
+    '--chain', 'the job is submitted again, from its checkpoint, until the run has ended', &
     '--markdown', 'explain as a table for the manual', &
     '-v, --version', 'version, commit, compiler and PETSc, and how to cite', &
     '-h, --help', 'this page', &
-    '-mat_..., -ksp_..., -log_view', 'these and other words with one dash go to PETSc'], [2, 12])
+    '-mat_..., -ksp_..., -log_view', 'these and other options with one dash are passed to PETSc'], [2, 12])
   !> Exit codes.
   character(len=text_length), parameter, public :: code_rows(2, 7) = reshape([character(len=text_length) :: &
     '0', 'done', '1', 'usage', '2', 'deck', '3', 'no convergence at the smallest step', '4', 'files', '5', 'internal', &
-    '75', 'stopped by a signal of the queue or the wall-clock time, with a checkpoint written: restart goes &
-      &on'], [2, 7])
+    '75', 'stopped by a signal of the queue or the wall-clock time, with a checkpoint written: resume with &
+      &restart'], [2, 7])
   !> Paragraphs on ranks and signals.
   character(len=text_length), parameter, public :: notes(2) = [character(len=text_length) :: &
-    'Under mpirun the same holds but for signals.', &
-    'TERM, INT, USR1, USR2 and XCPU end the run after the step at hand, with a checkpoint; a line says at once '// &
-    'that one has come. Under mpirun send USR1 '// &
+    'Under mpirun all of this applies except the signals.', &
+    'TERM, INT, USR1, USR2 and XCPU end the run after the current step, with a checkpoint; a line says '// &
+    'that it was received. Under mpirun send USR1 '// &
     'to mpirun, or any of them to every rank: mpirun itself takes TERM and INT, kills the ranks a second later and '// &
     'ends with code 1.']
 

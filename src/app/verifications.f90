@@ -128,7 +128,7 @@ contains
     call json%put('finer', finer%name)
     call json%open_object('figures')
     allocate (lines(0))
-    call append(lines, 'Verification with half the elements'' sides and half the steps:')
+    call append(lines, 'Verification with elements and time steps half as long:')
     call append(lines, '  figure                  as it is      finer         change')
     do i = 1, size(figures, 2)
       call find_number(summary, trim(figures(1, i)), values(1), found(1))

@@ -1,4 +1,4 @@
-/* Age and kind of files. They are told by structures that each system lays out in its own way, so this is written in
+/* Age and kind of files. They are in structures that each system lays out in its own way, so this is written in
    its language. */
 #define _POSIX_C_SOURCE 200809L
 #include <dirent.h>
@@ -18,7 +18,7 @@ static int is_newer(const struct entry *a, const struct entry *b)
   return strcmp(a->name, b->name) > 0;
 }
 
-/* The newest regular file whose name ends as told, or the newest of those older than the one found before, which
+/* The newest regular file whose name ends as given, or the newest of those older than the one found before, which
    `found` says and is not empty then. Returns 1, or 0 if there is none; names too long for a path are passed over. */
 static int next_older(const char *folder, const char *ending, struct entry *found)
 {

@@ -27,7 +27,7 @@ module deck_accuracy
   !> Most elements along one direction of the part modelled, twice that of a full plate: more take hours.
   integer, parameter :: max_along = 100
   !> Waves of first contact on either side of the patch that have the elements asked for, where they are too many for
-  !> the plate. On random setup 9 of `tests/bench/elastic_scenes.py` the first peak is 2.9 % off without, 0.3 % with one
+  !> the plate. On random setup 9 of `tests/bench/elastic_models.py` the first peak is 2.9 % off without, 0.3 % with one
   !> wave, 0.03 % with two.
   real(wp), parameter :: core_waves = 2
   !> Elements across the smaller side of the zone of an interface that may delaminate.

@@ -97,7 +97,8 @@ contains
       end do
     end do
     call report(deck%settings, problems, ply_damage_group, key_in_situ, &
-      'in-situ strengths follow from the fracture energies G_mt and G_mc; give G_ft, G_fc, G_mt and G_mc of every material, or leave it out.')
+      'in-situ strengths follow from the fracture energies G_mt and G_mc; give G_ft, G_fc, G_mt and G_mc of every &
+        &material, or leave it out.')
   end subroutine refuse_in_situ
 
   !> Energies come all four, and for all materials.
@@ -139,7 +140,7 @@ contains
                                    'S12/G12 = '//short_text(linear)//', that of linear shear.', place)
   end subroutine check_shear
 
-  !> Warns of elements too long to fail with no more than the fracture energies.
+  !> Warns of elements that dissipate more than the fracture energies because they are too long.
   subroutine check_lengths(deck, place, problems)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -148,7 +149,7 @@ contains
     !> Remarks are added
     type(problems_t), intent(inout) :: problems
     type(line_t), allocatable :: limits(:), excesses(:)
-    character(len=:), allocatable :: price
+    character(len=:), allocatable :: excess
     real(wp) :: longest(size(toughness_keys)), present(2), usual
     integer :: mode
 
@@ -159,17 +160,16 @@ contains
     if (deck%mesh%cell > 0) usual = deck%mesh%cell
     allocate (limits(0), excesses(0))
     do mode = 1, size(toughness_keys)
-      if (longest(mode) < present(2)) call append(limits, toughness_keys(mode)//' from '//short_text(longest(mode)))
+      if (longest(mode) < present(2)) call append(limits, toughness_keys(mode)//' '//short_text(longest(mode)))
       if (usual > noted*longest(mode)) call append(excesses, rounded_text(usual/longest(mode), 2)//' times '// &
                                              toughness_keys(mode))
     end do
     if (size(limits) == 0) return
-    price = ''
-    if (size(excesses) > 0) price = ' Where it is '//short_text(usual)//' long, failure takes '// &
-                                    joined(excesses, ', ')//'.'
-    call remark(deck%settings, problems, material_group, '', 'in long elements failure takes more than its '// &
-      'fracture energy, '//joined(limits, ', ')//' on; they are '//short_text(present(1))//' to '// &
-      short_text(present(2))//' long, so keep them shorter where plies fail.'//price, place)
+    excess = ''
+    if (size(excesses) > 0) excess = ' A side of '//short_text(usual)//' dissipates '//joined(excesses, ', ')//'.'
+    call remark(deck%settings, problems, material_group, '', 'elements of '//short_text(present(1))//' to '// &
+      short_text(present(2))//' dissipate more than the fracture energy; the longest sides that do not are '// &
+      joined(limits, ', ')//'. Use shorter ones where plies fail.'//excess, place)
   end subroutine check_lengths
 
   !> Longest elements that take no more than the fracture energies, in every block of a material. Strengths in place are

@@ -96,7 +96,7 @@ contains
     end do
   end subroutine set_first_zones
 
-  !> Gives interfaces that would follow their damage the layers that they may come to from the start. By equilibrium
+  !> Gives interfaces with adaptive layers their largest layers from the start. By equilibrium
   !> through the thickness the plate is softer in transverse shear than its layers together, a sandwich many times: its
   !> strain energy would jump where layers appear.
   subroutine set_permanent_zones(deck)

@@ -32,7 +32,8 @@ contains
     do place = 1, size(deck%delaminations)
       if (lies_within_a_block(deck, deck%delaminations(place)%below_ply)) &
         call remark(deck%settings, problems, delamination_group, key_below_ply, 'the plies above and below are of '// &
-                    'one material and angle, and act as one thick ply; impacts delaminate plies of different angles.', place)
+                    'one material and angle, and act as one thick ply; impacts delaminate plies of different &
+                      &angles.', place)
       if (any(beyond_core(deck, deck%delaminations(place)%zone)) .and. .not. deck%delaminations(place)%follows) &
         call remark(deck%settings, problems, delamination_group, key_zone, 'reaches beyond the core of the mesh, '// &
                     'where its cells grow to '//short_text(longest_cell(deck, deck%delaminations(place)%zone))// &

@@ -65,7 +65,7 @@ module delamination_deck
     'delamination | cracks_as_flaws | logical | 1 | - | .false. | .true. .false. | &
       &Damage starts beside matrix cracks of the neighbouring plies at what the cells resolve of the strengths.', &
     'delamination | shear_cracks | logical | 1 | - | .false. | .true. .false. | &
-      &Damage starts beside cracks by transverse shear in the neighbouring plies at the shear that they bear.', &
+      &Damage starts beside cracks by transverse shear in the neighbouring plies at their shear strength.', &
     'delamination | energy_release | choice | 1 | - | ''vcct'' | two_state vcct | &
       &Energy release rate: Eq. 11 with its sign corrected, or virtual crack closure.', &
     'delamination | growth | choice | 1 | - | ''equilibrium'' | equilibrium one_per_step | &
@@ -251,8 +251,7 @@ contains
       if (delaminations(i)%starter > 0 .and. settings%is_given(group, key_zone, place) .and. &
           any(delaminations(i)%starter + 2*abs(delaminations(i)%starter_at) >= delaminations(i)%zone) .and. &
           are_clear(settings, problems, group, key_zone//' '//key_starter//' '//key_starter_at, place)) &
-        call report(settings, problems, group, '', 'the starter must be smaller than the zone and lie within it.', &
-                    place)
+        call report(settings, problems, group, '', 'the starter must be smaller than its zone and inside it.', place)
     end do
     do i = 2, size(delaminations)
       if (delaminations(i)%below_ply <= delaminations(i - 1)%below_ply .and. &
@@ -277,8 +276,7 @@ contains
     if (.not. settings%is_given(group, key_strip, place)) return
     if (.not. are_clear(settings, problems, group, key_strip//' '//key_starter, place)) return
     if (settings%is_given(group, key_starter, place)) then
-      call report(settings, problems, group, key_strip, 'a starter is a square or a strip; leave one of them out.', &
-                  place)
+      call report(settings, problems, group, key_strip, 'a starter is a square or a strip; give one of them.', place)
     else if (.not. delamination%starter_strip(1) < delamination%starter_strip(2)) then
       call report(settings, problems, group, key_strip, 'the first x must be smaller than the second.', place)
     end if
@@ -300,8 +298,7 @@ contains
       call report(settings, problems, group, '', toughness_objection(delamination)//'.', place)
     else if (delamination%energy_release == release_two_state .and. delamination%toughness <= 0) then
       call report(settings, problems, group, 'energy_release', &
-                  'Eq. 11 does not separate the modes; give G_c, or take '// &
-                '''vcct''.', place)
+                  'Eq. 11 does not separate the modes; give G_c, or take ''vcct''.', place)
     end if
   end subroutine check_toughness
 

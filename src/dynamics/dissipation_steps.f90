@@ -1,11 +1,10 @@
-!> A load step that is taken by the energy which it dissipates: the load factor is an unknown, and what damage takes in
-!> the step is given. So a path is followed where neither load nor displacement grows, through softening and snap-back
+!> A load step controlled by the dissipated energy: the load factor is an unknown, and the energy that damage dissipates
+!> in the step is prescribed. The equilibrium path is traced through softening and snap-back
 !> (M. A. Gutierrez, Communications in Numerical Methods in Engineering 20 (2004) 19-29; C. V. Verhoosel, J. J. C.
 !> Remmers, M. A. Gutierrez, International Journal for Numerical Methods in Engineering 77 (2009) 1290-1321).
 !>
-!> They take the energy dissipated from loads and displacements, for a plate whose geometry stays linear and whose
-!> damage unloads to the origin. Here it is what the points of the interfaces have dissipated, so neither contact nor
-!> large deflections spoil it.
+!> These papers derive the dissipated energy from loads and displacements, for geometrically linear problems that unload
+!> to the origin. Here it is summed over the cohesive points, which includes contact and large deflections.
 module dissipation_steps
   use kinds, only: wp
   use errors, only: error_t
@@ -20,14 +19,14 @@ module dissipation_steps
   private
   public :: dissipation_step_t, new_dissipation_step
 
-  !> Part of the energy asked for by which a step may miss it. It sets how far a step goes, not its equilibrium.
+  !> Relative tolerance of the dissipated energy. It affects the length of a step, not its equilibrium.
   real(wp), parameter :: dissipation_tolerance = 1.0e-2_wp
 
   !> A step that dissipates a given energy.
   type, extends(static_step_t) :: dissipation_step_t
     !> Energy that the step is to dissipate
     real(wp) :: target_dissipation = 0
-    !> Change of the load factor at most; farther away there are other branches of equilibrium, which no path leads to
+    !> Largest change of the load factor; farther away lie other branches of equilibrium, which no path connects
     real(wp) :: max_load_change = 0
   contains
     procedure :: begin
@@ -45,7 +44,7 @@ contains
     real(wp), intent(in) :: time
     !> Energy to dissipate, of the full plate
     real(wp), intent(in) :: target_dissipation
-    !> Change of the load factor at most
+    !> Largest change of the load factor
     real(wp), intent(in) :: max_load_change
     !> The problem
     type(dissipation_step_t) :: self
@@ -56,7 +55,7 @@ contains
     self%max_load_change = max_load_change
   end function new_dissipation_step
 
-  !> Predictor: on along the last step, as far as the energies compare.
+  !> Predictor: the last step, scaled by the ratio of the energies.
   subroutine begin(self, model, operator, old, new)
     !> The problem
     class(dissipation_step_t), intent(inout) :: self
@@ -94,7 +93,7 @@ contains
     new%path%dissipated = new%interfaces%cohesive%dissipation(model, old%interfaces%cohesive)
   end subroutine find_residual
 
-  !> Residual relative to internal forces and load, or what is missed of the energy, scaled to be judged alike.
+  !> Residual relative to internal forces and load, or the error of the dissipated energy, scaled to the same tolerance.
   real(wp) function residual_norm(self, model, equilibrium, operator, residual, new)
     !> The problem
     class(dissipation_step_t), intent(in) :: self
@@ -105,11 +104,11 @@ contains
     type(tangent_operator_t), intent(in) :: operator
     !> Residual at the owned points, (5, points)
     real(wp), intent(in) :: residual(:, :)
-    !> State at the end; remembers its largest forces
+    !> State at the end; stores its largest forces
     type(state_t), intent(inout) :: new
 
     if (model%setup%has_impactor) then
-      ! The impactor goes to where its force asks for.
+      ! The impactor's travel follows from its force.
       if (new%force < 0) then
         residual_norm = huge(residual_norm)
         return
@@ -122,7 +121,7 @@ contains
                             - 1)/dissipation_tolerance*equilibrium%tolerance)
   end function residual_norm
 
-  !> Turns the correction at a fixed load into one with the change of the load that brings the energy wanted.
+  !> Adds the change of the load by which the step dissipates the prescribed energy.
   subroutine complete_correction(self, model, operator, old, new, correction, error)
     !> The problem
     class(dissipation_step_t), intent(inout) :: self
@@ -161,7 +160,7 @@ contains
     if (model%setup%has_impactor) then
       new%force = new%force + correction_factor(new%iterations)*change
     else
-      ! Beside a limit a correction may lead far away, from where none comes back.
+      ! Near a limit point a correction may be so large that the iteration diverges.
       factor = new%load_factor + correction_factor(new%iterations)*change
       factor = min(max(factor, old%load_factor - self%max_load_change), old%load_factor + self%max_load_change)
       change = (factor - new%load_factor)/correction_factor(new%iterations)

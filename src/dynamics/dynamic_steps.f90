@@ -1,5 +1,6 @@
-!> One step of plate and impactor together in time. The impact force is found anew within each iteration of
-!> equilibrium, from the compliance of impactor and plate.
+!> One time step of plate and impactor together. Each equilibrium iteration solves for the impact force by the
+!> compliance
+!> of impactor and plate.
 module dynamic_steps
   use kinds, only: wp
   use errors, only: error_t, exit_convergence
@@ -24,33 +25,34 @@ module dynamic_steps
   private
   public :: dynamic_step_t, new_dynamic_step
 
-  !> Distance of pressures and gaps from contact (complementarity) at which they have converged: the gaps left are
-  !> this part of the largest pressure over the layers' stiffness.
+  !> Tolerance of complementarity of pressures and gaps, relative to the largest pressure; in terms of gaps, to that
+  !> pressure over the stiffness of the layers.
   real(wp), parameter :: contact_tolerance = 5.0e-7_wp
 
-  !> Steps of which one finds the internal forces from the displacement, so that rounding does not add up.
+  !> Interval of steps at which internal forces are computed from the displacement, so that round-off does not
+  !> accumulate.
   integer, parameter :: between_checks = 16
 
   !> A step in time.
   type, extends(step_problem_t) :: dynamic_step_t
     !> Time step
     real(wp) :: step = 0
-    !> Changed ties and contacts with which the operator is renewed
+    !> Number of changed ties and contacts at which the operator is factorized again
     integer :: renewal = huge(1)
     !> True: the last correction took as many solves as a factorization costs
     logical :: correction_is_costly = .false.
     !> Integrator of the plate
     type(plate_integrator_t) :: integrator
-    !> Displacement to start from, (5, points); unallocated: the motion goes on as it was
+    !> Predictor of the displacement, (5, points); unallocated: constant velocity
     real(wp), allocatable :: guess(:, :)
-    !> True: the predictor is the displacement of the start, whose forces are known; or it goes on with the velocity
-    !> of the start, so its inertia forces are
+    !> True: the predictor is the initial displacement, so that internal forces are known; or constant velocity, so that
+    !> inertia forces are
     logical :: keeps_displacement = .false., keeps_velocity = .false.
-    !> True: internal forces follow from the motion, as one correction solves the step
+    !> True: internal forces follow from the equation of motion, as one correction solves the step
     logical :: skips_elements = .false.
-    !> Square of the patch's shares, of this rank's points
+    !> Sum of the squared patch weights of this rank's points
     real(wp) :: patch_square = 0
-    !> The impactor's side of the step
+    !> Coupling to the impactor
     type(impact_coupling_t) :: coupling
   contains
     !> True: one correction finds equilibrium.
@@ -73,7 +75,7 @@ contains
     type(plate_integrator_t), intent(in) :: integrator
     !> Time step
     real(wp), intent(in) :: step
-    !> Changed ties and contacts with which the operator is renewed
+    !> Number of changed ties and contacts at which the operator is factorized again
     integer, intent(in) :: renewal
     !> The problem
     type(dynamic_step_t) :: self
@@ -84,9 +86,9 @@ contains
     self%renewal = renewal
   end function new_dynamic_step
 
-  !> Predictor. Where the operator is exact any guess will do, and the plate stays where it is: that spares sums over
-  !> elements. Else the velocity stays what it is: a guess by the acceleration makes energy where the contact is stiff.
-  !> Touching faces stay together, and tied jumps stay where they are, also those glued in motion.
+  !> Predictor. With an exact operator any predictor will do; the displacement is kept, which saves element loops.
+  !> Otherwise the velocity is kept: a predictor by the acceleration adds energy where contact is stiff. Closed contacts
+  !> stay closed, and tied jumps keep their values.
   subroutine begin(self, model, operator, old, new)
     !> The problem
     class(dynamic_step_t), intent(inout) :: self
@@ -129,7 +131,7 @@ contains
     self%searches_lines = allocated(new%interfaces%cohesive%cohesive)
   end subroutine begin
 
-  !> True: forces are linear in the motion but for the impactor's, and the operator knows all of them.
+  !> True: all forces but the impactor's are linear, and the operator is exact.
   pure logical function is_solved_at_once(self, model, operator) result(solved)
     !> The problem
     class(dynamic_step_t), intent(in) :: self
@@ -185,7 +187,7 @@ contains
         call model%line_forces(new%motion%displacement, new%load_factor, lines, prescribed=.false.)
         call model%line_forces(old%motion%displacement, old%load_factor, lines_before, prescribed=.false.)
         residual = residual + (1 - f)*lines + f*lines_before
-        ! What moves or holds a line acts with one force over the step.
+        ! Prescribed lines act with a constant force over the step.
         call model%line_forces(new%motion%displacement, new%load_factor, lines, prescribed=.true.)
         residual = residual + lines
       end if
@@ -195,8 +197,7 @@ contains
     end associate
   end subroutine find_residual
 
-  !> Internal forces as the equation of motion leaves them, after a correction that solves it to rounding: a sum over
-  !> elements less.
+  !> Internal forces from the equation of motion, after a correction that solves it to round-off: saves an element loop.
   subroutine find_internal_from_motion(self, model, old, new, energy)
     !> The problem
     class(dynamic_step_t), intent(in) :: self
@@ -230,11 +231,11 @@ contains
     type(tangent_operator_t), intent(in) :: operator
     !> Residual at the owned points, (5, points)
     real(wp), intent(in) :: residual(:, :)
-    !> State at the end; remembers its largest forces
+    !> State at the end; stores its largest forces
     type(state_t), intent(inout) :: new
 
     if (self%keeps_displacement .and. new%iterations == 0) then
-      ! An iteration follows in any case.
+      ! At least one iteration is needed.
       residual_norm = huge(residual_norm)
       return
     else if (self%skips_elements .and. new%iterations == 1) then
@@ -261,7 +262,7 @@ contains
     may_stop = new%iterations > 0 .or. .not. model%setup%has_impactor
   end function may_stop
 
-  !> Finds a correction by the tangent, and with it the impactor's force.
+  !> Solves for a correction by the tangent, and for the impactor's force.
   subroutine find_correction(self, model, operator, old, new, residual, tolerance, correction, negative_curvature, &
                              error)
     !> The problem
@@ -276,11 +277,11 @@ contains
     type(state_t), target, intent(inout) :: new
     !> The residual at the owned points, (5, points)
     real(wp), intent(in) :: residual(:, :)
-    !> Part of the residual that may be left
+    !> Required reduction of the residual
     real(wp), intent(in) :: tolerance
     !> Correction of the displacement, (5, points)
     real(wp), intent(inout) :: correction(:, :)
-    !> True: it goes along negative curvature of the tangent
+    !> True: it is a direction of negative curvature of the tangent
     logical, intent(out) :: negative_curvature
     !> Set if a solve fails or numbers are not finite
     type(error_t), allocatable, intent(inout) :: error
@@ -297,12 +298,11 @@ contains
     if (model%setup%has_impactor .and. .not. tangent%is_factored()) &
       call add_force_slope(model, operator, self%coupling, old, new, tangent)
     call find_krylov_correction(operator, model, tangent, diagonal, residual, tolerance, correction, error, &
-                                negative_curvature, &
-                                converged)
+                                negative_curvature, converged)
     if (allocated(error)) return
     self%correction_is_costly = .not. converged
     if (model%setup%has_impactor) then
-      ! The correction holds the linear part of the force's change; the law asks for the rest.
+      ! The correction includes the linear part of the change of the force; the law gives the rest.
       self%coupling%unknown = self%coupling%unknown &
                               - tangent%force_slope*model%patch_mean(correction)/self%coupling%share
       call self%coupling%solve(model, operator, old, new, correction, error)

@@ -1,5 +1,4 @@
-!> The tangent of a step in time where its iteration has come to, beside the factored operator that is its
-!> preconditioner.
+!> The current tangent of a time step, for which the factored operator is the preconditioner.
 module dynamic_tangents
   use errors, only: error_t
   use impact_coupling, only: impact_coupling_t
@@ -15,9 +14,8 @@ module dynamic_tangents
 
 contains
 
-  !> The tangent, but for the impactor's force, after the operator was renewed if that is due: where that is required,
-  !> or
-  !> where ties and contacts have left it.
+  !> The tangent without the impactor's force. The operator is factorized again if required, or if ties and contacts
+  !> differ too much from it.
   subroutine find_tangent(model, operator, old, new, factors, required, max_changes, uses_element_tangents, tangent, &
                           diagonal, &
                           error)
@@ -31,11 +29,11 @@ contains
     type(state_t), target, intent(in) :: new
     !> Factors of stiffness and mass
     real(wp), intent(in) :: factors(2)
-    !> True: renewed in any case
+    !> True: factorized again in any case
     logical, intent(in) :: required
-    !> Changes of ties and contacts that are left to the iteration
+    !> Changes of ties and contacts that the iteration may account for
     integer, intent(in) :: max_changes
-    !> True: the factor has left too much of the forces, so elements are asked also where they change slowly
+    !> True: element tangents are used, as the factored operator reduces the residual too little
     logical, intent(in) :: uses_element_tangents
     !> The tangent
     type(tangent_product_t), intent(out) :: tangent

@@ -1,5 +1,5 @@
-!> Books the energies of a step. What the integrators take out of the motion is computed from their
-!> own algebra, not as the remainder, so that the ledger's error shows every other mistake.
+!> Energy balance of a step. Algorithmic dissipation is computed from the formulas of the integrators, not as the
+!> remainder, so that the imbalance shows every other error.
 module energy_balance
   use cohesive_energies, only: stored_beyond_work
   use kinds, only: wp
@@ -72,7 +72,7 @@ contains
                                - products%cohesive, &
                          max(new%ledger%initial + new%ledger%external_work, products%strain))
     if (model%map%layered) then
-      ! What fracture takes has been booked, and taken off here, when the ties were released.
+      ! Fracture energy was booked, and subtracted here, when the ties were released.
       call new%interfaces%ties%book(model, old%interfaces%ties, &
                                     new%motion%displacement - old%motion%displacement, taken)
       new%ledger%algorithmic = new%ledger%algorithmic + taken
@@ -85,8 +85,8 @@ contains
       + impactor - old%ledger%impactor + new%ledger%indentation - old%ledger%indentation)
   end subroutine book_step
 
-  !> Books the strain energy that failed plies have lost, and finds the forces that are left. What plies that soften
-  !> lose beyond their fracture energy, as they follow a step late, is the integrator's.
+  !> Books the strain energy dissipated by failed plies, and computes the remaining forces. An energy error of softening
+  !> plies by the lag of damage is booked as algorithmic dissipation.
   subroutine book_failures(model, now, trial)
     type(model_t), intent(in) :: model
     !> The state before the step

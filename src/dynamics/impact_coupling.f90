@@ -1,4 +1,4 @@
-!> The impactor's side of a step of plate and impactor together.
+!> Coupling of the impactor to the plate in a step.
 module impact_coupling
   use kinds, only: wp
   use errors, only: error_t
@@ -16,35 +16,35 @@ module impact_coupling
 
   !> The motion of the impactor and the indentation are affine in one unknown force.
   type :: impact_coupling_t
-    !> Displacement of the impactor at the end of the step without force, and its fall per unit of force
+    !> Displacement of the impactor at the end of the step without force, and its decrease per unit of force
     real(wp) :: free_displacement = 0, compliance = 0
     !> True: the unknown is the mean force over the step; false: the force at its end
     logical :: mean = .false.
     !> The unknown force, and the force at the end of the step
     real(wp) :: unknown = 0, force_end = 0
-    !> Share of the unknown in the plate's load, and the rest of the load
+    !> Weight of the unknown in the plate's load, and the rest of the load
     real(wp) :: share = 0, inherited = 0
-    !> Force at the start of the step, and where between end and start the equation of motion requires it
+    !> Force at the start of the step, and alpha_f of the equation of motion
     real(wp) :: start_force = 0, alpha_f = 0
   contains
     !> Force on the plate in its equation of motion.
     procedure :: load
     !> True: one solution finds the load.
     procedure :: forces_agree
-    !> Solves for the force, and lets the plate respond.
+    !> Solves for the force, and adds the response of the plate.
     procedure :: solve
     !> Finds the force.
     procedure :: find_force
-    !> Fall of the load with the deflection of the plate.
+    !> Decrease of the load with the deflection of the plate.
     procedure :: slope
   end type impact_coupling_t
 
-  !> Change of a deflection over the indentation at which the slope of the force is taken.
+  !> Increment of the deflection, relative to the indentation, for the derivative of the force.
   real(wp), parameter :: deflection_increment = 1.0e-6_wp
 
 contains
 
-  !> The impactor's part in a step.
+  !> Coupling in a step.
   pure function begin_coupling(model, integrator, old, step) result(coupling)
     type(model_t), intent(in) :: model
     !> Integrator of the plate
@@ -53,7 +53,7 @@ contains
     type(state_t), intent(in) :: old
     !> Time step
     real(wp), intent(in) :: step
-    !> The impactor's side of the step
+    !> The coupling
     type(impact_coupling_t) :: coupling
 
     call predict(model%setup%impactor, old%impactor, step, coupling%free_displacement, coupling%compliance)
@@ -70,7 +70,7 @@ contains
 
   !> Force on the plate in its equation of motion.
   pure real(wp) function load(self)
-    !> The impactor's side of the step
+    !> The coupling
     class(impact_coupling_t), intent(in) :: self
 
     load = self%share*self%unknown + self%inherited
@@ -78,7 +78,7 @@ contains
 
   !> True: one solution finds the load. The mean force over a step is the plate's load only for alpha_f = 1/2.
   pure logical function forces_agree(self)
-    !> The impactor's side of the step
+    !> The coupling
     class(impact_coupling_t), intent(in) :: self
 
     forces_agree = .not. self%mean .or. abs(self%alpha_f - 0.5_wp) <= 0
@@ -87,7 +87,7 @@ contains
   !> Solves for the impact force, given the correction of the plate for the force assumed, and adds the
   !> plate's response to the change of the force.
   subroutine solve(self, model, operator, old, new, correction, error)
-    !> The impactor's side of the step
+    !> The coupling
     class(impact_coupling_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Holds the response to a unit force
@@ -111,9 +111,9 @@ contains
     new%force_iterations = new%force_iterations + iterations
   end subroutine solve
 
-  !> Fall of the load with the deflection of the plate, the impactor moving as the force lets it.
+  !> Decrease of the load with the deflection of the plate, with the motion of the impactor under it.
   real(wp) function slope(self, law, indentation, patch_mean)
-    !> The impactor's side of the step
+    !> The coupling
     class(impact_coupling_t), intent(in) :: self
     !> Indentation law
     type(indentation_law_t), intent(in) :: law
@@ -138,7 +138,7 @@ contains
 
   !> Finds the impact force for a mean deflection of the patch, given what a force adds to it.
   subroutine find_force(self, law, indentation, patch_mean, patch_compliance, iterations, error)
-    !> The impactor's side of the step
+    !> The coupling
     class(impact_coupling_t), intent(inout) :: self
     !> Indentation law
     type(indentation_law_t), intent(in) :: law

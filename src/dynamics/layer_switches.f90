@@ -105,7 +105,7 @@ contains
     call model%profile%leave()
   end subroutine advance_explicit
 
-  !> True if layers follow their damage somewhere.
+  !> True if there are adaptive layers.
   pure logical function follows(model)
     type(model_t), intent(in) :: model
 

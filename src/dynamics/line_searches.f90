@@ -1,8 +1,9 @@
-!> How far a correction is taken: until the force along it is at most half of what it was, of either sign (H. Matthies,
-!> G. Strang, Int. J. Numer. Methods Eng. 14 (1979) 1613-1626). Along negative curvature it is taken farther.
+!> Line search along a Newton correction: until the directional derivative is at most half of its initial magnitude (H.
+!> Matthies,
+!> G. Strang, Int. J. Numer. Methods Eng. 14 (1979) 1613-1626). Along negative curvature the step is extended.
 !>
-!> Contacts count as they were when the correction was found. Their law is far stiffer than the plate, and which of them
-!> touch settles from correction to correction (an active set); a search along them would stop at each.
+!> The active set of contacts is kept fixed in a search and updated between corrections: contact is far stiffer than the
+!> plate, so a search with a changing active set would stop at each contact.
 module line_searches
   use kinds, only: wp
   use models, only: model_t
@@ -10,41 +11,41 @@ module line_searches
   private
   public :: line_search_t
 
-  !> Force along the correction over that at its start with which it ends (Matthies and Strang).
+  !> Directional derivative over its initial value at which a search ends (Matthies and Strang).
   real(wp), parameter :: slope_reduction = 0.5_wp
-  !> Parts of a bracket between which the next trial lies, and trials at most: an eighth trial is within 1e-3 of the
-  !> bracket, and a correction that requires more is rejected.
+  !> Bounds of the next trial within a bracket, and largest number of trials: the eighth is within 1e-3 of the bracket,
+  !> and a correction that requires more is not worth it.
   real(wp), parameter :: min_part = 0.1_wp, max_part = 0.9_wp
   integer, parameter :: max_trials = 8
 
-  !> A search along a correction.
+  !> A line search.
   type :: line_search_t
-    !> True: there is one
+    !> True: a search is active
     logical :: on = .false.
-    !> True: a correction along negative curvature, which may be too short
+    !> True: a direction of negative curvature, which may be extended
     logical :: negative_curvature = .false.
     !> Displacement before the correction, and the correction, (5, points)
     real(wp), allocatable :: start(:, :), direction(:, :)
-    !> Part of the correction taken
+    !> Fraction of the correction
     real(wp) :: fraction = 1
-    !> Work of contacts along it at its start, and its fall
+    !> Directional derivative of contact at its start, and its decrease
     real(wp), private :: contact = 0, contact_decrease = 0
-    !> Force along it at its start
+    !> Directional derivative at its start
     real(wp), private :: first = 0
-    !> Parts taken between which the force changes its sign, and the force there
+    !> Bracket of the root of the directional derivative, and its values there
     real(wp), private :: low = 0, high = huge(1.0_wp), low_force = 0, high_force = 0
     !> Trials so far
     integer, private :: trials = 0
   contains
-    !> Begins a search.
+    !> Starts a search.
     procedure :: begin
-    !> Judges the part taken, and chooses another one.
+    !> Accepts the fraction, or chooses another one.
     procedure :: assess
   end type line_search_t
 
 contains
 
-  !> Begins a search along a correction. Collective.
+  !> Starts a search along a correction. Collective.
   subroutine begin(self, model, start, direction, residual, smooth, contact_stiffness, negative_curvature)
     !> The search
     class(line_search_t), intent(inout) :: self
@@ -55,7 +56,7 @@ contains
     real(wp), intent(in) :: residual(:, :), smooth(:, :)
     !> What contacts and ties add to the stiffness of three components, (3, points)
     real(wp), intent(in) :: contact_stiffness(:, :)
-    !> True: a correction along negative curvature
+    !> True: a direction of negative curvature
     logical, intent(in) :: negative_curvature
     real(wp) :: sums(3)
 
@@ -78,14 +79,14 @@ contains
     self%on = self%first > 0
   end subroutine begin
 
-  !> Judges the part taken by the force along it, and chooses another one where that is too large. Collective.
+  !> Accepts the fraction by the directional derivative, or chooses another one. Collective.
   subroutine assess(self, model, smooth, ends)
     !> The search
     class(line_search_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> Residual at the part taken, without contacts and ties, (5, points)
+    !> Residual at this fraction, without contacts and ties, (5, points)
     real(wp), intent(in) :: smooth(:, :)
-    !> True: the part is taken
+    !> True: the fraction is accepted
     logical, intent(out) :: ends
     real(wp) :: force, part
 

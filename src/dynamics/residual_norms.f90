@@ -1,5 +1,5 @@
-!> Size of a residual of equilibrium relative to the reference force; translations and rotations apart,
-!> since their units differ.
+!> Norm of a residual relative to the reference force, separately for translations and rotations, as their units
+!> differ.
 module residual_norms
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_positive_inf
   use kinds, only: wp
@@ -14,8 +14,8 @@ module residual_norms
 
 contains
 
-  !> Residual over the largest of the reference forces, the larger of translations and rotations; infinite if
-  !> any number is not finite. The same on every rank.
+  !> Residual over the largest reference force, the larger of translations and rotations; infinite if a number is not
+  !> finite. The same on every rank.
   real(wp) function relative_residual(communicator, numbering, residual, first, second, load, diagonal, displacement, &
                                       may_end, tolerance, length, largest) result(norm)
     !> The ranks
@@ -31,9 +31,9 @@ contains
     !> Diagonal of the operator, and the unknowns: the residual cannot fall below the last digit of their products,
     !> however exact the solution, (5, points): a thin plate's shear forces are small differences of large numbers
     real(wp), intent(in) :: diagonal(:, :), displacement(:, :)
-    !> False: the iteration goes on whatever the residual is, so that limit is not asked for
+    !> False: the iteration continues for any residual, so that limit is not needed
     logical, intent(in) :: may_end
-    !> Relative residual that will be accepted
+    !> Tolerance of the relative residual
     real(wp), intent(in) :: tolerance
     !> Lever arm that makes moments of forces, the laminate's thickness: moments balance among themselves, so
     !> those left over say nothing of the reference moments

@@ -1,5 +1,4 @@
-!> A load step of a static analysis: Newton's iteration with a new tangent, around it that of the contact
-!> pressures.
+!> A load step of a static analysis: full Newton iterations, within those of the augmented Lagrangian.
 module static_steps
   use kinds, only: wp
   use errors, only: error_t, exit_convergence
@@ -17,15 +16,15 @@ module static_steps
   private
   public :: static_step_t, new_static_step, correction_factor
 
-  !> Distance of pressures and gaps from contact (complementarity) at which they have converged.
+  !> Tolerance of complementarity of pressures and gaps.
   real(wp), parameter :: contact_tolerance = 5.0e-10_wp
 
-  !> Iterations in which a step with the consistent tangent converges unless it alternates.
+  !> Iterations within which a step with the consistent tangent converges unless it alternates between two states.
   integer, parameter :: usual_iterations = 8
 
   !> A load step.
   type, extends(step_problem_t) :: static_step_t
-    !> Time at the end of the step: how far the run has come
+    !> Time at the end of the step: the progress of the run
     real(wp) :: time = 0
     !> Load over the full load
     real(wp) :: load_factor = 0
@@ -59,7 +58,7 @@ contains
     self%load_factor = load_factor
   end function new_static_step
 
-  !> Predictor: the state before.
+  !> Predictor: the previous state.
   subroutine begin(self, model, operator, old, new)
     !> The problem
     class(static_step_t), intent(inout) :: self
@@ -108,34 +107,34 @@ contains
     type(tangent_operator_t), intent(in) :: operator
     !> Residual at the owned points, (5, points)
     real(wp), intent(in) :: residual(:, :)
-    !> State at this load; remembers its largest forces
+    !> State at this load; stores its largest forces
     type(state_t), intent(inout) :: new
     real(wp), allocatable :: loads(:, :)
 
     allocate (loads, mold=residual)
     call model%static_loads(new%motion%displacement, new%load_factor, loads)
     call add_impactor_force(model, new%force, loads)
-    ! What rounding leaves of the first solution a second one takes away, so it is asked for.
+    ! A second iteration removes the round-off of the first, so it is required.
     residual_norm = relative_residual(model%communicator, operator%numbering, residual, new%motion%internal, loads, &
                                       0.0_wp, operator%diagonal, new%motion%displacement, new%iterations > 1, &
                                       equilibrium%tolerance, model%thickness, new%largest_forces)
     if (model%setup%has_impactor) residual_norm = max(residual_norm, force_mismatch(model, new))
   end function residual_norm
 
-  !> New pressures may be too little a change for the tolerance; only a correction can make them fit the gaps.
+  !> A change of multipliers may be below the tolerance of the residual; it needs a correction nevertheless.
   pure logical function may_stop(self, model, new, pressures_new)
     !> The problem
     class(static_step_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> State at this load
     type(state_t), intent(in) :: new
-    !> True: contact has taken new pressures since the last correction
+    !> True: multipliers were updated after the last correction
     logical, intent(in) :: pressures_new
 
     may_stop = .not. pressures_new
   end function may_stop
 
-  !> Finds a correction by a new tangent wherever that may have changed.
+  !> Solves for a correction, by a new tangent if it may have changed.
   subroutine find_correction(self, model, operator, old, new, residual, tolerance, correction, negative_curvature, &
                              error)
     !> The problem
@@ -150,11 +149,11 @@ contains
     type(state_t), target, intent(inout) :: new
     !> The residual at the owned points, (5, points)
     real(wp), intent(in) :: residual(:, :)
-    !> Part of the residual that may be left
+    !> Required reduction of the residual
     real(wp), intent(in) :: tolerance
     !> Correction of the displacement, (5, points)
     real(wp), intent(inout) :: correction(:, :)
-    !> True: it goes along negative curvature of the tangent
+    !> True: it is a direction of negative curvature of the tangent
     logical, intent(out) :: negative_curvature
     !> Set if a solve fails
     type(error_t), allocatable, intent(inout) :: error
@@ -168,7 +167,7 @@ contains
     if (.not. allocated(error)) call new%interfaces%faces%hold(model, correction)
   end subroutine find_correction
 
-  !> Adds the plate's response to the change of an impactor's force, and takes the part of the correction that goes on.
+  !> Adds the response to the change of the impactor's force, and scales the correction.
   subroutine complete_correction(self, model, operator, old, new, correction, error)
     !> The problem
     class(static_step_t), intent(inout) :: self
@@ -191,7 +190,7 @@ contains
     correction = correction_factor(new%iterations)*correction
   end subroutine complete_correction
 
-  !> True if the tangent may not be what it was at the iteration before.
+  !> True if the tangent may differ from that of the previous iteration.
   pure logical function tangent_changes(model, iterations)
     type(model_t), intent(in) :: model
     !> Iterations of this step so far
@@ -207,7 +206,7 @@ contains
     tangent_changes = any(model%setup%delaminations%contact /= contact_none)
   end function tangent_changes
 
-  !> Part of a correction that is taken. Newton iterations may alternate between two sets of points whose damage grows;
+  !> Factor of a correction. Newton iterations may alternate between two sets of points whose damage grows;
   !> halving every other correction, once there have been more than it takes to converge, ends that.
   elemental real(wp) function correction_factor(iterations) result(part)
     !> Iterations of the step so far
@@ -254,8 +253,8 @@ contains
       sums(4) = (faces + new%interfaces%contact_work(model, new%motion%displacement, change))/2
       sums(5) = faces/2
     end if
-    ! Plies that failed, and a nose that presses elsewhere from now on, left the state before out of equilibrium. What
-    ! that releases would go into motion.
+    ! Failed plies and a changed contact area leave the previous state out of equilibrium; the energy released would
+    ! become kinetic.
     call add_impactor_force(model, old%force, loads_before)
     sums(5) = sums(5) + model%product(change, loads_before - old%motion%internal)/2
     if (.not. (model%setup%has_ply_damage .or. allocated(model%nose))) sums(5) = 0
@@ -278,8 +277,7 @@ contains
                              - heat - damage
   end subroutine finish
 
-  !> Loads, the impactor's force left out, that an accepted state carries. Before the first step these are the lines
-  !> that hold the plate: what is there from the start comes with that step.
+  !> Loads of an accepted state without the impactor's force. Before the first step only lines that hold the plate act.
   subroutine loads_carried(model, state, loads)
     type(model_t), intent(in) :: model
     !> The state

@@ -23,7 +23,8 @@ module step_columns
 
   !> The energy ledger. These columns and their order are the public interface.
   character(len=result_row_length), parameter, public :: ledger_rows(*) = [character(len=result_row_length) :: &
-    'energy_impactor | real | energy | Kinetic energy of the impactor and its potential in gravity; the latter is 0 at first contact.', &
+    'energy_impactor | real | energy | Kinetic energy of the impactor and its potential in gravity; the latter is 0 &
+      &at first contact.', &
     'energy_kinetic | real | energy | Kinetic energy of the plate.', &
     'energy_strain | real | energy | Strain energy of the plate with its damaged stiffness.', &
     'energy_indentation | real | energy | Work of the contact force on the indentation so far, stored and lost.', &
@@ -32,7 +33,8 @@ module step_columns
     'energy_ply_damage | real | energy | Strain energy lost as failures of plies took stiffness away.', &
     'energy_contact | real | energy | Work done against contact of separated faces and penalty ties, and what &
       &faces and frame lose as they meet.', &
-    'energy_algorithmic | real | energy | Algorithmic dissipation: energy that time integrators, implicit interfaces and released ties took out of the motion, less energy_delamination.', &
+    'energy_algorithmic | real | energy | Algorithmic dissipation: energy that time integrators, implicit &
+      &interfaces and released ties took out of the motion, less energy_delamination.', &
     'energy_error | real | energy | Energy imbalance: the sum of the eight energies before, &
       &energy_friction, energy_layers and energy_damping, less work_external and the energy at the start.']
 
@@ -51,8 +53,8 @@ module step_columns
       &computation.', &
     'force_iterations | integer | - | Newton and bisection steps for the contact force in the step, &
       &counted likewise.', &
-    'contact_iterations | integer | - | Updates of contact pressures in the step that had something to &
-      &settle, counted likewise.', &
+    'contact_iterations | integer | - | Updates of contact pressures in the step before they converged, &
+      &counted likewise.', &
     'total_iterations | integer | - | Sum of iterations over the accepted steps.', &
     'total_force_iterations | integer | - | Sum of force_iterations over the accepted steps.', &
     'total_contact_iterations | integer | - | Sum of contact_iterations over the accepted steps.', &
@@ -70,7 +72,8 @@ module step_columns
 
   !> Contact with the impactor.
   character(len=result_row_length), parameter, public :: contact_rows(*) = [character(len=result_row_length) :: &
-    'contact_area | real | area | Contact area of the impactor: the patch, and the area around it that its nose touches.']
+    'contact_area | real | area | Contact area of the impactor: the patch, and the area around it that its nose &
+      &touches.']
 
 contains
 

@@ -1,4 +1,4 @@
-!> Chooses the time step and when the factored operator is renewed.
+!> Controls the length of time steps and when the operator is factorized again.
 module step_controllers
   use kinds, only: wp
   use archives, only: archive_t
@@ -8,73 +8,73 @@ module step_controllers
   private
   public :: step_controller_t
 
-  !> Energy release rate over its critical value from which fronts that grow a cell a step shorten the step.
+  !> Ratio of the energy release rate to its critical value above which fronts that grow one cell per step shorten it.
   real(wp), parameter :: ratio_near_growth = 0.8_wp
-  !> Ratios of the mass factor between which a lagged operator still serves well.
+  !> Range of the ratio of mass factors in which a lagged operator is still a good preconditioner.
   real(wp), parameter :: lag_low = 0.3_wp, lag_high = 1.7_wp
 
-  !> Errors over the tolerance from which the next step is half as long, and from which a step is tried again. An error
-  !> grows with the third power of the step: halving it brings the first back to a quarter.
+  !> Errors, relative to the tolerance, above which the next step is halved, and above which a step is rejected. The
+  !> error is of third order in the step length: halving reduces the first to a quarter.
   real(wp), parameter, public :: shortening_error = 2, rejection_error = 8
-  !> Error of a step in the rise of first contact, over the third power of their ratio.
+  !> Error of a step relative to the third power of its ratio to the rise time of first contact.
   real(wp), parameter :: first_error = 4
-  !> Error over the tolerance that a longer step may be expected to have, in an impact and after it.
+  !> Largest predicted error of a longer step, relative to the tolerance, during an impact and after it.
   real(wp), parameter :: allowed_in_impact = 0.125_wp, allowed_after = 0.5_wp
-  !> Doublings of a step that follows the error. Gear's method bears one after some equal steps: the product of its
-  !> companion matrices then has a norm of 23, of 1100 with one after two steps, of 128 with two at once, of 6 without.
+  !> Largest number of doublings at once under error control. Gear's method is stable with one after some equal steps:
+  !> the product of its companion matrices then has the norm 23; 1100 after two steps, 128 with two at once, 6 without.
   integer, parameter :: max_doublings = 3, max_doublings_of_gear = 1
   integer, parameter, public :: equal_of_gear = 4
-  !> Steps that must have gone well before the step grows: in an impact, where waves may come back, and after it.
+  !> Steps without a change before a step is lengthened: during an impact, where waves may return, and after it.
   integer, parameter :: steady_in_impact = 24, steady_after = 8
-  !> Ratio from which a step counts as longer than another one.
+  !> Ratio above which a step counts as longer than another one.
   real(wp), parameter :: longer_than = 1 + 1.0e-9_wp
-  !> What a step misses of how plies fail, over the most it may, from which the next is not twice as long. It grows
-  !> with the square of the step: an onset passed in a step costs half the fall of the force times the way beyond it.
+  !> Lag of damage in a step, relative to its limit, above which the next step is not doubled. It is of second order: an
+  !> onset within a step costs half the decrease of the force times the displacement beyond it.
   real(wp), parameter :: allowed_damage_lag = 0.25_wp
-  !> Parts of the time to the first event of which steps that follow the error are halves of halves, at most.
+  !> Largest number of parts of the time to the first event; error-controlled steps are these parts, halved repeatedly.
   integer, parameter :: max_parts = 8
 
-  !> What is remembered from step to step.
+  !> State of the controller.
   type :: step_controller_t
-    !> Step wanted next, and the last one taken
+    !> Next step length, and the last one taken
     real(wp) :: target = 0, last = 0
-    !> Steps of its length in a row
+    !> Number of consecutive steps of that length
     integer :: equal_steps = 0
-    !> Part of the step wanted that growing fronts leave: halves of halves, so that the factored operator need not
-    !> follow every small change
+    !> Factor by which growing fronts reduce the step: powers of one half, so that the factored operator need not be
+    !> renewed at every small change
     real(wp) :: part = 1
-    !> Fewest iterations of a step since the operator was renewed, and the sum of those beyond it
+    !> Fewest iterations of a step with the present factorization, and the sum of those in excess of it
     integer :: fewest = huge(1), excess = 0
-    !> Steps since the step wanted last changed
+    !> Steps with the present step length
     integer :: steady_steps = 0
-    !> Largest error over its tolerance among them
+    !> Largest error among them, relative to the tolerance
     real(wp) :: error = 0
-    !> Doublings of the step that wait until they fit into what is left to the next event
+    !> Pending doublings of the step, which wait until the remaining time to the next event is a multiple
     integer :: doublings = 0
-    !> First of the steps that follow the error, below which none of them is shortened once anything has failed
+    !> First error-controlled step; after a failure no step is shortened below it
     real(wp) :: first = 0
   contains
-    !> First step of those that follow the error.
+    !> First error-controlled step.
     procedure :: begin
-    !> Shortest step that an error asks for.
+    !> Shortest step under error control.
     procedure :: shortest
-    !> Learns from the error of an accepted step.
+    !> Updates the step length by the error of an accepted step.
     procedure :: adapt_to_error
     !> Shortens the step after one with too large an error.
     procedure :: shorten
-    !> Step to try next, landing on the next output time.
+    !> Length of the next step, so that steps meet the next output time.
     procedure :: propose
-    !> Learns from an accepted step.
+    !> Updates the step length after an accepted step.
     procedure :: accept
     !> Shortens the step where fronts are about to grow or have grown.
     procedure :: limit_by_fronts
-    !> Lengthens the step after it was cut because plies fail.
+    !> Lengthens the step after it was shortened because plies fail.
     procedure :: limit_by_ply_damage
-    !> Learns from a rejected step.
+    !> Halves the step after a rejected one.
     procedure :: reject
-    !> True if the operator should be renewed before a step.
+    !> True if the operator should be factorized again before a step.
     procedure :: renewal_due
-    !> Forgets the iterations counted, after a renewal.
+    !> Resets the count of iterations after a factorization.
     procedure :: renewed
     !> Saves or loads the controller.
     procedure :: visit
@@ -82,15 +82,15 @@ module step_controllers
 
 contains
 
-  !> Length of the next step, of which a whole number reaches the next event.
+  !> Length of the next step, such that an integer number of steps reaches the next event.
   pure real(wp) function propose(self, remaining, limit, growth) result(step)
     !> The controller
     class(step_controller_t), intent(in) :: self
     !> Time to the next event
     real(wp), intent(in) :: remaining
-    !> Longest step that the impactor's integrator bears
+    !> Longest stable step of the impactor's integrator
     real(wp), intent(in) :: limit
-    !> Largest ratio to the step before; left out: that of steps which grow one after the other
+    !> Largest ratio to the previous step; left out: that of consecutive growth
     real(wp), intent(in), optional :: growth
     real(wp) :: ratio, longer
 
@@ -98,7 +98,7 @@ contains
     if (present(growth)) ratio = growth
     step = self%part*self%target
     longer = step*2.0_wp**self%doublings
-    ! A longer step waits until the steps left are a multiple of it: so there are few lengths.
+    ! A longer step is taken once the remaining time is a multiple of it, so that few lengths occur.
     if (abs(remaining/longer - anint(remaining/longer)) < 1.0e-6_wp .and. remaining > longer/2) step = longer
     step = min(step, limit)
     if (self%last > 0) step = min(step, ratio*self%last)
@@ -114,7 +114,7 @@ contains
     if (whole < x) whole = whole + 1
   end function ceiling_of
 
-  !> Learns from an accepted step.
+  !> Updates the step length after an accepted step.
   pure subroutine accept(self, stepping, step, iterations, lag_iterations, stress_change)
     !> The controller
     class(step_controller_t), intent(inout) :: self
@@ -122,7 +122,7 @@ contains
     type(stepping_t), intent(in) :: stepping
     !> Step taken
     real(wp), intent(in) :: step
-    !> Its iterations, and those of them that a new factorization might have spared
+    !> Its iterations, and those that a new factorization might have saved
     integer, intent(in) :: iterations, lag_iterations
     !> Change of the stress at the struck point over its largest value so far
     real(wp), intent(in) :: stress_change
@@ -147,8 +147,8 @@ contains
     self%target = min(max(self%target, stepping%time%step_min), stepping%time%step_max)
   end subroutine accept
 
-  !> First step of those that follow the error: the deck's, or what the tolerance leaves of the rise of first contact.
-  !> From it on all are that many halves or doubles, and whole numbers of them reach the first event.
+  !> First error-controlled step: the deck's, or from the tolerance and the rise time of first contact. All later steps
+  !> are this one times a power of two, and an integer number of them reaches the first event.
   pure subroutine begin(self, stepping, remaining)
     !> The controller
     class(step_controller_t), intent(inout) :: self
@@ -172,9 +172,8 @@ contains
     self%first = self%target
   end subroutine begin
 
-  !> Shortest step that an error asks for: the smallest of the deck, or once anything has failed the first of the run.
-  !> What breaks at once sends out waves as short as the mesh allows, and no step gets their error below the tolerance
-  !> without following each of them.
+  !> Shortest step under error control: the smallest of the deck, or after a failure the first of the run. A sudden
+  !> failure emits waves as short as the mesh resolves; only steps that resolve each of them would meet the tolerance.
   pure real(wp) function shortest(self, stepping, damaged)
     !> The controller
     class(step_controller_t), intent(in) :: self
@@ -187,13 +186,13 @@ contains
     if (damaged) shortest = max(shortest, self%first)
   end function shortest
 
-  !> Learns from the error of an accepted step: halves the step, or doubles it once that pays for a factorization.
+  !> Halves the step by the error of an accepted one, or doubles it once that is worth a factorization.
   pure subroutine adapt_to_error(self, stepping, step, error, remaining, is_over, gear, damaged)
     !> The controller
     class(step_controller_t), intent(inout) :: self
     !> How steps are taken
     type(stepping_t), intent(in) :: stepping
-    !> Step taken, and its error over the tolerance
+    !> Step taken, and its error relative to the tolerance
     real(wp), intent(in) :: step, error
     !> Time to the end of the run
     real(wp), intent(in) :: remaining
@@ -228,7 +227,7 @@ contains
     end if
   end subroutine adapt_to_error
 
-  !> Begins to watch errors anew.
+  !> Resets the record of errors.
   pure subroutine reset_errors(self)
     !> The controller
     class(step_controller_t), intent(inout) :: self
@@ -238,13 +237,13 @@ contains
     self%doublings = 0
   end subroutine reset_errors
 
-  !> Halves the step until the error is expected to be within the tolerance again.
+  !> Halves the step until the predicted error is within the tolerance.
   pure subroutine shorten(self, step, error, shortest)
     !> The controller
     class(step_controller_t), intent(inout) :: self
     !> Step taken or tried in vain, and its error over the tolerance
     real(wp), intent(in) :: step, error
-    !> Shortest step that an error asks for
+    !> Shortest step under error control
     real(wp), intent(in) :: shortest
 
     self%target = max(shortest, step/self%part*0.5_wp**max(1, nint(log(error/shortening_error)/log(8.0_wp) &
@@ -252,16 +251,18 @@ contains
     call reset_errors(self)
   end subroutine shorten
 
-  !> Shortens the step where delaminations that grow one cell a step are about to grow or have grown (section 3.3.3
-  !> of the paper, step 5): as their energy release rate nears the critical one, the step is halved at 0.9 of it, again
-  !> at 0.95 and so on in proportion to what is left, down to twice the smallest part; after an extension the smallest
-  !> part is taken. Then it doubles from step to step, as far as the steps may grow.
+  !> Shortens the step where delaminations that grow one cell per step are about to grow or have grown (section 3.3.3 of
+  !> the paper, step 5). As the energy release rate approaches the critical one, the step is halved at 0.9 of it, at
+  !> 0.95
+  !> and so on, down to twice the smallest factor; after growth the smallest factor is taken. It then doubles from step
+  !> to
+  !> step within the limit of growth.
   pure subroutine limit_by_fronts(self, stepping, ratio, extended)
     !> The controller, after `accept`
     class(step_controller_t), intent(inout) :: self
     !> How steps are taken
     type(stepping_t), intent(in) :: stepping
-    !> Largest energy release rate over its critical value of the step
+    !> Largest ratio of energy release rate to its critical value in the step
     real(wp), intent(in) :: ratio
     !> True if a front grew in it
     logical, intent(in) :: extended
@@ -279,13 +280,13 @@ contains
     end if
   end subroutine limit_by_fronts
 
-  !> Doubles a step that was cut because plies fail, once it follows them with ease.
+  !> Doubles a step that was shortened because plies fail, once the lag of damage is small.
   pure subroutine limit_by_ply_damage(self, stepping, damage_lag)
     !> The controller, after `accept`
     class(step_controller_t), intent(inout) :: self
     !> How steps are taken
     type(stepping_t), intent(in) :: stepping
-    !> What the last step missed, over the most that it may
+    !> Lag of damage in the last step, relative to its limit
     real(wp), intent(in) :: damage_lag
 
     if (stepping%adapt%on) return
@@ -293,28 +294,28 @@ contains
     if (damage_lag < allowed_damage_lag) self%target = min(2*self%target, stepping%time%step_max)
   end subroutine limit_by_ply_damage
 
-  !> Learns from a rejected step: half of it is tried next.
+  !> Halves the step after a rejected one.
   pure subroutine reject(self, step)
     !> The controller
     class(step_controller_t), intent(inout) :: self
-    !> Step that failed
+    !> Rejected step
     real(wp), intent(in) :: step
 
     self%target = step/(2*self%part)
   end subroutine reject
 
-  !> True if the operator should be renewed before a step: by the paper's rule, or once the iterations
-  !> that its age has cost add up to about the price of a factorization.
+  !> True if the operator should be factorized again before a step: by the paper's rule, or once the additional
+  !> iterations have cost about as much as a factorization.
   pure logical function renewal_due(self, adapt, nonlinear, mass_ratio, deflection_change, thickness) result(due)
     !> The controller
     class(step_controller_t), intent(in) :: self
     !> The rule
     type(adapt_t), intent(in) :: adapt
-    !> True: the stiffness changes with the deflection
+    !> True: the stiffness depends on the deflection
     logical, intent(in) :: nonlinear
     !> Mass factor of the step over that of the operator
     real(wp), intent(in) :: mass_ratio
-    !> Change of the struck point's deflection since the operator was made
+    !> Change of the struck point's deflection since the factorization
     real(wp), intent(in) :: deflection_change
     !> Thickness of the laminate
     real(wp), intent(in) :: thickness
@@ -328,7 +329,7 @@ contains
     end if
   end function renewal_due
 
-  !> Forgets the iterations counted, after a renewal.
+  !> Resets the count of iterations after a factorization.
   pure subroutine renewed(self)
     !> The controller
     class(step_controller_t), intent(inout) :: self

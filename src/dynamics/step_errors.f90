@@ -14,10 +14,10 @@ module step_errors
   private
   public :: step_error_t, error_weights
 
-  !> States before the present one that are remembered.
+  !> Number of stored previous states.
   integer, parameter :: past = 2
 
-  !> What was before the present state, and the largest so far.
+  !> Previous states, and the largest values so far.
   type :: step_error_t
     !> How many of them there are
     integer :: known = 0
@@ -34,19 +34,19 @@ module step_errors
     procedure :: start
     !> Error of a step that has been tried.
     procedure :: estimate
-    !> Remembers a state that is about to be replaced.
+    !> Stores a state before it is replaced.
     procedure :: note
-    !> Forgets the states before a sudden change.
+    !> Discards the states before a sudden change.
     procedure :: reset
-    !> True: impactor and plate are not to meet again.
+    !> True: no further contact is expected.
     procedure :: impact_is_over
-    !> Saves or loads what is remembered.
+    !> Saves or loads the stored states.
     procedure :: visit
   end type step_error_t
 
 contains
 
-  !> The plate at rest, the impactor in free flight up to first touch.
+  !> The plate at rest, the impactor in free flight up to first contact.
   subroutine start(self, model, step)
     !> The estimate
     class(step_error_t), intent(inout) :: self
@@ -103,7 +103,7 @@ contains
   !> Error of a step that has been tried: of the indentation as a part of the largest force, of the deflection as a part
   !> of the largest deflection, whichever is larger. 0 until there are four states. Collective.
   subroutine estimate(self, model, integrator, expected, now, trial, error)
-    !> The estimate; learns the largest force and deflection
+    !> The estimate; updates the largest force and deflection
     class(step_error_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Integrator of the plate
@@ -157,14 +157,14 @@ contains
            state%time > expected%last_contact
   end function impact_is_over
 
-  !> Remembers a state that is about to be replaced, and the largest of the one that replaces it.
+  !> Stores a state before it is replaced, and updates the largest values by the next one.
   subroutine note(self, model, now, next)
     !> The estimate
     class(step_error_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> The state that becomes a past one
+    !> The state to be replaced
     type(state_t), intent(in) :: now
-    !> The state that comes next
+    !> The next state
     type(state_t), intent(in) :: next
 
     self%known = min(self%known + 1, past)
@@ -179,9 +179,9 @@ contains
     self%stiffness = max(self%stiffness, stiffness_of(model, next))
   end subroutine note
 
-  !> Forgets the states before a sudden change: plies that failed or fronts that grew after a step change the forces at
-  !> its end at once. Divided differences across that see a third derivative that grows the more the shorter the step,
-  !> although the step, which ends there, has no such error.
+  !> Discards the states before a sudden change: failed plies or grown fronts change the forces at the end of a step
+  !> abruptly. Divided differences across it give a third derivative that grows as the step gets shorter, although the
+  !> step itself has no such error.
   pure subroutine reset(self)
     !> The estimate
     class(step_error_t), intent(inout) :: self
@@ -189,7 +189,7 @@ contains
     self%known = 0
   end subroutine reset
 
-  !> Saves or loads what is remembered.
+  !> Saves or loads the stored states.
   subroutine visit(self, archive, model)
     !> The estimate
     class(step_error_t), intent(inout) :: self

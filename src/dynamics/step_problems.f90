@@ -1,8 +1,8 @@
 !> Equilibrium of a step: one nonlinear iteration for every kind of step, be it a step in time or a load step.
 !>
-!> A kind of step says what its predictor, residual, operator and books are; the iteration around them is the
-!> paper's Fig. 7: residual, ties and contact, correction by a factored operator that may lag, and once equilibrium
-!> holds the contact pressures found become the next multipliers, until they converge.
+!> A kind of step defines predictor, residual, operator and energy balance. The iteration around them is the paper's
+!> Fig. 7: residual, ties and contact, correction with a lagged operator; at equilibrium the contact pressures become
+!> the next multipliers, until they converge.
 module step_problems
   use kinds, only: wp
   use errors, only: error_t, exit_convergence
@@ -15,35 +15,34 @@ module step_problems
   private
   public :: step_problem_t, solve_step
 
-  !> What is left of the residual by a correction at most, and of the reference forces, and part of the square of the
-  !> last
-  !> ratio of residuals that the next may leave (S. C. Eisenstat, H. F. Walker, SIAM J. Sci. Comput. 17 (1996) 16-32,
+  !> Largest forcing term of the inexact Newton method, and the factor of the squared ratio of the last residuals that
+  !> gives the next one (S. C. Eisenstat, H. F. Walker, SIAM J. Sci. Comput. 17 (1996) 16-32,
   !> choice 2).
   real(wp), parameter :: max_forcing_term = 1.0e-3_wp, forcing_factor = 0.9_wp
-  !> What a correction by the factored operator may leave before the elements are asked for their tangents, each for a
+  !> Reduction of the residual by the factored operator below which element tangents are used, whose product costs a
   !> fifth of a solve.
   real(wp), parameter :: acceptable_reduction = 1.0e-2_wp
-  !> Part of the tolerance to which the last correction goes: beyond it solves gain nothing.
+  !> Part of the tolerance to which the last linear system is solved: more would gain nothing.
   real(wp), parameter :: tolerance_margin = 0.3_wp
 
   !> One kind of step.
   type, abstract :: step_problem_t
-    !> Distance of pressures and gaps from contact (complementarity) at which they have converged
+    !> Tolerance of complementarity of pressures and gaps
     real(wp) :: contact_tolerance = 0
-    !> True: a solver that fails may be cured by a shorter step
+    !> True: after a failure of the solver a shorter step may succeed
     logical :: retries_shorter = .true.
-    !> True: corrections by the factored operator have left too much, so the elements are asked for their tangents
+    !> True: element tangents are used, as the factored operator reduces the residual too little
     logical :: uses_element_tangents = .false.
-    !> True: a correction is searched for the part of it to take
+    !> True: a line search follows each correction
     logical :: searches_lines = .false.
   contains
     !> Predictor of the state at the end of the step.
     procedure(begin_step), deferred :: begin
     !> Residual of equilibrium without ties and contact.
     procedure(find_residual), deferred :: find_residual
-    !> Size of a residual relative to the reference force.
+    !> Residual relative to the reference force.
     procedure(residual_norm), deferred :: residual_norm
-    !> True if a residual within the tolerance is the end.
+    !> True if the iteration may end with a residual within the tolerance.
     procedure(may_stop), deferred :: may_stop
     !> Finds a correction by the tangent, renewing the operator where that is due.
     procedure(find_correction), deferred :: find_correction
@@ -86,7 +85,7 @@ module step_problems
       real(wp), intent(out) :: energy
     end subroutine find_residual
 
-    !> Size of a residual relative to the reference force; infinite if a number is not finite.
+    !> Residual relative to the reference force; infinite if a number is not finite.
     real(wp) function residual_norm(self, model, equilibrium, operator, residual, new)
       import :: step_problem_t, model_t, equilibrium_t, tangent_operator_t, state_t, wp
       !> The problem
@@ -98,11 +97,11 @@ module step_problems
       type(tangent_operator_t), intent(in) :: operator
       !> Residual at the owned points, (5, points)
       real(wp), intent(in) :: residual(:, :)
-      !> State at the end; remembers its largest forces
+      !> State at the end; stores its largest forces
       type(state_t), intent(inout) :: new
     end function residual_norm
 
-    !> True if a residual within the tolerance is the end.
+    !> True if the iteration may end with a residual within the tolerance.
     pure logical function may_stop(self, model, new, pressures_new)
       import :: step_problem_t, model_t, state_t
       !> The problem
@@ -110,7 +109,7 @@ module step_problems
       type(model_t), intent(in) :: model
       !> State at the end
       type(state_t), intent(in) :: new
-      !> True: contact has taken new pressures since the last correction
+      !> True: multipliers were updated after the last correction
       logical, intent(in) :: pressures_new
     end function may_stop
 
@@ -130,11 +129,11 @@ module step_problems
       type(state_t), target, intent(inout) :: new
       !> The residual at the owned points, (5, points)
       real(wp), intent(in) :: residual(:, :)
-      !> Part of the residual that may be left
+      !> Required reduction of the residual
       real(wp), intent(in) :: tolerance
       !> Correction of the displacement, (5, points)
       real(wp), intent(inout) :: correction(:, :)
-      !> True: it goes along negative curvature of the tangent
+      !> True: it is a direction of negative curvature of the tangent
       logical, intent(out) :: negative_curvature
       !> Set if a solve fails or numbers are not finite
       type(error_t), allocatable, intent(inout) :: error
@@ -179,7 +178,7 @@ contains
     type(state_t), intent(inout) :: new
   end subroutine find_force
 
-  !> Tries a step. On return either `converged` and `new` is the state at its end, or nothing of it counts.
+  !> Tries a step. If it has not converged, `new` is undefined on return.
   subroutine solve_step(problem, model, equilibrium, operator, old, new, converged, error)
     !> The kind of step
     class(step_problem_t), intent(inout) :: problem
@@ -187,7 +186,7 @@ contains
     type(model_t), target, intent(in) :: model
     !> Required convergence
     type(equilibrium_t), intent(in) :: equilibrium
-    !> The factored operator; renewed on the way if convergence asks for it
+    !> The factored operator; factorized again if convergence requires it
     type(tangent_operator_t), target, intent(inout) :: operator
     !> State at the start
     type(state_t), intent(in) :: old
@@ -237,7 +236,7 @@ contains
       call correct(problem, model, operator, old, new, residual, smooth, forcing_term(equilibrium, norm, before), &
                    correction, search, error)
       if (allocated(error)) then
-        ! Numbers have run away, or the operator is not positive: a shorter step may cure it.
+        ! Divergence, or an operator that is not positive definite: a shorter step may succeed.
         if ((problem%retries_shorter .or. model%setup%has_impactor) &
             .and. error%code == exit_convergence) deallocate (error)
         return
@@ -250,25 +249,25 @@ contains
     if (converged) call problem%finish(model, old, energy, new)
   end subroutine solve_step
 
-  !> Part of the residual that a correction may leave.
+  !> Forcing term: reduction of the residual required of the next correction.
   pure real(wp) function forcing_term(equilibrium, norm, before) result(left)
     !> Required convergence
     type(equilibrium_t), intent(in) :: equilibrium
-    !> Size of the residual, and of that before the last correction; 0: there was none
+    !> Norm of the residual, and of that before the last correction; 0: there was none
     real(wp), intent(in) :: norm, before
 
-    ! Faces that a correction has pressed into each other push with a thousandfold of all reference forces.
+    ! After a correction that closes contacts their forces may be a thousand times the reference force.
     left = max_forcing_term*min(1.0_wp, 1/norm)
     if (before > 0) left = min(left, forcing_factor*(norm/before)**2)
     left = max(left, tolerance_margin*equilibrium%tolerance/norm)
   end function forcing_term
 
-  !> Residual, and what it is without ties and contacts.
+  !> Residual with and without ties and contacts.
   subroutine find_forces(problem, model, operator, old, new, residual, smooth, energy)
     !> The kind of step
     class(step_problem_t), intent(inout) :: problem
     type(model_t), intent(in) :: model
-    !> Keeps the time
+    !> Its timers are used
     type(tangent_operator_t), intent(inout) :: operator
     !> State at the start
     type(state_t), intent(in) :: old
@@ -276,7 +275,7 @@ contains
     type(state_t), intent(inout) :: new
     !> The residual at the owned points, (5, points)
     real(wp), intent(inout) :: residual(:, :)
-    !> Without ties and contacts; allocated where corrections are searched
+    !> Residual without ties and contacts; allocated if lines are searched
     real(wp), allocatable, intent(inout) :: smooth(:, :)
     !> Strain energy of this rank's elements
     real(wp), intent(out) :: energy
@@ -290,7 +289,7 @@ contains
     call operator%timers%stop('element forces')
   end subroutine find_forces
 
-  !> Takes the pressures found as the next estimates.
+  !> Updates the multipliers of the augmented Lagrangian by the pressures found.
   subroutine update_multipliers(problem, model, new, converged)
     !> The kind of step
     class(step_problem_t), intent(in) :: problem
@@ -307,7 +306,7 @@ contains
     call model%profile%leave()
   end subroutine update_multipliers
 
-  !> Finds a correction, and begins to search it.
+  !> Finds a correction, and starts the line search along it.
   subroutine correct(problem, model, operator, old, new, residual, smooth, tolerance, correction, search, error)
     !> The kind of step
     class(step_problem_t), intent(inout) :: problem
@@ -321,9 +320,9 @@ contains
     type(state_t), target, intent(inout) :: new
     !> Residual at the owned points, (5, points)
     real(wp), intent(in) :: residual(:, :)
-    !> Without ties and contacts; allocated where corrections are searched
+    !> Residual without ties and contacts; allocated if lines are searched
     real(wp), allocatable, intent(in) :: smooth(:, :)
-    !> Part of it that may be left
+    !> Required reduction of the residual
     real(wp), intent(in) :: tolerance
     !> Correction of the displacement, (5, points)
     real(wp), intent(inout) :: correction(:, :)

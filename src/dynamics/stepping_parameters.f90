@@ -114,12 +114,12 @@ contains
     !> When there was contact last
     real(wp), intent(in) :: contact_end
 
-    associate (time => stepping%time, settle => stepping%central%settle)
+    associate (time => stepping%time, central => stepping%central)
       end_of_run = time%end
       if (time%follows_contact) end_of_run = min(max_followed*time%end, max(time%end, past_contact*contact_end))
       ! The plate comes to rest from the end of the contact on.
-      if (contact_end > 0 .and. settle > 0) &
-        end_of_run = max(end_of_run, min(contact_end, max_followed*time%end) + settle)
+      if (contact_end > 0 .and. central%settle > 0) &
+        end_of_run = max(end_of_run, min(contact_end, max_followed*time%end) + central%settle)
     end associate
   end function end_of_run
 

@@ -1,4 +1,4 @@
-!> Time stepping, or stepping through loads: steps are tried, accepted or tried again shorter.
+!> Time or load stepping: steps are tried, and accepted or repeated with a shorter length.
 module time_stepping
   use kinds, only: wp
   use errors, only: error_t, fail, exit_convergence
@@ -31,7 +31,7 @@ module time_stepping
   private
   public :: time_stepper_t
 
-  !> Largest energy that a step dissipates, over that of the step before: from it the predictor is made.
+  !> Largest ratio of the energies that consecutive steps dissipate: the predictor is scaled by it.
   real(wp), parameter :: max_growth = 4
   !> All that evolves during a run.
   type :: time_stepper_t
@@ -41,11 +41,11 @@ module time_stepping
     type(tangent_operator_t) :: operator
     !> The step controller
     type(step_controller_t) :: controller
-    !> Error that each step adds
+    !> Error estimate of steps
     type(step_error_t) :: step_error
-    !> The last one over its tolerance; and what the last step missed of how plies fail, over the most that it may
+    !> Last error relative to its tolerance, and the lag of damage in the last step relative to its limit
     real(wp), private :: error = 0, damage_lag = 0
-    !> True: the last step errs beyond the tolerance, and none is to be shorter
+    !> True: the error of the last step exceeds the tolerance at the shortest step
     logical :: errs = .false.
     !> Integrator of the plate
     type(plate_integrator_t) :: integrator
@@ -55,9 +55,9 @@ module time_stepping
     integer, private :: factorizations_at_start = 0, solves_at_start = 0
     !> Rejected steps
     integer :: rejected = 0
-    !> Unknowns that are free to move
+    !> Number of unconstrained unknowns
     integer :: unknowns = 0
-    !> Room for the state that is being tried
+    !> The trial state
     type(state_t), allocatable, private :: trial
     !> Central differences; unallocated: steps are implicit
     type(central_difference_t), allocatable :: explicit

@@ -1,9 +1,9 @@
-!> Central differences in time: layers move by the forces on them, interfaces by tractions that are implicit node by
-!> node, and plies and interfaces are damaged as they are strained. Nothing is iterated and nothing factored.
+!> Central differences: layers move by the forces on them, with interface tractions that are implicit at each node;
+!> damage of plies and interfaces follows their strains and jumps. No global system is solved.
 !>
-!> Velocities belong to the middles of steps. A step finds them from the forces F at its start,
+!> Velocities are those at the middle of steps, from the forces F at the start of a step,
 !>   v(n+1/2) = v(n-1/2) + h M^-1 (F(n) - B^T lambda(n+1)),   u(n+1) = u(n) + h v(n+1/2),
-!> and then the forces at its end (K. J. Bathe, Finite Element Procedures, 1996, section 9.2.1, with the tractions
+!> followed by the forces at its end (K. J. Bathe, Finite Element Procedures, 1996, section 9.2.1, with the tractions
 !> lambda of the end of the step on the jumps B u).
 module central_differences
   use archives, only: archive_t
@@ -33,12 +33,12 @@ module central_differences
   !> until the next: a slope grows by less than the velocity times the time over an element, far below a hundredth.
   integer, parameter :: between_frequencies = 16
   real(wp), parameter :: stiffened_reserve = 1.01_wp
-  !> Part of what is allowed for below which steps become longer again: so their length seldom changes.
+  !> Fraction of that allowance below which steps are lengthened again, so that their length seldom changes.
   real(wp), parameter :: relaxed = 0.8_wp
-  !> Part of a step by which sums of millions of them may miss an event by rounding.
+  !> Fraction of a step by which sums of millions of steps may miss an event by round-off.
   real(wp), parameter :: rounded_off = 1.0e-3_wp
 
-  !> What central differences know beside the state. It has many components because inertia, stacks, lines, rigs and
+  !> Data of central differences besides the state. It has many components because inertia, stacks, lines, rigs and
   !> patch each have their own part in a step.
   type :: central_difference_t
     !> How steps are taken
@@ -49,13 +49,13 @@ module central_differences
     type(interface_stacks_t) :: stacks
     !> Forces on the layers at the end of the last step, loads less internal forces, (5, points)
     real(wp), allocatable :: force(:, :)
-    !> The impactor and where it presses
+    !> The impactor and its patch
     type(impactor_steps_t) :: impact
-    !> What lines do
+    !> Lines
     type(line_steps_t) :: lines
-    !> What frames and springs do
+    !> Frames and springs
     type(rig_steps_t) :: rigs
-    !> Points that circular windows hold
+    !> Points on circular windows
     type(circle_frames_t) :: circles
     !> The step taken last and the one before it
     type(step_lengths_t) :: steps
@@ -73,14 +73,14 @@ module central_differences
     real(wp), allocatable :: strain(:, :)
     !> Work of loads before the run began
     real(wp) :: initial_work = 0
-    !> Room for the motion of the layers, for forces with those of the borders between ranks
+    !> Work arrays: motion of the layers, forces with those of the borders between ranks
     real(wp), allocatable, private :: motion(:, :), field(:, :)
-    !> Room for stacks, one for each number of interfaces
+    !> Work arrays of stacks, one for each number of interfaces
     type(stack_t), allocatable, private :: workspaces(:)
   contains
     !> Sets up for a state.
     procedure :: start
-    !> Longest stable step, times the part of it that is taken.
+    !> Longest stable step times step_factor.
     procedure :: longest_step
     !> Takes one step.
     procedure :: advance
@@ -91,9 +91,9 @@ module central_differences
     procedure :: add_loads
     !> Computes them again where the plate has changed.
     procedure :: renew_forces
-    !> Books what failed plies have lost.
+    !> Books the energy dissipated by failed plies.
     procedure :: book_failures
-    !> Takes up a state that has been loaded.
+    !> Resumes from a loaded state.
     procedure :: resume
     !> Saves or loads.
     procedure :: visit
@@ -147,7 +147,7 @@ contains
     self%guided = pack(self%stacks%single, guided)
   end subroutine sort_points
 
-  !> Step that the elements and the contact bear, times the part of it that is taken. Frequencies of springs added to
+  !> Stable step of elements and contact times step_factor. Frequencies of springs added to
   !> each other are at most the root of the sum of their squares.
   real(wp) function longest_step(self, model, now) result(step)
     !> The method
@@ -320,7 +320,7 @@ contains
     self%force = self%force + loads
   end subroutine add_loads
 
-  !> Books the strain energy that failed plies have lost, and finds the forces that are left. Collective.
+  !> Books the strain energy dissipated by failed plies, and computes the remaining forces. Collective.
   subroutine book_failures(self, model, now)
     !> The method
     class(central_difference_t), intent(inout) :: self
@@ -350,7 +350,7 @@ contains
     self%lines%work = work
   end subroutine renew_forces
 
-  !> Takes up a state that has been loaded: with it, damage may begin elsewhere. Collective.
+  !> Resumes from a loaded state: onset of damage may differ. Collective.
   subroutine resume(self, model, now)
     !> The method
     class(central_difference_t), intent(inout) :: self

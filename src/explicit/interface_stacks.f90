@@ -1,4 +1,4 @@
-!> Nodes with several layers, and the interfaces between these: what couples the jumps of one node in a step.
+!> Nodes with several layers, and the interfaces between these: coupling of the jumps of one node in a step.
 module interface_stacks
   use cohesive_interfaces, only: cohesive_interfaces_t
   use cohesive_laws, only: cohesive_law_t
@@ -34,16 +34,16 @@ module interface_stacks
     real(wp), allocatable :: factors(:, :, :)
     !> Forces on the jumps in the last step, and change of the jumps in it, (3, points)
     real(wp), allocatable :: forces(:, :), change(:, :)
-    !> Energy lost so far where faces meet, and to the rest of the implicit treatment, (2, points)
+    !> Energy dissipated by contact of faces, and by the implicit treatment otherwise, (2, points)
     real(wp), allocatable :: lost(:, :)
   contains
     !> Finds the compliances for a step.
     procedure :: prepare
     !> Finds which stacks are damaged.
     procedure :: find_damaged
-    !> Finds the onsets, which flaws lower.
+    !> Onset energies, reduced by flaws.
     procedure :: find_onsets
-    !> Gives points that follow others their state.
+    !> Copies the state of leaders to their followers.
     procedure :: copy_to_followers
   end type interface_stacks_t
 
@@ -108,7 +108,7 @@ contains
     if (i < size(above)) has_layer_below = above(i + 1) == i
   end function has_layer_below
 
-  !> Energies of onset: N Y = G_c there, and no mixture of modes is less tough than the weaker of the pure ones.
+  !> Onset energies: N Y = G_c, and the toughness of a mixture of modes is at least that of the weaker pure mode.
   pure subroutine find_onsets(self, model, cohesive)
     !> The stacks
     class(interface_stacks_t), intent(inout) :: self
@@ -141,7 +141,7 @@ contains
     end do
   end subroutine find_damaged
 
-  !> Gives the interfaces at points that follow others the state of those.
+  !> Copies the state of the interfaces of leaders to their followers.
   pure subroutine copy_to_followers(self, inertia, cohesive)
     !> The stacks
     class(interface_stacks_t), intent(in) :: self

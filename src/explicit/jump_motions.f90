@@ -1,4 +1,4 @@
-!> Jumps between layers in a step: they move, damage follows them, and what the forces on them do is booked.
+!> Jumps between layers in a step: motion, damage, and work of the forces on them.
 module jump_motions
   use cohesive_faces, only: cohesive_faces_t
   use cohesive_interfaces, only: cohesive_interfaces_t
@@ -14,7 +14,7 @@ module jump_motions
 
 contains
 
-  !> Moves the jumps of a stack without damage, and finds where some begins.
+  !> Moves the jumps of an undamaged stack, and finds the onset of damage.
   subroutine advance_intact(stacks, i, model, steps, forces, cohesive, u, v)
     !> The stacks
     type(interface_stacks_t), intent(inout) :: stacks
@@ -58,7 +58,7 @@ contains
     end do
   end subroutine advance_intact
 
-  !> Damage of a point under new jumps; the energy that it takes is booked with the losses.
+  !> Damage of a point under new jumps; the dissipated energy is booked.
   subroutine damage_point(stacks, model, p, jumps, limit, cohesive)
     !> The stacks
     type(interface_stacks_t), intent(inout) :: stacks

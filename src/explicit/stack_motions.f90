@@ -21,11 +21,11 @@ module stack_motions
 
 contains
 
-  !> Room for the stacks of a model, one for each number of interfaces.
+  !> Work arrays for the stacks of a model, one for each number of interfaces.
   pure function new_workspaces(stacks) result(work)
     !> The stacks
     type(interface_stacks_t), intent(in) :: stacks
-    !> (most interfaces)
+    !> (largest number of interfaces)
     type(stack_t), allocatable :: work(:)
     integer :: n
 
@@ -43,7 +43,7 @@ contains
   subroutine move_stacks(stacks, work, rigs, lines, model, inertia, steps, force, cohesive, u, v)
     !> The stacks; receive forces, changes of the jumps and losses
     type(interface_stacks_t), intent(inout) :: stacks
-    !> Room, one for each number of interfaces
+    !> Work arrays, one for each number of interfaces
     type(stack_t), intent(inout) :: work(:)
     !> Frames
     type(rig_steps_t), intent(inout) :: rigs
@@ -73,7 +73,7 @@ contains
     type(interface_stacks_t), intent(inout) :: stacks
     !> Which of them
     integer, intent(in) :: i
-    !> Room
+    !> Work array
     type(stack_t), intent(inout) :: work
     !> Frames
     type(rig_steps_t), intent(inout) :: rigs
@@ -134,7 +134,7 @@ contains
     u(:, p) = u(:, p) + steps%now*v(:, p)
   end subroutine move_stack
 
-  !> Lets the first layer rest on a frame if it would pass it: then it does not give way to what is below.
+  !> Rests the first layer on a frame that it would penetrate: then it does not move with the layers below.
   pure subroutine rest_on_frame(stacks, i, rigs, inertia, steps, w, jump, free, layer, forces)
     !> The stacks
     type(interface_stacks_t), intent(in) :: stacks
@@ -202,9 +202,10 @@ contains
     end associate
   end subroutine book_reactions
 
-  !> Forces of a damaged stack. Where damage grows they are found once more with the mean of what it was and has become.
-  !> With what it was tractions of a step would do more work than the law dissipates and stores, with what it has become
-  !> less: by plus and minus half of what the growth of damage takes off the traction, times the change of the jump.
+  !> Forces of a damaged stack. If damage grows, they are computed again with the mean of old and new damage. With the
+  !> old
+  !> damage the tractions would do more work than the law stores and dissipates, with the new damage less: by plus and
+  !> minus half of the reduction of the traction times the change of the jump.
   pure subroutine solve_damaged(work, model, cohesive, p)
     !> The stack; receives its forces
     type(stack_t), intent(inout) :: work
@@ -225,7 +226,7 @@ contains
       associate (law => model%cohesive_laws(model%zone(p + j)), strength => cohesive%strength(p + j))
         energy = (law%stiffness_shear*(jumps(1, j)**2 + jumps(2, j)**2) &
                   + law%stiffness_opening*max(jumps(3, j), 0.0_wp)**2)/2
-        ! N Y = G_c at the onset, and no mixture of modes is less tough than the weaker of the pure ones.
+        ! N Y = G_c at the onset; the toughness of a mixture of modes is at least that of the weaker pure mode.
         if (energy*law%failure_ratio < strength**2*min(law%toughness_opening, law%toughness_shear)) cycle
         work%damage(j) = grown_damage(weakened(law, strength), &
                                       separation_of(weakened(law, strength), jumps(:, j), 0.0_wp), work%points(j))
@@ -238,7 +239,7 @@ contains
     call solve_shears(work)
   end subroutine solve_damaged
 
-  !> Takes the state of a damaged stack.
+  !> Sets up a damaged stack from the state.
   pure subroutine load_stack(stacks, work, model, cohesive, p, u, free)
     !> The stacks
     type(interface_stacks_t), intent(in) :: stacks

@@ -1,9 +1,8 @@
 !> Forces between the layers of one node at the end of a step.
 !>
-!> Tractions are implicit: they follow the jumps at the end of the step, with the damage of its start. So the
-!> stiffness of interfaces, of faces that press on each other and of friction sets no limit to the step. Openings are
-!> found first; the pressure that goes with them limits friction of the same step (return mapping of the predicted
-!> shear traction).
+!> Tractions are implicit: functions of the jumps at the end of the step, with the damage at its start. The stiffness of
+!> interfaces, contact and friction therefore does not limit the step. Openings are solved first; their pressure limits
+!> friction in the same step (return mapping of the trial shear traction).
 module stack_solutions
   use cohesive_points, only: cohesive_point_t
   use kinds, only: wp
@@ -25,9 +24,9 @@ module stack_solutions
     real(wp), allocatable :: free(:, :), start(:, :)
     !> Damage and sliding at the start
     type(cohesive_point_t), allocatable :: points(:)
-    !> Damage with which the forces are found
+    !> Damage in the secant stiffness
     real(wp), allocatable :: damage(:)
-    !> True: faces do not pass through each other where they are damaged
+    !> True: damaged faces do not penetrate each other
     logical, allocatable :: closing(:)
     !> Coefficient of friction
     real(wp), allocatable :: friction(:)
@@ -39,8 +38,9 @@ module stack_solutions
 
 contains
 
-  !> Forces normal to the faces. Which of them press on each other is taken from the last solution until it stays; the
-  !> law rises with the opening, so that each change goes the right way.
+  !> Forces normal to the faces. The active set of contacts is that of the last solution, until it no longer changes;
+  !> the
+  !> law is monotonic, so the iteration converges.
   pure subroutine solve_openings(stack)
     !> The stack; receives normal forces and the limits of friction
     type(stack_t), intent(inout) :: stack
@@ -81,7 +81,7 @@ contains
     end do
   end function jumps_of
 
-  !> What the forces take off the jumps.
+  !> Reduction of the jumps by the forces.
   pure function jump_reduction(stack, k) result(change)
     !> The stack with its forces
     type(stack_t), intent(in) :: stack
@@ -98,7 +98,7 @@ contains
     end do
   end function jump_reduction
 
-  !> Forces along the faces: of the law, and of friction, which sticks elastically up to its limit.
+  !> Tangential forces: of the cohesive law, and of friction with elastic sticking up to its limit.
   pure subroutine solve_shears(stack)
     !> The stack with the limits of friction; receives the forces
     type(stack_t), intent(inout) :: stack

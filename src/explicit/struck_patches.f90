@@ -1,9 +1,8 @@
-!> Where the impactor presses in steps by central differences: the deck's patch, or what a nose reaches of the plate.
+!> Contact area of the impactor in central differences: the deck's patch, or the area that a nose touches.
 !>
-!> The points within reach are listed in the order of the mesh and known to every rank, so that the mean deflection
-!> and the spreading of the force are the same to the last digit on any number of them. A nose spreads its force by
-!> the deflection at the end of each step (`contact_areas`): a spreading that lags behind would be a spring that
-!> feeds motion.
+!> The points are listed in the order of the mesh on every rank, so that mean deflection and force distribution are
+!> identical on any number of ranks. The force of a nose is distributed by the deflection at the end of each step
+!> (`contact_areas`): a lagged distribution would feed energy into the motion.
 module struck_patches
   use archives, only: archive_t
   use contact_areas, only: edge_gap
@@ -21,7 +20,7 @@ module struck_patches
     real(wp), allocatable, private :: under(:), beside(:), rise(:)
     !> Weights by which the force is spread, and inverse inertia of w, (reached)
     real(wp), allocatable :: weights(:), inverse(:)
-    !> What the mean deflection had more when the weights were others
+    !> Offset of the mean deflection by earlier changes of the weights
     real(wp) :: offset = 0
     !> True: the force follows the nose
     logical, private :: follows = .false.
@@ -135,7 +134,7 @@ contains
     mean = dot_product(self%weights, w) + self%offset
   end function mean
 
-  !> Spreads the force as the nose meets the deflected plate. The indentation goes on from what it was.
+  !> Distributes the force by the contact of the nose with the deflected plate. The indentation remains continuous.
   pure subroutine spread(self, w, indentation)
     !> The points
     class(struck_patch_t), intent(inout) :: self

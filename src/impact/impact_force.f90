@@ -1,4 +1,4 @@
-!> The impact force of a step: the one scalar unknown that ties impactor and plate together.
+!> The impact force of a step: the scalar unknown that couples impactor and plate.
 module impact_force
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use errors, only: error_t, fail, exit_internal
@@ -28,7 +28,7 @@ contains
     real(wp), intent(in) :: alpha_start
     !> Indentation at the end of the step for a zero force
     real(wp), intent(in) :: alpha_free
-    !> Fall of the indentation at the end of the step per unit of force, of impactor plus plate
+    !> Compliance of impactor and plate: decrease of the indentation at the end of the step per unit of force
     real(wp), intent(in) :: compliance
     !> Whether the unknown is the mean force
     logical, intent(in) :: mean_force
@@ -74,7 +74,7 @@ contains
     real(wp), intent(in) :: alpha_start
     !> Indentation of zero force
     real(wp), intent(in) :: zero_force
-    !> Fall of the indentation per unit of force
+    !> Compliance: decrease of the indentation per unit of force
     real(wp), intent(in) :: compliance
     !> Mean force
     real(wp), intent(out) :: x
@@ -107,7 +107,7 @@ contains
     real(wp), intent(in) :: alpha_start
     !> Indentation at the end of the step for a zero force
     real(wp), intent(in) :: alpha_free
-    !> Fall of the indentation per unit of force
+    !> Compliance: decrease of the indentation per unit of force
     real(wp), intent(in) :: compliance
     !> Whether the unknown is the mean force
     logical, intent(in) :: mean_force

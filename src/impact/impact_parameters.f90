@@ -17,9 +17,9 @@ module impact_parameters
   type :: impactor_parameters_t
     !> Mass
     real(wp) :: mass = 0
-    !> Velocity at first touch, positive towards the plate
+    !> Velocity at first contact, positive towards the plate
     real(wp) :: velocity = 0
-    !> Travel from first touch, in load steps or, prescribed in time, by central differences; 0: it moves freely
+    !> Travel from first contact, in load steps or, prescribed in time, by central differences; 0: it moves freely
     real(wp) :: travel = 0
     !> Time in which the velocity of a travel in time rises
     real(wp) :: rise = 0

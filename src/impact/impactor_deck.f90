@@ -27,13 +27,13 @@ module impactor_deck
     'impactor | mass | real | 1 | mass | none | > 0 | &
       &Mass of the whole impactor, also under symmetry; needed unless travel is given.', &
     'impactor | velocity | real | 1 | length/time | = sqrt(2 energy/mass) | >= 0 | &
-      &Speed towards the plate at first touch.', &
+      &Speed towards the plate at first contact.', &
     'impactor | at | real | 2 | length | none | any | &
       &The struck point from the plate''s centre, its default; patch, core, zones and starters go with it.', &
     'impactor | energy | real | 1 | energy | none | >= 0 | &
-      &Kinetic energy of the whole impactor at first touch, instead of velocity.', &
+      &Kinetic energy of the whole impactor at first contact, instead of velocity.', &
     'impactor | travel | real | 1 | length | none | > 0 | &
-      &Travel from first touch at the end of load steps, or prescribed in time with central differences.', &
+      &Travel from first contact at the end of load steps, or prescribed in time with central differences.', &
     'impactor | rise | real | 1 | time | = end/4 | >= 0 | &
       &Time in which the velocity of a travel in time rises smoothly to its constant value.', &
     'impactor | radius | real | 1 | length | none | > 0 | &

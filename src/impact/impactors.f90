@@ -13,7 +13,7 @@ module impactors
 
   !> What evolves of the impactor; changes only when a step is accepted.
   type :: impactor_t
-    !> Displacement, positive towards the plate, 0 at first touch
+    !> Displacement, positive towards the plate, 0 at first contact
     real(wp) :: displacement = 0
     !> Velocity
     real(wp) :: velocity = 0
@@ -34,7 +34,7 @@ module impactors
 
 contains
 
-  !> The impactor at first touch.
+  !> The impactor at first contact.
   pure function new_impactor(parameters) result(impactor)
     !> Mass, velocity, gravity, integrator
     type(impactor_parameters_t), intent(in) :: parameters

@@ -19,7 +19,7 @@ module tan_sun_indentation
   public :: indentation_t, zero_force_indentation, indentation_of, indentation_force, indentation_stiffness, &
             mean_indentation_force, indentation_work, stiffening, commit_indentation
 
-  !> What the contact remembers; changes only when a step is accepted.
+  !> History variables of the contact; changed only when a step is accepted.
   type :: indentation_t
     !> Indentation of the last accepted step (impactor displacement minus patch-mean deflection;
     !> negative: a gap)
@@ -233,7 +233,7 @@ contains
     call archive%item('indentation/work', self%work)
   end subroutine visit_indentation
 
-  !> Unloading or reloading curve, whichever applies; empty for Hertz and before the first touch.
+  !> Unloading or reloading curve, whichever applies; empty for Hertz and before the first contact.
   pure function current_branch(law, state) result(branch)
     !> The law
     type(indentation_law_t), intent(in) :: law

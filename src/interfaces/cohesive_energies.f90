@@ -1,4 +1,4 @@
-!> Energy that cohesive points make or lose in a step because it follows their path by its ends only.
+!> Energy error of cohesive points in a step, whose path is known at its ends only.
 module cohesive_energies
   use cohesive_faces, only: cohesive_faces_t
   use cohesive_interfaces, only: cohesive_interfaces_t

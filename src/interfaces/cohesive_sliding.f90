@@ -10,13 +10,14 @@ module cohesive_sliding
   private
   public :: heat_since, update_friction_limits, visit_friction
 
-  !> Change of a limit over the largest one at which load steps take limits for settled.
+  !> Relative change of a friction limit at which load steps have converged.
   real(wp), parameter :: limit_tolerance = 1.0e-6_wp
 
 contains
 
-  !> Makes the friction limit go with pressures and damage. A step in time goes on with it in the next; a load
-  !> step is solved again until it stays what it was.
+  !> Updates the friction limits by pressures and damage. A time step uses them in the next step; a load step is
+  !> repeated
+  !> until they have converged.
   subroutine update_friction_limits(interfaces, model, displacement, updates, converged)
     !> The interfaces
     type(cohesive_interfaces_t), intent(inout) :: interfaces

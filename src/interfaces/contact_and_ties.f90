@@ -1,8 +1,7 @@
-!> Joined, separated and touching faces: the forces that ties and contact put on the jumps.
+!> Tied, separated and touching faces: forces of ties and contact on the jumps.
 !>
-!> The pressure acts as one constant force over a step while its gap is judged at the end of the step.
-!> Its work is then minus the pressure times the gap that closed: contact never creates energy,
-!> for any integrator of the plate.
+!> The pressure is constant over a step, and complementarity is required at its end. The work of contact is then minus
+!> the pressure times the gap that closed: contact never creates energy, with any integrator of the plate.
 module contact_and_ties
   use kinds, only: wp
   use archives, only: archive_t
@@ -17,24 +16,24 @@ module contact_and_ties
 
   !> State of all interfaces: their bonds, and the pressure where faces touch.
   type, extends(interface_ties_t) :: contact_and_ties_t
-    !> Estimate of the contact pressure and the pressure found, (local points)
+    !> Multiplier of the augmented Lagrangian and contact pressure, (local points)
     real(wp), allocatable :: multiplier(:), pressure(:)
-    !> Slope of the pressure by the gap, not positive, (local points)
+    !> Derivative of the pressure with respect to the gap, not positive, (local points)
     real(wp), allocatable :: slope(:)
     !> Decay of the pressure with an open gap (beta of Eq. 12), 1/length, (zones), the same on every rank
     real(wp), allocatable :: decay(:)
     !> Largest pressure so far
     real(wp) :: peak = 0
   contains
-    !> Adds the contact and penalty forces to a residual and takes the residual of tied jumps out.
+    !> Adds contact and penalty forces to a residual and removes the residual of tied jumps.
     procedure :: act
-    !> Takes the pressures found as the next estimates; they have converged once they agree with the gaps.
+    !> Updates the multipliers by the pressures found.
     procedure :: update_contact
-    !> How far pressures and gaps are from contact.
+    !> Violation of complementarity of pressures and gaps.
     procedure :: complementarity
     !> Work of contact and penalty ties in a step.
     procedure :: work
-    !> Keeps touching faces together in the predictor, and open ones from passing through each other.
+    !> Keeps closed contacts closed in the predictor, and open ones from penetrating.
     procedure :: keep_contact_closed
     !> Stiffness that ties and contact add to the diagonal.
     procedure :: added_stiffness
@@ -42,8 +41,8 @@ module contact_and_ties
     procedure :: visit
   end type contact_and_ties_t
 
-  !> Stiffness that stands for a held jump, over the diagonal of the operator: hard enough to hold it to five
-  !> digits in a preconditioner, soft enough to be taken out again without a factorization.
+  !> Penalty of a tied jump relative to the diagonal of the operator: stiff enough for five digits in a preconditioner,
+  !> soft enough to be removed again without a factorization.
   real(wp), parameter, public :: held_stiffness = 1.0e5_wp
 
 contains
@@ -62,7 +61,7 @@ contains
     allocate (self%multiplier(points), self%pressure(points), self%slope(points), source=0.0_wp)
   end function new_contact_and_ties
 
-  !> Adds the contact and penalty forces to a residual and takes the residual of tied jumps out of it.
+  !> Adds contact and penalty forces to a residual and removes the residual of tied jumps.
   subroutine act(self, model, displacement, residual)
     !> The state; receives pressures and slopes
     class(contact_and_ties_t), intent(inout) :: self
@@ -112,7 +111,7 @@ contains
     end select
   end function force
 
-  !> Takes the pressures found as the next estimates; they have converged once they agree with the gaps.
+  !> Updates the multipliers by the pressures found, which have converged once they agree with the gaps.
   subroutine update_contact(self, model, displacement, tolerance, updates, converged)
     !> The state
     class(contact_and_ties_t), intent(inout) :: self
@@ -133,8 +132,7 @@ contains
     updates = updates + merge(1, 0, mismatch > 0)
   end subroutine update_contact
 
-  !> Takes the pressures found as the next estimates, and the decay that suits the gaps. Pressures are those of
-  !> the last residual.
+  !> Sets the multipliers to the pressures of the last residual, and updates the decay by the gaps.
   subroutine update_multipliers(self, model, displacement, converged)
     !> The state
     type(contact_and_ties_t), intent(inout) :: self
@@ -164,8 +162,8 @@ contains
     self%peak = max(self%peak, maxval(largest))
   end subroutine update_multipliers
 
-  !> How far pressures and gaps are from contact, where faces with a gap have no pressure and none is negative:
-  !> the largest part of the pressure that is unmet over the largest pressure so far. The same on every rank.
+  !> Violation of complementarity: no pressure on open faces, no negative pressure. Relative to the largest pressure so
+  !> far. The same on every rank.
   real(wp) function complementarity(self, model, displacement)
     !> The state
     class(contact_and_ties_t), intent(in) :: self
@@ -206,8 +204,9 @@ contains
     end do
   end function work
 
-  !> Keeps touching faces together in the predictor, and open ones from passing through each other: the stiff
-  !> law would turn small errors of a guess with large pressures.
+  !> Keeps closed contacts closed in the predictor, and open ones from penetrating: the stiff law would turn small
+  !> errors
+  !> of the predictor into large pressures.
   subroutine keep_contact_closed(self, model, guess)
     !> The state
     class(contact_and_ties_t), intent(in) :: self

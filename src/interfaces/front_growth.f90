@@ -1,4 +1,4 @@
-!> Growth of delaminations: which cells delaminate in a state, and what that costs.
+!> Growth of delaminations: which cells delaminate in a state, and the energy of it.
 module front_growth
   use kinds, only: wp
   use delamination_parameters, only: growth_one_per_step, growth_equilibrium, law_cohesive, unloading_glued
@@ -16,7 +16,7 @@ module front_growth
 
 contains
 
-  !> Takes cells apart where the energy release rate of a state is above its critical value.
+  !> Delaminates cells where the energy release rate exceeds its critical value.
   subroutine grow_fronts(model, stiffness, motion, state, fracture, grown)
     type(model_t), intent(in) :: model
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
@@ -25,7 +25,7 @@ contains
     type(motion_t), intent(in) :: motion
     !> The interfaces; receive new delaminated cells and the largest ratio
     type(interface_state_t), intent(inout) :: state
-    !> Energy that fracture has taken from the full plate; what the new faces take is added
+    !> Fracture energy of the full plate; that of the new faces is added
     real(wp), intent(inout) :: fracture
     !> True if cells delaminated
     logical, intent(out) :: grown
@@ -46,7 +46,7 @@ contains
     if (grown) call open_faces(model, motion, state)
   end subroutine grow_fronts
 
-  !> Finds how near the fronts of a state are to growth, where they cannot grow: under the loads of a static analysis.
+  !> Largest ratio of energy release rate to its critical value in a static analysis, where fronts do not grow.
   subroutine find_release_ratio(model, stiffness, motion, state)
     type(model_t), intent(in) :: model
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
@@ -67,7 +67,7 @@ contains
     end do
   end subroutine find_release_ratio
 
-  !> Takes the cells ahead of the most loaded segments of one front apart.
+  !> Delaminates the cells ahead of the most loaded segments of one front.
   subroutine release_cells(model, state, zone, front, fracture, grown)
     type(model_t), intent(in) :: model
     !> The interfaces
@@ -76,7 +76,7 @@ contains
     integer, intent(in) :: zone
     !> The front
     type(front_energy_release_t), intent(in) :: front
-    !> Energy that fracture has taken from the full plate; what the new faces take is added
+    !> Fracture energy of the full plate; that of the new faces is added
     real(wp), intent(inout) :: fracture
     !> Set true if cells delaminated
     logical, intent(inout) :: grown
@@ -84,7 +84,7 @@ contains
     logical :: enters(size(front%segments))
     integer :: s, foremost
 
-    ! Where the layers end, virtual crack closure finds no force to close: a rate cannot show that growth is barred.
+    ! At the border of the layers there is no tie force for virtual crack closure, so a rate cannot show blocked growth.
     state%border_reached(zone) = state%border_reached(zone) .or. any(front%segments%at_border)
     foremost = maxloc(front%ratio, mask=.not. front%segments%at_border, dim=1)
     ! A delamination that fills its zone has no front but the border; faces that are glued cannot delaminate.
@@ -123,16 +123,17 @@ contains
     end function cell_energy
   end subroutine release_cells
 
-  !> Which cells a smooth front meets first as it moves on: those whose middles lie least far ahead of it among
-  !> the cells within reach that it could enter. A rate averaged over that reach cannot distinguish them.
+  !> Of the candidate cells within the averaging length, those whose centre is closest to the front: a rate averaged
+  !> over
+  !> that length cannot distinguish them.
   pure function closest_to_front(front, open, reach) result(first)
     !> The front
     type(front_energy_release_t), intent(in) :: front
-    !> True for segments that the front could pass
+    !> True for segments with candidate cells
     logical, intent(in) :: open(:)
-    !> The reach
+    !> The averaging length
     real(wp), intent(in) :: reach
-    !> True for segments that it passes first
+    !> True for the closest ones
     logical :: first(size(open))
     !> Distance, relative to a cell, that counts as none.
     real(wp), parameter :: distance_tolerance = 1.0e-6_wp
@@ -149,7 +150,7 @@ contains
     end do
   end function closest_to_front
 
-  !> Frees the jumps of the new delamination; faces that were pressed together start in contact.
+  !> Releases the jumps of the new delamination; faces under pressure start in contact.
   subroutine open_faces(model, motion, state)
     type(model_t), intent(in) :: model
     !> Motion with its forces

@@ -1,4 +1,4 @@
-!> How far layers have to reach that follow their damage: some cells ahead of it, over the cells next to them where half
+!> How far adaptive layers have to reach: some cells ahead of it, over the cells next to them where half
 !> of the interface's strength is reached by equilibrium through the thickness, and to any cell where all of it is.
 module required_zones
   use interface_fields, only: delaminated_above

@@ -1,9 +1,8 @@
-!> Ties that have been released: their forces fade, and what the faces released meanwhile is added up.
+!> Released ties: their forces are ramped down, and the energy released meanwhile is summed.
 !>
-!> A tie that vanished at once would be a blow: the energy that it released would stay in the motion and, the shorter
-!> the steps, the less of it would show as work against the tie. Its force therefore fades, in proportion to time,
-!> while waves of shear cross a few elements; where a step is longer than that it is gone at the end of the step. The
-!> work against the fading force is the energy that is really released.
+!> Sudden removal of a tie would excite the plate: the energy would remain as kinetic energy, and the shorter the steps,
+!> the less of it would appear as work against the tie. The force is therefore ramped down linearly in time, while shear
+!> waves cross a few elements, or within one step if that is longer. The work against it is the energy released.
 module tie_release
   use kinds, only: wp
   use archives, only: archive_t
@@ -17,20 +16,20 @@ module tie_release
   type :: tie_release_t
     !> Forces on the jumps when the ties were released, (3, local points)
     real(wp), allocatable :: force(:, :)
-    !> Part of them that is still there, (local points)
+    !> Remaining fraction of these forces, (local points)
     real(wp), allocatable :: share(:)
-    !> Time in which they fade, (zones)
+    !> Duration of the ramp, (zones)
     real(wp), allocatable :: duration(:)
     !> Energy that released faces released, full plate, (zones)
     real(wp), allocatable :: set_free(:)
-    !> Time until the last of them is gone, the same on every rank
+    !> Time until the last of them is zero, the same on every rank
     real(wp) :: left = 0
   contains
     !> Releases ties.
     procedure :: release
     !> Energy that ties just released released as they first open.
     procedure :: first_opening
-    !> Fades the forces over a step.
+    !> Reduces the forces over a step.
     procedure :: ramp_down
     !> Adds the forces to a residual.
     procedure :: act
@@ -110,7 +109,7 @@ contains
     energy = energy*model%mesh%multiplicity
   end function first_opening
 
-  !> Fades the forces over a step.
+  !> Reduces the forces over a step.
   pure subroutine ramp_down(self, model, step)
     !> The ties
     class(tie_release_t), intent(inout) :: self

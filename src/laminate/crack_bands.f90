@@ -1,10 +1,11 @@
-!> Plies that take energy to break: one band of cracks an element (Z. P. Bazant, B. H. Oh, Materials and Structures 16
+!> Plies that soften by their fracture energies: one crack band per element (Z. P. Bazant, B. H. Oh, Materials and
+!> Structures 16
 !> (1983) 155-177), damage along and across the fibres.
 !>
-!> Damage d_f leaves (1 - d_f) E1 and (1 - d_f) nu12, damage d_m leaves (1 - d_m) E2 and (1 - d_m) G12, but for a
-!> remainder. The compliance between both directions stays, and so does reciprocity; the stiffness stays positive
-!> definite. Each damage follows the strain that its stress would have alone, s11/((1 - d_f) E1). That makes the
-!> energy d dissipates half the undamaged modulus times the square of that strain, whatever the others do
+!> Damage d_f leaves (1 - d_f) E1 and (1 - d_f) nu12, damage d_m leaves (1 - d_m) E2 and (1 - d_m) G12, down to a
+!> residual stiffness. The compliance between both directions is constant, so reciprocity holds and the stiffness is
+!> positive definite. Each damage variable depends on its uniaxial strain s11/((1 - d_f) E1). The energy that d
+!> dissipates is then half the undamaged modulus times the square of that strain, independent of the other damage
 !> (P. Maimi et al., Mechanics of Materials 39 (2007) 897-908, for the energy and its variables). Before the matrix
 !> cracks shear may take a part of G12 throughout the element, as Hahn and Tsai have it.
 module crack_bands
@@ -23,7 +24,8 @@ module crack_bands
   public :: crack_band_t, band_state_t, band_strains_t, create_crack_band, strain_band, elasticity_left, onset_strain, &
             longest_element, energy_of_shear, is_touched, stiffness_lost
 
-  !> Iterations in which both damages are found, five as a rule, and the change that ends them.
+  !> Largest number of iterations for both damage variables, and their tolerance. Poisson's coupling is weak, so five
+  !> iterations are usual.
   integer, parameter :: max_iterations = 50
   real(wp), parameter :: damage_tolerance = 1.0e-14_wp
 
@@ -37,7 +39,7 @@ module crack_bands
     type(matrix_strengths_t) :: matrix
     !> Energy per area of crack in each mode
     real(wp) :: toughness(energy_modes) = 0
-    !> Part of the stiffness that damage cannot take
+    !> Residual stiffness, as a fraction
     real(wp) :: remainder = 0
     !> Hahn and Tsai's beta; 0: shear is linear
     real(wp) :: shear_beta = 0
@@ -47,15 +49,15 @@ module crack_bands
     logical :: crack_closure = .false.
   end type crack_band_t
 
-  !> What a ply of an element remembers.
+  !> History variables of a ply in an element.
   type :: band_state_t
     !> Damage of fibres and matrix, from 0 to 1
     real(wp) :: damage(2) = 0
     !> Energy dissipated per volume in each mode
     real(wp) :: dissipated(energy_modes) = 0
-    !> Part of G12 that shear took before the matrix cracked
+    !> Loss of G12 by shear before matrix cracking, as a fraction
     real(wp) :: sheared = 0
-    !> Permanent shear strain, and the sum of the sizes of its changes
+    !> Permanent shear strain, and its accumulated magnitude
     real(wp) :: permanent = 0, accumulated = 0
     !> Part of the damage of fibres and matrix that stays when cracks close
     real(wp) :: closed(2) = 0
@@ -84,7 +86,7 @@ contains
     band%permanent_shear = damage%permanent_shear .and. material%shear_beta > 0
   end function create_crack_band
 
-  !> What a ply remembers if trial strains are accepted.
+  !> History variables of a ply under trial strains.
   pure subroutine strain_band(band, lengths, total, old, new)
     !> The law
     type(crack_band_t), intent(in) :: band
@@ -101,7 +103,7 @@ contains
     new = old
     strains = total
     if (band%permanent_shear) then
-      ! What a crack opens by is no strain of the ply: with it nothing more becomes permanent.
+      ! The opening of a crack is no strain of the ply: after cracking the permanent strain is constant.
       if (.not. old%damage(2) > 0) &
         call shear_flow(band%elasticity%g12, band%shear_beta, total%shear_mean, new%permanent, new%accumulated)
       strains%shear_mean = total%shear_mean - new%permanent
@@ -166,7 +168,7 @@ contains
     if (band%permanent_shear) energy = energy_of_flow(band%shear_beta, state%accumulated)
   end function energy_of_shear
 
-  !> What shear takes of G12 as long as the matrix has no crack: up to the strains at which it gets one, in proportion.
+  !> Loss of G12 by shear before matrix cracking: for the strains up to the onset of the crack.
   pure subroutine shear_band(band, strains, old, new)
     !> The law
     type(crack_band_t), intent(in) :: band
@@ -199,7 +201,7 @@ contains
 
   contains
 
-    !> Part of G12 that is lost at a part of the strains.
+    !> Loss of G12 at a fraction of the strains.
     pure real(wp) function loss_at(part) result(loss)
       !> The part
       real(wp), intent(in) :: part
@@ -207,7 +209,7 @@ contains
       loss = max(old%sheared, shear_loss(band%elasticity%g12, band%shear_beta, part*sqrt(strains%shear_square)))
     end function loss_at
 
-    !> True: the matrix cracks at a part of the strains.
+    !> True if the matrix cracks at a fraction of the strains.
     pure logical function cracks_at(part) result(cracks)
       !> The part
       real(wp), intent(in) :: part
@@ -236,7 +238,7 @@ contains
     is_touched = any(stiffness_lost(state) > 0) .or. state%accumulated > 0
   end function is_touched
 
-  !> The law with what shear has left of G12.
+  !> The law with the reduced G12.
   pure function sheared_law(band, loss) result(law)
     !> The law
     type(crack_band_t), intent(in) :: band
@@ -249,7 +251,7 @@ contains
     law%elasticity%g12 = band%elasticity%g12*(1 - loss)
   end function sheared_law
 
-  !> Constants that a state leaves.
+  !> Elastic constants of a state.
   pure function elasticity_left(band, state) result(elasticity)
     !> The law
     type(crack_band_t), intent(in) :: band
@@ -295,7 +297,7 @@ contains
       left = left_under(band%elasticity, strains%mean, left%open, stiffness_left(band, state%closed))
   end function parts_left
 
-  !> The falls of the fibres.
+  !> Softening laws of the fibres.
   pure function fibre_softening(band, length, strains, left) result(signs)
     !> The law
     type(crack_band_t), intent(in) :: band
@@ -319,7 +321,7 @@ contains
     end associate
   end function fibre_softening
 
-  !> The falls of the matrix.
+  !> Softening laws of the matrix.
   pure function matrix_softening(band, length, strains, left) result(signs)
     !> The law
     type(crack_band_t), intent(in) :: band
@@ -375,8 +377,8 @@ contains
     if (band%shear_beta > 0) onset_strain = 0
   end function onset_strain
 
-  !> Longest element across the crack that takes no more than the fracture energy, in each mode; shear counts with
-  !> compression across the fibres.
+  !> Longest element across the crack that dissipates no more than the fracture energy, in each mode; shear counts as
+  !> transverse compression.
   pure function longest_element(band) result(lengths)
     !> The law
     type(crack_band_t), intent(in) :: band

@@ -1,4 +1,4 @@
-!> Straight falls of stress over strain, from the onset of damage to failure.
+!> Linear softening of stress over strain, from the onset of damage to failure.
 module linear_softening
   use kinds, only: wp
   use ply_damage_parameters, only: fibre_tension
@@ -6,16 +6,16 @@ module linear_softening
   private
   public :: softening_t, linear_softening_of, more_damaged, damage_at, taken_by, weights_of_signs
 
-  !> Least strain at failure over that at the onset: a longer element would snap back.
+  !> Smallest ratio of failure strain to onset strain: a longer element would snap back.
   real(wp), parameter, public :: min_ratio = 1.25_wp
 
-  !> One straight fall of stress over strain.
+  !> A linear softening law.
   type :: softening_t
-    !> Strain over that of the onset
+    !> Strain relative to the onset
     real(wp) :: exposure = 0
     !> Strain at failure over that of the onset, N
     real(wp) :: ratio = huge(1.0_wp)
-    !> Energy per volume that it takes in all
+    !> Total energy dissipated per volume
     real(wp) :: energy = 0
     !> Mode in which it is booked
     integer :: mode = fibre_tension
@@ -40,22 +40,22 @@ contains
     weights(2) = sqrt((max(0.0_wp, -middle + spread)**2 + max(0.0_wp, -middle - spread)**2)/2)
   end function weights_of_signs
 
-  !> That of two falls with the larger damage.
+  !> The softening law with the larger damage.
   pure function more_damaged(signs)
     !> Tension and compression
     type(softening_t), intent(in) :: signs(2)
-    !> One of them
+    !> That law
     type(softening_t) :: more_damaged
 
     more_damaged = signs(1)
     if (damage_at(signs(2)) > damage_at(signs(1))) more_damaged = signs(2)
   end function more_damaged
 
-  !> The fall of a mode whose stress, undamaged, would stand at an exposure and store an energy.
+  !> Softening law of a mode, from the exposure and the strain energy of the undamaged material.
   pure function linear_softening_of(exposure, energy, toughness, length, mode) result(softening)
-    !> Undamaged stress over that of the onset
+    !> Undamaged stress relative to the onset
     real(wp), intent(in) :: exposure
-    !> Energy per volume that the strain would store undamaged
+    !> Strain energy per volume of the undamaged material
     real(wp), intent(in) :: energy
     !> Energy per area of crack
     real(wp), intent(in) :: toughness
@@ -63,7 +63,7 @@ contains
     real(wp), intent(in) :: length
     !> The mode
     integer, intent(in) :: mode
-    !> The fall
+    !> The softening law
     type(softening_t) :: softening
 
     softening%mode = mode
@@ -73,9 +73,9 @@ contains
     softening%energy = softening%ratio*(energy/exposure**2)
   end function linear_softening_of
 
-  !> Damage on a fall: d = N (f - 1)/(f (N - 1)).
+  !> Damage of a softening law: d = N (f - 1)/(f (N - 1)).
   pure real(wp) function damage_at(softening) result(damage)
-    !> The fall
+    !> The softening law
     type(softening_t), intent(in) :: softening
 
     damage = 0

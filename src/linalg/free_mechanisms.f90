@@ -1,5 +1,5 @@
-!> Whether a factored matrix is singular but for rounding: a part of the structure can move freely. Packages that factor
-!> without pivoting miss it, so one inverse iteration a factorization looks for it.
+!> Detects a numerically singular matrix: a mechanism of the structure. Packages that factorize without pivoting do not
+!> report it, so one inverse iteration per factorization tests for it.
 module free_mechanisms
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use communicators, only: communicator_t
@@ -11,11 +11,11 @@ module free_mechanisms
   !> Inverse of an eigenvalue that consists of rounding errors
   real(wp), parameter :: largest_growth = 1e15_wp
 
-  !> The search for an eigenvalue of rounding errors, of the matrix scaled to a diagonal of ones.
+  !> Inverse iteration for the smallest eigenvalue of the matrix with unit diagonal.
   type :: mechanism_t
     !> Solves that the search takes: two for a first factor, one for later ones
     integer :: passes = 0
-    !> Eigenvector of the least eigenvalue, roughly; its greatest item is 1
+    !> Approximate eigenvector of the smallest eigenvalue; its largest component is 1
     real(wp), allocatable, private :: mode(:)
     !> Roots of the matrix' diagonal
     real(wp), allocatable, private :: scale(:)
@@ -24,9 +24,9 @@ module free_mechanisms
     procedure :: begin
     !> Right-hand side of the next solve.
     procedure :: right_hand_side
-    !> Looks at the solution.
+    !> Tests the solution.
     procedure :: assess
-    !> Forgets the eigenvector.
+    !> Resets the eigenvector.
     procedure :: reset
   end type mechanism_t
 
@@ -55,7 +55,7 @@ contains
     values = self%scale*self%mode
   end function right_hand_side
 
-  !> Looks at the solution.
+  !> Tests the solution.
   subroutine assess(self, communicator, solution, found)
     class(mechanism_t), intent(inout) :: self
     !> All ranks
@@ -80,7 +80,7 @@ contains
     end if
   end subroutine assess
 
-  !> Forgets the eigenvector.
+  !> Resets the eigenvector.
   subroutine reset(self)
     class(mechanism_t), intent(inout) :: self
 

@@ -74,7 +74,7 @@ contains
     size_found%megabytes = 1.0e-6_wp*merge(bytes_layered, bytes_whole, size(zones) > 0)*25*pairs*log(nodes)/log(2.0_wp)
   end function size_of_model
 
-  !> The setup with the largest zones that layers may come to which follow their damage.
+  !> The setup with the largest zones that adaptive layers may reach.
   pure function with_largest_zones(setup) result(largest)
     !> The setup
     type(setup_t), intent(in) :: setup

@@ -1,7 +1,7 @@
-!> Plies that soften by their fracture energies, in every element: one state a ply and element, driven by the mean over
-!> the ply's volume there of the squares of its strains. Elements beside the struck point's lines are one with those
-!> beyond. Energy and force are then those of one potential, and what damage takes of it is what the law dissipates,
-!> however the strains vary within the element.
+!> Softening plies in every element: one state per ply and element, driven by the mean square of the strains over the
+!> ply's volume there. Elements beside the lines of the struck point share their state with those beyond. Energy and
+!> force then derive from one potential, and the energy lost by damage is that of the law, for any variation of the
+!> strains within the element.
 module crack_band_sections
   use archives, only: archive_t
   use band_archives, only: visit_bands
@@ -43,7 +43,7 @@ module crack_band_sections
     real(wp), allocatable, private :: sides(:, :)
     !> Area of each element, (elements)
     real(wp), allocatable, private :: area(:)
-    !> Elements that are one with others
+    !> Elements that share their state with others
     type(joined_elements_t), private :: joined
     !> Strain below which no ply of the laminate can begin to be damaged
     real(wp), private :: onset = 0
@@ -56,14 +56,14 @@ module crack_band_sections
     procedure :: needs
     procedure :: take
     procedure :: exchange
-    !> Makes the trial the accepted state; with what it changes of the sections.
+    !> Accepts the trial state; returns changed sections.
     procedure :: commit
     procedure :: hand_over
     !> Energy that the trial dissipates in each mode, on this rank.
     procedure :: dissipation_sums
     !> Energy dissipated so far in each mode, on this rank.
     procedure :: dissipated
-    !> Where fibres and matrix of one ply bear nothing any more, and where compression took most of its matrix.
+    !> Where fibres and matrix of one ply have failed, and where most of the matrix failed in compression.
     procedure :: failed_parts
     procedure :: mostly_compressed
     !> Constants left in a ply of an element.
@@ -122,7 +122,7 @@ contains
     needs = self%joined%concerned(b)
   end function needs
 
-  !> Takes the strains of elements that share their state.
+  !> Accumulates the strains of elements that share their state.
   subroutine take(self, b, weight, strains)
     !> The plies
     class(crack_band_sections_t), intent(inout) :: self
@@ -219,7 +219,7 @@ contains
     end associate
   end subroutine soften_element
 
-  !> Makes the trial the accepted state.
+  !> Accepts the trial state.
   pure subroutine commit(self)
     !> The plies
     class(crack_band_sections_t), intent(inout) :: self
@@ -230,7 +230,7 @@ contains
     end do
   end subroutine commit
 
-  !> Makes the trial the accepted state, and hands over the sections of elements that it has changed.
+  !> Accepts the trial state, and returns the sections of changed elements.
   pure subroutine hand_over(self, stiffness, free)
     !> The plies
     class(crack_band_sections_t), intent(inout) :: self
@@ -303,7 +303,7 @@ contains
     end do
   end function dissipated
 
-  !> Elements of this rank where fibres and matrix of one ply bear nothing any more.
+  !> Elements of this rank where fibres and matrix of one ply have failed.
   pure function failed_parts(self, ply)
     !> The plies
     class(crack_band_sections_t), intent(in) :: self
@@ -318,7 +318,7 @@ contains
     end do
   end function failed_parts
 
-  !> True where compression across the fibres has taken more of a ply's matrix than tension has.
+  !> True where a ply's matrix has dissipated more in transverse compression than in tension.
   pure function mostly_compressed(self, ply)
     !> The plies
     class(crack_band_sections_t), intent(in) :: self

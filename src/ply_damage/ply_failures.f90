@@ -1,4 +1,4 @@
-!> Failure of plies: the stiffness it takes from the elements, and the energy lost with it.
+!> Failure of plies: reduction of the stiffness of elements, and energy dissipated.
 module ply_failures
   use free_strains, only: free_resultants
   use internal_forces, only: add_internal_force
@@ -18,27 +18,27 @@ module ply_failures
   private
   public :: ply_failure_t, new_ply_failure
 
-  !> Energy that plies may create or lose as they follow a step, as a part of what they dissipate in it, and of all
-  !> energy. The spurious energy of a step past a failure makes more plies fail.
+  !> Tolerance of the energy error of softening plies in a step, relative to the energy they dissipate in it and to the
+  !> total energy. The spurious energy of a step past a failure would cause further failures.
   real(wp), parameter :: path_tolerance = 0.1_wp, energy_tolerance = 3.0e-4_wp
 
   !> Failures of the plies of this rank's elements.
   type :: ply_failure_t
-    !> What has failed, where failures take their stiffness at once
+    !> Failed modes, where failure is sudden
     type(failed_modes_t) :: modes
-    !> Plies that soften by their fracture energies; unallocated: they fail at once
+    !> Softening plies; unallocated: failure is sudden
     type(crack_band_sections_t), allocatable :: bands
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), allocatable :: stiffness(:, :, :)
     !> Resultants of strains without stress that this stiffness leaves, (lanes, 7, batches); unallocated: there are none
     real(wp), allocatable :: free(:, :, :)
-    !> True if plies took stiffness away after the last step
+    !> True if failures reduced the stiffness after the last step
     logical :: softened = .false.
     !> Energy dissipated in each mode by plies that soften, of the full plate
     real(wp) :: dissipated(energy_modes) = 0
-    !> Energy that their permanent shear strains have taken
+    !> Energy dissipated by their permanent shear strains
     real(wp) :: permanent_shear = 0
-    !> Energy that the last step missed as it followed plies that soften, over the most that it may
+    !> Lag of damage: energy error of the last step relative to its limit
     real(wp) :: damage_lag = 0
     !> True while plies that soften keep their stiffness, as a state is carried over to other layers
     logical :: lagging = .false.
@@ -47,7 +47,7 @@ module ply_failures
     procedure :: find_forces
     !> Forces of the elements on the layers, with plies that soften as they are strained.
     procedure :: add_layer_forces
-    !> Books what softening dissipates in a step, and judges whether the step has followed it.
+    !> Books the energy dissipated by softening in a step, and measures the lag of damage.
     procedure :: book
     procedure :: measure_lag
     !> Finds what plies that soften have dissipated so far.
@@ -58,7 +58,7 @@ module ply_failures
     procedure :: failed
     procedure :: elasticity
     procedure :: elasticities
-    !> Finds new failures in an accepted state and takes stiffness away.
+    !> Finds new failures in an accepted state and reduces the stiffness.
     procedure :: grow
     !> Gives elements that have come to have fewer plies their stiffness.
     procedure :: restack
@@ -132,7 +132,7 @@ contains
     end if
   end subroutine add_layer_forces
 
-  !> Books what softening dissipates in a step. Collective.
+  !> Books the energy dissipated by softening in a step. Collective.
   subroutine book(self, model, energy)
     !> The failures with the trial of the step
     class(ply_failure_t), intent(inout) :: self
@@ -160,8 +160,9 @@ contains
     self%permanent_shear = energies(energy_modes + 1)
   end subroutine total_dissipation
 
-  !> Judges whether a step has followed how plies soften: the work on them is then what they store and dissipate. A step
-  !> over a jump would find the state behind it without the work that leads there.
+  !> Measures the lag of damage: the difference of the work on softening plies and the energy they store and dissipate.
+  !> A
+  !> step past an instability reaches a state without the work that leads to it.
   pure subroutine measure_lag(self, dissipated, stored, energy)
     !> The failures
     class(ply_failure_t), intent(inout) :: self
@@ -178,7 +179,7 @@ contains
                                                      tiny(energy)**0.5_wp)
   end subroutine measure_lag
 
-  !> Modes that have occurred in a ply; one that softens has failed where it bears nothing any more.
+  !> Failed modes of a ply; a softening ply has failed where its stress is zero.
   pure function failed(self, ply)
     !> The failures
     class(ply_failure_t), intent(in) :: self
@@ -246,7 +247,7 @@ contains
     end associate
   end function elasticities
 
-  !> Finds new failures in an accepted state and takes away the stiffness that goes with them. Collective.
+  !> Finds new failures in an accepted state and reduces the stiffness. Collective.
   subroutine grow(self, model, displacement)
     !> The failures
     class(ply_failure_t), intent(inout) :: self
@@ -302,7 +303,7 @@ contains
                  left => self%stiffness(lane_of(element), :, batch_of(element)))
         left = model%elements%stiffness(lane_of(element), :, batch_of(element))
         if (allocated(self%bands)) then
-          ! Softening takes nothing from the stiffness of transverse shear.
+          ! Softening does not reduce the transverse shear stiffness.
           left(:18) = in_plane_section(model%plies(range(1):range(2)), self%elasticities(model, element))
         else
           call soften(self, model, element)

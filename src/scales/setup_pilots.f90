@@ -67,7 +67,7 @@ module setup_pilots
   !> The fewest elements in a wave that this holds for.
   real(wp), parameter :: fewest_elements = 3.1_wp
   !> Relative rise of a mode's frequency on elements of side e, (kappa e)**4 times this, kappa its wave number. Settled
-  !> by `tests/bench/elastic_scenes.py`.
+  !> by `tests/bench/elastic_models.py`.
   real(wp), parameter :: dispersion = 6.0e-4_wp
   !> Half periods of the impactor on the plate's spring that the first pilot may last: pilots wait for twice the time of
   !> contact, and contacts that end and come again have lasted up to 1.4 half periods.
@@ -252,7 +252,7 @@ contains
       coarse = run_of(self, longer, end, 0.0_wp)
       if (abs(coarse%peak/finest%peak - 1) <= bounds(1)) step = longer
     else if (finest%complete) then
-      ! The finest is better by the order of the method.
+      ! The error of the finest is less by the order of the method.
       step = finest%step
       error = error/4
     else

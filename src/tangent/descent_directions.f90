@@ -1,5 +1,6 @@
-!> A direction that descends where the tangent of a step is not positive definite: Newton's, with the sizes of the
-!> eigenvalues in a small space of motions (J. Nocedal, S. J. Wright, Numerical Optimization, 2006, section 3.4; Y. N.
+!> A descent direction where the tangent of a step is not positive definite: Newton's direction with the absolute
+!> values of the eigenvalues in a small subspace (J. Nocedal, S. J. Wright, Numerical Optimization, 2006, section 3.4;
+!> Y. N.
 !> Dauphin et al., Advances in Neural Information Processing Systems 27 (2014) 2933-2941).
 module descent_directions
   use kinds, only: wp
@@ -7,37 +8,38 @@ module descent_directions
   private
   public :: find_descent_direction
 
-  !> Size of an eigenvalue over the largest below which it counts as that: what lies along it is unknown by rounding.
+  !> Smallest magnitude of an eigenvalue relative to the largest; smaller ones are raised to it, as round-off hides
+  !> them.
   real(wp), parameter :: min_eigenvalue = 1.0e-10_wp
 
   interface
     !> LAPACK: eigenvalues and eigenvectors of A x = lambda B x.
     subroutine dsygv(itype, jobz, uplo, n, a, lda, b, ldb, w, work, lwork, info)
       import :: wp
-      !> 1: this problem; order, leading dimensions, size of the room to work in
+      !> 1: this problem; order, leading dimensions, size of the work array
       integer, intent(in) :: itype, n, lda, ldb, lwork
       !> 'V': eigenvectors too; 'L': lower triangles are given
       character, intent(in) :: jobz, uplo
       !> A, overwritten by the eigenvectors, and B, positive definite, overwritten by its factor
       real(wp), intent(inout) :: a(lda, *), b(ldb, *)
-      !> Eigenvalues, ascending; room to work in
+      !> Eigenvalues, ascending; work array
       real(wp), intent(out) :: w(*), work(*)
-      !> Not 0: they were not found
+      !> Not 0: the eigenvalues were not found
       integer, intent(out) :: info
     end subroutine dsygv
   end interface
 
 contains
 
-  !> Shares of motions in a direction that descends, if the tangent has negative curvature along any of them.
+  !> Coefficients of a descent direction in a subspace, if the tangent has negative curvature in it.
   subroutine find_descent_direction(tangent, metric, forces, coefficients, negative)
-    !> Work of the tangent's forces on the motions, (motions, motions); its symmetric part counts
+    !> Projection of the tangent on the basis of the subspace, (basis, basis); its symmetric part is used
     real(wp), intent(in) :: tangent(:, :)
-    !> The same of a positive operator that is near to it
+    !> Projection of a positive definite operator close to it
     real(wp), intent(in) :: metric(:, :)
-    !> Work of the forces out of balance on the motions, (motions)
+    !> Projection of the residual, (basis)
     real(wp), intent(in) :: forces(:)
-    !> Shares of the motions, left alone without negative curvature, (motions)
+    !> Coefficients of the basis vectors; unchanged without negative curvature, (basis)
     real(wp), intent(inout) :: coefficients(:)
     !> True: there is negative curvature
     logical, intent(out) :: negative

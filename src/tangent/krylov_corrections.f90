@@ -1,10 +1,10 @@
-!> The correction that a step's tangent asks for, by generalised minimal residuals (GMRES) with the factored operator as
-!> their preconditioner on the right (Y. Saad, M. H. Schultz, SIAM J. Sci. Stat. Comput. 7 (1986) 856-869; Y. Saad, SIAM
+!> Newton's correction by the generalised minimal residual method (flexible GMRES) with the factored operator as right
+!> preconditioner (Y. Saad, M. H. Schultz, SIAM J. Sci. Stat. Comput. 7 (1986) 856-869; Y. Saad, SIAM
 !> J. Sci. Comput. 14 (1993) 461-469).
 !>
-!> A factor that lags behind contacts, ties, cohesive points, cracked plies and von Karman's strains costs solves and
-!> no accuracy. Forces are held against each other by the diagonal of the tangent, so that forces and moments, plate and
-!> hard contacts compare. Where cohesive points soften, the directions found also show negative curvature.
+!> A factorization older than the present contacts, ties, damage or deflection costs iterations, not accuracy. The norm
+!> of a force is weighted by the inverse diagonal of the tangent, so that forces and moments, plate and stiff contacts
+!> are comparable. Where cohesive points soften, the Krylov space is also searched for negative curvature.
 module krylov_corrections
   use kinds, only: wp
   use descent_directions, only: find_descent_direction
@@ -16,18 +16,18 @@ module krylov_corrections
   private
   public :: find_krylov_correction, max_directions
 
-  !> Directions of a correction at most: the solves take about as long as a factorization then.
+  !> Largest dimension of the Krylov space: as many solves take about as long as a factorization.
   integer, parameter :: max_directions = 30
 
-  !> The space of motions, in rows of this rank.
+  !> The Krylov space, in the rows of this rank.
   type :: krylov_space_t
-    !> Motions, (rows, directions), and orthonormal forces, (rows, directions + 1)
+    !> Preconditioned basis vectors z, (rows, directions), and orthonormal basis v, (rows, directions + 1)
     real(wp), allocatable :: preconditioned(:,:),basis(:,:)
-    !> The tangent's forces of the motions in terms of these, (directions + 1, directions)
+    !> Hessenberg matrix: the tangent times z in the basis v, (directions + 1, directions)
     real(wp) :: hessenberg(max_directions + 1, max_directions) = 0
-    !> Directions found
+    !> Dimension of the space
     integer :: directions = 0
-    !> Weight of each force
+    !> Weight of each row in the norm
     real(wp), allocatable :: weight(:)
   end type krylov_space_t
 
@@ -35,8 +35,7 @@ contains
 
   !> Correction of the displacement for a residual, ghosts included. Collective.
   subroutine find_krylov_correction(operator, model, tangent, diagonal, residual, tolerance, correction, error, &
-                                    has_negative_curvature, &
-                             converged)
+                                    has_negative_curvature, converged)
     !> The factored operator
     type(tangent_operator_t), intent(inout) :: operator
     type(model_t), intent(in) :: model
@@ -46,7 +45,7 @@ contains
     real(wp), allocatable, intent(in) :: diagonal(:, :)
     !> Residual at the owned points, (5, points)
     real(wp), intent(in) :: residual(:, :)
-    !> Part of the residual that may be left
+    !> Norm of the residual at the end over that at the start
     real(wp), intent(in) :: tolerance
     !> Correction, (5, points)
     real(wp), intent(inout) :: correction(:, :)
@@ -54,12 +53,12 @@ contains
     type(error_t), allocatable, intent(inout) :: error
     !> True: the tangent has negative curvature, and the correction descends
     logical, intent(out), optional :: has_negative_curvature
-    !> False: more than the tolerance is left
+    !> False: the tolerance was not reached
     logical, intent(out), optional :: converged
     type(krylov_space_t) :: space
     real(wp) :: rows(operator%numbering%rows), solution(operator%numbering%rows), initial_norm, remaining
     real(wp), allocatable :: coefficients(:)
-    logical :: curved_down
+    logical :: negative_curvature
 
     call operator%numbering%gather(residual, rows)
     if (present(has_negative_curvature)) has_negative_curvature = .false.
@@ -73,8 +72,8 @@ contains
                               remaining, error)
       if (allocated(error)) return
       if (present(has_negative_curvature) .and. tangent%softens) then
-        call find_negative_curvature(model, space, initial_norm, coefficients, curved_down)
-        has_negative_curvature = curved_down
+        call find_negative_curvature(model, space, initial_norm, coefficients, negative_curvature)
+        has_negative_curvature = negative_curvature
       end if
       if (present(converged)) converged = remaining <= tolerance*initial_norm
       solution = matmul(space%preconditioned(:, :space%directions), coefficients)
@@ -84,7 +83,7 @@ contains
     call model%halo%update(correction)
   end subroutine find_krylov_correction
 
-  !> Spans the space until a combination of its motions leaves little enough of the forces.
+  !> Builds the Krylov space (Arnoldi) until the norm of the residual is within the tolerance.
   subroutine build_krylov_space(operator, model, tangent, rows, tolerance, space, initial_norm, coefficients, &
                                 remaining, error)
     !> The factored operator
@@ -92,15 +91,15 @@ contains
     type(model_t), intent(in) :: model
     !> The tangent
     type(tangent_product_t), intent(in) :: tangent
-    !> The forces
+    !> Right-hand side
     real(wp), intent(in) :: rows(:)
-    !> Part of them that may be left
+    !> Norm of the residual at the end over that at the start
     real(wp), intent(in) :: tolerance
     !> The space
     type(krylov_space_t), intent(inout) :: space
-    !> Size of the forces, and of what is left
+    !> Norm of the right-hand side, and of the residual at the end
     real(wp), intent(out) :: initial_norm, remaining
-    !> Shares of the motions in the best combination
+    !> Coefficients of z in the solution
     real(wp), allocatable, intent(out) :: coefficients(:)
     !> Set if a solve fails
     type(error_t), allocatable, intent(inout) :: error
@@ -130,7 +129,7 @@ contains
     end do
   end subroutine build_krylov_space
 
-  !> Motion under forces by the factored operator, with the impactor's force that goes with it (Sherman and Morrison).
+  !> Solution by the factored operator, with the rank-one term of the impactor's force (Sherman and Morrison).
   subroutine precondition(operator, tangent, forces, motion, error)
     !> The factored operator
     type(tangent_operator_t), intent(inout) :: operator
@@ -150,11 +149,11 @@ contains
              *operator%response_rows
   end subroutine precondition
 
-  !> The factored operator times a motion that it was asked for.
+  !> The factored operator times a vector that it was solved for: no product is needed.
   function factored_product(tangent, forces, motion) result(product)
     !> The tangent
     type(tangent_product_t), intent(in) :: tangent
-    !> Forces that it was asked for
+    !> Right-hand side that it was solved for
     real(wp), intent(in) :: forces(:)
     !> The motion
     real(wp), intent(in) :: motion(:)
@@ -165,13 +164,14 @@ contains
     if (tangent%force_slope > 0) product = product - tangent%force_slope*tangent%mean(motion)*tangent%pattern
   end function factored_product
 
-  !> Frees a product from the forces of the space, twice, as digits are lost (L. Giraud, J. Langou, M. Rozloznik,
-  !> Comput. Math. Appl. 50 (2005) 1069-1075), and notes their shares.
+  !> Orthogonalizes a vector against the basis, twice to keep it orthogonal in finite precision (L. Giraud, J. Langou,
+  !> M. Rozloznik,
+  !> Comput. Math. Appl. 50 (2005) 1069-1075), and stores the coefficients.
   subroutine orthogonalize(model, space, k, product)
     type(model_t), intent(in) :: model
     !> The space
     type(krylov_space_t), intent(inout) :: space
-    !> Forces in it
+    !> Basis vectors in it
     integer, intent(in) :: k
     !> The product
     real(wp), intent(inout) :: product(:)
@@ -186,10 +186,10 @@ contains
     end do
   end subroutine orthogonalize
 
-  !> Size of forces, the same on every rank.
+  !> Weighted norm of a vector, the same on every rank.
   real(wp) function norm_of(model, weight, forces)
     type(model_t), intent(in) :: model
-    !> Weight of each force
+    !> Weight of each row in the norm
     real(wp), intent(in) :: weight(:)
     !> The forces
     real(wp), intent(in) :: forces(:)
@@ -199,16 +199,15 @@ contains
     norm_of = sqrt(norm_of)
   end function norm_of
 
-  !> Combination that leaves least: || first e_1 - H y ||, by Givens' rotations of H, which has one row below its
-  !> diagonal.
+  !> Least-squares problem min || initial_norm e_1 - H y || of the Hessenberg matrix H, by Givens rotations.
   pure subroutine least_squares(matrix, initial_norm, coefficients, remaining)
     !> H, (k + 1, k)
     real(wp), intent(in) :: matrix(:, :)
-    !> Size of the forces
+    !> Norm of the right-hand side
     real(wp), intent(in) :: initial_norm
     !> y, (k)
     real(wp), allocatable, intent(out) :: coefficients(:)
-    !> What is left
+    !> Norm of the residual
     real(wp), intent(out) :: remaining
     real(wp) :: h(size(matrix, 1), size(matrix, 2)), right(size(matrix, 1)), rotation(2, 2), length
     integer :: k, n
@@ -232,17 +231,17 @@ contains
     end do
   end subroutine least_squares
 
-  !> Looks for negative curvature in the space; where there is any the combination is one that descends.
-  subroutine find_negative_curvature(model, space, initial_norm, coefficients, curved_down)
+  !> Finds negative curvature in the space; if there is any, the coefficients become those of a descent direction.
+  subroutine find_negative_curvature(model, space, initial_norm, coefficients, negative_curvature)
     type(model_t), intent(in) :: model
     !> The space
     type(krylov_space_t), intent(in) :: space
-    !> Size of the forces
+    !> Norm of the right-hand side
     real(wp), intent(in) :: initial_norm
-    !> Shares of its motions
+    !> Coefficients of z
     real(wp), intent(inout) :: coefficients(:)
     !> True: there is negative curvature
-    logical, intent(out) :: curved_down
+    logical, intent(out) :: negative_curvature
     real(wp) :: projections(space%directions, space%directions + 1)
     integer :: k
 
@@ -252,7 +251,8 @@ contains
         call model%communicator%sum(projections(:, k))
       end do
       call find_descent_direction(matmul(projections, space%hessenberg(:n + 1, :n)), projections(:, :n), &
-                                  initial_norm*projections(:, 1), coefficients, curved_down)
+                                  initial_norm*projections(:, &
+        1), coefficients, negative_curvature)
     end associate
   end subroutine find_negative_curvature
 end module krylov_corrections

@@ -1,5 +1,5 @@
-!> Assembles the operator of a step: tangent stiffness and mass of the elements, what joins and presses
-!> the faces of stacked layers.
+!> Assembles the operator of a step: tangent stiffness and mass of the elements, ties, contact and cohesive laws between
+!> stacked layers.
 module operator_assembly
   use kinds, only: wp
   use errors, only: error_t
@@ -16,8 +16,8 @@ module operator_assembly
 
 contains
 
-  !> True if no operator of a model has a negative pivot: in time, with the secants of its laws, or without buckling
-  !> and softening.
+  !> True if all operators of a model are positive definite: in time, with secant stiffness of its laws, or without
+  !> buckling and softening.
   pure logical function is_positive_definite(model) result(positive)
     type(model_t), intent(in) :: model
 
@@ -26,7 +26,7 @@ contains
       positive = positive .and. .not. any(model%setup%delaminations%law == law_cohesive)
   end function is_positive_definite
 
-  !> Adds the elements' matrices and a lumped mass to a cleared solver; ghosts' diagonals go to their owners.
+  !> Adds the element matrices and a lumped mass to a cleared solver; diagonals of ghosts are added to their owners.
   subroutine assemble_elements(model, stiffness, numbering, displacement, stiffness_factor, mass_factor, solver, &
                                diagonal)
     type(model_t), intent(in) :: model
@@ -34,7 +34,7 @@ contains
     real(wp), intent(in) :: stiffness(:, :, :)
     !> Equations
     type(numbering_t), intent(in) :: numbering
-    !> Unknowns at which the tangent is taken, (5, points)
+    !> Displacement at which the tangent is taken, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Factors of stiffness and mass
     real(wp), intent(in) :: stiffness_factor, mass_factor
@@ -77,7 +77,7 @@ contains
     call model%halo%accumulate(diagonal)
   end subroutine assemble_elements
 
-  !> Adds the stiffness that holds lines: w on the edges of circular windows, and elastic edges.
+  !> Adds the stiffness of line supports: w on the edges of circular windows, and elastic edges.
   subroutine add_line_supports(model, stiffness_factor, numbering, solver, diagonal)
     type(model_t), intent(in) :: model
     !> Factor of stiffness
@@ -106,8 +106,8 @@ contains
     end do
   end subroutine add_line_supports
 
-  !> Adds the springs of lines whose displacement is prescribed. They hold at the end of a step and not on its way, so
-  !> no factor of stiffness weighs them.
+  !> Adds the springs of lines whose displacement is prescribed. They act at the end of a step, so no
+  !> factor of stiffness weights them.
   subroutine add_lines(model, numbering, solver, diagonal)
     type(model_t), intent(in) :: model
     !> Equations
@@ -136,7 +136,7 @@ contains
     end do
   end subroutine add_lines
 
-  !> Adds a matrix on the motion of some points, turned into one on their unknowns.
+  !> Adds a matrix of layer motions, transformed to the unknowns.
   subroutine add_block(model, numbering, points, matrix, solver, diagonal)
     type(model_t), intent(in) :: model
     !> Equations
@@ -162,7 +162,7 @@ contains
     call add_to(numbering, points, matrix, solver, diagonal)
   end subroutine add_block
 
-  !> Adds a matrix on the unknowns of some points.
+  !> Adds a matrix of the unknowns of some points.
   subroutine add_to(numbering, points, matrix, solver, diagonal)
     !> Equations
     type(numbering_t), intent(in) :: numbering
@@ -212,8 +212,8 @@ contains
     end do
   end subroutine assemble_diagonal
 
-  !> Adds what couples the jumps of a point in the consistent tangents of cohesive laws, made symmetric; their diagonals
-  !> are added with those of the other interfaces.
+  !> Adds the symmetric off-diagonal terms of the consistent tangents of cohesive laws; their diagonals are added with
+  !> those of the other interfaces.
   subroutine assemble_tangents(model, numbering, tangents, solver)
     type(model_t), intent(in) :: model
     !> Equations

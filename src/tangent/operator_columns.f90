@@ -1,4 +1,4 @@
-!> What the history reports of the factored operator.
+!> Columns of the history on the factored operator.
 module operator_columns
   use kinds, only: wp
   use result_tables, only: result_row_length
@@ -7,14 +7,14 @@ module operator_columns
   private
   public :: operator_values
 
-  !> What the operator has cost.
+  !> Columns of its cost.
   character(len=result_row_length), parameter, public :: operator_rows(*) = [character(len=result_row_length) :: &
     'refactorisations | integer | - | Factorizations of the tangent operator so far, rejected steps included.', &
     'solves | integer | - | Corrections solved for with the factored operator so far, rejected steps included.']
 
 contains
 
-  !> What the operator has cost.
+  !> Its cost.
   pure function operator_values(operator) result(values)
     !> The operator
     type(tangent_operator_t), intent(in) :: operator

@@ -1,4 +1,4 @@
-!> The factored operator in a checkpoint: what made it, by which a restart makes the very same one.
+!> The factored operator in a checkpoint: the data it was computed from, so that a restart computes the same factor.
 module operator_restarts
   use archives, only: archive_t
   use errors, only: error_t
@@ -13,14 +13,14 @@ module operator_restarts
 
 contains
 
-  !> Saves what is needed to make the very same factor again, as it shapes the iterations, or loads it and makes it.
+  !> Saves the data that the factor was computed from, or loads them and factorizes: the factor affects the iterations.
   subroutine visit_operator(self, archive, model, error)
     !> The operator
     type(tangent_operator_t), intent(inout) :: self
-    !> Archive of the checkpoint
+    !> The checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
-    !> Set if the factor cannot be made again
+    !> Set if the factorization fails
     type(error_t), allocatable, intent(out) :: error
 
     call archive%item('operator/ready', self%ready)
@@ -37,12 +37,12 @@ contains
     call archive%item('operator/solves', self%solves)
   end subroutine visit_operator
 
-  !> Makes the factor again from what was loaded.
+  !> Factorizes from the data loaded.
   subroutine refactorize(self, model, error)
     !> The operator
     type(tangent_operator_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> Set if it cannot be made
+    !> Set if the factorization fails
     type(error_t), allocatable, intent(inout) :: error
 
     call model%halo%update(self%displacement)

@@ -1,4 +1,4 @@
-!> The linear solver of an operator, and solutions for fields.
+!> The linear solver of an operator, and solutions as fields.
 module operator_solvers
   use errors, only: error_t
   use kinds, only: wp
@@ -13,7 +13,7 @@ module operator_solvers
 
 contains
 
-  !> Makes a solver for the pattern of an operator.
+  !> Creates a solver for the sparsity pattern of an operator.
   subroutine create_solver(model, numbering, factorization, solver, error)
     type(model_t), intent(in) :: model
     !> Equations
@@ -31,16 +31,16 @@ contains
                        numbering%columns, is_positive_definite(model), error)
   end subroutine create_solver
 
-  !> Solution of an operator as it was factored, ghosts included.
+  !> Solution by the factored operator, ghosts included.
   subroutine solve_field(model, numbering, solver, timers, name, force, solution, error)
     type(model_t), intent(in) :: model
     !> Equations
     type(numbering_t), intent(in) :: numbering
-    !> Holds the factor
+    !> The factored matrix
     class(linear_solver_t), intent(inout) :: solver
     !> Time spent in the parts of a step
     type(timer_set_t), intent(inout) :: timers
-    !> The part that this is
+    !> Name of this part
     character(len=*), intent(in) :: name
     !> Force at the owned points, (5, points)
     real(wp), intent(in) :: force(:, :)

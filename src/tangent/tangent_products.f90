@@ -1,5 +1,5 @@
-!> The tangent of a step where its iteration has come to, times a motion. It needs no matrix: the elements are asked for
-!> the derivative of their forces, or what has changed since the factored operator was made is added to what that knows.
+!> Product of the current tangent with a vector, without a matrix: by the directional derivative of the element forces,
+!> or by adding the change of the tangent to the product with the factored operator.
 module tangent_products
   use kinds, only: wp
   use models, only: model_t
@@ -15,33 +15,33 @@ module tangent_products
     type(model_t), pointer :: model => null()
     !> Its equations
     type(numbering_t), pointer :: numbering => null()
-    !> Factors of stiffness and mass, and what the latter has more than in the factored operator
+    !> Factors of stiffness and mass, and the increase of the latter over that in the factored operator
     real(wp) :: stiffness_factor = 0, mass_factor = 0, mass_change = 0
-    !> True: the elements are not those of the factored operator
+    !> True: the element tangents differ from those in the factored operator
     logical :: elements = .false.
-    !> Displacement at which it is taken, ghosts up to date, (5, points), where elements are asked
+    !> Displacement at which element tangents are taken, ghosts up to date, (5, points)
     real(wp), pointer, contiguous :: displacement(:, :) => null()
-    !> Section stiffness of the elements, (lanes, 21, batches), and resultants of strains that go without stress
+    !> Section stiffness of the elements, (lanes, 21, batches), and resultants of stress-free strains
     real(wp), pointer, contiguous :: stiffness(:, :, :) => null(), free(:, :, :) => null()
-    !> Stiffness of the jumps of each point, all of it where elements are asked, else what it has more than in the
+    !> Stiffness of the jumps of each point: all of it with element tangents, else its increase over that in the
     !> factored operator, (3, 3, points); unallocated: none
     real(wp), allocatable :: jumps(:, :, :)
     !> True: cohesive points soften, so it may be indefinite
     logical :: softens = .false.
-    !> What the impactor's force loses per mean deflection of the patch
+    !> Decrease of the impactor's force per mean deflection of the patch
     real(wp) :: force_slope = 0
-    !> How a unit of that force is spread over the rows
+    !> Right-hand side of a unit force
     real(wp), allocatable :: pattern(:)
   contains
-    !> The tangent times a motion.
+    !> The tangent times a vector.
     procedure :: multiply
-    !> True: it is the factored operator.
+    !> True if it equals the factored operator.
     procedure :: is_factored
     !> Mean deflection of the patch.
     procedure :: mean
-    !> Takes the stiffness of the jumps.
+    !> Sets the stiffness of the jumps.
     procedure :: set_jump_stiffness
-    !> Takes the skew parts of the tangents of cohesive laws.
+    !> Sets the skew-symmetric parts of the tangents of cohesive laws.
     procedure :: set_skew_part
     procedure, private :: add_elements
     procedure, private :: add_jumps
@@ -49,7 +49,7 @@ module tangent_products
 
 contains
 
-  !> True: it is the factored operator, but for the impactor's force.
+  !> True if it equals the factored operator, except for the impactor's force.
   pure logical function is_factored(self)
     !> The tangent
     class(tangent_product_t), intent(in) :: self
@@ -57,7 +57,7 @@ contains
     is_factored = .not. (self%elements .or. allocated(self%jumps) .or. abs(self%mass_change) > 0)
   end function is_factored
 
-  !> The tangent times a motion. Collective.
+  !> The tangent times a vector. Collective.
   subroutine multiply(self, motion, known, product)
     !> The tangent
     class(tangent_product_t), intent(in) :: self
@@ -102,14 +102,13 @@ contains
     call self%model%communicator%sum(mean)
   end function mean
 
-  !> Takes the stiffness of the jumps: what ties, contacts and frames add to diagonals, and the tangents of cohesive
-  !> laws. Collective.
+  !> Sets the stiffness of the jumps: diagonals of ties, contacts and frames, and tangents of cohesive laws. Collective.
   subroutine set_jump_stiffness(self, factored, now, cohesive, tangents)
-    !> The tangent, whose elements are known
+    !> The tangent, its elements already set
     class(tangent_product_t), intent(inout) :: self
-    !> Diagonals in the factored operator, and now, (3, points)
+    !> Diagonals in the factored operator, and at present, (3, points)
     real(wp), intent(in) :: factored(:, :), now(:, :)
-    !> Points that a cohesive law holds; unallocated: none
+    !> True at points with a cohesive law; unallocated: none
     logical, allocatable, intent(in) :: cohesive(:)
     !> Their tangents times the factor of stiffness, (3, 3, points); read with `cohesive` only
     real(wp), intent(in) :: tangents(:, :, :)
@@ -138,7 +137,7 @@ contains
     self%softens = some > 0
   end subroutine set_jump_stiffness
 
-  !> Takes the skew parts of the tangents of cohesive laws. Collective.
+  !> Sets the skew-symmetric parts of the tangents of cohesive laws. Collective.
   subroutine set_skew_part(self, tangents)
     !> The tangent
     class(tangent_product_t), intent(inout) :: self
@@ -153,7 +152,7 @@ contains
     call drop_if_zero(self)
   end subroutine set_skew_part
 
-  !> Keeps the stiffness of jumps only if there is any. Collective.
+  !> Deallocates the stiffness of jumps if it is zero. Collective.
   subroutine drop_if_zero(self)
     !> The tangent
     type(tangent_product_t), intent(inout) :: self
@@ -164,7 +163,7 @@ contains
     if (.not. largest > 0) deallocate (self%jumps)
   end subroutine drop_if_zero
 
-  !> True where a point's damage grows: its tangent then falls along the jump.
+  !> True where the damage of a point grows, so that its tangent may be indefinite.
   pure logical function softens(tangent)
     !> Force per jump
     real(wp), intent(in) :: tangent(3, 3)
@@ -173,7 +172,7 @@ contains
               .or. any(abs([tangent(1, 2), tangent(1, 3), tangent(2, 3)]) > 0)
   end function softens
 
-  !> Adds the forces of elements, and of what holds lines.
+  !> Adds the forces of elements and line supports.
   subroutine add_elements(self, motion, force)
     !> The tangent
     class(tangent_product_t), intent(in) :: self

@@ -52,7 +52,7 @@ GROUPS = {
 
 SUN_CHEN = pathlib.Path(__file__).resolve().parents[2]/'input'/'sun_chen.nml'
 
-# One thread, so that processor time is comparable; Open MPI refuses root unless reported twice.
+# One thread, so that processor time is comparable; Open MPI refuses root unless asked twice.
 ENVIRONMENT = dict(os.environ, OMP_NUM_THREADS='1', OPENBLAS_NUM_THREADS='1',
                    OMPI_ALLOW_RUN_AS_ROOT='1', OMPI_ALLOW_RUN_AS_ROOT_CONFIRM='1')
 # A line of the log's table of times.
@@ -111,7 +111,7 @@ def step_cost(program, arguments):
         factoring += run.phases['assembly'][1]
         print(f'{kinematics}: {run.unknowns} unknowns, {steps} steps, {run.phases["solve"][0]} solves of '
               f'{1e3*solve:.1f} ms, {factors} factorizations of {1e3*factoring/factors:.0f} ms')
-        print(f'  a step over a solve, by the wall clock: {run.wall["steps"]/run.wall["solve"]:.2f} (at most {target}); '
+        print(f'  a step over a solve, wall clock: {run.wall["steps"]/run.wall["solve"]:.2f} (at most {target}); '
               f'of the processor {seconds/steps/solve:.2f}; without factorizations '
               f'{(seconds - factoring)/steps/solve:.2f}')
         parts = [part for part in ('solve', 'solve in plane', 'factorization', 'assembly', 'element forces')
@@ -218,8 +218,8 @@ def absent_physics(program, arguments):
             costs = {path: cost(path, deck) for path in order}
             pairs.append((costs[old][0], costs[program][0]))
         counts = ' and '.join(', '.join(costs[path][1]) for path in (old, program))
-        least_old, least_new = (min(times) for times in zip(*pairs, strict=True))
-        print(f'| {kinematics} | {least_old:.3f} | {least_new:.3f} | {least_new/least_old:.3f} | '
+        smallest_old, smallest_new = (min(times) for times in zip(*pairs, strict=True))
+        print(f'| {kinematics} | {smallest_old:.3f} | {smallest_new:.3f} | {smallest_new/smallest_old:.3f} | '
               f'{statistics.median(new/before for before, new in pairs):.3f} | {counts} |', flush=True)
 
 

@@ -94,7 +94,7 @@ def deck(s, turned=False, mirrored=False, scale=(1, 1, 1)):
 
 
 def ended(command, stop_after=None):
-    """Run a command, reported to stop after some seconds; return exit code, last line and processor time."""
+    """Run a command, stopped after some seconds; return exit code, last line and processor time."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     process = subprocess.Popen([str(word) for word in command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                                text=True)
@@ -118,7 +118,7 @@ def names_of(points):
 
 
 def damage_of(folder, place, unit):
-    """Return the points separated and the plies failed at the end, by where they are: `place` gives x and y in the model
+    """Return the points separated and the plies failed at the end, by place: `place` gives x and y in the model
     as it is, `unit` that of length."""
     with h5py.File(folder / "model.h5") as file:
         last = file["times"][max(file["times"])]
@@ -126,10 +126,10 @@ def damage_of(folder, place, unit):
         points = mesh["coordinates"][:] / unit
         points = np.column_stack((*place(points[:, 0], points[:, 1]), points[:, 2]))
         middles = names_of(points[mesh["connectivity"][:]].mean(axis=1))
-        parted = set(names_of(points[last["points/damage_above"][:] > 1 - 1e-9]))
+        separated = set(names_of(points[last["points/damage_above"][:] > 1 - 1e-9]))
         failed = {(name, value, middle) for name, values in last["cells"].items() if name.endswith("_failure")
                   for value, middle in zip(values[:], middles, strict=True) if value}
-    return parted, failed
+    return separated, failed
 
 
 def run_in(folder, text, implam, launcher=(), stop_after=None):
@@ -173,7 +173,7 @@ def faults_of(seed, implam, folder, left_out):
         return "", [f"ends with {code}: {said}"]
     starter = row_of(folder / "plain", 0)[AREA] if s["starter"] else 0
     cost = s["G_c"] * (row[AREA] - starter)
-    parted, failed = damage_of(folder / "plain", as_it_is, 1)
+    separated, failed = damage_of(folder / "plain", as_it_is, 1)
     faults = [f"dissipates {row[ENERGY]}, not {cost}"] if abs(row[ENERGY] - cost) > 1e-6 * max(cost, 1e-12) else []
     if seconds > MINUTE:
         faults.append(f"takes {seconds:.0f} s")
@@ -184,13 +184,13 @@ def faults_of(seed, implam, folder, left_out):
             continue
         apart = max(apart, abs(end[AREA] / unit**2 - row[AREA]) / max(row[AREA], 1e-6))
         here = damage_of(folder / name, place, unit)
-        if here[0] != parted:
-            faults.append(f"{name}: {len(here[0] ^ parted)} points parted in one only")
+        if here[0] != separated:
+            faults.append(f"{name}: {len(here[0] ^ separated)} points separated in one only")
         if here[1] != failed:
             faults.append(f"{name}: {len(here[1] ^ failed)} plies of elements fail in one only")
     if apart > SAME_AREA:
         faults.append("areas differ")
-    return (f"area {1e6 * row[AREA]:.1f} mm2, {len(s['interfaces'])} interface(s), {len(parted)} points parted, "
+    return (f"area {1e6 * row[AREA]:.1f} mm2, {len(s['interfaces'])} interface(s), {len(separated)} points separated, "
             f"{len(failed)} plies failed, {row['step']:.0f} steps, {row['total_iterations']:.0f} iterations, "
             f"{seconds:.1f} s; areas {apart:.0e} apart"), faults
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from modal_impact import Model, response
 
-# One thread, so that processor time is comparable; Open MPI refuses root unless reported twice.
+# One thread, so that processor time is comparable; Open MPI refuses root unless asked twice.
 ENVIRONMENT = dict(os.environ, OMP_NUM_THREADS='1', OPENBLAS_NUM_THREADS='1',
                    OMPI_ALLOW_RUN_AS_ROOT='1', OMPI_ALLOW_RUN_AS_ROOT_CONFIRM='1')
 
@@ -128,17 +128,17 @@ def compare(program, model, case, seconds=60):
         return run, None, None
     tau = model.contact_time()
     end = run.key('time', 'end')[0]
-    # A long contact responses to low modes: its peak and history change by less than 0.1 % with twice as many.
+    # A long contact depends on low modes: its peak and history change by less than 0.1 % with twice as many.
     long = end > 300*tau
     answered = response(model, run.key('mesh', 'patch')[0], end, *((20, 20) if long else (60, 50)))
     return run, run.errors(*answered[:2]), over_estimates(run.summary, answered)
 
 
 def named_by(said, summary, bound):
-    """What reports a user that a model may miss: a warning of the check, or the run's estimate beyond the bound, %."""
+    """What informs a user that a model may miss: a warning of the check, or the run's estimate beyond the bound, %."""
     estimate = summary.get('estimated_errors', {}).get('peak_force') or 0
     beyond = summary and 100*estimate > bound*summary['peak_force']
-    return [name for name, tells in (('check', ': warning:' in said), ('estimate', beyond)) if tells]
+    return [name for name, warns in (('check', ': warning:' in said), ('estimate', beyond)) if warns]
 
 
 def main():

@@ -29,7 +29,7 @@ from solver_runs import change_deck
 EXPLICIT = "integrator='central_difference'"
 IMPLICIT = "integrator='generalized_alpha'"
 ENVIRONMENT = dict(elastic_models.ENVIRONMENT, OMPI_MCA_mpi_yield_when_idle='1')
-MOST_STEPS = 1e6
+MAX_STEPS = 1e6
 
 
 class Run:
@@ -118,7 +118,7 @@ def elastic(program, options):
             text = elastic_models.deck_of(model, case="accuracy='reference'", time=f'&time {EXPLICIT} {scaling} /')
             steps = steps_of(program, text)
             name = f'{model.name}, {scaling or "default scaling"}'
-            if steps is None or steps > options.most_steps:
+            if steps is None or steps > options.max_steps:
                 row(name, f'{steps or 0:.2g} steps, not run')
                 continue
             run = elastic_models.Run(program, text, model.name, 3600)
@@ -162,7 +162,8 @@ def peanut(program, options):
             found[way] = growth, run.summary['peak_force'], 1e6*run.summary['delaminated_area']
             smallest, largest, contact = run.ledger()
             row(f'peanut {cell} mm, {way}', '{:.0f} N, {:.0f} N, {:.1f} mm2'.format(*found[way]) +
-                f', ledger {100*smallest:.4f} to {100*largest:+.4f} %, contact {100*contact:.2f} %, {run.seconds:.0f} s',
+                f', ledger {100*smallest:.4f} to {100*largest:+.4f} %, contact {100*contact:.2f} %, '
+                f'{run.seconds:.0f} s',
                 '.2 %, +.05 %', way == 'implicit' or (smallest > -2e-3 and largest < 5e-4))
         apart = [100*(b/a - 1) for a, b in zip(found['implicit'], found['explicit'], strict=True)]
         row(f'peanut {cell} mm: first growth, peak, area', '{:+.1f} %, {:+.1f} %, {:+.1f} %'.format(*apart), '2 %',
@@ -305,7 +306,8 @@ def panels(program, options):
             continue
         smallest, largest, contact = run.ledger()
         row(name, f'peak {run.summary["peak_force"]:.0f} N, {1e3*run.summary["largest_deflection"]:.2f} mm, '
-            f'{1e6*run.summary["delaminated_area"]:.0f} mm2, ledger {100*smallest:.4f} to {100*largest:+.4f} %, contact '
+            f'{1e6*run.summary["delaminated_area"]:.0f} mm2, '
+            f'ledger {100*smallest:.4f} to {100*largest:+.4f} %, contact '
             f'{100*contact:.2f} %, {run.seconds:.0f} s', f'{limit} s, +.05 %, 1.5 %',
             run.seconds <= limit and smallest > -2e-3 and largest < 5e-4 and contact < .015)
 
@@ -422,7 +424,7 @@ def extremes(program, options):
     for name, settings in EXTREMES.items():
         deck = change_deck(explicit(text), settings)
         steps = steps_of(program, deck)
-        if steps is not None and steps > options.most_steps:
+        if steps is not None and steps > options.max_steps:
             row(name, f'{steps:.3g} steps foreseen, not run')
             continue
         run = Run(program, deck)
@@ -449,7 +451,7 @@ def main():
     parser.add_argument('program')
     parser.add_argument('parts', nargs='*', choices=[*PARTS, []], metavar='PART', help='all if none is given')
     parser.add_argument('--count', type=int, default=20, help='random models of a part')
-    parser.add_argument('--most-steps', type=float, default=MOST_STEPS, help='longer elastic runs are left out')
+    parser.add_argument('--max-steps', type=float, default=MAX_STEPS, help='longer elastic runs are left out')
     parser.add_argument('--only', nargs='+', help='elastic models by name, as model_3 or karas')
     parser.add_argument('--cells', type=float, nargs='+', help='of peanut and thresholds, mm')
     parser.add_argument('--quick', action='store_true', help='leave out the peanut of halves and the last of costs')

@@ -4,7 +4,7 @@ Usage: panel_sensitivity.py IMPLAM 6.5J|25J FOLDER [GROUP%KEY=VALUE ...]
 
 Runs the deck of measured_panels.py as it is and with each figure of material, interface and indentation 10 %
 larger, each in a folder of its own, and prints a row of a table: peak force, largest displacement and projected area,
-for the changed ones in per cent of the deck's. The first rows change one figure by parts of a million, which reports what
+for the changed ones in per cent of the deck's. The first rows change one figure by parts of a million, which shows what
 rounding does. With time%end=2e-3 behind it a run ends when the impactor has turned back.
 What has ended in FOLDER is not run again."""
 

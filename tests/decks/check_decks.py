@@ -43,7 +43,7 @@ def complaints(program, path, expected_code, errors, warnings):
             if not any(line.startswith(head) and fragment in line for line in printed):
                 wrong.append(f"no {kind} `{head}... {fragment}`")
     if wrong:
-        wrong.extend("  told: " + line[:200] for line in lines[:12])
+        wrong.extend("  printed: " + line[:200] for line in lines[:12])
     return wrong
 
 

@@ -71,7 +71,7 @@ def faults_of_first_columns(program):
 
 
 def idle_without(program, choice):
-    """Groups whose lack makes a choice of fields idle, as `implam check` reports of a deck with neither."""
+    """Groups whose lack makes a choice of fields idle, as `implam check` reports for a deck with neither."""
     with open(GOOD, encoding="utf-8") as deck:
         text = deck.read()
     for group in ("delamination", "ply_damage", "output"):

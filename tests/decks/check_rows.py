@@ -99,19 +99,19 @@ def breaches(sources, groups, keys):
     found += [f"{places[0]}: `implam explain` doesn't know the row of &{'%'.join(name)}"
               for name, places in rows.items() if name not in wanted]
     others = {(path, text): reason for path, several, reason in OTHERS for text in several.split()}
-    already_seen = set()
+    known = set()
     for path, line, text in quoted:
         names = [name.lower() for name in re.split(r"[ ,]+", text)]
         if not all(name in owners for name in names):
             continue
         for name in names:
             if (path, name) in others:
-                already_seen.add((path, name))
+                known.add((path, name))
             elif path.split("/")[0] not in owners[name]:
                 found.append(f"src/{path}:{line}: '{text}' is named here, but {name} belongs to "
                              f"{' and '.join(sorted(owners[name]))}")
     return found + [f"src/{path}: no '{text}' stands here any more ({reason})"
-                    for (path, text), reason in others.items() if (path, text) not in already_seen]
+                    for (path, text), reason in others.items() if (path, text) not in known]
 
 
 def main():

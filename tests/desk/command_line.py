@@ -1,4 +1,4 @@
-"""What the command line responses, and that nothing of a user's is overwritten.
+"""What the command line prints, and that nothing of a user's is overwritten.
 Usage: command_line.py IMPLAM FOLDER"""
 
 import os
@@ -19,7 +19,7 @@ from solver_runs import read_history, require
 EXIT_USAGE, EXIT_DECK, EXIT_FILES, EXIT_STOPPED = 1, 2, 4, 75
 
 
-def response(implam, *words, cwd=None, code=0):
+def output_of(implam, *words, cwd=None, code=0):
     """Return what the program prints, standard error included; the exit code must be as expected."""
     done = subprocess.run([implam, *words], cwd=cwd, stdin=subprocess.DEVNULL, capture_output=True, text=True,
                           timeout=400, check=False)
@@ -30,53 +30,54 @@ def response(implam, *words, cwd=None, code=0):
 
 def check_help(implam):
     """Help by all its names; without a word it comes too, with the code of misuse."""
-    page = response(implam, "--help")
-    require(page == response(implam, "-h") == response(implam, "help"), "-h, help and --help differ.")
+    page = output_of(implam, "--help")
+    require(page == output_of(implam, "-h") == output_of(implam, "help"), "-h, help and --help differ.")
     require(max(map(len, page.splitlines())) <= 96, "A line of the help is longer than 96 characters.")
     for word in ("check", "explain", "restart", "new", "--output", "--wall-limit", "75", "USR1"):
         require(word in page, f"The help doesn't speak of {word}.")
-    bare = response(implam, code=EXIT_USAGE)
+    bare = output_of(implam, code=EXIT_USAGE)
     require(bare.startswith(page) and "No deck given" in bare, "`implam` alone doesn't help.")
     print("help: done")
 
 
 def check_explain(implam):
     """One key by each way to write it."""
-    expected = response(implam, "explain", "plate%length")
+    expected = output_of(implam, "explain", "plate%length")
     require("length" in expected, expected)
     for words in (["explain", "plate.length"], ["explain", "plate", "length"], ["explain", "&plate", "length"],
                   ["explain", "plate length"], ["help", "plate", "length"], ["help", "plate.length"]):
-        require(response(implam, *words) == expected, f"implam {' '.join(words)} differs from explain plate%length.")
-    slip = response(implam, "explain", "plate", "lenght", code=EXIT_USAGE)
+        require(output_of(implam, *words) == expected, f"implam {' '.join(words)} differs from explain plate%length.")
+    slip = output_of(implam, "explain", "plate", "lenght", code=EXIT_USAGE)
     require("did you mean length" in slip, "No help with a slip.")
-    require("one deck" in response(implam, "explain", "plate", "length", "edges", code=EXIT_USAGE), "Three topics pass.")
+    three = output_of(implam, "explain", "plate", "length", "edges", code=EXIT_USAGE)
+    require("one deck" in three, "Three topics pass.")
     print("explain: done")
 
 
 def check_slips(implam, folder):
-    """A misspelt command, option or topic is reported with the right one; options take values behind an equals sign too."""
+    """A misspelt command, option or topic is reported with the right one; options take values after an equals sign."""
     deck = folder / "small.nml"
     shutil.copy(HERE.parents[1] / "input" / "small" / "cohesive.nml", deck)
-    version = response(implam, "--version")
+    version = output_of(implam, "--version")
     require("To cite: The Implam developers" in version, f"The version doesn't say how to cite: {version}")
     for word in ("version", "-v"):
-        require(response(implam, word) == version, f"{word} doesn't tell the version.")
+        require(output_of(implam, word) == version, f"{word} doesn't print the version.")
     for words, meant in ((["chek", deck], "did you mean check?"), (["exlpain"], "did you mean explain?"),
                          (["--ouput", "x", deck], "did you mean --output?"), (["explain", "lnegth"], "mean length?"),
                          (["--verify=1", deck], "takes no value"), (["--wall-limit=", deck], "number of seconds"),
                          (["--no-such=5", deck], "see implam help"),
                          (["nothing", "else"], "one deck")):
-        require(meant in response(implam, *map(str, words), cwd=folder, code=EXIT_USAGE), f"{words} isn't {meant}")
-    require("not the deck" in response(implam, "restart", str(deck), code=EXIT_FILES), "A deck is restarted.")
+        require(meant in output_of(implam, *map(str, words), cwd=folder, code=EXIT_USAGE), f"{words} isn't {meant}")
+    require("not the deck" in output_of(implam, "restart", str(deck), code=EXIT_FILES), "A deck is restarted.")
     text = deck.read_text(encoding="utf-8")
     for right, slip, meant in (("&plate", "&palte", "&plate"), ("velocity=", "veloctiy=", "velocity"),
                                ("law=", "lwa=", "law")):
         deck.write_text(text.replace(right, slip), encoding="utf-8")
-        printed = response(implam, "check", str(deck), code=EXIT_DECK)
+        printed = output_of(implam, "check", str(deck), code=EXIT_DECK)
         require(f"did you mean {meant}?" in printed, printed)
     deck.write_text(text, encoding="utf-8")
-    require("no such file" in response(implam, "no_deck", cwd=folder, code=EXIT_DECK), "A file that isn't there.")
-    response(implam, str(deck), f"--output={folder / 'equals'}")
+    require("no such file" in output_of(implam, "no_deck", cwd=folder, code=EXIT_DECK), "A file that isn't there.")
+    output_of(implam, str(deck), f"--output={folder / 'equals'}")
     require((folder / "equals" / "cohesive_summary.json").exists(), "--output=DIR has no effect.")
     print("slips: done")
 
@@ -97,24 +98,25 @@ def check_interrupt(implam, folder):
         printed += process.communicate(timeout=400)[1]
         ended = time.monotonic() - begun
     require(process.returncode == EXIT_STOPPED, f"{process.returncode}: {printed}")
-    require("signal received" in printed and answered < ended / 2, f"Told after {answered:.1f} of {ended:.1f} s: {printed}")
-    response(implam, str(folder / "small.nml"), "--output", str(folder / "short"), "--wall-limit=1e-3", code=EXIT_STOPPED)
-    printed = response(implam, "restart", str(folder / "short"))
+    require("signal received" in printed and answered < ended / 2, f"After {answered:.1f} of {ended:.1f} s: {printed}")
+    options = ("--output", str(folder / "short"), "--wall-limit=1e-3")
+    output_of(implam, str(folder / "small.nml"), *options, code=EXIT_STOPPED)
+    printed = output_of(implam, "restart", str(folder / "short"))
     require("a deck file changed since then is not read" in printed, printed)
-    print(f"interrupt: told after {answered:.2f} s, ended after {ended:.1f} s")
+    print(f"interrupt: reported after {answered:.2f} s, ended after {ended:.1f} s")
 
 
 def check_pages(implam, folder):
     """The manual page has every key; bash completes commands, groups, keys and decks."""
-    page = response(implam, "man")
-    for line in response(implam, "explain", "plate").splitlines()[1::2]:
+    page = output_of(implam, "man")
+    for line in output_of(implam, "explain", "plate").splitlines()[1::2]:
         require(f".B {line.split()[0]}\n" in page, f"The manual page lacks {line.split()[0]} of &plate.")
     require("mandoc" not in page and all(line[:1] != "'" for line in page.splitlines()), "A line begins with a macro.")
     if shutil.which("groff"):
         done = subprocess.run(["groff", "-man", "-Tutf8", "-ww"], input=page, capture_output=True, text=True,
                               check=True)
         require(not done.stderr, done.stderr)
-    (folder / "implam.bash").write_text(response(implam, "completion", "bash"), encoding="utf-8")
+    (folder / "implam.bash").write_text(output_of(implam, "completion", "bash"), encoding="utf-8")
     (folder / "plate.nml").touch()
     cases = {"implam exp": "explain", "implam explain plate.le": "plate.length", "implam explain lamin": "laminate",
              "implam --wall": "--wall-limit", "implam check pl": "plate.nml", "implam completion z": "zsh"}
@@ -123,7 +125,7 @@ def check_pages(implam, folder):
                   'printf "%s\\n" "${COMPREPLY[@]}"')
         found = subprocess.run(["bash", "-c", script], cwd=folder, capture_output=True, text=True, check=True).stdout
         require(expected in found.split(), f"'{typed}' completes to {found.split()}.")
-    require("zsh" in response(implam, "completion", "fish", code=EXIT_USAGE), "fish is completed.")
+    require("zsh" in output_of(implam, "completion", "fish", code=EXIT_USAGE), "fish is completed.")
     print("pages: done")
 
 
@@ -132,7 +134,7 @@ def check_zsh(implam, folder):
     if not shutil.which("zsh"):
         print("skipped: zsh isn't installed, its completions are not tried")
         return
-    (folder / "_implam").write_text(response(implam, "completion", "zsh"), encoding="utf-8")
+    (folder / "_implam").write_text(output_of(implam, "completion", "zsh"), encoding="utf-8")
     for typed, expected in (("implam expl", "implam explain "), ("implam explain plate.len", "plate.length "),
                             ("implam check pl", "check plate.nml ")):
         number, terminal = pty.fork()
@@ -162,24 +164,24 @@ def read_until(terminal, words):
 
 def check_new(implam, folder):
     """The deck to start from runs without a warning, grows a delamination, and overwrites nothing."""
-    response(implam, "new", cwd=folder)
-    require("no errors" in response(implam, "check", "impact.nml", cwd=folder), "The starter has faults.")
+    output_of(implam, "new", cwd=folder)
+    require("no errors" in output_of(implam, "check", "impact.nml", cwd=folder), "The starter has faults.")
     before = (folder / "impact.nml").read_bytes()
-    require("stays as it is" in response(implam, "new", cwd=folder, code=EXIT_FILES), "No word of the file there.")
+    require("stays as it is" in output_of(implam, "new", cwd=folder, code=EXIT_FILES), "No word of the file there.")
     require((folder / "impact.nml").read_bytes() == before, "`implam new` overwrites.")
-    response(implam, "new", "mine.nml", cwd=folder)
+    output_of(implam, "new", "mine.nml", cwd=folder)
     require((folder / "mine.nml").read_bytes() == before, "The name makes another deck.")
-    require("Wrote d7136.nml" in response(implam, "new", "--rig", "d7136", cwd=folder), "No deck of the rig.")
-    printed = response(implam, "check", "d7136.nml", cwd=folder)
+    require("Wrote d7136.nml" in output_of(implam, "new", "--rig", "d7136", cwd=folder), "No deck of the rig.")
+    printed = output_of(implam, "check", "d7136.nml", cwd=folder)
     thickness, energy = (float(re.search(rf"{name} +([\d.e+-]+)", printed)[1])
                          for name in ("thickness of the laminate", "impact energy"))
     require("no errors" in printed and 4 <= thickness <= 6, printed)
     require(abs(energy - 6.7*thickness) < 0.01*energy, "Not the energy that D7136 asks for.")
     require(printed.count("warning:") <= 2, "More is left than a line for plies and one for interfaces.")
-    require("d7136" in response(implam, "new", "--rig", "d7137", code=EXIT_USAGE), "No word of the rigs there are.")
-    require("new" in response(implam, "check", "--rig", "d7136", code=EXIT_USAGE), "--rig without new.")
-    response(implam, "new", "no/such/folder.nml", cwd=folder, code=EXIT_FILES)
-    printed = response(implam, "impact.nml", cwd=folder)
+    require("d7136" in output_of(implam, "new", "--rig", "d7137", code=EXIT_USAGE), "No word of the rigs there are.")
+    require("new" in output_of(implam, "check", "--rig", "d7136", code=EXIT_USAGE), "--rig without new.")
+    output_of(implam, "new", "no/such/folder.nml", cwd=folder, code=EXIT_FILES)
+    printed = output_of(implam, "impact.nml", cwd=folder)
     require("warning:" not in printed, printed)
     history = read_history(folder / "results" / "impact_history.csv")
     area = history["delaminated_area"]

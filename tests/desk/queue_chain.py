@@ -1,4 +1,4 @@
-"""Jobs of a real Slurm, started here on one node: an array of a sweep, of which a task is reported to stop and comes again,
+"""Jobs of a real Slurm, started here on one node: an array of a sweep, of which a task is stopped and comes again,
 gives the table of the same sweep without a queue; a chain that is stopped by its limit again and again ends with the
 history of an undisturbed run, bit for bit.
 Usage: queue_chain.py IMPLAM FOLDER     (exit code 77: skipped, with the reason)"""
@@ -63,13 +63,13 @@ def table_of(folder):
 
 
 def array(implam, slurm, folder):
-    """An array over a sweep, one task of which is reported to stop."""
+    """An array over a sweep, one task of which is stopped."""
     folder.mkdir()
     shutil.copy(DECK, folder / "swept.nml")
     (folder / "sweep.toml").write_text(SWEEP, encoding="utf-8")
     sweep = [sys.executable, "-m", "implam_post.sweep", "sweep.toml"]
     run([*sweep, "--output", "plain", "--program", implam], folder=folder)
-    # The first task is held until it is reported; the last word it is called with is the folder of its results.
+    # The first task is held until it is released; the last word it is called with is the folder of its results.
     held = write_program(folder / "held", f"""
 if [[ ${{SLURM_ARRAY_TASK_ID:-}} != 1 || ${{SLURM_RESTART_COUNT:-0}} != 0 ]]; then
   exec {implam} "$@"

@@ -98,13 +98,13 @@ def check_chain_of_pbs(implam, folder):
 
 
 def check_signals(implam, folder):
-    """A single job that is reported to stop passes the signal on and ends with 75; `restart` goes on."""
+    """A single job that is stopped passes the signal on and ends with 75; `restart` goes on."""
     write_deck(folder, "time%end=20e-3")
     run([implam, "queue", "slurm", "deck.nml"], folder=folder)
     script = folder / "deck.slurm"
     job = subprocess.Popen(["bash", script], cwd=folder, stdout=subprocess.PIPE, text=True)
     while not (folder / "results/deck_history.csv").exists():
-        require(job.poll() is None, "The job ended before it was told to.")
+        require(job.poll() is None, "The job ended before its signal.")
         time.sleep(0.05)
     job.send_signal(10)
     said = job.communicate(timeout=60)[0]

@@ -32,7 +32,7 @@ contains
     integer(int64), intent(in) :: expected(:), found(:)
     !> Their shapes
     integer, intent(in) :: shape_expected(:), shape_found(:)
-    !> What the author of the test requires to say about it
+    !> What the author of the test wishes to say about it
     character(len=*), intent(in), optional :: message
     !> Where the assert stands
     type(SourceLocation), intent(in), optional :: location
@@ -73,7 +73,7 @@ contains
     integer, intent(in) :: shape_expected(:), shape_found(:)
     !> Largest difference allowed, a real of any kind; absent: 0; a text here is the message
     class(*), intent(in), optional :: tolerance
-    !> What the author of the test requires to say about it
+    !> What the author of the test wishes to say about it
     character(len=*), intent(in), optional :: message
     !> Where the assert stands
     type(SourceLocation), intent(in), optional :: location
@@ -143,7 +143,7 @@ contains
     character(len=*), intent(in) :: expected, found
     !> How blanks count; absent: trailing and leading ones don't
     integer, intent(in), optional :: whitespace
-    !> What the author of the test requires to say about it
+    !> What the author of the test wishes to say about it
     character(len=*), intent(in), optional :: message
     !> Where the assert stands
     type(SourceLocation), intent(in), optional :: location
@@ -188,7 +188,7 @@ contains
   logical function shapes_differ(shape_expected, shape_found, message, location)
     !> The two shapes; a scalar expected goes with every shape
     integer, intent(in) :: shape_expected(:), shape_found(:)
-    !> What the author of the test requires to say about it
+    !> What the author of the test wishes to say about it
     character(len=*), intent(in), optional :: message
     !> Where the assert stands
     type(SourceLocation), intent(in), optional :: location

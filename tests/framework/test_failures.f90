@@ -26,7 +26,7 @@ contains
   subroutine add_failure(reason, message, location)
     !> What was expected and what was found
     character(len=*), intent(in) :: reason
-    !> What the author of the test requires to say about it
+    !> What the author of the test wishes to say about it
     character(len=*), intent(in), optional :: message
     !> Where the assert stands
     type(SourceLocation), intent(in), optional :: location

@@ -72,7 +72,7 @@ contains
     this%name = name
     if (this%verbose .and. this%rank == 0) write (output_unit, '(a)') 'running '//name
     if (processes > this%processes) then
-      if (this%rank == 0) call add_failure('the test wants more processes than there are')
+      if (this%rank == 0) call add_failure('the test needs more processes than there are')
       return
     end if
     colour = merge(0, MPI_UNDEFINED, this%rank < processes)

@@ -24,7 +24,7 @@ def tiers_of(words):
 
 
 def compiles(compiler, module, searched):
-    """Report whether a file that uses a module compiles with some folders to look for it."""
+    """Return whether a file that uses a module compiles with some folders to look for it."""
     with tempfile.TemporaryDirectory() as folder:
         probe = Path(folder, "probe.f90")
         probe.write_text(f"module probe\n  use {module}\nend module probe\n", encoding="utf-8")

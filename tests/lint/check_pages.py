@@ -172,13 +172,13 @@ def first_missing(quote, lines):
 
 
 def check_diary(page, root):
-    """Breaches of pages that report what was."""
+    """Breaches of pages that describe what was."""
     if page == root / "CHANGELOG.md" or page.parent == root / "doc" / "news":
         return
     for line, number in prose(page):
         found = DIARY.search(line)
         if found:
-            yield f'{page}:{number}: "{found.group()}" tells what was; say what holds'
+            yield f'{page}:{number}: "{found.group()}" describes what was; say what holds'
 
 
 def title(page):

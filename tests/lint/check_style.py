@@ -67,7 +67,7 @@ class Scope:
     line: int
     name: str = ""
     arguments: set = field(default_factory=set)
-    already_seen: set = field(default_factory=set)
+    statements: set = field(default_factory=set)
     components: int = 0
 
 
@@ -159,10 +159,10 @@ class Checker:
             self.walk(statement)
         return [text for _, text in sorted(self.breaches)]
 
-    def check_layout(self, most_lines):
+    def check_layout(self, max_lines):
         """Check what needs no understanding of Fortran."""
-        if len(self.lines) > most_lines:
-            self.report(len(self.lines), f"the file has more than {most_lines} lines")
+        if len(self.lines) > max_lines:
+            self.report(len(self.lines), f"the file has more than {max_lines} lines")
         for number, line in enumerate(self.lines, 1):
             if "\t" in line:
                 self.report(number, "tab")
@@ -217,7 +217,7 @@ class Checker:
             self.close(self.scopes.pop(), statement)
             return
         if inner and re.match(r"implicit\s+none\b|private$", text):
-            inner.already_seen.add(text.split()[0])
+            inner.statements.add(text.split()[0])
         unit, procedure, kind = UNIT.match(text), PROCEDURE.match(text), TYPE.match(text)
         if unit:
             self.open_unit(unit, statement)
@@ -240,7 +240,7 @@ class Checker:
 
     @staticmethod
     def opens_construct(text):
-        """Report whether a statement opens a construct (a where or forall may be a statement of its own)."""
+        """Return whether a statement opens a construct (a where or forall may be a statement of its own)."""
         found = CONSTRUCT.match(text)
         if not found:
             return re.match(r"enum\s*,", text) is not None
@@ -264,9 +264,9 @@ class Checker:
     def close(self, scope, statement):
         """Check what is known only at the end of a scope."""
         if scope.kind == "module":
-            if "implicit" not in scope.already_seen:
+            if "implicit" not in scope.statements:
                 self.report(scope.line, f"module {scope.name} has no implicit none")
-            if "private" not in scope.already_seen:
+            if "private" not in scope.statements:
                 self.report(scope.line, f"module {scope.name} isn't private")
         if scope.kind == "procedure" and statement.line - scope.line + 1 > MAX_PROCEDURE:
             self.report(scope.line, f"{scope.name} has more than {MAX_PROCEDURE} lines")

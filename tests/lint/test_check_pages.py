@@ -57,7 +57,7 @@ class PagesTest(unittest.TestCase):
         return code, output.getvalue()
 
     def assert_breach(self, text, sentence):
-        """Fail unless a page of this text is reported of in this way, and in no other."""
+        """Fail unless a page of this text is reported in this way, and in no other."""
         code, said = self.said(page=text)
         self.assertEqual(code, 1)
         self.assertIn(sentence, said)
@@ -111,7 +111,7 @@ class PagesTest(unittest.TestCase):
 
     def test_diary(self):
         """Words of a diary are found."""
-        self.assert_breach("# Page\nThe deck as it was then.\n", '"as it was then" tells what was')
+        self.assert_breach("# Page\nThe deck as it was then.\n", '"as it was then" describes what was')
 
     def test_index(self):
         """An index that lacks a page, a key or a term is found, and one without its comments."""

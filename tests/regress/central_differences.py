@@ -35,7 +35,7 @@ from restart import (
 from solver_runs import checkpoint_of, history_of, read_history, require, run_deck, write_deck
 
 EXPLICIT = "time%integrator='central_difference'"
-# Plies and an interface that break, layers that follow their damage, turned halves on a frame that they may lift off,
+# Plies and an interface that break, adaptive layers, turned halves on a frame that they may lift off,
 # plies that soften as fibres fail, and lines that hold, move and press.
 MODELS = {"breaking": ("../small/breaking_rounds.nml", [EXPLICIT]), "layers": ("../small/layers.nml", [EXPLICIT]),
           "turned": ("../small/turned.nml", [EXPLICIT, "time%end=150e-6"]),

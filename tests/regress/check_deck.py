@@ -1,5 +1,5 @@
 """Runs a deck and its variants and compares the histories with what is expected, as implam-regress does (its --help
-reports the format). Usage: check_deck.py IMPLAM EXPECT.toml FOLDER        (implam_post on the PYTHONPATH)
+describes the format). Usage: check_deck.py IMPLAM EXPECT.toml FOLDER        (implam_post on the PYTHONPATH)
 
 Decks lie in input/verify; `against = "deck.nml"` is the variant's own deck."""
 

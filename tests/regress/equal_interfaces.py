@@ -23,7 +23,7 @@ def check(number, implam, folder):
     grown = [force[i] for i in range(1, len(area)) if area[i] > max(1.0005 * area[i - 1], 1.6 * area[0])]
     expected = math.pi * math.sqrt(32 * BENDING * TOUGHNESS / (number + 2))
     mean, smallest, limit = (figure / expected for figure in (sum(grown) / len(grown), min(grown), max(grown)))
-    print(f"{number} interface(s): {len(grown)} steps, mean {mean:.4f}, {smallest:.4f} to {limit:.4f} of {expected:.0f} N")
+    print(f"{number} interface(s): {len(grown)} steps, {mean:.4f}, {smallest:.4f} to {limit:.4f} of {expected:.0f} N")
     require(len(grown) > 10, "It hardly grows.")
     require(abs(mean - 1) < MEAN and smallest > 1 - SINGLE and limit < 1 + SINGLE, "The force is off.")
     below = [history[f"area_below_{ply}"][-1] for ply in range(1, number + 1)]

@@ -1,11 +1,11 @@
-"""Runs each row of extremes.toml as a deck: it has to end in the response of an independent figure or bound, or in one
+"""Runs each row of extremes.toml as a deck: it has to end with the result of an independent figure or bound, or in one
 sentence with the exit code that the row says.
 
 usage: extremes.py IMPLAM FOLDER [--explicit] [NAME ...]    (rows whose names hold one of the words; with none of them
 all)
 
 With --explicit the rows in time that have no front run by central differences, those of more than 1e6 steps excepted:
-for these the check has to report the number. Whatever a row asks for, a run that ends well has finite numbers only and a
+for these the check has to give the number. Whatever a row asks for, a run that ends well has finite numbers only and a
 ledger that closes.
 """
 
@@ -31,7 +31,7 @@ LONGEST_ROW = 60  # seconds of the processor: a run that hangs ends
 LEDGER = 1e-4  # of the largest energy
 BOOKED = 1e-6  # relative error of an energy that is a toughness times an area
 SAME = 1e-6  # relative difference of a run in other units
-MOST_STEPS = 1e6  # of a run by central differences
+MAX_STEPS = 1e6  # of a run by central differences
 LEDGER_EXPLICIT = 1e-2  # of the largest energy, by central differences
 
 
@@ -257,7 +257,7 @@ def check_row(entry, row):
     if "exit" in entry:
         require(row.code == entry["exit"], f"exit code {row.code}, not {entry['exit']}: {row.said[-300:]}")
         printed = [line for line in row.said.splitlines() if re.search(entry["says"], line)]
-        require(len(printed) == 1, f"'{entry['says']}' is told {len(printed)} times: {row.said[-300:]}")
+        require(len(printed) == 1, f"'{entry['says']}' is printed {len(printed)} times: {row.said[-300:]}")
         return printed[0][:120]
     require(row.code == 0, f"exit code {row.code}: {row.said[-300:]}")
     check_ledger(row)
@@ -285,8 +285,8 @@ def run_explicit(implam, folder, entry, deck):
     if check.returncode:
         require(check.returncode == 2, f"exit code {check.returncode}: {said[-300:]}")
         return "refused: " + said.strip()[:160]
-    require(steps, f"the check tells no number of steps: {said[-300:]}")
-    if float(steps[1]) > MOST_STEPS:
+    require(steps, f"the check gives no number of steps: {said[-300:]}")
+    if float(steps[1]) > MAX_STEPS:
         return f"{steps[0]}, not run"
     row = Row(implam, folder, deck, 600)
     if row.code:

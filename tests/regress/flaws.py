@@ -24,8 +24,8 @@ from solver_runs import (
 DECK = "../small/cohesive.nml"
 CRACKS = ["ply_damage%d=100", "material%XT=1517e6", "material%XC=1590e6", "material%YC=253e6", "material%Sf=500e6",
           "material%Sm23=105e6", "material%YT=46e6", "material%S12=105e6"]
-# Settings with cracks, the key by which they are flaws, and time at which a checkpoint is written. Steps are short
-# enough that none is rejected: whether a longer one finds equilibrium is within rounding while cracks open.
+# Settings with cracks, the key by which they are flaws, and time of a checkpoint. Steps are short enough
+# that none is rejected: whether a longer one finds equilibrium is within rounding while cracks open.
 WAYS = {"cracks_as_flaws": ([*CRACKS, "delamination%strength_opening=27e6", "delamination%strength_shear=60e6",
                              "time%end=200e-6", "time%step=2.5e-6", "solver%tolerance=1e-8"], 160e-6),
         "shear_cracks": ([*CRACKS, "time%end=280e-6", "time%step=2.5e-6", "solver%tolerance=1e-8"], 240e-6)}

@@ -1,4 +1,4 @@
-"""Runs that are killed or reported to stop at any moment, again and again, must end as the run that was left alone.
+"""Runs that are killed or stopped at any moment, again and again, must end as the run that was left alone.
 Usage: moments.py TRIAL IMPLAM FOLDER COUNT LAUNCHER...     (LAUNCHER takes the number of ranks as its last word)
 
 kills    SIGKILL COUNT times on one rank and COUNT times on two, every other one while a checkpoint is being written:
@@ -69,7 +69,7 @@ class Model:
             require_close(history, self.reference, what)
         else:
             require_same(history, self.reference, what)
-        require(damage_of(history) == self.damage, f"{what}: other cells have come apart or other plies failed.")
+        require(damage_of(history) == self.damage, f"{what}: other cells have delaminated or other plies failed.")
         left = {path.name for path in deck.parent.iterdir()} - {path.name for path in self.reference.parent.iterdir()}
         require(not left, f"{what}: {sorted(left)} are left over.")
 
@@ -184,7 +184,7 @@ def check_kills(implam, folder, count, launcher):
 
 
 def printed(model, deck, target, stop, times, rows):
-    """Report a run to stop; return the exit code."""
+    """Stop a run; return the exit code."""
     process = model.start(deck)
     wait_until(lambda: list(deck.parent.glob("*.log")), process)
     if rows:
@@ -230,7 +230,7 @@ def check_early(implam, folder, _, launcher):
     for moment, stop, ranks in (*cases, ("metis", signal.SIGTERM, 2)):
         model, mark = models[ranks], folder / "mark"
         deck = model.fresh()
-        # The launcher and its shells must not be reported too.
+        # The launcher and its shells must not be signalled too.
         words = {"EARLY_MOMENT": moment, "EARLY_SIGNAL": str(int(stop)), "EARLY_MARK": str(mark)}
         wrapper = folder / Path(implam).name
         wrapper.write_text(f'#!/bin/sh\nLD_PRELOAD={library} exec {implam} "$@"\n', encoding="utf-8")

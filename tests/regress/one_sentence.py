@@ -52,16 +52,16 @@ def check_one_writer(implam, folder):
     run_deck(implam, deck)
 
 
-def check_broken_files(implam, folder):
+def check_invalid_files(implam, folder):
     """A field file or checkpoint that can be neither written nor closed: exit code and sentence, no crash."""
-    for name, told_of in (("ply_damage.h5", "ply_damage.h5"), ("ply_damage_restart.h5.tmp", "ply_damage_restart.h5")):
+    for name, named in (("ply_damage.h5", "ply_damage.h5"), ("ply_damage_restart.h5.tmp", "ply_damage_restart.h5")):
         deck = write_deck(folder, DECK, ["output%checkpoint_every=10e-6"])
         (folder / name).symlink_to("/dev/full")
         ended = subprocess.run([implam, deck, "--output", folder], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
                                stderr=subprocess.PIPE, text=True, timeout=60, check=False)
         require(ended.returncode == EXIT_FILES, f"A full {name} ended with {ended.returncode}: {ended.stderr}")
         printed = [line for line in ended.stderr.splitlines() if line.startswith("implam: ")]
-        require(len(printed) == 1 and told_of in printed[0], f"A full {name} told {printed}.")
+        require(len(printed) == 1 and named in printed[0], f"A full {name} printed {printed}.")
         require((folder / "ply_damage_history.csv").stat().st_size > 0, "The history was lost.")
 
 
@@ -85,7 +85,7 @@ def main(implam, folder):
              if "error: " in line]
     require(len(error) == 1, f"The log holds the sentence {len(error)} times.")
     check_one_writer(implam, folder / "writer")
-    check_broken_files(implam, folder / "broken")
+    check_invalid_files(implam, folder / "invalid")
 
 
 if __name__ == "__main__":

@@ -30,7 +30,7 @@ def main():
     assert all(row["wall_seconds"] >= 0 and row["calls"] > 0 for row in rows.values()), rows
     assert rows["steps"]["calls"] == summary["accepted_steps"], rows["steps"]
     assert rows["factorization"]["calls"] == costs["refactorisations"], rows["factorization"]
-    # Beside corrections each factorization asks for one response to the impactor's unit force.
+    # Beside corrections each factorization needs one response to the impactor's unit force.
     assert rows["solve"]["calls"] == costs["solves"] + costs["refactorisations"], rows["solve"]
     assert all(f"\n{part} " in log for part in rows), "the log leaves parts out"
     assert sum(row["peak_megabytes_added"] for row in rows.values()) > 5, "memory is missing"

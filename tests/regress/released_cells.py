@@ -4,7 +4,7 @@ import h5py
 import numpy as np
 
 CORNERS = 4  # the first nodes of an element in the file
-PLACE = 1e-9  # lengths that are reported apart
+PLACE = 1e-9  # lengths that are distinguished
 DIGITS = 5  # of a cohesive cell's part that is gone
 
 
@@ -60,7 +60,7 @@ def folded(damage, part="quarter"):
     return first if same else {}
 
 
-def least_releases(before, after):
+def min_releases(before, after):
     """Return how many releases after each other it took at least: each takes apart neighbours of what is apart."""
     columns = {x: i for i, x in enumerate(sorted({cell[1] for cell in after}))}
     rows = {y: j for j, y in enumerate(sorted({cell[2] for cell in after}))}

@@ -7,7 +7,7 @@ ranks        on 2 ranks, and from 1 rank to 2 and back: to 1e-9
 rejected     from checkpoints on either side of rejected steps: bitwise
 signal       SIGTERM ends a run with a checkpoint and its own exit code: bitwise
 ranks_signal two ranks that get TERM twice, as from a queue, and mpirun that gets USR1, end the same way: to 1e-9
-limit        the time by the wall clock ends runs in time with a checkpoint and that exit code: bitwise
+limit        the wall-clock limit ends runs in time with a checkpoint and that exit code: bitwise
 kill         SIGKILL at any moment leaves a checkpoint that can be used: bitwise
 found        without a file the newest whole checkpoint of a folder is taken, and results keep the name of the case
 mixed        results of another run are neither gone on with nor left with a checkpoint that isn't theirs
@@ -162,8 +162,8 @@ def split_next_to_rejections(implam, folder, deck, settings, period, periods):
         raise TrialError(f"No number of iterations rejects steps and yet reaches the end: {failure}") from None
     before, after, histories = 0, 0, []
     # Half a period after a checkpoint would not show a forgotten step: the halved one and the full one both fit in.
-    ends = {number + share for number in sorted(found)[:2] for share in (0.9999, 1.9999)}
-    for end in sorted(end for end in ends if end > 1):
+    ends = {number + share for number in sorted(found)[:2] for share in (0.9999, 1.9999) if number + share > 1}
+    for end in sorted(ends):
         reference, again = run_split(implam, folder / f"end_{end}", deck, [*settings, f"time%end={end * period!r}"])
         require_same(again, reference, f"end after {end} periods")
         histories.append(reference)
@@ -299,11 +299,11 @@ def check_ranks_signal(implam, folder, launcher):
 
 
 def stop_by_limit(implam, folder, command, seconds):
-    """Run a command that the time by the wall clock must end; return the rows written."""
+    """Run a command that the wall-clock limit must end; return the rows written."""
     begun = time.monotonic()
     said = run([implam, *command], EXIT_STOPPED)
     took = time.monotonic() - begun
-    require("time by the wall clock" in said, f"The sentence does not name the time by the wall clock: {said}")
+    require("wall-clock time" in said, f"The sentence does not name the wall-clock time: {said}")
     require(took < seconds or seconds == 0, f"With {seconds} s the run took {took:.2f} s.")
     rows = len(read_history(history_of(folder))["time"])
     print(f"Stopped after {took:.2f} of {seconds} s with {rows} rows", flush=True)
@@ -311,7 +311,7 @@ def stop_by_limit(implam, folder, command, seconds):
 
 
 def check_limit(implam, folder, _):
-    """Stopped by the time by the wall clock: by the deck's, by the command line's, and after every single step."""
+    """Stopped by the wall-clock limit: by the deck's, by the command line's, and after every single step."""
     # Two seconds of each limit are kept for the start and the end of the program, so the whole must take longer.
     took, step = 0, 1e-6
     while took < 4:

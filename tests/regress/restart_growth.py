@@ -7,7 +7,7 @@ moments  SIGTERM and SIGKILL while a step with several releases is being compute
 ranks    from 2 ranks to 1, from 1 to 2: to 1e-9
 rejected from checkpoints next to rejected steps, while delaminations grow: bitwise
 cohesive from the checkpoint after each step of a run whose interface is cohesive: bitwise
-layers   from the checkpoint after each step of a run whose layers follow their damage: bitwise
+layers   from the checkpoint after each step of a run with adaptive layers: bitwise
 softening from the checkpoint after each step of a run whose plies soften: bitwise
 nose     the same under a nose that presses where it touches: bitwise
 explicit wherever a run by central differences looks at its limits, with a low pass of its force: bitwise"""
@@ -17,7 +17,7 @@ import sys
 import time
 from itertools import pairwise
 
-from released_cells import damage_of, least_releases, released_cells
+from released_cells import damage_of, min_releases, released_cells
 from restart import (
     SINGLE_STEP,
     check_next_to_rejections,
@@ -112,14 +112,14 @@ def check_explicit(implam, folder, _):
     require(history["energy_ply_damage"][-1] > 0 and history["force_filtered"][-1] > 0, "The trial proves nothing.")
     deck = write_deck(folder / "look_by_look", "../small/crack_bands.nml", EXPLICIT)
     words, checks = [deck, "--output", deck.parent], 0
-    while run_to_look(implam, words) == EXIT_STOPPED:
+    while run_to_check(implam, words) == EXIT_STOPPED:
         words, checks = ["restart", checkpoint_of(deck.parent)], checks + 1
     require(checks >= len(history["time"]), f"The run stopped {checks} times only: the trial proves nothing.")
     require_same(history_of(deck.parent), reference, "a run for each look")
     print(f"Stopped {checks} times and gone on with: the same to the last bit")
 
 
-def run_to_look(implam, words):
+def run_to_check(implam, words):
     """Go on until the time by the wall clock is looked at; return the exit code."""
     return exit_code(start(implam, *words, *SINGLE_STEP))
 
@@ -181,7 +181,7 @@ def lines_before_rows(path):
 
 
 def stop_during(implam, deck, step, stop, delay):
-    """Send a signal some seconds after a step has begun; report whether it was still being computed by what the run
+    """Send a signal some seconds after a step has begun; return whether it was still being computed by what the run
     leaves."""
     process = start(implam, deck, "--output", deck.parent)
     wait_until(lambda: rows_written(deck.parent) >= step - 1, process)
@@ -203,7 +203,7 @@ def check_moments(implam, folder, _):
     reference = run_deck(implam, write_deck(folder / "uninterrupted", DECK, RUNNING))
     cells = released_cells(reference)
     require(len(cells) == len(read_history(reference)["time"]), "The fields aren't those of every step.")
-    releases = [0, *(least_releases(before, after) for before, after in pairwise(cells))]
+    releases = [0, *(min_releases(before, after) for before, after in pairwise(cells))]
     step = 1 + max(range(len(releases)), key=releases.__getitem__)
     print(f"Step {step} has {releases[step - 1]} releases at least, {len(cells[step - 1] - cells[step - 2])} cells")
     require(releases[step - 1] > 1, "No step has several releases: the trial proves nothing.")

@@ -65,7 +65,7 @@ def write_deck(folder, deck, settings=()):
 
 
 def run(command, expected=EXIT_DONE, folder=None):
-    """Run a command, in a folder if reported, and return what it printed; any other exit code than expected fails."""
+    """Run a command, in a folder if given, and return what it printed; any other exit code than expected fails."""
     ended = subprocess.run([str(word) for word in command], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                            stderr=subprocess.STDOUT, text=True, timeout=LONGEST_RUN, check=False, cwd=folder)
     require(ended.returncode == expected,

@@ -1,7 +1,7 @@
 """A plate struck aside. Usage: struck_aside.py IMPLAM FOLDER
 
 Navier's series for a simply supported plate under a force on a square anywhere, quasi-static as in frame.py; and the
-plate struck at the mirrored place, which must response alike."""
+plate struck at the mirrored place, which must respond alike."""
 
 import math
 import sys

@@ -81,7 +81,7 @@ def check_interface(entry, history, has_force):
         rows = [row for row, reached in enumerate(column["stage"]) if reached >= stage]
         require((entry[name] is None) == (not rows), f"{name} is {entry[name]}, not in the rows {rows}.")
         if rows:
-            require(entry[name]["at"] == history["time"][rows[0]], f"{name} is told for {entry[name]['at']}.")
+            require(entry[name]["at"] == history["time"][rows[0]], f"{name} is given for {entry[name]['at']}.")
             if has_force:
                 require(entry[name]["force"] == history["force"][rows[0]], f"{name}: another force.")
     for name in ("area", "energy"):
@@ -162,8 +162,8 @@ def check_figures(implam, folder, _):
     run_deck(implam, write_deck(folder / "cohesive", COHESIVE))
     one = check_against_history(folder / "cohesive")
     require("threshold_force_at_starter" not in one, "There is no starter.")
-    require(any("process zone" in warning["text"] for warning in one["warnings"]), "The process zone isn't told of.")
-    require(any("below ply 2 has reached" in warning["text"] for warning in one["warnings"]), "The border isn't told.")
+    require(any("process zone" in warning["text"] for warning in one["warnings"]), "The process zone isn't reported.")
+    require(any("below ply 2 has reached" in warning["text"] for warning in one["warnings"]), "The border is missing.")
     run_deck(implam, two_interfaces(folder / "two"))
     two = check_against_history(folder / "two")
     ratio = two["interfaces"][0]["threshold_force"] / two["interfaces"][1]["threshold_force"]
@@ -185,14 +185,14 @@ def check_contact(implam, folder, _):
     close(summary["rebound_velocity"], 1, 1e-6, "The rebound")
     close(summary["peak_force"], 1728.713, 2e-5, "The peak force")
     print(summary["contact_duration"])
-    # A ball that is let go at the plate brings no energy; residual stress is none of its own.
-    deck = write_deck(folder / "let_go", "sun_chen_elastic.nml", [
+    # A ball that is released at the plate brings no energy; residual stress is none of its own.
+    deck = write_deck(folder / "released", "sun_chen_elastic.nml", [
         "impactor%velocity=0", "impactor%gravity=9.81", "time%end=50e-6", "material%alpha1=0", "material%alpha2=28e-6",
         "thermal%delta_T=-50"])
     run_deck(implam, deck)
     require(summary_of(deck.parent)["energy_impact"] == 0, "It brings energy.")
     log, = deck.parent.glob("*.log")
-    require("nfinity" not in log.read_text(encoding="utf-8"), "A share of no energy is told.")
+    require("nfinity" not in log.read_text(encoding="utf-8"), "A share of no energy is printed.")
 
 
 def check_restart(implam, folder, _):
@@ -256,14 +256,14 @@ def check_errors(implam, folder, _):
             "time%step=8e-6", "time%end=1500e-6", "case%accuracy='draft'"]
     found = {}
     for name, settings in (("fast", fast), ("finer", [*fast, "case%refine=2", "case%error_estimate=.false."]),
-                           ("untold", fast[:-1]), ("slow", ["case%accuracy='draft'"])):
+                           ("unknown", fast[:-1]), ("slow", ["case%accuracy='draft'"])):
         deck = write_deck(folder / name, "../sun_chen.nml", settings)
         run_deck(implam, deck)
         found[name] = summary_of(deck.parent)
         log = next(deck.parent.glob("*.log")).read_text(encoding="utf-8")
-        require(("errors              not known" in log) == (name in ("finer", "untold")), f"{name}: the log is wrong.")
+        require(("errors              not known" in log) == (name in ("finer", "unknown")), f"{name}: wrong log.")
     sources = {name: summary["estimated_errors"]["source"] for name, summary in found.items()}
-    require(sources == {"fast": "companion", "finer": "none", "untold": "none", "slow": "pilot"}, f"{sources}")
+    require(sources == {"fast": "companion", "finer": "none", "unknown": "none", "slow": "pilot"}, f"{sources}")
     for figure in ("peak_force", "peak_force_at", "contact_duration", "largest_deflection", "impactor_velocity"):
         off = abs(found["fast"][figure] - found["finer"][figure])
         estimate = found["fast"]["estimated_errors"][figure]
@@ -297,7 +297,7 @@ def check_static(implam, folder, _):
     mean = (wider["energy_strain"][-1] - history["energy_strain"][-1]) / growth / 400
     print(f"largest {ratio[-1]:.4g}, mean {mean:.4g}")
     require(0.2 * ratio[-1] < mean < ratio[-1], f"The mean ratio is {mean}, the largest {ratio[-1]}.")
-    require(summary["interfaces"][0]["first_growth"] is None and "peak_force" not in summary, "It tells of growth.")
+    require(summary["interfaces"][0]["first_growth"] is None and "peak_force" not in summary, "It reports growth.")
 
 
 TRIALS = {"figures": check_figures, "contact": check_contact, "restart": check_restart, "ranks": check_ranks,

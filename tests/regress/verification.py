@@ -45,7 +45,7 @@ def main(implam, folder):
     command = [implam, stopped, "--verify", "--output", stopped.parent]
     for name in ("plate", "plate_finer1"):
         said = run([*command, *AT_ONCE], EXIT_STOPPED)
-        require("with the same command" in said, f"Nothing tells how to go on: {said}")
+        require("with the same command" in said, f"Nothing says how to go on: {said}")
         require(len(rows(stopped.parent, name)) == 2, f"{name} wasn't stopped after its first step.")
         if name == "plate":
             # The first run to its end, the second not yet.

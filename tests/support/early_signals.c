@@ -1,6 +1,6 @@
 /* Loaded ahead of a program (LD_PRELOAD), sends it the signal numbered EARLY_SIGNAL at a moment that no clock would
    meet: EARLY_MOMENT=load, while libraries start and main hasn't begun; metis, while METIS has TERM's handler in its
-   hands. The file EARLY_MARK tells that it was sent. */
+   hands. The file EARLY_MARK shows that it was sent. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <fcntl.h>

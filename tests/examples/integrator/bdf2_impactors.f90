@@ -22,7 +22,7 @@ module bdf2_impactors
 
 contains
 
-  !> The impactor at first touch.
+  !> The impactor at first contact.
   pure function new_bdf2_impactor(parameters) result(impactor)
     !> Velocity
     type(impactor_parameters_t), intent(in) :: parameters
