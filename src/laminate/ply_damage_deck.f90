@@ -32,7 +32,7 @@ module ply_damage_deck
     'ply_damage | permanent_shear | logical | 1 | - | .false. | .true. .false. | &
       &Shear strain beyond s12/G12 stays when a ply with shear_failure_strain is unloaded, which leaves a dent.', &
     'ply_damage | crack_closure | logical | 1 | - | .false. | .true. .false. | &
-      &What tension has cracked along or across the fibres bears compression again.']
+      &What tension has cracked along or across the fibres carries compression again.']
 
 contains
 

@@ -14,7 +14,8 @@ _POWERS = {"length": (1, 0, 0), "area": (2, 0, 0), "mass": (0, 1, 0), "time": (0
 # Dimensions of columns of the history and figures of the summary by their names; the first pattern that fits counts.
 _NAMES = (
     ("iterations", ""), ("release_ratio", ""), ("nominal_strain", ""), ("buckling_strain", ""), ("time", "time"),
-    ("time_reached", "time"), ("step_length", "time"), ("impactor_velocity", "velocity"), ("work_external", "energy"), ("stress", "stress"),
+    ("time_reached", "time"), ("step_length", "time"), ("impactor_velocity", "velocity"),
+    ("work_external", "energy"), ("stress", "stress"),
     ("energy_*", "energy"), ("*_at", "time"), ("contact_duration", "time"), ("contact_until", "time"),
     ("residual_strength", "stress"), ("gauge_strain_*", ""), ("stage_below_*", ""), ("*_iterations", ""),
     ("line_force_*", "force"), ("line_displacement_*", "length"), ("reaction_*", "force"), ("*stress*", "stress"),
