@@ -257,9 +257,12 @@ contains
     real(wp), intent(in) :: norm, before
 
     ! After a correction that closes contacts their forces may be a thousand times the reference force.
-    left = max_forcing_term*min(1.0_wp, 1/norm)
-    if (before > 0) left = min(left, forcing_factor*(norm/before)**2)
-    left = max(left, tolerance_margin*equilibrium%tolerance/norm)
+    left = max_forcing_term/max(1.0_wp, norm)
+    if (norm < before) left = min(left, forcing_factor*(norm/before)**2)
+    ! A residual within the tolerance may be left whole; it can be zero.
+    associate (enough => tolerance_margin*equilibrium%tolerance)
+      left = max(left, enough/max(norm, enough))
+    end associate
   end function forcing_term
 
   !> Residual with and without ties and contacts.
