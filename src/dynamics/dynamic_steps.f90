@@ -15,7 +15,7 @@ module dynamic_steps
   use impact_coupling, only: impact_coupling_t, begin_coupling
   use tangent_operators, only: tangent_operator_t
   use residual_norms, only: relative_residual
-  use dynamic_tangents, only: find_tangent, add_force_slope
+  use dynamic_tangents, only: find_tangent, add_force_slope, mass_precision
   use krylov_corrections, only: find_krylov_correction
   use tangent_products, only: tangent_product_t
   use energy_balance, only: book_step
@@ -24,10 +24,6 @@ module dynamic_steps
   implicit none
   private
   public :: dynamic_step_t, new_dynamic_step
-
-  !> Tolerance of complementarity of pressures and gaps, relative to the largest pressure; in terms of gaps, to that
-  !> pressure over the stiffness of the layers.
-  real(wp), parameter :: contact_tolerance = 5.0e-7_wp
 
   !> Interval of steps at which internal forces are computed from the displacement, so that round-off does not
   !> accumulate.
@@ -80,7 +76,6 @@ contains
     !> The problem
     type(dynamic_step_t) :: self
 
-    self%contact_tolerance = contact_tolerance
     self%integrator = integrator
     self%step = step
     self%renewal = renewal
@@ -129,6 +124,7 @@ contains
     self%correction_is_costly = .false.
     self%uses_element_tangents = .false.
     self%searches_lines = allocated(new%interfaces%cohesive%cohesive)
+    if (.not. self%keeps_displacement) call self%find_force(model, old, new)
   end subroutine begin
 
   !> True: all forces but the impactor's are linear, and the operator is exact.
@@ -140,7 +136,7 @@ contains
     type(tangent_operator_t), intent(in) :: operator
 
     solved = model%setup%kinematics == kinematics_linear .and. .not. model%setup%has_ply_damage
-    if (solved) solved = abs(operator%mass_factor/self%integrator%mass_factor(self%step) - 1) < 1.0e-9_wp
+    if (solved) solved = abs(operator%mass_factor/self%integrator%mass_factor(self%step) - 1) <= mass_precision
   end function is_solved_at_once
 
   !> Residual of the equation of motion (Eq. 1 with the exact internal force).
@@ -301,15 +297,42 @@ contains
                                 negative_curvature, converged)
     if (allocated(error)) return
     self%correction_is_costly = .not. converged
-    if (model%setup%has_impactor) then
-      ! The correction includes the linear part of the change of the force; the law gives the rest.
-      self%coupling%unknown = self%coupling%unknown &
-                              - tangent%force_slope*model%patch_mean(correction)/self%coupling%share
-      call self%coupling%solve(model, operator, old, new, correction, error)
-      if (allocated(error)) error%code = exit_convergence
-    end if
+    if (model%setup%has_impactor) call add_force_response(self, model, operator, old, new, tangent%is_factored(), &
+                                                          correction, error)
+    if (allocated(error)) error%code = exit_convergence
     call new%interfaces%faces%hold(model, correction)
   end subroutine find_correction
+
+  !> Finds the impactor's force after a correction. Where the tangent is the factored operator, the plate's response to
+  !> the change of the force is known and added; otherwise the correction includes the slope of the force, and what the
+  !> law leaves of it is in the next residual: the response of the factored operator would open contacts that have
+  !> closed since.
+  subroutine add_force_response(self, model, operator, old, new, is_factored, correction, error)
+    !> The problem
+    class(dynamic_step_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> Holds the response to a unit force
+    type(tangent_operator_t), intent(in) :: operator
+    !> State at the start
+    type(state_t), intent(in) :: old
+    !> State at the end, before the correction
+    type(state_t), intent(inout) :: new
+    !> True: the tangent is the factored operator
+    logical, intent(in) :: is_factored
+    !> Correction of the displacement, (5, points)
+    real(wp), intent(inout) :: correction(:, :)
+    !> Set if numbers are not finite
+    type(error_t), allocatable, intent(inout) :: error
+    integer :: iterations
+
+    if (is_factored) then
+      call self%coupling%solve(model, operator, old, new, correction, error)
+    else
+      new%patch_mean = model%contact_deflection(new%motion%displacement) + model%patch_mean(correction)
+      call self%coupling%find_force(model%setup%indentation, old%indentation, new%patch_mean, 0.0_wp, iterations, error)
+      new%force_iterations = new%force_iterations + iterations
+    end if
+  end subroutine add_force_response
 
   !> Finds the impactor's force for a displacement.
   subroutine find_force(self, model, old, new)

@@ -10,7 +10,10 @@ module dynamic_tangents
   use tangent_products, only: tangent_product_t
   implicit none
   private
-  public :: find_tangent, add_force_slope
+  public :: find_tangent, add_force_slope, mass_precision
+
+  !> Relative change of the factor of mass by which an operator counts as exact: the last digits of the step.
+  real(wp), parameter :: mass_precision = 1.0e-9_wp
 
 contains
 
@@ -60,7 +63,7 @@ contains
     if (allocated(new%plies%free)) tangent%free => new%plies%free
     tangent%stiffness_factor = factors(1)
     tangent%mass_factor = factors(2)
-    tangent%mass_change = factors(2) - operator%mass_factor
+    if (abs(factors(2)/operator%mass_factor - 1) > mass_precision) tangent%mass_change = factors(2) - operator%mass_factor
     tangent%elements = model%setup%kinematics == kinematics_von_karman .and. (uses_element_tangents &
                                                                               .or. model%has_bonds)
     tangent%elements = .not. due .and. (model%setup%has_ply_damage .or. tangent%elements)

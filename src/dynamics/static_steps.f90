@@ -16,9 +16,6 @@ module static_steps
   private
   public :: static_step_t, new_static_step, correction_factor
 
-  !> Tolerance of complementarity of pressures and gaps.
-  real(wp), parameter :: contact_tolerance = 5.0e-10_wp
-
   !> Iterations within which a step with the consistent tangent converges unless it alternates between two states.
   integer, parameter :: usual_iterations = 8
 
@@ -52,7 +49,6 @@ contains
     !> The problem
     type(static_step_t) :: self
 
-    self%contact_tolerance = contact_tolerance
     self%retries_shorter = model%setup%kinematics /= kinematics_linear
     self%time = time
     self%load_factor = load_factor

@@ -22,13 +22,14 @@ module step_problems
   !> Reduction of the residual by the factored operator below which element tangents are used, whose product costs a
   !> fifth of a solve.
   real(wp), parameter :: acceptable_reduction = 1.0e-2_wp
+  !> Complementarity of pressures and gaps, relative to the largest pressure, over the tolerance of the residual: both
+  !> are errors of forces, and the two together are to stay near the tolerance.
+  real(wp), parameter :: contact_share = 0.5_wp
   !> Part of the tolerance to which the last linear system is solved: more would gain nothing.
   real(wp), parameter :: tolerance_margin = 0.3_wp
 
   !> One kind of step.
   type, abstract :: step_problem_t
-    !> Tolerance of complementarity of pressures and gaps
-    real(wp) :: contact_tolerance = 0
     !> True: after a failure of the solver a shorter step may succeed
     logical :: retries_shorter = .true.
     !> True: element tangents are used, as the factored operator reduces the residual too little
@@ -224,7 +225,7 @@ contains
       if (converged) converged = problem%may_stop(model, new, pressures_new)
       pressures_new = .false.
       if (converged) then
-        call update_multipliers(problem, model, new, converged)
+        call update_multipliers(contact_share*equilibrium%tolerance, model, new, converged)
         if (converged) exit
         pressures_new = .true.
         before = 0
@@ -293,9 +294,9 @@ contains
   end subroutine find_forces
 
   !> Updates the multipliers of the augmented Lagrangian by the pressures found.
-  subroutine update_multipliers(problem, model, new, converged)
-    !> The kind of step
-    class(step_problem_t), intent(in) :: problem
+  subroutine update_multipliers(tolerance, model, new, converged)
+    !> Tolerance of complementarity
+    real(wp), intent(in) :: tolerance
     type(model_t), intent(in) :: model
     !> State at the end
     type(state_t), intent(inout) :: new
@@ -303,9 +304,8 @@ contains
     logical, intent(out) :: converged
 
     call model%profile%enter('contact and ties')
-    call new%interfaces%update_contact(model, new%motion%displacement, problem%contact_tolerance, &
-                                       new%contact_iterations, &
-                               converged)
+    call new%interfaces%update_contact(model, new%motion%displacement, tolerance, new%contact_iterations, &
+                                       converged)
     call model%profile%leave()
   end subroutine update_multipliers
 
