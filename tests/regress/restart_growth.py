@@ -235,7 +235,7 @@ def check_ranks(implam, folder, launcher):
 
 def check_rejected(implam, folder, _):
     """Steps that are tried again shorter while delaminations grow."""
-    tight = [*GROWING, f"time%step={STEP!r}", "solver%tolerance=1e-9"]
+    tight = [*GROWING, "delamination%G_c=100", f"time%step={STEP!r}", "solver%tolerance=1e-9"]
     histories = check_next_to_rejections(implam, folder, DECK, tight, STEP, 16)
     require(max(max(growth(read_history(path))) for path in histories) > 0, "Nothing grew: the trial proves nothing.")
 
