@@ -57,7 +57,7 @@ contains
                                  factors(2), error)
     if (allocated(error)) return
     tangent%model => model
-    tangent%numbering => operator%numbering
+    tangent%operator => operator
     tangent%displacement => new%motion%displacement
     tangent%stiffness => new%plies%stiffness
     if (allocated(new%plies%free)) tangent%free => new%plies%free

@@ -2,7 +2,6 @@
 !> blocks; equations are numbered from 0 over all ranks.
 module linear_solvers
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_quiet_nan, ieee_value
-  use petscksp, only: tMat, PETSC_DECIDE, PETSC_NULL_SCALAR, MatDenseGetArrayF90, MatDenseRestoreArrayF90
   use communicators, only: communicator_t
   use errors, only: error_t, fail, exit_convergence, exit_internal, exit_usage
   use factor_packages, only: packages_for, why_not_factored, factor_made, factor_not_positive, factor_singular
@@ -64,8 +63,8 @@ module linear_solvers
     procedure :: factorize
     !> Solves for one right-hand side with the factor; called by all ranks together.
     procedure :: solve
-    !> Solves for several right-hand sides with the factor; called by all ranks together.
-    procedure :: solve_many
+    !> Product of the matrix with a vector; called by all ranks together.
+    procedure :: multiply
     !> Size of the factor, the same on every rank.
     procedure :: statistics
     !> Name of what factors the matrix, and how often something else had to.
@@ -234,57 +233,38 @@ contains
     call put(self%matrix%right, right_hand_side, ierr(1))
     call KSPSolve(self%factors(self%current)%solver, self%matrix%right, self%matrix%left, ierr(2))
     call take(self%matrix%left, solution, ierr(3))
-    call self%finish_solve(all(ieee_is_finite(solution)), 1, ierr, error)
+    call self%finish_solve(all(ieee_is_finite(solution)), ierr, error)
   end subroutine solve
 
-  !> Solves for several right-hand sides with the factor; called by all ranks together.
-  subroutine solve_many(self, right_hand_sides, solutions, error)
+  !> Product of the matrix as it was assembled last with a vector; called by all ranks together.
+  subroutine multiply(self, vector, product, error)
     class(linear_solver_t), intent(inout) :: self
-    !> Owned parts of the right-hand sides, shape (owned rows, right-hand sides)
-    real(wp), intent(in) :: right_hand_sides(:, :)
-    !> Owned parts of the solutions, shape (owned rows, right-hand sides)
-    real(wp), intent(out) :: solutions(:, :)
-    !> Raised on all ranks when there is no finite solution
+    !> Owned part of the vector
+    real(wp), intent(in) :: vector(:)
+    !> Owned part of the product
+    real(wp), intent(out) :: product(:)
+    !> Raised when PETSc fails
     type(error_t), allocatable, intent(inout) :: error
-    type(tMat) :: right, left
-    real(wp), pointer :: values(:, :)
-    integer :: ierr(9)
+    integer :: ierr(3)
 
-    solutions = 0
-    if (.not. self%factored) call fail(error, exit_internal, no_factor)
-    if (allocated(error)) return
-    associate (rows => size(solutions, 1), count => size(solutions, 2))
-      call MatCreateDense(self%communicator%handle(), rows, PETSC_DECIDE, PETSC_DECIDE, count, PETSC_NULL_SCALAR, &
-                          right, ierr(1))
-      call MatCreateDense(self%communicator%handle(), rows, PETSC_DECIDE, PETSC_DECIDE, count, PETSC_NULL_SCALAR, &
-                          left, ierr(2))
-    end associate
-    call MatDenseGetArrayF90(right, values, ierr(3))
-    values(:, :) = right_hand_sides
-    call MatDenseRestoreArrayF90(right, values, ierr(4))
-    call KSPMatSolve(self%factors(self%current)%solver, right, left, ierr(5))
-    call MatDenseGetArrayF90(left, values, ierr(6))
-    solutions = values
-    call MatDenseRestoreArrayF90(left, values, ierr(7))
-    call MatDestroy(right, ierr(8))
-    call MatDestroy(left, ierr(9))
-    call self%finish_solve(all(ieee_is_finite(solutions)), size(solutions, 2), ierr, error)
-  end subroutine solve_many
+    call put(self%matrix%right, vector, ierr(1))
+    call MatMult(self%matrix%object, self%matrix%right, self%matrix%left, ierr(2))
+    call take(self%matrix%left, product, ierr(3))
+    call report_petsc(ierr, error)
+  end subroutine multiply
 
   !> Counts solves and finds out whether they gave a solution, which PETSc does not always say.
-  subroutine finish_solve(self, finite, count, codes, error)
+  subroutine finish_solve(self, finite, codes, error)
     class(linear_solver_t), intent(inout) :: self
     !> Whether this rank's part of the solution is finite
     logical, intent(in) :: finite
-    !> Number of right-hand sides
-    integer, intent(in) :: count
     !> Codes that PETSc returned
     integer, intent(in) :: codes(:)
     !> Raised on all ranks when there is no finite solution
     type(error_t), allocatable, intent(inout) :: error
     integer :: reason, ierr
 
-    self%solves = self%solves + count
+    self%solves = self%solves + 1
     call KSPGetConvergedReason(self%factors(self%current)%solver, reason, ierr)
     if (self%communicator%all(finite .and. reason > 0 .and. all(codes == 0))) return
     call report_petsc(codes, error)

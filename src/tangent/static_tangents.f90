@@ -38,7 +38,7 @@ contains
     real(wp), allocatable :: diagonal(:, :)
 
     tangent%model => model
-    tangent%numbering => operator%numbering
+    tangent%operator => operator
     tangent%displacement => operator%displacement
     if (allocated(cohesive%tangents)) call tangent%set_skew_part(cohesive%tangents)
     diagonal = operator%diagonal

@@ -5,6 +5,7 @@ module tangent_operators
   use kinds, only: wp
   use errors, only: error_t
   use timers, only: timer_set_t
+  use krylov_solvers, only: krylov_solver_t
   use linear_solvers, only: linear_solver_t
   use numberings, only: numbering_t, number_equations
   use models, only: model_t
@@ -21,6 +22,8 @@ module tangent_operators
     type(numbering_t) :: numbering
     !> The linear solver that holds the factor
     class(linear_solver_t), allocatable :: solver
+    !> Solves with the current tangent
+    type(krylov_solver_t) :: krylov
     !> True once there is a factor
     logical :: ready = .false.
     !> Factors of stiffness and mass in the factored operator
@@ -239,5 +242,6 @@ contains
     class(tangent_operator_t), intent(inout) :: self
 
     if (allocated(self%solver)) call self%solver%release()
+    call self%krylov%release()
   end subroutine release
 end module tangent_operators

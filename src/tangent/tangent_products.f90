@@ -1,20 +1,22 @@
-!> Product of the current tangent with a vector, without a matrix: by the directional derivative of the element forces,
-!> or by adding the change of the tangent to the product with the factored operator.
+!> Product of the current tangent with a vector, without its matrix: by the directional derivative of the element forces,
+!> or by adding the change of the tangent to the product with the matrix that was factored.
 module tangent_products
   use kinds, only: wp
+  use errors, only: error_t
+  use linear_maps, only: linear_map_t
   use models, only: model_t
-  use numberings, only: numbering_t
   use tangent_forces, only: add_tangent_force
+  use tangent_operators, only: tangent_operator_t
   implicit none
   private
   public :: tangent_product_t
 
   !> The tangent.
-  type :: tangent_product_t
+  type, extends(linear_map_t) :: tangent_product_t
     !> Mesh, numbering and interfaces of the plate
     type(model_t), pointer :: model => null()
-    !> Its equations
-    type(numbering_t), pointer :: numbering => null()
+    !> The factored operator, with its equations
+    type(tangent_operator_t), pointer :: operator => null()
     !> Factors of stiffness and mass, and the increase of the latter over that in the factored operator
     real(wp) :: stiffness_factor = 0, mass_factor = 0, mass_change = 0
     !> True: the element tangents differ from those in the factored operator
@@ -58,24 +60,24 @@ contains
   end function is_factored
 
   !> The tangent times a vector. Collective.
-  subroutine multiply(self, motion, known, product)
+  subroutine multiply(self, vector, product, error)
     !> The tangent
-    class(tangent_product_t), intent(in) :: self
+    class(tangent_product_t), intent(inout) :: self
     !> Motion of this rank's rows
-    real(wp), intent(in) :: motion(:)
-    !> The factored operator times that motion
-    real(wp), intent(in) :: known(:)
-    !> Force of this rank's rows
+    real(wp), intent(in) :: vector(:)
+    !> Their forces
     real(wp), intent(out) :: product(:)
-    real(wp), allocatable :: field(:, :), force(:, :), inertia(:, :)
+    !> Set if PETSc fails
+    type(error_t), allocatable, intent(inout) :: error
+    real(wp), allocatable :: field(:, :), force(:, :), inertia(:, :), rows(:)
     real(wp) :: factor
 
-    if (self%is_factored()) then
-      product = known
-    else
+    product = 0
+    if (.not. self%elements) call self%operator%solver%multiply(vector, product, error)
+    if (.not. self%is_factored()) then
       allocate (field, force, inertia, mold=self%displacement)
       field = 0
-      call self%numbering%scatter(motion, field)
+      call self%operator%numbering%scatter(vector, field)
       call self%model%halo%update(field)
       force = 0
       if (self%elements) call self%add_elements(field, force)
@@ -85,10 +87,11 @@ contains
         force = force + factor*inertia
       end if
       if (allocated(self%jumps)) call self%add_jumps(field, force)
-      call self%numbering%gather(force, product)
-      if (.not. self%elements) product = product + known
+      allocate (rows, mold=product)
+      call self%operator%numbering%gather(force, rows)
+      product = product + rows
     end if
-    if (self%force_slope > 0) product = product + self%force_slope*self%mean(motion)*self%pattern
+    if (self%force_slope > 0) product = product + self%force_slope*self%mean(vector)*self%pattern
   end subroutine multiply
 
   !> Mean deflection of the patch in a motion. Collective.
@@ -115,8 +118,8 @@ contains
     real(wp) :: some
     integer :: i, k
 
-    allocate (self%jumps(3, 3, self%numbering%owned), source=0.0_wp)
-    do i = 1, self%numbering%owned
+    allocate (self%jumps(3, 3, self%operator%numbering%owned), source=0.0_wp)
+    do i = 1, self%operator%numbering%owned
       do k = 1, 3
         self%jumps(k, k, i) = now(k, i)
       end do
@@ -145,8 +148,8 @@ contains
     real(wp), intent(in) :: tangents(:, :, :)
     integer :: i
 
-    allocate (self%jumps(3, 3, self%numbering%owned), source=0.0_wp)
-    do i = 1, self%numbering%owned
+    allocate (self%jumps(3, 3, self%operator%numbering%owned), source=0.0_wp)
+    do i = 1, self%operator%numbering%owned
       if (self%model%zone(i) > 0) self%jumps(:, :, i) = (tangents(:, :, i) - transpose(tangents(:, :, i)))/2
     end do
     call drop_if_zero(self)
@@ -218,7 +221,7 @@ contains
     real(wp), intent(inout) :: force(:, :)
     integer :: i
 
-    do i = 1, self%numbering%owned
+    do i = 1, self%operator%numbering%owned
       force(1:3, i) = force(1:3, i) + matmul(self%jumps(:, :, i), motion(1:3, i))
     end do
   end subroutine add_jumps

@@ -1,0 +1,225 @@
+!> Iterative solution of linear equations by PETSc's flexible GMRES (Y. Saad, SIAM J. Sci. Comput. 14 (1993) 461-469),
+!> with matrix and right preconditioner known by their products alone (MATSHELL, PCSHELL). Options of PETSc for it begin
+!> with `newton_`.
+module krylov_solvers
+  use, intrinsic :: iso_c_binding, only: c_int, c_intptr_t, c_loc, c_f_pointer, c_ptr
+  use petscksp, only: tMat, tVec, tKSP, tPC, MATOP_MULT, PC_RIGHT, KSP_GMRES_CGS_REFINE_IFNEEDED, &
+                      PETSC_DEFAULT_REAL, PETSC_FALSE, KSPSetOperators
+  use communicators, only: communicator_t
+  use errors, only: error_t
+  use kinds, only: wp
+  use linear_maps, only: linear_map_t
+  use petsc_matrices, only: put, take
+  use petsc_session, only: report_petsc
+  implicit none
+  private
+  public :: krylov_solver_t
+
+  !> Largest dimension of the Krylov space: as many solves take about as long as a factorization.
+  integer, parameter :: max_dimension = 30
+  !> PETSC_ERR_NOT_CONVERGED, by which a map that fails ends the iteration
+  integer, parameter :: map_failed = 82
+
+  !> The solver.
+  type :: krylov_solver_t
+    !> True between `define` and `release`
+    logical :: defined = .false.
+    !> Iterations of the last solve
+    integer :: iterations = 0
+    !> PETSc's solver
+    type(tKSP), private :: solver
+    !> Its preconditioner
+    type(tPC), private :: preconditioner
+    !> Its matrix
+    type(tMat), private :: matrix
+    !> Right-hand side and solution
+    type(tVec), private :: right, left
+  contains
+    !> Sets the solver up.
+    procedure :: define
+    !> Solves.
+    procedure :: solve
+    !> Frees it.
+    procedure :: release
+  end type krylov_solver_t
+
+  !> What the products need to know during a solve.
+  type :: products_t
+    !> Matrix and preconditioner
+    class(linear_map_t), pointer :: matrix => null(), preconditioner => null()
+    !> Factor of each row of the equations, (rows)
+    real(wp), allocatable :: row_factors(:)
+    !> Set if a product fails
+    type(error_t), allocatable :: error
+  end type products_t
+
+  interface
+    !> Sets what a matrix known by its products alone carries along: the C entries take any address.
+    integer(c_int) function set_matrix_context(matrix, context) bind(c, name='MatShellSetContext')
+      import :: c_int, c_intptr_t, c_ptr
+      !> The matrix
+      integer(c_intptr_t), value :: matrix
+      !> The address
+      type(c_ptr), value :: context
+    end function set_matrix_context
+
+    !> What it carries along.
+    integer(c_int) function get_matrix_context(matrix, context) bind(c, name='MatShellGetContext')
+      import :: c_int, c_intptr_t, c_ptr
+      !> The matrix
+      integer(c_intptr_t), value :: matrix
+      !> The address
+      type(c_ptr), intent(out) :: context
+    end function get_matrix_context
+
+    !> The same of a preconditioner.
+    integer(c_int) function set_preconditioner_context(preconditioner, context) bind(c, name='PCShellSetContext')
+      import :: c_int, c_intptr_t, c_ptr
+      !> The preconditioner
+      integer(c_intptr_t), value :: preconditioner
+      !> The address
+      type(c_ptr), value :: context
+    end function set_preconditioner_context
+
+    !> What it carries along.
+    integer(c_int) function get_preconditioner_context(preconditioner, context) bind(c, name='PCShellGetContext')
+      import :: c_int, c_intptr_t, c_ptr
+      !> The preconditioner
+      integer(c_intptr_t), value :: preconditioner
+      !> The address
+      type(c_ptr), intent(out) :: context
+    end function get_preconditioner_context
+  end interface
+
+contains
+
+  !> Sets the solver up. Collective.
+  subroutine define(self, communicator, rows, error)
+    !> The solver
+    class(krylov_solver_t), intent(inout) :: self
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> Rows that this rank owns
+    integer, intent(in) :: rows
+    !> Set if PETSc fails
+    type(error_t), allocatable, intent(inout) :: error
+    integer :: total, ierr(14)
+
+    total = rows
+    call communicator%sum(total)
+    call MatCreateShell(communicator%handle(), rows, rows, total, total, 0, self%matrix, ierr(1))
+    call MatShellSetOperation(self%matrix, MATOP_MULT, multiply_rows, ierr(2))
+    call MatCreateVecs(self%matrix, self%left, self%right, ierr(3))
+    call KSPCreate(communicator%handle(), self%solver, ierr(4))
+    call KSPSetOptionsPrefix(self%solver, 'newton_', ierr(5))
+    call KSPSetOperators(self%solver, self%matrix, self%matrix, ierr(6))
+    call KSPSetType(self%solver, 'fgmres', ierr(7))
+    call KSPGetPC(self%solver, self%preconditioner, ierr(8))
+    call PCSetType(self%preconditioner, 'shell', ierr(9))
+    call PCShellSetApply(self%preconditioner, precondition_rows, ierr(10))
+    call KSPGMRESSetRestart(self%solver, max_dimension, ierr(11))
+    call KSPGMRESSetCGSRefinementType(self%solver, KSP_GMRES_CGS_REFINE_IFNEEDED, ierr(12))
+    call KSPSetInitialGuessNonzero(self%solver, PETSC_FALSE, ierr(13))
+    call KSPSetFromOptions(self%solver, ierr(14))
+    call report_petsc(ierr, error)
+    self%defined = .true.
+  end subroutine define
+
+  !> Solves to a tolerance, or as far as the largest dimension of the space reaches. Collective.
+  subroutine solve(self, matrix, preconditioner, row_factors, right_hand_side, tolerance, solution, converged, error)
+    !> The solver
+    class(krylov_solver_t), intent(inout) :: self
+    !> Matrix, and a map close to its inverse
+    class(linear_map_t), target, intent(inout) :: matrix, preconditioner
+    !> Factors of the equations by which their residuals are comparable, (rows)
+    real(wp), intent(in) :: row_factors(:)
+    !> Right-hand side, (rows)
+    real(wp), intent(in) :: right_hand_side(:)
+    !> Norm of the residual at the end over that at the start
+    real(wp), intent(in) :: tolerance
+    !> Solution, (rows)
+    real(wp), intent(out) :: solution(:)
+    !> False: the tolerance was not reached
+    logical, intent(out) :: converged
+    !> Set if a product fails
+    type(error_t), allocatable, intent(inout) :: error
+    type(products_t), target :: products
+    integer :: reason, ierr(8)
+
+    products%matrix => matrix
+    products%preconditioner => preconditioner
+    products%row_factors = row_factors
+    ierr(1) = int(set_matrix_context(int(self%matrix%v, c_intptr_t), c_loc(products)))
+    ierr(2) = int(set_preconditioner_context(int(self%preconditioner%v, c_intptr_t), c_loc(products)))
+    call KSPSetTolerances(self%solver, tolerance, tiny(tolerance), PETSC_DEFAULT_REAL, max_dimension, ierr(3))
+    call put(self%right, row_factors*right_hand_side, ierr(4))
+    call KSPSolve(self%solver, self%right, self%left, ierr(5))
+    call take(self%left, solution, ierr(6))
+    call KSPGetIterationNumber(self%solver, self%iterations, ierr(7))
+    call KSPGetConvergedReason(self%solver, reason, ierr(8))
+    converged = reason > 0
+    if (allocated(products%error)) then
+      call move_alloc(products%error, error)
+    else
+      call report_petsc(ierr, error)
+    end if
+  end subroutine solve
+
+  !> Product of the matrix, its rows multiplied by their factors.
+  subroutine multiply_rows(matrix, vector, product, ierr)
+    !> The matrix
+    type(tMat) :: matrix
+    !> The vector, and its product
+    type(tVec) :: vector, product
+    !> PETSc's code
+    integer, intent(out) :: ierr
+    type(products_t), pointer :: products
+    type(c_ptr) :: context
+    real(wp), allocatable :: values(:), results(:)
+
+    ierr = int(get_matrix_context(int(matrix%v, c_intptr_t), context))
+    if (ierr /= 0) return
+    call c_f_pointer(context, products)
+    allocate (values, results, mold=products%row_factors)
+    call take(vector, values, ierr)
+    call products%matrix%multiply(values, results, products%error)
+    if (ierr == 0) call put(product, products%row_factors*results, ierr)
+    if (allocated(products%error)) ierr = map_failed
+  end subroutine multiply_rows
+
+  !> Product of the preconditioner with rows that were multiplied by their factors.
+  subroutine precondition_rows(preconditioner, vector, product, ierr)
+    !> The preconditioner
+    type(tPC) :: preconditioner
+    !> The vector, and its product
+    type(tVec) :: vector, product
+    !> PETSc's code
+    integer, intent(out) :: ierr
+    type(products_t), pointer :: products
+    type(c_ptr) :: context
+    real(wp), allocatable :: values(:), results(:)
+
+    ierr = int(get_preconditioner_context(int(preconditioner%v, c_intptr_t), context))
+    if (ierr /= 0) return
+    call c_f_pointer(context, products)
+    allocate (values, results, mold=products%row_factors)
+    call take(vector, values, ierr)
+    call products%preconditioner%multiply(values/products%row_factors, results, products%error)
+    if (ierr == 0) call put(product, results, ierr)
+    if (allocated(products%error)) ierr = map_failed
+  end subroutine precondition_rows
+
+  !> Frees the solver. Collective.
+  subroutine release(self)
+    !> The solver
+    class(krylov_solver_t), intent(inout) :: self
+    integer :: ierr
+
+    if (.not. self%defined) return
+    self%defined = .false.
+    call KSPDestroy(self%solver, ierr)
+    call MatDestroy(self%matrix, ierr)
+    call VecDestroy(self%left, ierr)
+    call VecDestroy(self%right, ierr)
+  end subroutine release
+end module krylov_solvers
