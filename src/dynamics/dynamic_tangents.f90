@@ -63,7 +63,8 @@ contains
     if (allocated(new%plies%free)) tangent%free => new%plies%free
     tangent%stiffness_factor = factors(1)
     tangent%mass_factor = factors(2)
-    if (abs(factors(2)/operator%mass_factor - 1) > mass_precision) tangent%mass_change = factors(2) - operator%mass_factor
+    if (abs(factors(2)/operator%mass_factor - 1) > mass_precision) &
+      tangent%mass_change = factors(2) - operator%mass_factor
     tangent%elements = model%setup%kinematics == kinematics_von_karman .and. (uses_element_tangents &
                                                                               .or. model%has_bonds)
     tangent%elements = .not. due .and. (model%setup%has_ply_damage .or. tangent%elements)
