@@ -24,7 +24,8 @@ module linear_solver_deck
   !> What options for PETSc begin with in a deck.
   character(len=*), parameter :: beginnings(*) = [character(len=16) :: '-ksp_', '-pc_', '-mat_', '-indefinite_ksp_', &
                                                   '-indefinite_pc_', '-indefinite_mat_', &
-                                                  '-telescope_ksp_', '-telescope_pc_', '-telescope_mat_']
+                                                  '-telescope_ksp_', '-telescope_pc_', '-telescope_mat_', &
+                                                  '-newton_ksp_']
 
 contains
 

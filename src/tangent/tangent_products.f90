@@ -1,5 +1,5 @@
-!> Product of the current tangent with a vector, without its matrix: by the directional derivative of the element forces,
-!> or by adding the change of the tangent to the product with the matrix that was factored.
+!> Product of the current tangent with a vector, without its matrix: by the directional derivative of the element
+!> forces, or by adding the change of the tangent to the product with the matrix that was factored.
 module tangent_products
   use kinds, only: wp
   use errors, only: error_t

@@ -17,16 +17,6 @@ from fortran_units import read_modules
 CLOSED_LIST = "tests hold every row of results against a closed list, which stands beside the meaning of the cells"
 LINEAR_ALGEBRA = "a folder of procedures that stand for themselves, each with its test"
 EXCEPTIONS = {
-    "blas_interfaces: dgemm": LINEAR_ALGEBRA,
-    "blas_interfaces: dgemv": LINEAR_ALGEBRA,
-    "blas_interfaces: dpotri": LINEAR_ALGEBRA,
-    "blas_interfaces: dsyevd": LINEAR_ALGEBRA,
-    "dense_systems: positive_factor_t%inverse": LINEAR_ALGEBRA,
-    "dense_systems: solve_descending": LINEAR_ALGEBRA,
-    "field_products: add_combination": LINEAR_ALGEBRA,
-    "field_products: products_of": LINEAR_ALGEBRA,
-    "field_products: products_with": LINEAR_ALGEBRA,
-    "linear_solvers: linear_solver_t%solve_many": LINEAR_ALGEBRA,
     "numberings: numbering_t%owns": LINEAR_ALGEBRA,
     "result_tables: is_number_type": CLOSED_LIST,
     "result_tables: is_place": CLOSED_LIST,

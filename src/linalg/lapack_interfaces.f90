@@ -1,0 +1,67 @@
+!> Interfaces of the procedures of LAPACK that Fortran calls.
+module lapack_interfaces
+  use kinds, only: wp
+  implicit none
+  private
+  public :: dgetrf, dgetrs, dpotrf, dpotrs
+
+  interface
+    !> LAPACK: factors a general matrix by elimination with pivoting.
+    subroutine dgetrf(m, n, a, lda, pivots, info)
+      import :: wp
+      !> Rows, columns, leading dimension
+      integer, intent(in) :: m, n, lda
+      !> Matrix, overwritten by its factors
+      real(wp), intent(inout) :: a(lda, *)
+      !> Row exchanges
+      integer, intent(out) :: pivots(*)
+      !> Greater than 0: singular
+      integer, intent(out) :: info
+    end subroutine dgetrf
+
+    !> LAPACK: solves with the factors of dgetrf.
+    subroutine dgetrs(trans, n, columns, a, lda, pivots, b, ldb, info)
+      import :: wp
+      !> 'N': the matrix itself
+      character, intent(in) :: trans
+      !> Order, right-hand sides, leading dimensions
+      integer, intent(in) :: n, columns, lda, ldb
+      !> Factors
+      real(wp), intent(in) :: a(lda, *)
+      !> Row exchanges
+      integer, intent(in) :: pivots(*)
+      !> Right-hand sides, overwritten by the solution
+      real(wp), intent(inout) :: b(ldb, *)
+      !> Not 0: an argument is wrong
+      integer, intent(out) :: info
+    end subroutine dgetrs
+
+    !> LAPACK: factors a symmetric matrix that is positive definite.
+    subroutine dpotrf(uplo, n, a, lda, info)
+      import :: wp
+      !> 'L': its lower triangle is given
+      character, intent(in) :: uplo
+      !> Order, leading dimension
+      integer, intent(in) :: n, lda
+      !> Matrix, overwritten by its factor
+      real(wp), intent(inout) :: a(lda, *)
+      !> Greater than 0: not positive definite
+      integer, intent(out) :: info
+    end subroutine dpotrf
+
+    !> LAPACK: solves with the factor of dpotrf.
+    subroutine dpotrs(uplo, n, columns, a, lda, b, ldb, info)
+      import :: wp
+      !> 'L': the lower factor
+      character, intent(in) :: uplo
+      !> Order, right-hand sides, leading dimensions
+      integer, intent(in) :: n, columns, lda, ldb
+      !> Factor
+      real(wp), intent(in) :: a(lda, *)
+      !> Right-hand sides, overwritten by the solution
+      real(wp), intent(inout) :: b(ldb, *)
+      !> Not 0: an argument is wrong
+      integer, intent(out) :: info
+    end subroutine dpotrs
+  end interface
+end module lapack_interfaces
