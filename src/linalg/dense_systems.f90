@@ -1,25 +1,10 @@
 !> Small dense systems.
 module dense_systems
-  use lapack_interfaces, only: dgetrf, dgetrs, dpotrf, dpotrs
+  use lapack_interfaces, only: dgesv, dpotrf, dpotrs
   use kinds, only: wp
   implicit none
   private
-  public :: dense_factor_t, positive_factor_t, solve_dense
-
-  !> A small matrix, factored.
-  type :: dense_factor_t
-    !> True: there are no solutions
-    logical :: singular = .false.
-    !> Its triangular factors, (n, n)
-    real(wp), allocatable, private :: factors(:, :)
-    !> Row exchanges, (n)
-    integer, allocatable, private :: pivots(:)
-  contains
-    !> Factors a matrix.
-    procedure :: factorize
-    !> Solves with the factors.
-    procedure :: solve
-  end type dense_factor_t
+  public :: positive_factor_t, solve_dense
 
   !> A small symmetric matrix, factored if it is positive definite.
   type :: positive_factor_t
@@ -35,33 +20,6 @@ module dense_systems
   end type positive_factor_t
 
 contains
-
-  !> Factors a matrix.
-  subroutine factorize(self, matrix)
-    !> Receives the factors
-    class(dense_factor_t), intent(inout) :: self
-    !> Matrix, (n, n)
-    real(wp), intent(in) :: matrix(:, :)
-    integer :: info
-
-    self%factors = matrix
-    self%pivots = spread(0, 1, size(matrix, 1))
-    self%singular = .false.
-    if (size(matrix) == 0) return
-    call dgetrf(size(matrix, 1), size(matrix, 1), self%factors, size(matrix, 1), self%pivots, info)
-    self%singular = info /= 0
-  end subroutine factorize
-
-  !> Solves with the factors of a matrix that is not singular.
-  subroutine solve(self, x)
-    !> The factors
-    class(dense_factor_t), intent(in) :: self
-    !> Right-hand side on entry, solution on return, (n)
-    real(wp), intent(inout) :: x(:)
-    integer :: info
-
-    if (size(x) > 0) call dgetrs('N', size(x), 1, self%factors, size(x), self%pivots, x, size(x), info)
-  end subroutine solve
 
   !> Factors a symmetric matrix, or finds that it is not positive definite.
   subroutine factorize_positive(self, matrix)
@@ -97,10 +55,14 @@ contains
     real(wp), intent(inout) :: x(:)
     !> True: there is no solution, x is what it was
     logical, intent(out) :: singular
-    type(dense_factor_t) :: factor
+    real(wp) :: factors(size(x), size(x)), solution(size(x))
+    integer :: pivots(size(x)), info
 
-    call factor%factorize(matrix)
-    singular = factor%singular
-    if (.not. singular) call factor%solve(x)
+    factors = matrix
+    solution = x
+    info = 0
+    if (size(x) > 0) call dgesv(size(x), 1, factors, size(x), pivots, solution, size(x), info)
+    singular = info /= 0
+    if (.not. singular) x = solution
   end subroutine solve_dense
 end module dense_systems

@@ -1,10 +1,10 @@
-!> Iterative solution of linear equations by PETSc's flexible GMRES (Y. Saad, SIAM J. Sci. Comput. 14 (1993) 461-469),
-!> with matrix and right preconditioner known by their products alone (MATSHELL, PCSHELL). Options of PETSc for it begin
-!> with `newton_`.
+!> Iterative solution of linear equations by PETSc's KSP: flexible GMRES (Y. Saad, SIAM J. Sci. Comput. 14 (1993)
+!> 461-469) or conjugate gradients, with matrix and preconditioner known by their products alone (MATSHELL, PCSHELL).
+!> Options of PETSc for them begin with `newton_`.
 module krylov_solvers
   use, intrinsic :: iso_c_binding, only: c_int, c_intptr_t, c_loc, c_f_pointer, c_ptr
-  use petscksp, only: tMat, tVec, tKSP, tPC, MATOP_MULT, PC_RIGHT, KSP_GMRES_CGS_REFINE_IFNEEDED, &
-                      PETSC_DEFAULT_REAL, PETSC_FALSE, KSPSetOperators
+  use petscksp, only: tMat, tVec, tKSP, tPC, MATOP_MULT, KSP_GMRES_CGS_REFINE_IFNEEDED, &
+                      KSP_NORM_NATURAL, KSP_DIVERGED_INDEFINITE_MAT, PETSC_DEFAULT_REAL, PETSC_FALSE, KSPSetOperators
   use communicators, only: communicator_t
   use errors, only: error_t
   use kinds, only: wp
@@ -94,39 +94,44 @@ module krylov_solvers
 contains
 
   !> Sets the solver up. Collective.
-  subroutine define(self, communicator, rows, error)
+  subroutine define(self, communicator, rows, method, error)
     !> The solver
     class(krylov_solver_t), intent(inout) :: self
     !> The ranks
     type(communicator_t), intent(in) :: communicator
     !> Rows that this rank owns
     integer, intent(in) :: rows
+    !> PETSc's name of the method, `fgmres` or `cg`
+    character(len=*), intent(in) :: method
     !> Set if PETSc fails
     type(error_t), allocatable, intent(inout) :: error
-    integer :: total, ierr(14)
+    integer :: total, ierr(15)
 
     total = rows
     call communicator%sum(total)
+    ierr = 0
     call MatCreateShell(communicator%handle(), rows, rows, total, total, 0, self%matrix, ierr(1))
     call MatShellSetOperation(self%matrix, MATOP_MULT, multiply_rows, ierr(2))
     call MatCreateVecs(self%matrix, self%left, self%right, ierr(3))
     call KSPCreate(communicator%handle(), self%solver, ierr(4))
     call KSPSetOptionsPrefix(self%solver, 'newton_', ierr(5))
     call KSPSetOperators(self%solver, self%matrix, self%matrix, ierr(6))
-    call KSPSetType(self%solver, 'fgmres', ierr(7))
+    call KSPSetType(self%solver, method, ierr(7))
     call KSPGetPC(self%solver, self%preconditioner, ierr(8))
     call PCSetType(self%preconditioner, 'shell', ierr(9))
     call PCShellSetApply(self%preconditioner, precondition_rows, ierr(10))
     call KSPGMRESSetRestart(self%solver, max_dimension, ierr(11))
     call KSPGMRESSetCGSRefinementType(self%solver, KSP_GMRES_CGS_REFINE_IFNEEDED, ierr(12))
     call KSPSetInitialGuessNonzero(self%solver, PETSC_FALSE, ierr(13))
+    if (method == 'cg') call KSPSetNormType(self%solver, KSP_NORM_NATURAL, ierr(15))
     call KSPSetFromOptions(self%solver, ierr(14))
     call report_petsc(ierr, error)
     self%defined = .true.
   end subroutine define
 
   !> Solves to a tolerance, or as far as the largest dimension of the space reaches. Collective.
-  subroutine solve(self, matrix, preconditioner, row_factors, right_hand_side, tolerance, solution, converged, error)
+  subroutine solve(self, matrix, preconditioner, row_factors, right_hand_side, tolerance, solution, converged, &
+                   indefinite, error)
     !> The solver
     class(krylov_solver_t), intent(inout) :: self
     !> Matrix, and a map close to its inverse
@@ -141,6 +146,8 @@ contains
     real(wp), intent(out) :: solution(:)
     !> False: the tolerance was not reached
     logical, intent(out) :: converged
+    !> True: conjugate gradients have met negative curvature, and stopped before it
+    logical, intent(out) :: indefinite
     !> Set if a product fails
     type(error_t), allocatable, intent(inout) :: error
     type(products_t), target :: products
@@ -158,6 +165,7 @@ contains
     call KSPGetIterationNumber(self%solver, self%iterations, ierr(7))
     call KSPGetConvergedReason(self%solver, reason, ierr(8))
     converged = reason > 0
+    indefinite = reason == KSP_DIVERGED_INDEFINITE_MAT
     if (allocated(products%error)) then
       call move_alloc(products%error, error)
     else

@@ -3,38 +3,23 @@ module lapack_interfaces
   use kinds, only: wp
   implicit none
   private
-  public :: dgetrf, dgetrs, dpotrf, dpotrs
+  public :: dgesv, dpotrf, dpotrs
 
   interface
-    !> LAPACK: factors a general matrix by elimination with pivoting.
-    subroutine dgetrf(m, n, a, lda, pivots, info)
+    !> LAPACK: solves with a general matrix by elimination with pivoting.
+    subroutine dgesv(n, columns, a, lda, pivots, b, ldb, info)
       import :: wp
-      !> Rows, columns, leading dimension
-      integer, intent(in) :: m, n, lda
+      !> Order, right-hand sides, leading dimensions
+      integer, intent(in) :: n, columns, lda, ldb
       !> Matrix, overwritten by its factors
       real(wp), intent(inout) :: a(lda, *)
       !> Row exchanges
       integer, intent(out) :: pivots(*)
-      !> Greater than 0: singular
-      integer, intent(out) :: info
-    end subroutine dgetrf
-
-    !> LAPACK: solves with the factors of dgetrf.
-    subroutine dgetrs(trans, n, columns, a, lda, pivots, b, ldb, info)
-      import :: wp
-      !> 'N': the matrix itself
-      character, intent(in) :: trans
-      !> Order, right-hand sides, leading dimensions
-      integer, intent(in) :: n, columns, lda, ldb
-      !> Factors
-      real(wp), intent(in) :: a(lda, *)
-      !> Row exchanges
-      integer, intent(in) :: pivots(*)
       !> Right-hand sides, overwritten by the solution
       real(wp), intent(inout) :: b(ldb, *)
-      !> Not 0: an argument is wrong
+      !> Greater than 0: singular
       integer, intent(out) :: info
-    end subroutine dgetrs
+    end subroutine dgesv
 
     !> LAPACK: factors a symmetric matrix that is positive definite.
     subroutine dpotrf(uplo, n, a, lda, info)

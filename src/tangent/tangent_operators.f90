@@ -10,8 +10,7 @@ module tangent_operators
   use numberings, only: numbering_t, number_equations
   use models, only: model_t
   use interface_states, only: interface_state_t
-  use operator_assembly, only: assemble_elements, assemble_diagonal, assemble_tangents
-  use operator_solvers, only: create_solver, solve_field
+  use operator_assembly, only: assemble_elements, assemble_diagonal, assemble_tangents, is_positive_definite
   implicit none
   private
   public :: tangent_operator_t
@@ -21,9 +20,9 @@ module tangent_operators
     !> Equations of the unconstrained unknowns
     type(numbering_t) :: numbering
     !> The linear solver that holds the factor
-    class(linear_solver_t), allocatable :: solver
-    !> Solves with the current tangent
-    type(krylov_solver_t) :: krylov
+    type(linear_solver_t), allocatable :: solver
+    !> Solve with the current tangent
+    type(krylov_solver_t) :: minimal_residuals, conjugate_gradients
     !> True once there is a factor
     logical :: ready = .false.
     !> Factors of stiffness and mass in the factored operator
@@ -86,7 +85,12 @@ contains
     self%stiffness = model%elements%stiffness
     call number_equations(model%mesh, model%distribution, model%held, self%numbering, model%images)
     self%timers%profile = model%profile
-    call create_solver(model, self%numbering, factorization, self%solver, error)
+    allocate (self%solver)
+    self%solver%factorization = factorization
+    associate (numbering => self%numbering)
+      call self%solver%define(model%communicator, numbering%first_row, numbering%total, numbering%row_start, &
+                              numbering%columns, is_positive_definite(model), error)
+    end associate
     if (allocated(error)) return
     ! The solver has its own copy of this large list.
     deallocate (self%numbering%columns)
@@ -154,19 +158,36 @@ contains
     type(model_t), intent(in) :: model
     !> Set if the solve fails
     type(error_t), allocatable, intent(inout) :: error
-    real(wp), allocatable :: force(:, :), rows(:)
+    real(wp), allocatable :: force(:, :)
 
     allocate (force, mold=self%response)
     force = 0
     force(3, :) = model%patch/model%mesh%multiplicity
-    allocate (rows(self%numbering%rows))
-    call self%numbering%gather(force, rows)
-    call self%solve_rows(rows, self%response_rows, error)
-    if (allocated(error)) return
-    call self%numbering%scatter(self%response_rows, self%response)
-    call model%halo%update(self%response)
-    self%compliance = model%patch_mean(self%response)
+    call solve_field(self, model, force, self%response_rows, self%response, error)
+    if (.not. allocated(error)) self%compliance = model%patch_mean(self%response)
   end subroutine find_response
+
+  !> Motion of all points under forces, and its rows of this rank.
+  subroutine solve_field(self, model, force, rows, motion, error)
+    !> The operator
+    class(tangent_operator_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> Forces at the owned points, (5, points)
+    real(wp), intent(in) :: force(:, :)
+    !> The motion's rows
+    real(wp), intent(out) :: rows(:)
+    !> The motion, ghosts included, (5, points)
+    real(wp), intent(inout) :: motion(:, :)
+    !> Set if the solution is not finite
+    type(error_t), allocatable, intent(inout) :: error
+    real(wp) :: forces(size(rows))
+
+    call self%numbering%gather(force, forces)
+    call self%solve_rows(forces, rows, error)
+    if (allocated(error)) return
+    call self%numbering%scatter(rows, motion)
+    call model%halo%update(motion)
+  end subroutine solve_field
 
   !> Rows of this rank under forces, by the factor as it is.
   subroutine solve_rows(self, forces, motion, error)
@@ -231,8 +252,9 @@ contains
     real(wp), intent(inout) :: correction(:, :)
     !> Set if the solution is not finite
     type(error_t), allocatable, intent(out) :: error
+    real(wp) :: rows(self%numbering%rows)
 
-    call solve_field(model, self%numbering, self%solver, self%timers, 'solve', residual, correction, error)
+    call solve_field(self, model, residual, rows, correction, error)
     self%solves = self%solves + 1
   end subroutine correct
 
@@ -242,6 +264,7 @@ contains
     class(tangent_operator_t), intent(inout) :: self
 
     if (allocated(self%solver)) call self%solver%release()
-    call self%krylov%release()
+    call self%minimal_residuals%release()
+    call self%conjugate_gradients%release()
   end subroutine release
 end module tangent_operators

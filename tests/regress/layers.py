@@ -20,7 +20,7 @@ WIDE = "88e-3, 64e-3"
 CRACKS = ["ply_damage%criteria='hou'", "ply_damage%d=2", "ply_damage%e=0.1", "material%XT=1500e6", "material%XC=1200e6",
           "material%YC=200e6", "material%Sf=90e6", "material%Sm23=60e6"]
 BRITTLE = ["delamination%G_Ic=100", "delamination%G_IIc=120", "time%end=360e-6", "time%step=20e-6",
-           "time%step_min=20e-6", "solver%max_iterations=100"]
+           "time%step_min=20e-9"]
 
 
 def without_zone(folder):
