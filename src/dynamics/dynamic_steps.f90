@@ -8,14 +8,13 @@ module dynamic_steps
   use tan_sun_indentation, only: commit_indentation
   use stepping_parameters, only: equilibrium_t
   use newmark_integrators, only: plate_integrator_t
-  use plate_options, only: kinematics_linear
   use models, only: model_t
   use states, only: state_t
   use step_problems, only: step_problem_t
   use impact_coupling, only: impact_coupling_t, begin_coupling
   use tangent_operators, only: tangent_operator_t
   use residual_norms, only: relative_residual
-  use dynamic_tangents, only: find_tangent, add_force_slope, mass_precision
+  use dynamic_tangents, only: find_tangent, add_force_slope, is_exact
   use krylov_corrections, only: find_krylov_correction
   use tangent_products, only: tangent_product_t
   use energy_balance, only: book_step
@@ -51,8 +50,6 @@ module dynamic_steps
     !> Coupling to the impactor
     type(impact_coupling_t) :: coupling
   contains
-    !> True: one correction finds equilibrium.
-    procedure, private :: is_solved_at_once
     procedure :: begin
     procedure :: find_residual
     procedure :: residual_norm
@@ -101,22 +98,14 @@ contains
     self%patch_square = sum((model%patch(model%patch_points)/model%mesh%multiplicity)**2)
     if (model%setup%has_impactor) self%coupling = begin_coupling(model, self%integrator, old, self%step)
     self%keeps_velocity = model%setup%has_impactor .and. .not. (allocated(self%guess) .or. model%has_bonds)
-    self%keeps_displacement = self%keeps_velocity .and. self%is_solved_at_once(model, operator)
+    self%keeps_displacement = self%keeps_velocity &
+      .and. is_exact(model, operator, self%integrator%mass_factor(self%step))
     self%skips_elements = self%keeps_displacement .and. modulo(old%step + 1, between_checks) > 0 &
       .and. .not. (model%map%layered .or. &
       allocated(model%rig%held_by) .or. allocated(model%pressure) .or. size(model%lines) > 0)
     if (self%skips_elements) self%skips_elements = self%coupling%forces_agree() &
       .and. .not. any(operator%numbering%leader > 0)
-    if (allocated(self%guess)) then
-      new%motion%displacement = self%guess
-    else if (.not. self%keeps_displacement) then
-      new%motion%displacement = self%step*old%motion%velocity
-      call new%interfaces%faces%hold(model, new%motion%displacement)
-      new%motion%displacement = old%motion%displacement + new%motion%displacement
-      call new%interfaces%keep_contact_closed(model, new%motion%displacement)
-      if (has_moved_lines(model)) &
-        call prescribe_lines(model, new%interfaces, new%time, line_displacement, new%motion%displacement)
-    end if
+    call predict(self, model, old, new)
     if (.not. self%keeps_velocity) call self%complete(old, new)
     new%iterations = 0
     new%force_iterations = 0
@@ -127,17 +116,27 @@ contains
     if (.not. self%keeps_displacement) call self%find_force(model, old, new)
   end subroutine begin
 
-  !> True: all forces but the impactor's are linear, and the operator is exact.
-  pure logical function is_solved_at_once(self, model, operator) result(solved)
+  !> Predictor of the displacement.
+  subroutine predict(self, model, old, new)
     !> The problem
     class(dynamic_step_t), intent(in) :: self
     type(model_t), intent(in) :: model
-    !> The factored operator
-    type(tangent_operator_t), intent(in) :: operator
+    !> State at the start
+    type(state_t), intent(in) :: old
+    !> State at the end
+    type(state_t), intent(inout) :: new
 
-    solved = model%setup%kinematics == kinematics_linear .and. .not. model%setup%has_ply_damage
-    if (solved) solved = abs(operator%mass_factor/self%integrator%mass_factor(self%step) - 1) <= mass_precision
-  end function is_solved_at_once
+    if (allocated(self%guess)) then
+      new%motion%displacement = self%guess
+    else if (.not. self%keeps_displacement) then
+      new%motion%displacement = self%step*old%motion%velocity
+      call new%interfaces%faces%hold(model, new%motion%displacement)
+      new%motion%displacement = old%motion%displacement + new%motion%displacement
+      call new%interfaces%keep_contact_closed(model, new%motion%displacement)
+      if (has_moved_lines(model)) &
+        call prescribe_lines(model, new%interfaces, new%time, line_displacement, new%motion%displacement)
+    end if
+  end subroutine predict
 
   !> Residual of the equation of motion (Eq. 1 with the exact internal force).
   subroutine find_residual(self, model, old, new, residual, energy)

@@ -4,13 +4,13 @@ module dynamic_tangents
   use impact_coupling, only: impact_coupling_t
   use kinds, only: wp
   use models, only: model_t
-  use plate_options, only: kinematics_von_karman
+  use plate_options, only: kinematics_linear, kinematics_von_karman
   use states, only: state_t
   use tangent_operators, only: tangent_operator_t
   use tangent_products, only: tangent_product_t
   implicit none
   private
-  public :: find_tangent, add_force_slope, mass_precision
+  public :: find_tangent, add_force_slope, is_exact
 
   !> Relative change of the factor of mass by which an operator counts as exact: the last digits of the step.
   real(wp), parameter :: mass_precision = 1.0e-9_wp
@@ -75,6 +75,20 @@ contains
     diagonal = operator%diagonal
     if (model%has_bonds) diagonal(:3, :) = diagonal(:3, :) + current_stiffness
   end subroutine find_tangent
+
+  !> True: all forces but the impactor's are linear, and the operator is their tangent, so one correction finds
+  !> equilibrium.
+  pure logical function is_exact(model, operator, mass_factor) result(exact)
+    type(model_t), intent(in) :: model
+    !> The factored operator
+    type(tangent_operator_t), intent(in) :: operator
+    !> Factor of mass in the tangent
+    real(wp), intent(in) :: mass_factor
+
+    exact = model%setup%kinematics == kinematics_linear .and. .not. model%setup%has_ply_damage
+    if (exact) exact = abs(operator%mass_factor/mass_factor - 1) <= mass_precision
+  end function is_exact
+
   !> Adds the slope of the impactor's force to a tangent.
   subroutine add_force_slope(model, operator, coupling, old, new, tangent)
     type(model_t), intent(in) :: model

@@ -212,13 +212,8 @@ contains
       call find_forces(problem, model, operator, old, new, residual, smooth, energy)
       norm = problem%residual_norm(model, equilibrium, operator, residual, new)
       if (search%on .and. norm > equilibrium%tolerance) then
-        call search%assess(model, smooth, ends)
-        if (.not. ends) then
-          new%motion%displacement = search%start + search%fraction*search%direction
-          call problem%complete(old, new)
-          call problem%find_force(model, old, new)
-          cycle
-        end if
+        call try_fraction(problem, model, old, new, smooth, search, ends)
+        if (.not. ends) cycle
       end if
       search%on = .false.
       converged = norm <= equilibrium%tolerance
@@ -249,6 +244,29 @@ contains
     end do
     if (converged) call problem%finish(model, old, energy, new)
   end subroutine solve_step
+
+  !> Accepts a fraction of the correction, or tries the next one.
+  subroutine try_fraction(problem, model, old, new, smooth, search, ends)
+    !> The kind of step
+    class(step_problem_t), intent(inout) :: problem
+    type(model_t), intent(in) :: model
+    !> State at the start
+    type(state_t), intent(in) :: old
+    !> State at the end
+    type(state_t), intent(inout) :: new
+    !> Residual without ties and contacts, (5, points)
+    real(wp), intent(in) :: smooth(:, :)
+    !> The search
+    type(line_search_t), intent(inout) :: search
+    !> True: the fraction is accepted
+    logical, intent(out) :: ends
+
+    call search%assess(model, smooth, ends)
+    if (ends) return
+    new%motion%displacement = search%start + search%fraction*search%direction
+    call problem%complete(old, new)
+    call problem%find_force(model, old, new)
+  end subroutine try_fraction
 
   !> Forcing term: reduction of the residual required of the next correction.
   pure real(wp) function forcing_term(equilibrium, norm, before) result(left)
