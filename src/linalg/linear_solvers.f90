@@ -6,7 +6,6 @@ module linear_solvers
   use errors, only: error_t, fail, exit_convergence, exit_internal, exit_usage
   use factor_packages, only: packages_for, why_not_factored, factor_made, factor_not_positive, factor_singular
   use free_mechanisms, only: mechanism_t
-  use freed_memory, only: return_freed_memory, keep_freed
   use kinds, only: wp
   use linear_solver_parameters, only: factorization_automatic, factorization_cholmod
   use petsc_factors, only: petsc_factor_t
@@ -98,7 +97,6 @@ contains
     type(error_t), allocatable, intent(inout) :: error
 
     call self%release()
-    call return_freed_memory()
     self%communicator = communicator
     self%rows = size(row_start) - 1
     self%total_rows = total_rows
@@ -176,8 +174,6 @@ contains
     if (.not. allocated(error) .and. outcome /= factor_made) &
       call fail(error, exit_convergence, why_not_factored(self%factors(self%current)%title(), outcome))
     self%factored = .not. allocated(error)
-    ! Ordering and pattern are done: the same blocks are needed from now on.
-    if (self%factored) call keep_freed()
   end subroutine factorize
 
   !> Makes the factor in force and looks whether a part of the structure can move freely.
