@@ -12,7 +12,7 @@ module dissipation_steps
   use models, only: model_t
   use states, only: state_t
   use static_steps, only: static_step_t, new_static_step, correction_factor
-  use static_tangents, only: solve_tangent
+  use krylov_corrections, only: solve_load_tangent
   use slow_impactors, only: add_impactor_force, travel_for
   use tangent_operators, only: tangent_operator_t
   implicit none
@@ -149,7 +149,7 @@ contains
     else
       call model%load_slopes(loads)
     end if
-    call solve_tangent(operator, model, new%interfaces%cohesive, loads, response, error)
+    call solve_load_tangent(operator, model, new%interfaces%cohesive, loads, response, error)
     if (allocated(error)) return
     call new%interfaces%cohesive%add_dissipation_slopes(model, old%interfaces%cohesive, new%motion%displacement, slopes)
     sums = [model%product(slopes, correction), model%product(slopes, response)]

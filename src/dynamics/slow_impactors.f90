@@ -6,7 +6,7 @@ module slow_impactors
   use impact_force, only: solve_impact_force
   use tan_sun_indentation, only: commit_indentation, indentation_force, indentation_of
   use models, only: model_t
-  use static_tangents, only: solve_tangent
+  use krylov_corrections, only: solve_load_tangent
   use states, only: state_t
   use tangent_operators, only: tangent_operator_t
   implicit none
@@ -49,7 +49,7 @@ contains
     push = 0
     response = 0
     call add_impactor_force(model, 1.0_wp, push)
-    call solve_tangent(operator, model, new%interfaces%cohesive, push, response, error)
+    call solve_load_tangent(operator, model, new%interfaces%cohesive, push, response, error)
     if (allocated(error)) return
     compliance = model%patch_mean(response)
     mean = model%contact_deflection(new%motion%displacement) + model%patch_mean(correction)

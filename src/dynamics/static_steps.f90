@@ -10,7 +10,7 @@ module static_steps
   use step_problems, only: step_problem_t
   use residual_norms, only: relative_residual
   use slow_impactors, only: add_impactor_force, find_force_change, force_mismatch, move_slow_impactor
-  use static_tangents, only: solve_tangent
+  use krylov_corrections, only: solve_load_tangent
   use tangent_operators, only: tangent_operator_t
   implicit none
   private
@@ -158,7 +158,7 @@ contains
     if (.not. operator%ready .or. tangent_changes(model, new%iterations)) &
       call operator%renew(model, new%plies%stiffness, new%interfaces, new%motion%displacement, 1.0_wp, 0.0_wp, error)
     if (.not. allocated(error)) &
-      call solve_tangent(operator, model, new%interfaces%cohesive, residual, correction, error)
+      call solve_load_tangent(operator, model, new%interfaces%cohesive, residual, correction, error)
     if (.not. allocated(error)) call self%complete_correction(model, operator, old, new, correction, error)
     if (.not. allocated(error)) call new%interfaces%faces%hold(model, correction)
   end subroutine find_correction

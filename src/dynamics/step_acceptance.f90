@@ -16,7 +16,7 @@ module step_acceptance
   use text, only: rounded_text
   implicit none
   private
-  public :: accept_step, reject_step, judge_error
+  public :: accept_step, reject_step, assess_error
 
 contains
 
@@ -99,7 +99,7 @@ contains
   end subroutine choose_next_step
 
   !> Estimates the error of the step tried; one too large is to be tried again shorter.
-  subroutine judge_error(self, model, step, shortest, accurate)
+  subroutine assess_error(self, model, step, shortest, accurate)
     !> The time stepper
     class(stepper_t), intent(inout) :: self
     type(model_t), intent(in) :: model
@@ -117,7 +117,7 @@ contains
     if (accurate) return
     self%rejected = self%rejected + 1
     call self%controller%shorten(step, self%error, shortest)
-  end subroutine judge_error
+  end subroutine assess_error
 
   !> Prepares a shorter step after one that has not converged.
   subroutine reject_step(self, model, step, error)

@@ -216,25 +216,16 @@ contains
         if (.not. ends) cycle
       end if
       search%on = .false.
-      converged = norm <= equilibrium%tolerance
-      if (converged) converged = problem%may_stop(model, new, pressures_new)
-      pressures_new = .false.
-      if (converged) then
-        call update_multipliers(contact_share*equilibrium%tolerance, model, new, converged)
-        if (converged) exit
-        pressures_new = .true.
-        before = 0
-        if (new%contact_iterations < equilibrium%max_iterations) cycle
-      end if
+      call update_contact(problem, model, equilibrium, norm, new, before, pressures_new, converged)
+      if (converged) exit
+      if (pressures_new .and. new%contact_iterations < equilibrium%max_iterations) cycle
       if (.not. norm <= huge(norm) .or. new%iterations >= equilibrium%max_iterations) exit
       problem%uses_element_tangents = problem%uses_element_tangents .or. before > 0 &
         .and. norm > acceptable_reduction*before
       call correct(problem, model, operator, old, new, residual, smooth, forcing_term(equilibrium, norm, before), &
                    correction, search, error)
       if (allocated(error)) then
-        ! Divergence, or an operator that is not positive definite: a shorter step may succeed.
-        if ((problem%retries_shorter .or. model%setup%has_impactor) &
-            .and. error%code == exit_convergence) deallocate (error)
+        call forgive(problem, model, error)
         return
       end if
       before = norm
@@ -244,6 +235,45 @@ contains
     end do
     if (converged) call problem%finish(model, old, energy, new)
   end subroutine solve_step
+
+  !> Updates the multipliers of contact at equilibrium; the step has converged once they have.
+  subroutine update_contact(problem, model, equilibrium, norm, new, before, pressures_new, converged)
+    !> The kind of step
+    class(step_problem_t), intent(in) :: problem
+    type(model_t), intent(in) :: model
+    !> Required convergence
+    type(equilibrium_t), intent(in) :: equilibrium
+    !> Norm of the residual
+    real(wp), intent(in) :: norm
+    !> State at the end
+    type(state_t), intent(inout) :: new
+    !> Norm of the residual before the last correction, zero with new multipliers
+    real(wp), intent(inout) :: before
+    !> True: multipliers were updated after the last correction
+    logical, intent(inout) :: pressures_new
+    !> True: the step has converged
+    logical, intent(out) :: converged
+
+    converged = norm <= equilibrium%tolerance
+    if (converged) converged = problem%may_stop(model, new, pressures_new)
+    pressures_new = .false.
+    if (.not. converged) return
+    call update_multipliers(contact_share*equilibrium%tolerance, model, new, converged)
+    pressures_new = .not. converged
+    if (pressures_new) before = 0
+  end subroutine update_contact
+
+  !> Drops the error of a solver where a shorter step may succeed: divergence, or an operator that is not positive
+  !> definite.
+  pure subroutine forgive(problem, model, error)
+    !> The kind of step
+    class(step_problem_t), intent(in) :: problem
+    type(model_t), intent(in) :: model
+    !> The error
+    type(error_t), allocatable, intent(inout) :: error
+
+    if ((problem%retries_shorter .or. model%setup%has_impactor) .and. error%code == exit_convergence) deallocate (error)
+  end subroutine forgive
 
   !> Accepts a fraction of the correction, or tries the next one.
   subroutine try_fraction(problem, model, old, new, smooth, search, ends)
@@ -280,7 +310,7 @@ contains
     if (norm < before) left = min(left, forcing_factor*(norm/before)**2)
     ! A residual within the tolerance may be left whole; it can be zero.
     associate (enough => tolerance_margin*equilibrium%tolerance)
-      left = max(left, enough/max(norm, enough))
+      left = min(max(left, enough/max(norm, enough)), forcing_factor)
     end associate
   end function forcing_term
 

@@ -133,14 +133,7 @@ contains
                                                                             'step_max', &
       'is smaller than the first step; allowed: from step = '//to_text(time%step)//'.')
     if (.not. clear(key_integrator)) return
-    if (time%integrator == integrator_newmark) then
-      if (2*time%beta < time%gamma .and. clear('beta gamma')) call report(settings, problems, time_group, 'beta', &
-        'the plate''s motion would be unstable; allowed: from gamma/2 = '//to_text(time%gamma/2)//'.')
-      call remark_idle(settings, problems, time_group, 'rho_inf', 'has no effect with integrator = ''newmark''.')
-    else if (time%integrator == integrator_generalized_alpha) then
-      call remark_idle(settings, problems, time_group, 'beta gamma', &
-                       'has no effect with integrator = ''generalized_alpha''.')
-    end if
+    call check_parameters(settings, time, problems)
 
   contains
 
@@ -152,4 +145,24 @@ contains
       clear = are_clear(settings, problems, time_group, keys)
     end function clear
   end subroutine check_time
+
+  !> Parameters of the integrator, and those of the other one.
+  subroutine check_parameters(settings, time, problems)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+    !> Time integration
+    type(time_t), intent(in) :: time
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+
+    if (time%integrator == integrator_newmark) then
+      if (2*time%beta < time%gamma .and. are_clear(settings, problems, time_group, 'beta gamma')) &
+        call report(settings, problems, time_group, 'beta', &
+                    'the plate''s motion would be unstable; allowed: from gamma/2 = '//to_text(time%gamma/2)//'.')
+      call remark_idle(settings, problems, time_group, 'rho_inf', 'has no effect with integrator = ''newmark''.')
+    else if (time%integrator == integrator_generalized_alpha) then
+      call remark_idle(settings, problems, time_group, 'beta gamma', &
+                       'has no effect with integrator = ''generalized_alpha''.')
+    end if
+  end subroutine check_parameters
 end module time_deck

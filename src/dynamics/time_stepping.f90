@@ -8,10 +8,9 @@ module time_stepping
   use linear_solver_parameters, only: linear_solver_parameters_t
   use models, only: model_t
   use newmark_integrators, only: plate_integrator
-  use operator_restarts, only: visit_operator
   use states, only: new_state
   use static_steps, only: static_step_t, new_static_step
-  use step_acceptance, only: accept_step, reject_step, judge_error
+  use step_acceptance, only: accept_step, reject_step, assess_error
   use step_controllers, only: shortening_error
   use step_problems, only: solve_step
   use step_trials, only: try_step, try_load
@@ -86,7 +85,7 @@ contains
     !> Set if the smallest step failed
     type(error_t), allocatable, intent(out) :: error
     real(wp) :: step, shortest
-    logical :: converged, follows, accurate
+    logical :: follows
 
     if (allocated(self%explicit)) then
       call advance_explicit(self%explicit, model, event, self%now)
@@ -95,6 +94,32 @@ contains
     end if
     follows = is_error_controlled(self%stepping%adapt) .and. .not. model%setup%has_static
     if (follows .and. self%now%step == 0) call self%controller%begin(self%stepping, event)
+    call find_step(self, model, event, follows, step, shortest, error)
+    if (allocated(error)) return
+    if (follows) self%errs = self%error > shortening_error .and. step <= shortest*(1 + 1.0e-9_wp)
+    if (abs(self%trial%time - event) <= 1.0e-9_wp*step) self%trial%time = event
+    call accept_step(self, model, step)
+    if (model%setup%has_static .and. self%now%plies%softened) call equilibrate(self, model, error)
+  end subroutine advance
+
+  !> Tries steps, each shorter than the one before, until one has converged with an error within the tolerance.
+  subroutine find_step(self, model, event, follows, step, shortest, error)
+    !> The time stepper
+    class(time_stepper_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> Time, or load factor, not to be passed
+    real(wp), intent(in) :: event
+    !> True: the length follows the error
+    logical, intent(in) :: follows
+    !> Step found
+    real(wp), intent(out) :: step
+    !> Shortest step that the error may ask for, where the length follows it
+    real(wp), intent(out) :: shortest
+    !> Set if the smallest step failed
+    type(error_t), allocatable, intent(inout) :: error
+    logical :: converged, accurate
+
+    shortest = 0
     do
       if (model%setup%has_static) then
         call try_load(self, model, event, step, converged, error)
@@ -102,19 +127,16 @@ contains
         call try_step(self, model, event, step, converged, error)
       end if
       if (allocated(error)) return
-      if (converged .and. follows) then
-        call judge_error(self, model, step, shortest, accurate)
-        if (.not. accurate) cycle
+      if (converged) then
+        accurate = .true.
+        if (follows) call assess_error(self, model, step, shortest, accurate)
+        if (accurate) return
+      else
+        call reject_step(self, model, step, error)
+        if (allocated(error)) return
       end if
-      if (converged) exit
-      call reject_step(self, model, step, error)
-      if (allocated(error)) return
     end do
-    if (follows) self%errs = self%error > shortening_error .and. step <= shortest*(1 + 1.0e-9_wp)
-    if (abs(self%trial%time - event) <= 1.0e-9_wp*step) self%trial%time = event
-    call accept_step(self, model, step)
-    if (model%setup%has_static .and. self%now%plies%softened) call equilibrate(self, model, error)
-  end subroutine advance
+  end subroutine find_step
 
   !> Brings a plate whose plies have failed under a load back into equilibrium with it, until no more of them fail.
   subroutine equilibrate(self, model, error)
@@ -169,6 +191,6 @@ contains
     call self%controller%visit(archive)
     if (allocated(self%step_error%share)) call self%step_error%visit(archive, model)
     call archive%item('stepper/rejected', self%rejected)
-    call visit_operator(self%operator, archive, model, error)
+    call self%operator%visit(archive, model, error)
   end subroutine visit
 end module time_stepping

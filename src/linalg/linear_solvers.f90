@@ -37,8 +37,8 @@ module linear_solvers
     type(communicator_t), private :: communicator
     !> Number of rows that this rank owns, and of all
     integer, private :: rows = 0, total_rows = 0
-    !> The matrix
-    type(petsc_matrix_t), private :: matrix
+    !> The matrix, which callers assemble
+    type(petsc_matrix_t) :: matrix
     !> Its factor as a rule, and that of a matrix that broke its promise, set up when that happens
     type(petsc_factor_t), private :: factors(2)
     !> Which of them is in force
@@ -52,12 +52,6 @@ module linear_solvers
   contains
     !> Sets the pattern of the matrix, anew if there was one; called by all ranks together.
     procedure :: define
-    !> Zeroes the values of the matrix.
-    procedure :: clear
-    !> Adds an element's matrix; each element is added by one rank only.
-    procedure :: add
-    !> Brings the matrix together; called by all ranks after the last `add`.
-    procedure :: finish_assembly
     !> Factors the matrix as it was assembled last; called by all ranks together. If it fails there is no factor.
     procedure :: factorize
     !> Solves for one right-hand side with the factor; called by all ranks together.
@@ -109,33 +103,6 @@ contains
     if (.not. allocated(error)) call self%set_up_factor(definite, positive_definite, error)
     call communicator%agree(error)
   end subroutine define
-
-  !> Zeroes the values of the matrix.
-  subroutine clear(self)
-    class(linear_solver_t), intent(inout) :: self
-
-    call self%matrix%clear()
-  end subroutine clear
-
-  !> Adds an element's matrix; each element is added by one rank only.
-  subroutine add(self, equations, values)
-    class(linear_solver_t), intent(inout) :: self
-    !> Equation of each row of the element's matrix, owned by any rank; -1 for a row left out
-    integer, intent(in) :: equations(:)
-    !> The symmetric matrix, shape (equations, equations)
-    real(wp), intent(in) :: values(:, :)
-
-    call self%matrix%add(equations, values)
-  end subroutine add
-
-  !> Brings the matrix together; called by all ranks after the last `add`.
-  subroutine finish_assembly(self, error)
-    class(linear_solver_t), intent(inout) :: self
-    !> Raised on all ranks when an entry falls outside the pattern
-    type(error_t), allocatable, intent(inout) :: error
-
-    call self%matrix%finish_assembly(error)
-  end subroutine finish_assembly
 
   !> Chooses the package of a factor.
   subroutine set_up_factor(self, number, positive_definite, error)

@@ -179,10 +179,10 @@ contains
 
     if (any(numbering%leader(points) > 0)) then
       signs = [(merge(numbering%signs(:, points(a)), 1.0_wp, numbering%leader(points(a)) > 0), a=1, size(points))]
-      call solver%add(reshape(numbering%equation(:, points), [5*size(points)]), &
+      call solver%matrix%add(reshape(numbering%equation(:, points), [5*size(points)]), &
                       matrix*spread(signs, 1, size(signs))*spread(signs, 2, size(signs)))
     else
-      call solver%add(reshape(numbering%equation(:, points), [5*size(points)]), matrix)
+      call solver%matrix%add(reshape(numbering%equation(:, points), [5*size(points)]), matrix)
     end if
     do a = 1, size(points)
       do component = 1, 5
@@ -207,7 +207,7 @@ contains
       if (model%zone(i) == 0 .and. .not. any(abs(added(:, i)) > 0)) cycle
       do component = 1, 3
         if (numbering%equation(component, i) >= 0) &
-          call solver%add([numbering%equation(component, i)], reshape([added(component, i)], [1, 1]))
+          call solver%matrix%add([numbering%equation(component, i)], reshape([added(component, i)], [1, 1]))
       end do
     end do
   end subroutine assemble_diagonal
@@ -233,7 +233,7 @@ contains
       end do
       if (numbering%leader(i) > 0) coupling = coupling*spread(numbering%signs(:3, i), 1, 3) &
                                                  *spread(numbering%signs(:3, i), 2, 3)
-      call solver%add(numbering%equation(1:3, i), coupling)
+      call solver%matrix%add(numbering%equation(1:3, i), coupling)
     end do
   end subroutine assemble_tangents
 

@@ -3,7 +3,9 @@
 !> its age changes the number of iterations, never the converged solution.
 module tangent_operators
   use kinds, only: wp
+  use archives, only: archive_t
   use errors, only: error_t
+  use section_stiffnesses, only: visit_stiffness
   use timers, only: timer_set_t
   use krylov_solvers, only: krylov_solver_t
   use linear_solvers, only: linear_solver_t
@@ -62,6 +64,8 @@ module tangent_operators
     procedure :: has_outdated_constraints
     !> Factors what has been assembled.
     procedure :: factorize
+    !> Saves or loads what the factor was computed from.
+    procedure :: visit
     !> Frees the factors.
     procedure :: release
   end type tangent_operator_t
@@ -119,7 +123,7 @@ contains
     self%stiffness_factor = stiffness_factor
     self%mass_factor = mass_factor
     call self%timers%start('assembly')
-    call self%solver%clear()
+    call self%solver%matrix%clear()
     call assemble_elements(model, stiffness, self%numbering, displacement, stiffness_factor, mass_factor, self%solver, &
                            self%diagonal)
     if (allocated(interfaces%cohesive%tangents)) &
@@ -139,7 +143,7 @@ contains
     type(error_t), allocatable, intent(inout) :: error
 
     if (model%has_bonds) call assemble_diagonal(model, self%numbering, self%added, self%solver)
-    call self%solver%finish_assembly(error)
+    call self%solver%matrix%finish_assembly(error)
     call self%timers%start('factorization')
     if (.not. allocated(error)) call self%solver%factorize(error)
     call self%timers%stop('factorization')
@@ -257,6 +261,46 @@ contains
     call solve_field(self, model, residual, rows, correction, error)
     self%solves = self%solves + 1
   end subroutine correct
+
+  !> Saves the data that the factor was computed from, or loads them and factorizes: the factor affects the iterations.
+  subroutine visit(self, archive, model, error)
+    !> The operator
+    class(tangent_operator_t), intent(inout) :: self
+    !> The checkpoint
+    class(archive_t), intent(inout) :: archive
+    type(model_t), intent(in) :: model
+    !> Set if the factorization fails
+    type(error_t), allocatable, intent(out) :: error
+
+    call archive%item('operator/ready', self%ready)
+    call archive%item('operator/stiffness_factor', self%stiffness_factor)
+    call archive%item('operator/mass_factor', self%mass_factor)
+    associate (share => model%distribution)
+      call archive%field('operator/displacement', share%points(:share%owned), model%mesh%points(), self%displacement)
+      if (model%has_bonds) &
+        call archive%field('operator/added', share%points(:share%owned), model%mesh%points(), self%added)
+    end associate
+    if (model%setup%has_ply_damage) call visit_stiffness(archive, 'operator/stiffness', model, self%stiffness)
+    if (archive%loading .and. self%ready) call refactorize(self, model, error)
+    call archive%item('operator/factorizations', self%factorizations)
+    call archive%item('operator/solves', self%solves)
+  end subroutine visit
+
+  !> Factorizes from the data loaded.
+  subroutine refactorize(self, model, error)
+    !> The operator
+    class(tangent_operator_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> Set if the factorization fails
+    type(error_t), allocatable, intent(inout) :: error
+
+    call model%halo%update(self%displacement)
+    self%deflection = model%deflection(self%displacement)
+    call self%solver%matrix%clear()
+    call assemble_elements(model, self%stiffness, self%numbering, self%displacement, self%stiffness_factor, &
+                           self%mass_factor, self%solver, self%diagonal)
+    call self%factorize(model, error)
+  end subroutine refactorize
 
   !> Frees the factors.
   subroutine release(self)

@@ -100,11 +100,11 @@ contains
     type(error_t), allocatable, intent(inout) :: error
     integer :: e
 
-    call solver%clear()
+    call solver%matrix%clear()
     do e = 1 + communicator%rank, elements, communicator%size
-      call solver%add(equations_of(e), scale*element_matrix(e, shift))
+      call solver%matrix%add(equations_of(e), scale*element_matrix(e, shift))
     end do
-    call solver%finish_assembly(error)
+    call solver%matrix%finish_assembly(error)
   end subroutine assemble
 
   !> This rank's part of a right-hand side.
