@@ -105,7 +105,7 @@ def elastic_faults(implam, folder):
             case = Path(folder) / f"elastic_{name}_{steps}".replace(" ", "_")
             error, rows = check(implam, case, LOADS[name].format("ramp"), ("nothing",), steps)
             work.append(rows["work_external"][-1])
-            lost = max(map(abs, rows["energy_algorithmic"]))/work[-1]
+            lost = max(map(abs, rows["energy_algorithmic"]))/abs(work[-1])
             if max(error, lost) > CLOSES:
                 faults.append(f"{name} in {steps} steps: {lost:.2g} of the work is lost in an elastic plate")
         if abs(work[0]/work[1] - 1) > CLOSES:
