@@ -26,7 +26,8 @@ DECKS = sorted((ROOT / "input" / ("" if ALL else "small")).rglob("*.nml"), key=l
 COARSE = {"t700_m21_cai": ["mesh%elements=20,30", "mesh%cell=5e-3", "mesh%patch=5e-3", "time%end=1e-3"],
           "t700_m21_25J": ["mesh%elements=16,18", "mesh%cell=5e-3", "mesh%patch=5e-3", "time%end=1e-3"],
           "t700_m21": ["mesh%elements=16,18", "mesh%cell=5e-3", "mesh%patch=5e-3"],
-          "im7_8552": ["time%end=1.5e-3"],
+          "im7_8552": ["mesh%elements=10,12", "mesh%core=36e-3,36e-3", "mesh%cell=9e-3", "mesh%patch=9e-3",
+                       "time%end=1e-3"],
           "crossply_1.25mm": ["mesh%elements=16,16", "mesh%patch=6.25e-3"]}
 STEPS = 3
 

@@ -67,7 +67,10 @@ contains
     call json%put('largest_deflection', record%deflection)
     call json%put('largest_deflection_at', shown_time(record%deflection_time))
     if (record%compression%strength > 0) call put_compression(json, record%compression, deck%gauges)
-    if (deck%has_impactor .and. deck%has_static) call json%put('peak_force', record%peak_force)
+    if (deck%has_impactor .and. deck%has_static) then
+      call json%put('peak_force', record%peak_force)
+      call json%put('peak_force_at', shown_time(record%peak_time))
+    end if
     if (record%scaled_energy > 0) call json%put('scaled_kinetic_share', record%scaled_share())
     call put_errors(json, errors)
     call put_energies(json, deck, stepper%now)

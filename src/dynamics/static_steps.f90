@@ -233,7 +233,7 @@ contains
     real(wp), intent(in) :: energy
     !> State at this load
     type(state_t), intent(inout) :: new
-    real(wp) :: sums(5), faces, fracture, heat, damage
+    real(wp) :: sums(6), faces, fracture, heat, damage, excess
     real(wp), allocatable :: change(:, :), loads(:, :), loads_before(:, :)
 
     allocate (loads, loads_before, mold=old%motion%internal)
@@ -249,6 +249,7 @@ contains
       sums(4) = (faces + new%interfaces%contact_work(model, new%motion%displacement, change))/2
       sums(5) = faces/2
     end if
+    sums(6) = model%product(change, loads - loads_before)/2
     ! Failed plies and a changed contact area leave the previous state out of equilibrium; the energy released would
     ! become kinetic.
     call add_impactor_force(model, old%force, loads_before)
@@ -266,12 +267,32 @@ contains
     heat = new%interfaces%friction_heat(model, old%interfaces)
     new%ledger%friction = old%ledger%friction + heat
     if (model%setup%has_impactor) call move_slow_impactor(model, old, new)
+    sums(6) = sums(6) + (new%force - old%force)*(new%patch_mean - old%patch_mean)/2
     call new%plies%book(model, damage)
     new%ledger%ply_damage = old%ledger%ply_damage + damage
     new%ledger%delamination = old%ledger%delamination + fracture
-    new%ledger%algorithmic = old%ledger%algorithmic - (sums(1) - old%ledger%strain - sums(2)) + sums(5) - fracture &
-                             - heat - damage
+    excess = sums(1) - old%ledger%strain - sums(2)
+    if (.not. allocated(model%nose) .and. fracture + heat + new%ledger%ply_damage <= 0) &
+      call correct_work(excess, sums(6), new%ledger%external_work)
+    new%ledger%algorithmic = old%ledger%algorithmic - excess + sums(5) - fracture - heat - damage
   end subroutine finish
+
+  !> Where nothing dissipates, the strain energy is the work of the loads along the equilibrium path, which the
+  !> trapezoidal rule over a step only approximates. A load that grows or falls steadily does work between those of its
+  !> values before and after the step. Outside these bounds the plate has jumped to another equilibrium, and the energy
+  !> that it would have as kinetic energy stays dissipated by the load step.
+  pure subroutine correct_work(excess, margin, work)
+    !> Change of the strain energy less its trapezoidal rule; on return what the work does not account for
+    real(wp), intent(inout) :: excess
+    !> Half the product of the changes of load and displacement
+    real(wp), intent(in) :: margin
+    !> Work of the loads by the trapezoidal rule; receives its error
+    real(wp), intent(inout) :: work
+
+    if (abs(excess) > abs(margin)) return
+    work = work + excess
+    excess = 0
+  end subroutine correct_work
 
   !> Loads of an accepted state without the impactor's force. Before the first step only lines that hold the plate act.
   subroutine loads_carried(model, state, loads)

@@ -14,6 +14,7 @@ from implam_post.io.errors import FileError, ImplamError
 from implam_post.io.fields import Fields, opened, read_fields
 from implam_post.io.files import read_text
 from implam_post.io.history import History, read_history
+from implam_post.io.summary_shape import misshapen_member
 from implam_post.io.units import unit_of
 
 if TYPE_CHECKING:
@@ -190,4 +191,6 @@ def read_summary(path: Path) -> dict[str, Any]:
         raise FileError(f"{path} isn't a summary written by implam ({error}).") from None
     if not isinstance(summary, dict) or not {"case", "exit", "plies", "provenance"} <= summary.keys():
         raise FileError(f"{path} isn't a summary written by implam.")
+    if wrong := misshapen_member(summary):
+        raise FileError(f"{path} isn't a summary written by implam, or it is damaged ({wrong}).")
     return summary

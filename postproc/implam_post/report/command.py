@@ -6,14 +6,13 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from jinja2 import UndefinedError
-
 from implam_post.io.damage_resistance import DIRECTIONS, extent, kinds_of_damage
 from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, run
 from implam_post.io.files import write_text
 from implam_post.io.history import ENERGY_NAMES, UNACCOUNTED
 from implam_post.io.run import SUMMARY, Run, material_of, open_run
 from implam_post.io.run_figures import Measured, corner_of, resistance
+from implam_post.io.summary_shape import missing_member
 from implam_post.plot.look import Look
 from implam_post.report.page import image, render, rounded
 from implam_post.report.pictures import history_pictures, layup_figure, map_pictures, plan_figure
@@ -220,13 +219,9 @@ def write_report(path: Path, output: Path | None) -> Path:
         raise FileError(f"{path} isn't NAME{SUMMARY}; a report needs that file, or the folder that holds it.")
     run_shown = open_run(path)
     written = (output or path.parent) / f"{run_shown.name}_report.html"
-    try:
-        text = report(run_shown)
-    except KeyError as error:
-        raise FileError(f"the summary {path} lacks {error}: another version of implam wrote it.") from None
-    except (TypeError, ValueError, IndexError, AttributeError, UndefinedError) as error:
-        raise FileError(f"{path} isn't a summary written by implam, or it is damaged ({error}).") from None
-    write_text(written, text)
+    if missing := missing_member(run_shown.summary):
+        raise FileError(f"the summary {path} lacks {missing!r}: another version of implam wrote it.")
+    write_text(written, report(run_shown))
     return written
 
 

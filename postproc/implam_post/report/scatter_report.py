@@ -8,6 +8,7 @@ from typing import Any
 
 from implam_post.io.errors import FileError
 from implam_post.io.files import read_text, write_text
+from implam_post.io.summary_shape import OrNull, misshapen
 from implam_post.plot.look import Look
 from implam_post.report.page import image_of, render
 from implam_post.sweep.scatter_plots import BAND, SHARE
@@ -15,20 +16,43 @@ from implam_post.sweep.scatter_results import STATISTICS
 from implam_post.sweep.scatter_statistics import Difference, Spread
 from implam_post.sweep.scatter_text import HEAD, PAIRED, SHOWN, difference_rows, spread_rows
 
+_FIGURE = OrNull(float)
+_STATISTICS = {
+    "title": str, "system": str, "sweep": str, "notes": [str],
+    "groups": [{"name": str, "ended": int, "runs": int, "seconds": float}],
+    "statistics": [{"group": str, "figure": str, "dimension": str, "runs": int, "mean": _FIGURE, "deviation": _FIGURE,
+                    "low_5": _FIGURE, "high_95": _FIGURE}],
+    "inputs": [{"input": str, "kind": str, "variation": float, "source": str}], "variants": [list]}
+_DIFFERENCE = {"group": str, "figure": str, "pairs": int, "first": _FIGURE, "difference": _FIGURE,
+               "error_of_mean": _FIGURE, "within": int}
+_MEASURED = {"group": str, "figure": str, "measured": _FIGURE, "aim": _FIGURE, "mean": _FIGURE,
+             "error_of_mean": _FIGURE, "within": int}
+
 
 def write_page(folder: Path, output: Path | None) -> Path:
     """Write the page of a sweep into its folder or another one, and return its path."""
     path = folder / STATISTICS
     try:
         content = json.loads(read_text(path, "the statistics"))
-        text = _page(content, folder)
-    except (ValueError, KeyError, TypeError, AttributeError) as error:
+    except ValueError as error:
         raise FileError(f"{path} isn't written by implam-sweep, or is damaged ({error}).") from None
+    if wrong := misshapen(content, _STATISTICS, "") or _misshapen_tables(content):
+        raise FileError(f"{path} isn't written by implam-sweep, or is damaged ({wrong.removeprefix('.')}).")
+    try:
+        text = _page(content, folder)
     except OSError as error:
         raise FileError(f"a picture of {folder} cannot be read ({error}).") from None
     written = (output or folder) / f"{folder.absolute().name}_report.html"
     write_text(written, text)
     return written
+
+
+def _misshapen_tables(content: Mapping[str, Any]) -> str:
+    """Return where tables that not every sweep has are not of their kind; empty if they are."""
+    if not content["groups"]:
+        return "groups"
+    return (misshapen(content.get("differences", []), [_DIFFERENCE], "differences")
+            or misshapen(content.get("measured", []), [_MEASURED], "measured"))
 
 
 def _page(content: Mapping[str, Any], folder: Path) -> str:

@@ -145,12 +145,12 @@ class ReportTest(unittest.TestCase):
         self.assertNotIn("contact force against time", page.pictures)
 
     def test_impactor_of_given_travel(self) -> None:
-        """In load steps the peak force has no time, and the page has it nevertheless."""
+        """In load steps the peak force is at a load factor, which the page gives without a unit."""
         (self.folder / "pressed.nml").write_text(PRESSED, encoding="utf-8")
         run = run_deck(self.folder / "pressed.nml", output=self.folder / "pressed", program=str(implam())).wait(100)
-        self.assertNotIn("peak_force_at", run.summary)
+        self.assertEqual(run.summary["peak_force_at"], 1)
         page = self.page(self.folder / "pressed" / "pressed_summary.json")
-        self.assertIn("peak force", page.cells)
+        self.assertIn("at 1", page.cells[page.cells.index("peak force") + 2])
         self.assertIn("contact force against time", page.pictures)
 
     def test_folders_and_faults(self) -> None:

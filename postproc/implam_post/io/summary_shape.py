@@ -1,0 +1,82 @@
+"""What a summary written by implam holds: the kind of each member, checked when the file is read.
+
+A kind is a type, a mapping of members, a list of one kind, a pair of that kind and a length, or one of these or
+null."""
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+
+class OrNull:
+    """A member that may be null, as what a run does not have."""
+
+    def __init__(self, kind: object) -> None:
+        """Take the kind of what is there otherwise."""
+        self.kind = kind
+
+
+_FIGURE = OrNull(float)
+_EVENT = OrNull({"at": float})
+_INTERFACE = {"ply_above": int, "is_cohesive": bool, "area": float, "energy": float, "x": (float, 2), "y": (float, 2),
+              "onset": _EVENT, "first_growth": _EVENT, "threshold_force": _FIGURE, "border_reached": bool}
+_REQUIRED = {
+    "case": str, "title": str, "exit": {"kind": str, "message": str}, "accepted_steps": int, "plate_size": (float, 2),
+    "plies": [{"ply": int, "angle": float, "thickness": float}], "warnings": [{"text": str}], "costs": {},
+    "provenance": dict.fromkeys(("version", "commit", "compiler", "petsc_version", "deck"), str)
+    | {"ranks": object, "started": object}}
+_FIGURES = (
+    "time_reached", "load_factor_reached", "peak_force", "peak_force_at", "contacts", "contact_duration",
+    "contact_until", "dent_depth", "dent_indentation", "rebound_velocity", "impactor_velocity", "largest_deflection",
+    "largest_deflection_at", "energy_impact", "energy_absorbed", "work_external", "energy_impactor", "energy_kinetic",
+    "energy_strain", "energy_indentation", "energy_delamination", "energy_ply_damage", "energy_contact",
+    "energy_friction", "energy_layers", "energy_damping", "energy_algorithmic", "energy_error", "delaminated_area",
+    "projected_area", "threshold_force_at_starter", "fibre_failures", "matrix_cracks", "matrix_crushings")
+_POSSIBLE = dict.fromkeys(_FIGURES, _FIGURE) | {
+    "in_contact": bool, "interfaces": [_INTERFACE], "force_filter": {"frequency": float, "peak_force": float}}
+_POSSIBLE_OF_PLIES = dict.fromkeys(("fibre_failure_area", "matrix_crack_area", "matrix_crushing_area"), float)
+
+
+def missing_member(summary: Mapping[str, Any]) -> str:
+    """Return a member that every summary of this version has and this one lacks; empty if there is none."""
+    for name in _REQUIRED:
+        if name not in summary:
+            return name
+    ends = {"time_reached", "load_factor_reached"}
+    return "" if ends & summary.keys() else "time_reached"
+
+
+def misshapen_member(summary: Mapping[str, Any]) -> str:
+    """Return a member that is not of the kind that implam writes; empty if all are."""
+    for name, kind in (_REQUIRED | _POSSIBLE).items():
+        if name in summary and (wrong := misshapen(summary[name], kind, name)):
+            return wrong
+    if not summary.get("plies", [1]):
+        return "plies"
+    first = summary.get("plies", [{}])[0]
+    for place, ply in enumerate(summary.get("plies", [])):
+        for name, kind in _POSSIBLE_OF_PLIES.items():
+            if (name in ply) != (name in first) or (name in ply and misshapen(ply[name], kind, name)):
+                return f"plies[{place}].{name}"
+    return ""
+
+
+def misshapen(value: object, kind: Any, where: str) -> str:
+    """Return where a value is not of its kind; empty if it is. A number is finite, and no truth value is one."""
+    if isinstance(kind, OrNull):
+        return "" if value is None else misshapen(value, kind.kind, where)
+    if isinstance(kind, dict):
+        if not isinstance(value, dict):
+            return where
+        return next((wrong for name, inner in kind.items()
+                     if (wrong := misshapen(value[name], inner, f"{where}.{name}")
+                         if name in value else f"{where}.{name}")), "")
+    if isinstance(kind, (list, tuple)):
+        if not isinstance(value, list) or (isinstance(kind, tuple) and len(value) != kind[1]):
+            return where
+        return next((wrong for place, entry in enumerate(value)
+                     if (wrong := misshapen(entry, kind[0], f"{where}[{place}]"))), "")
+    if kind in (int, float):
+        is_number = isinstance(value, (int, kind)) and not isinstance(value, bool) and math.isfinite(value)
+        return "" if is_number else where
+    return "" if isinstance(value, kind) else where
