@@ -11,8 +11,8 @@ module deck_accuracy
   use mesh_deck, only: mesh_group, key_elements, key_patch, key_core, key_cell, key_grading, fill_mesh
   use mesh_parameters, only: symmetry_quarter
   use output_deck, only: output_group, key_fields_every
-  use pilot_impacts, only: pilot_t
-  use setup_pilots, only: setup_pilot_t, start_pilot, contact_end, largest_step, largest_cell
+  use elastic_impacts, only: elastic_impact_t
+  use setup_elastic_impacts, only: setup_elastic_impact_t, start_elastic_impact, contact_end, largest_step, largest_cell
   use setup_scales, only: setup_scales_t, scales_of, contact_side, has_impact_velocity
   use short_numbers, only: short_text
   use stepping_parameters, only: is_explicit, past_contact
@@ -95,7 +95,7 @@ contains
     call fill_mesh(deck%settings, deck%mesh)
   end subroutine choose_by_accuracy
 
-  !> Patch, end, step and mesh of an impact, by pilot calculations.
+  !> Patch, end, step and mesh of an impact, by preliminary elastic impacts.
   subroutine choose_for_impact(deck, scales, problems)
     !> The deck
     type(deck_t), intent(inout) :: deck
@@ -103,41 +103,41 @@ contains
     type(setup_scales_t), intent(in) :: scales
     !> Remarks are added
     type(problems_t), intent(inout) :: problems
-    type(setup_pilot_t) :: pilot
-    type(pilot_t) :: first
+    type(setup_elastic_impact_t) :: elastic
+    type(elastic_impact_t) :: first
     real(wp) :: end, step, bounds(2), error(2)
     logical :: follows
 
     bounds = share*deck%accuracy/100*[1.0_wp, history_over_peak]
     end = deck%settings%real_of(time_group, key_end)
-    pilot = start_pilot(deck%setup_t, scales)
-    first = contact_end(pilot, end)
+    elastic = start_elastic_impact(deck%setup_t, scales)
+    first = contact_end(elastic, end)
     if (.not. deck%mesh%patch > 0) then
       call choose_one(deck, mesh_group, key_patch, min(contact_side(deck%setup_t, first%indentation), &
                                                        minval(deck%plate%length)/4))
       deck%mesh%patch = deck%settings%real_of(mesh_group, key_patch)
       call append(deck%reasons, 'Patch '//short_text(deck%mesh%patch)//': the circle of contact at an indentation '// &
                   'of '//short_text(first%indentation)//', spread over the thickness.')
-      pilot = start_pilot(deck%setup_t, scales)
-      first = contact_end(pilot, end)
+      elastic = start_elastic_impact(deck%setup_t, scales)
+      first = contact_end(elastic, end)
     end if
     deck%stepping%time%follows_contact = is_explicit(deck%stepping) .and. .not. end > 0
     if (.not. end > 0) then
       call choose_one(deck, time_group, key_end, past_contact*first%last_contact)
       end = deck%settings%real_of(time_group, key_end)
       call append(deck%reasons, 'End '//short_text(end)//': the contact, '//to_text(first%contacts)// &
-                  ' time(s), is over at '//short_text(first%last_contact)//' in a pilot calculation by modes.')
+                  ' time(s), is over at '//short_text(first%last_contact)//' in a preliminary elastic impact by modes.')
     end if
     step = deck%settings%real_of(time_group, key_step)
     follows = .not. step > 0
     if (follows) then
-      call largest_step(pilot, end, bounds, step, error)
+      call largest_step(elastic, end, bounds, step, error)
       if (.not. is_explicit(deck%stepping)) call choose_step(deck, end, error(2), step)
     end if
     if (.not. is_explicit(deck%stepping)) call choose_integrator(deck)
     call choose_clocks(deck, step, end)
     if (deck%settings%is_given(mesh_group, key_elements)) return
-    call choose_elements(deck, largest_cell(pilot, step, min(end, past_contact*first%last_contact), bounds, &
+    call choose_elements(deck, largest_cell(elastic, step, min(end, past_contact*first%last_contact), bounds, &
                                             follows), scales, problems)
   end subroutine choose_for_impact
 
@@ -153,7 +153,7 @@ contains
     call choose_one(deck, time_group, key_step, step)
     step = deck%settings%real_of(time_group, key_step)
     call append(deck%reasons, 'Step '//short_text(step)//': '//to_text(ceiling(end/step))// &
-                ' steps; by pilot calculations it changes the force history by '//short_text(100*error)//' %.')
+                ' steps; by preliminary elastic impacts it changes the force history by '//short_text(100*error)//' %.')
   end subroutine choose_step
 
   !> Mesh, and in time the step, of a plate under pressure.
@@ -249,7 +249,7 @@ contains
     end do
   end function smallest_zone
 
-  !> The impactor's integrator: that of the pilot calculations, which bears long steps. gear4 would cut them.
+  !> The impactor's integrator: that of the preliminary elastic impacts, which bears long steps. gear4 would cut them.
   subroutine choose_integrator(deck)
     !> The deck
     type(deck_t), intent(inout) :: deck

@@ -12,9 +12,9 @@ module deck_central_differences
   use element_deck, only: key_mass
   use mesh_deck, only: mesh_group
   use output_deck, only: output_group, key_history_every
-  use pilot_impacts, only: pilot_t
+  use elastic_impacts, only: elastic_impact_t
   use plate_options, only: mass_lumped
-  use setup_pilots, only: contact_end, start_pilot
+  use setup_elastic_impacts, only: contact_end, start_elastic_impact
   use setup_scales, only: has_impact_velocity, scales_of, setup_scales_t
   use short_numbers, only: short_text
   use stepping_parameters, only: past_contact
@@ -60,7 +60,7 @@ contains
   end subroutine choose_for_central_differences
 
   !> End of the run: that of the contact of an undamaged plate, and some time. The contact of a damaged plate, which is
-  !> softer, lasts longer by as much as no pilot calculation knows; the run itself goes on until the impactor has left.
+  !> softer, lasts longer by as much as no preliminary elastic impact knows; the run itself goes on until the impactor has left.
   subroutine choose_end(deck, scales, problems)
     !> The deck
     type(deck_t), intent(inout) :: deck
@@ -68,7 +68,7 @@ contains
     type(setup_scales_t), intent(in) :: scales
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
-    type(pilot_t) :: pilot
+    type(elastic_impact_t) :: elastic
 
     deck%stepping%time%follows_contact = .true.
     if (deck%settings%is_known(time_group, key_end)) return
@@ -79,10 +79,10 @@ contains
                             'velocity.', 1)
       return
     end if
-    pilot = contact_end(start_pilot(deck%setup_t, scales), 0.0_wp)
-    call deck%settings%derive(time_group, key_end, short_text(past_contact*pilot%last_contact), .false.)
-    call append(deck%reasons, 'End '//short_text(past_contact*pilot%last_contact)//': the contact of an undamaged '// &
-                'plate is over at '//short_text(pilot%last_contact)//' in a pilot calculation by modes; while it '// &
+    elastic = contact_end(start_elastic_impact(deck%setup_t, scales), 0.0_wp)
+    call deck%settings%derive(time_group, key_end, short_text(past_contact*elastic%last_contact), .false.)
+    call append(deck%reasons, 'End '//short_text(past_contact*elastic%last_contact)//': the contact of an undamaged '// &
+                'plate is over at '//short_text(elastic%last_contact)//' in a preliminary elastic impact by modes; while it '// &
                 'lasts longer the run goes on.')
   end subroutine choose_end
 
@@ -107,7 +107,7 @@ contains
     call deck%settings%derive(time_group, key_mass_scaling, short_text(scaling), .false.)
   end subroutine choose_scaling
 
-  !> Finds the stable step, which pilot calculations, costs and the number of rows go by; the run finds its own.
+  !> Finds the stable step, which preliminary elastic impacts, costs and the number of rows go by; the run finds its own.
   subroutine find_stable_step(deck, problems)
     !> The deck, its mesh checked; receives the step
     type(deck_t), intent(inout) :: deck

@@ -6,7 +6,7 @@ module deck_contents
   use stepping_parameters, only: stepping_t
   use linear_solver_parameters, only: linear_solver_parameters_t
   use output_parameters, only: output_t
-  use setup_pilots, only: expected_scales_t
+  use setup_elastic_impacts, only: expected_scales_t
   use setups, only: setup_t
   use text, only: line_t
   implicit none

@@ -14,7 +14,8 @@ from pathlib import Path
 FOLDERS = ("src", "tests", "cmake", "doc", "postproc", "input", "packaging", ".ci")
 # Texts in the root.
 FILES = ("README.md", "CHANGELOG.md", "CITATION.cff", "CMakeLists.txt", "CMakePresets.json", "setup.sh")
-SUFFIXES = (".f90", ".pf", ".c", ".in", ".py", ".toml", ".nml", ".md", ".txt", ".cmake", ".j2", ".sh", ".def", ".ipynb", "")
+SUFFIXES = (".f90", ".pf", ".c", ".in", ".py", ".toml", ".nml", ".md", ".txt", ".cmake", ".j2", ".sh", ".def", ".ipynb",
+            "")  # fmt: skip
 CODE = (".f90", ".pf", ".py")
 # Folders without text of the project, and this checker with its test.
 SKIPPED = re.compile(r"(?:^|/)(?:build|__pycache__|\.venv|[^/]+\.egg-info)/|^tests/lint/(?:test_)?check_words\.")
