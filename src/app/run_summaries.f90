@@ -19,11 +19,11 @@ module run_summaries
   private
   public :: summarise
 
-  !> Why errors are not known, or not as was asked.
+  !> Why errors are not known, or not as requested.
   character(len=*), parameter :: &
     unasked = 'not known; a coarser run, about an eighth of the work, gives them with &case error_estimate=.true.', &
-    cut = 'not known; the coarser run that gives them has not come to its end', &
-    elastic_only = 'those of the preliminary elastic impact; the coarser run that gives more accurate ones has not come to its end'
+    cut = 'not known; the coarser run that gives them is not complete', &
+    elastic_only = 'those of the preliminary elastic impact; the coarser run for more accurate ones is not complete'
 
 contains
 
@@ -33,7 +33,7 @@ contains
     !> The deck
     type(deck_t), intent(in) :: deck
     type(model_t), intent(in) :: model
-    !> What the run has stepped with
+    !> The time stepper
     type(time_stepper_t), intent(in) :: stepper
     !> What it remembers
     type(run_record_t), intent(in) :: record
@@ -45,7 +45,7 @@ contains
     character(len=*), intent(in) :: path
     !> The log
     type(log_t), intent(inout) :: log
-    !> What ended the run before its time; set, if nothing did, if the summary cannot be written
+    !> Reason of a premature end; otherwise set if the summary cannot be written
     type(error_t), allocatable, intent(inout) :: error
     type(run_figures_t) :: figures
     type(run_errors_t) :: errors

@@ -29,11 +29,11 @@ module case_deck
     'case | strict | logical | 1 | - | .false. | .true. .false. | &
       &Whether a run ends with exit code 3 where it passes the model''s limits, instead of a warning.', &
     'case | error_estimate | logical | 1 | - | none | .true. .false. | &
-      &Whether a coarser run, an eighth of the work, gives errors. Left out: with accuracy, unless the elastic impact does.', &
+      &Whether a coarser run, an eighth of the work, gives errors. Default: with accuracy, if no elastic estimate applies.', &
     'case | refine | integer | 1 | - | 0 | >= 0, <= 4 | &
       &Times that elements and steps are halved; the results are then those of NAME_finer1 and so on.']
 
-  !> Errors of the peak force that the names of `accuracy` stand for, %.
+  !> Permitted errors of the peak force for each `accuracy`, %.
   real(wp), parameter :: draft_error = 5, standard_error = 1, reference_error = 0.2_wp
 
 contains
@@ -73,7 +73,7 @@ contains
     if (settings%is_given(group, key_error_estimate)) needs_coarse_run = settings%logical_of(group, key_error_estimate)
   end function needs_coarse_run
 
-  !> What the case claims of its results.
+  !> Accuracy that the case requests.
   pure subroutine fill_claims(settings, accuracy, units, strict, refine)
     !> Keys in effect
     type(settings_t), intent(in) :: settings

@@ -13,7 +13,7 @@ module grouped_messages
 
 contains
 
-  !> A message without its numbers: what is alike in messages that are reported as one.
+  !> A message without its numbers: the common part of messages that are reported as one.
   pure function skeleton(message) result(bare)
     !> The message
     character(len=*), intent(in) :: message

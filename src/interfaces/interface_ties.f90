@@ -9,8 +9,9 @@ module interface_ties
   private
   public :: interface_ties_t, create_interface_ties, tie_stiffness
 
-  !> What acts on the jumps of a point: nothing, ties that hold them exactly, penalty ties, contact, a cohesive law.
-  integer, parameter, public :: connection_none = 0, connection_exact = 1, connection_penalty = 2, connection_contact = 3, connection_cohesive = 4
+  !> Connections of a point: none, exact ties, penalty ties, contact, a cohesive law.
+  integer, parameter, public :: connection_none = 0, connection_exact = 1, connection_penalty = 2, &
+                                connection_contact = 3, connection_cohesive = 4
 
   !> Bonds of all interfaces.
   type :: interface_ties_t
@@ -151,7 +152,8 @@ contains
     penetration = 0
     if (.not. model%map%layered) return
     do i = 1, model%distribution%owned
-      if (self%free(i) .or. self%connection(model, i) == connection_cohesive) penetration = max(penetration, -displacement(3, i))
+      if (self%free(i) .or. self%connection(model, i) == connection_cohesive) &
+        penetration = max(penetration, -displacement(3, i))
     end do
     call model%communicator%maximum(penetration)
   end function penetration

@@ -1,5 +1,5 @@
-!> A preliminary elastic impact: the impactor against the modes of the plate, step by step as the run will take them. In
-!> milliseconds it gives force, duration and contacts to expect, and what a step or mesh is worth.
+!> A preliminary elastic impact: the impactor coupled to the modes of the plate, with the steps of the run. In
+!> milliseconds it gives force, duration and number of contacts, and the errors of step and mesh.
 module elastic_impacts
   use impact_parameters, only: impactor_parameters_t, indentation_law_t
   use kinds, only: wp
@@ -11,7 +11,7 @@ module elastic_impacts
   private
   public :: elastic_impact_t, run_elastic_impact, difference, bound_of_difference, difference_at_peak, figures_of
 
-  !> What a preliminary elastic impact found.
+  !> Results of a preliminary elastic impact.
   type :: elastic_impact_t
     !> Step
     real(wp) :: step = 0
@@ -31,11 +31,11 @@ module elastic_impacts
     logical :: complete = .false.
   end type elastic_impact_t
 
-  !> Part of the largest force that counts as contact.
+  !> Fraction of the largest force that counts as contact.
   real(wp), parameter :: contact_part = 0.01_wp
   !> A contact that ended is taken to be the last if none follows for as long as it took up to then.
   real(wp), parameter :: waiting = 2
-  !> Part of the largest force from which on that of a contact is like it.
+  !> Fraction of the largest force above which a contact is compared with it.
   real(wp), parameter :: like_peaks = 0.9_wp
   !> Halvings and Newton steps for the force; Newton needs five.
   integer, parameter :: max_iterations = 60
@@ -136,9 +136,8 @@ contains
     force = next
   end subroutine find_force
 
-  !> What a summary of a run reports, in its order: largest force, its time, time in contact, largest deflection,
-  !> velocity
-  !> of the impactor at the end.
+  !> Results in the order of the summary: largest force, its time, time in contact, largest deflection, velocity of the
+  !> impactor at the end.
   pure function figures_of(elastic) result(figures)
     !> The elastic impact
     type(elastic_impact_t), intent(in) :: elastic
@@ -148,7 +147,7 @@ contains
     figures = [elastic%peak, elastic%peak_time, elastic%duration, elastic%deflection, elastic%velocity]
   end function figures_of
 
-  !> What two elastic impacts differ by: largest force, and the whole history in the mean of squares, relative to the finer one.
+  !> Difference of two elastic impacts: largest force, and root mean square of the history, relative to the finer one.
   pure function difference(coarse, fine, ratio) result(relative)
     !> The elastic impact with the longer steps
     type(elastic_impact_t), intent(in) :: coarse
@@ -199,8 +198,8 @@ contains
     end do
   end function bound_of_difference
 
-  !> What two elastic impacts differ by around the largest force of the finer one, in the mean of squares, as a force. In a long
-  !> contact the errors of ripples at that very instant may be nil by chance; those beside it count.
+  !> Root mean square difference of two elastic impacts around the largest force of the finer one, as a force. In a long
+  !> contact the error at the instant of the peak may vanish by chance; those around it count.
   pure real(wp) function difference_at_peak(coarse, fine, ratio, beside) result(force)
     !> The elastic impact with the longer steps
     type(elastic_impact_t), intent(in) :: coarse

@@ -1,18 +1,19 @@
-!> What a step and a mesh are worth for a setup, by preliminary elastic impacts: the largest step and the largest elements that
-!> keep peak and history of the force within an error.
+!> Errors of step and mesh for a setup, by preliminary elastic impacts: the largest step and elements for a permitted
+!> error of peak force and history.
 module setup_elastic_impacts
   use kinds, only: wp
   use mathematical_constants, only: pi
   use modal_plates, only: modal_plate_t, reduced
-  use elastic_impacts, only: elastic_impact_t, run_elastic_impact, difference, bound_of_difference, difference_at_peak, &
-                           figures_of
+  use elastic_impacts, only: elastic_impact_t, run_elastic_impact, difference, bound_of_difference, &
+                             difference_at_peak, figures_of
   use setup_scales, only: setup_scales_t, plate_modes, contact_side
   use setups, only: setup_t
   implicit none
   private
-  public :: setup_elastic_impact_t, expected_scales_t, start_elastic_impact, contact_end, largest_step, largest_cell, expected_scales_of
+  public :: setup_elastic_impact_t, expected_scales_t, start_elastic_impact, contact_end, largest_step, largest_cell, &
+            expected_scales_of
 
-  !> A setup made ready for preliminary elastic impacts.
+  !> A setup prepared for preliminary elastic impacts.
   type :: setup_elastic_impact_t
     !> The setup
     type(setup_t) :: setup
@@ -22,11 +23,11 @@ module setup_elastic_impacts
     type(modal_plate_t) :: plate
   end type setup_elastic_impact_t
 
-  !> What a run with the mesh and step of the deck is to show.
+  !> Expected results of a run with the mesh and step of the deck.
   type :: expected_scales_t
     !> Scales of the setup
     type(setup_scales_t) :: scales
-    !> True: there is an impact to look at, and the rest holds
+    !> True: there is an impact, and the other components are valid
     logical :: of_impact = .false.
     !> Largest force, indentation and deflection
     real(wp) :: force = 0, indentation = 0, deflection = 0
@@ -42,21 +43,22 @@ module setup_elastic_impacts
     !> not
     !> known
     real(wp) :: figure_error(5) = -1
-    !> Side of the area that carries the contact force, and what a larger patch changes of peak and history
+    !> Side of the area that carries the contact force, and effect of a larger patch on peak and history
     real(wp) :: contact_side = 0, patch_error(2) = -1
   end type expected_scales_t
 
-  !> Modes are listed up to this part of the inverse of a step; beyond, a step follows none and they act by stiffness.
+  !> Modes are listed up to this fraction of the inverse of a step; higher ones are not resolved and act by their
+  !> stiffness.
   real(wp), parameter :: followed = 5
   !> Modes with ten periods in the rise of first contact follow the force without delay. A finer step that followed
   !> more of them found errors other by less than 1 % in the decks of `input/`, and the same forces.
   real(wp), parameter :: excited = 60
-  !> Steps of the first elastic impact in one contact time. Those of the finest are this over the root of the error allowed: the
-  !> method is of second order, and a step of a tenth of the contact time is about 1 % off.
+  !> Steps of the first elastic impact in one contact time. Those of the finest are this over the root of the permitted
+  !> error: the method is of second order, and the error of a step of a tenth of the contact time is about 1 %.
   real(wp), parameter :: first_steps = 2, fine_steps = 4.5_wp
   !> Steps in one contact time up to which modes are kept at hand.
   real(wp), parameter :: max_fine = 128
-  !> Most steps of a elastic impact: they take a tenth of a second, and a run of as many hours.
+  !> Most steps of an elastic impact: they take a tenth of a second, and a run of as many hours.
   integer, parameter :: max_steps = 262144
   !> Steps that a contact takes at least.
   integer, parameter :: min_steps = 24
@@ -66,11 +68,11 @@ module setup_elastic_impacts
   real(wp), parameter :: wave_elements = 4.5_wp, wave_power = 1/3.6_wp
   !> The fewest elements in a wave that this holds for.
   real(wp), parameter :: fewest_elements = 3.1_wp
-  !> Relative rise of a mode's frequency on elements of side e, (kappa e)**4 times this, kappa its wave number. Settled
-  !> by `tests/bench/elastic_models.py`.
+  !> Relative error of a mode's frequency on elements of side e is (kappa e)**4 times this, kappa its wave number.
+  !> Calibrated by `tests/bench/elastic_models.py`.
   real(wp), parameter :: dispersion = 6.0e-4_wp
-  !> Half periods of the impactor on the plate's spring that the first elastic impact may last: elastic impacts wait for twice the time of
-  !> contact, and contacts that end and come again have lasted up to 1.4 half periods.
+  !> Longest first elastic impact in half periods of the impactor on the plate's static stiffness: twice the contact
+  !> time, and repeated contacts have lasted up to 1.4 half periods.
   real(wp), parameter :: waited = 4.5_wp
 
 contains
@@ -112,8 +114,8 @@ contains
     if (end > 0) run%complete = steps >= nint(end/step)
   end function run_of
 
-  !> The contact from touch to end by a first, coarse elastic impact; looked at no longer than the run lasts. Where a heavy
-  !> impactor rests on the plate for longer than such steps can resolve, they are longer.
+  !> The contact from touch to end by a first, coarse elastic impact, no longer than the run. Its steps are longer where
+  !> a heavy impactor remains on the plate for a long time.
   pure function contact_end(self, end) result(run)
     !> The elastic impact
     type(setup_elastic_impact_t), intent(in) :: self
@@ -128,7 +130,7 @@ contains
     run = run_of(self, max(self%scales%contact_time/first_steps, horizon/max_steps), end, 0.0_wp)
   end function contact_end
 
-  !> What a run is to show with a step and elements of some side. The method is of second order in the step.
+  !> Expected results with given step and elements. The method is of second order in the step.
   pure function expected_scales_of(setup, scales, step, end, edge) result(expected)
     !> The setup, with an impactor that has a velocity
     type(setup_t), intent(in) :: setup
@@ -172,9 +174,9 @@ contains
     expected%patch_error = difference(run_of(elastic, step, end, 0.0_wp), coarse, 1)
   end function expected_scales_of
 
-  !> Errors by step and mesh together of what a summary reports. That of the largest force is at least what the forces
-  !> beside it are off, and, where the force of first contact is the largest, what its waves miss in the elements around
-  !> the patch.
+  !> Errors by step and mesh together of the results of a summary. That of the largest force is at least the error of
+  !> the forces around it, and, where the force of first contact is the largest, the error of its waves in the elements
+  !> around the patch.
   pure function errors_of_figures(scales, edge, coarse, fine, meshed) result(errors)
     !> Scales of the setup
     type(setup_scales_t), intent(in) :: scales
@@ -195,7 +197,7 @@ contains
       errors(1) = max(errors(1), fine%peak*error_with(scales, edge))
   end function errors_of_figures
 
-  !> Side of the elements around the patch with which the waves of first contact miss a part of its force.
+  !> Side of the elements around the patch for a given relative error of the force of first contact.
   pure real(wp) function edge_for(scales, error) result(edge)
     !> Scales of the setup
     type(setup_scales_t), intent(in) :: scales
@@ -205,7 +207,7 @@ contains
     edge = scales%wave_length/wave_elements*(200*error)**wave_power
   end function edge_for
 
-  !> The part of the force of first contact that its waves miss with such elements: `edge_for`, inverted.
+  !> Relative error of the force of first contact with such elements: the inverse of `edge_for`.
   pure real(wp) function error_with(scales, edge) result(error)
     !> Scales of the setup
     type(setup_scales_t), intent(in) :: scales
@@ -231,7 +233,7 @@ contains
     real(wp) :: longer
     integer :: finer, steps, ratio
 
-    ! Coarse elastic impacts could agree on what both miss, so each is held against the finest that can be had.
+    ! Coarse elastic impacts may have equal errors, so each is compared with the finest possible one.
     finer = 1
     do while (2*2**finer*min_steps <= max_steps)
       if (2**finer*min_steps*self%scales%contact_time >= fine_steps/sqrt(bounds(1))*end) exit
@@ -270,7 +272,7 @@ contains
     real(wp), intent(in) :: end
     !> Relative errors of peak and history allowed
     real(wp), intent(in) :: bounds(2)
-    !> True: the step follows the impact within these bounds; a longer one says nothing of the elements needed
+    !> True: the step resolves the impact within these bounds; a longer one gives no information on the elements
     logical, intent(in) :: follows
     !> Side of the elements
     real(wp) :: cell
@@ -281,8 +283,8 @@ contains
     longer = 1
     if (follows) longer = max(1.0_wp, first_steps*step/self%scales%contact_time)
     exact = run_of(self, step, end, 0.0_wp)
-    ! Modes give what waves do on the mesh, not what the first of them do in the elements around the patch. Steps longer
-    ! than the rise pass over these; the shortest waves that they follow are longer by the root.
+    ! Modes give the error of waves on the mesh, not of the first waves in the elements around the patch. Steps longer
+    ! than the rise do not resolve these; the shortest resolved waves are longer by the root.
     cell = min(minval(self%setup%plate%length)/4, &
                edge_for(self%scales, bounds(1))*sqrt(longer))
     do while (cell > self%scales%wave_length/20)
