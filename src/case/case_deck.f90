@@ -29,7 +29,7 @@ module case_deck
     'case | strict | logical | 1 | - | .false. | .true. .false. | &
       &Whether a run ends with exit code 3 where it passes the model''s limits, instead of a warning.', &
     'case | error_estimate | logical | 1 | - | none | .true. .false. | &
-      &Whether a coarser run, an eighth of the work, gives errors. Default: with accuracy, if no elastic estimate applies.', &
+      &Whether a coarser run, an eighth of the work, gives errors. Default: accuracy without elastic estimate.', &
     'case | refine | integer | 1 | - | 0 | >= 0, <= 4 | &
       &Times that elements and steps are halved; the results are then those of NAME_finer1 and so on.']
 

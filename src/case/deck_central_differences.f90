@@ -83,8 +83,8 @@ contains
     elastic = contact_end(start_elastic_impact(deck%setup_t, scales), 0.0_wp)
     call deck%settings%derive(time_group, key_end, short_text(past_contact*elastic%last_contact), .false.)
     call append(deck%reasons, 'End '//short_text(past_contact*elastic%last_contact)//': the contact of an '// &
-                'undamaged plate ends at '//short_text(elastic%last_contact)//' in a preliminary elastic impact; the run '// &
-                'continues while it lasts longer.')
+                'undamaged plate ends at '//short_text(elastic%last_contact)//' in a preliminary elastic impact; '// &
+                'the run continues while it lasts longer.')
   end subroutine choose_end
 
   !> Factor of in-plane and rotary inertia permitted by the waves of first contact.
