@@ -251,7 +251,7 @@ def check_endings(implam, folder, _):
 
 
 def check_errors(implam, folder, _):
-    """Sun and Chen's plate struck by 100 g at 10 m/s: by the elastic impact where it applies, else by a coarse run, or none."""
+    """Sun and Chen's plate struck by 100 g at 10 m/s: errors by the elastic impact, by a coarse run, or none."""
     fast = ["case%kinematics='von_karman'", "impactor%velocity=10", "impactor%mass=0.1", "mesh%elements=8,8",
             "time%step=8e-6", "time%end=1500e-6", "case%accuracy='draft'"]
     found = {}
