@@ -80,6 +80,8 @@ contains
       if (digit == 0) return
       from = to + digit
       to = from + span(message(from:))
+      ! Two points make a version.
+      if (index(message(from:to), '.') /= index(message(from:to), '.', .true.)) cycle
       if (from == 1) exit
       if (message(from - 1:from - 1) == '-') from = from - 1
       if (from == 1) exit
