@@ -31,7 +31,7 @@ is_offered() {
   [[ $(LC_ALL=C apt-cache policy "$1") == *"Candidate: "[!\(]* ]]
 }
 
-# run_apt WORD...: apt and dpkg tell every package three times; what they say is shown if they fail.
+# run_apt WORD...: apt and dpkg print every package three times; their output is shown only if they fail.
 run_apt() {
   local log
   log=$(mktemp)

@@ -1,4 +1,4 @@
-!> Zones that grow in a run: layers where the damage needs them, said in the log, and kept with the checkpoint.
+!> Adaptive zones of layers: enlarged with the damage, reported in the log, saved in the checkpoint.
 module adaptive_zones
   use archives, only: archive_t
   use contact_updates, only: set_contact_area
@@ -19,13 +19,13 @@ module adaptive_zones
 
 contains
 
-  !> Takes a step, with more layers after it if it has shown that they are needed. Collective.
+  !> Takes a step and adds layers after it if the damage requires them. Collective.
   subroutine advance(deck, model, stepper, event, log, error)
     !> The deck
     type(deck_t), intent(in) :: deck
     !> The model
     type(model_t), intent(inout) :: model
-    !> What evolves
+    !> The time stepper, with the state
     type(time_stepper_t), intent(inout) :: stepper
     !> Time, or load factor, not to be passed
     real(wp), intent(in) :: event
@@ -47,11 +47,11 @@ contains
     end do
   end subroutine advance
 
-  !> Saves or loads what evolves, and what of the model follows it.
+  !> Saves or loads the state and the parts of the model that depend on it.
   subroutine visit_evolving(model, stepper, archive, error)
     !> The model, built with the zones of the archive
     type(model_t), intent(inout) :: model
-    !> What evolves
+    !> The time stepper, with the state
     type(time_stepper_t), intent(inout) :: stepper
     !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive

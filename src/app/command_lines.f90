@@ -10,12 +10,12 @@ module command_lines
   private
   public :: command_t, read_command_line
 
-  !> What the program is asked to do, numbered as in verb_words.
+  !> Commands of the program, numbered as in verb_words.
   integer, parameter, public :: verb_run = 1, verb_check = 2, verb_explain = 3, verb_restart = 4, &
                                 verb_version = 5, verb_help = 6, verb_new = 7, verb_completion = 8, &
                                 verb_man = 9, verb_queue = 10
 
-  !> A command line, taken apart.
+  !> A parsed command line.
   type :: command_t
     !> One of the verbs
     integer :: verb = verb_run
@@ -29,13 +29,13 @@ module command_lines
     character(len=:), allocatable :: rig
     !> slurm or pbs
     character(len=:), allocatable :: queue
-    !> Ranks of a job, and its wall-clock seconds; 0: left to the deck, and a day
+    !> Ranks of a job and its wall-clock seconds; 0: by the size of the deck, and a day
     integer :: ranks = 0, seconds = 0
-    !> True: jobs follow each other
+    !> True: a chain of jobs
     logical :: chain = .false.
-    !> True: the setup is run once more on a finer mesh with shorter steps
+    !> True: the setup is run again on a finer mesh with shorter steps
     logical :: verify = .false.
-    !> True: the log and the summary report where time and memory went
+    !> True: the log and the summary have a profile of time and memory
     logical :: profile = .false.
     !> Arguments for PETSc, in one string
     character(len=:), allocatable :: petsc_options
@@ -53,9 +53,9 @@ module command_lines
 
 contains
 
-  !> Takes the arguments of the program apart.
+  !> Parses the arguments of the program.
   subroutine read_command_line(command, error)
-    !> What is asked
+    !> The parsed command line
     type(command_t), intent(out) :: command
     !> Set (usage) if an argument is not understood
     type(error_t), allocatable, intent(out) :: error
@@ -112,7 +112,7 @@ contains
     type(command_t), intent(inout) :: command
     !> The option
     character(len=*), intent(in) :: word
-    !> Its position; moved on when the option takes a value
+    !> Its position; increased if the option takes a value
     integer, intent(inout) :: i
     !> Set (usage) if the option is unknown or lacks its value
     type(error_t), allocatable, intent(inout) :: error
@@ -191,7 +191,7 @@ contains
     end select
   end subroutine read_value
 
-  !> An option that there is not, or that takes no value; with the one that may be meant.
+  !> Reports an unknown option, or one that takes no value, with the most similar option.
   subroutine refuse_option(word, error)
     !> The option
     character(len=*), intent(in) :: word
@@ -218,7 +218,7 @@ contains
     end if
   end subroutine refuse_option
 
-  !> Verb that a word may be a slip of; empty: the word looks like a file, or like no verb.
+  !> Command most similar to a word; empty: the word is like a file, or like no command.
   pure function meant_verb(word) result(verb)
     !> The word
     character(len=*), intent(in) :: word
@@ -236,7 +236,7 @@ contains
     verb = nearest_name(word, known)
   end function meant_verb
 
-  !> Refuses a word that is no file but nearly a verb, before it is taken for a deck.
+  !> Refuses a word that is no file and nearly a command, before it is taken for a deck.
   subroutine refuse_misspelt_verb(word, error)
     !> The word; empty: there is none
     character(len=*), intent(in) :: word
@@ -250,7 +250,7 @@ contains
       call fail(error, exit_usage, 'Unknown command "'//word//'"; did you mean '//meant_verb(word)//'?')
   end subroutine refuse_misspelt_verb
 
-  !> Number that a word says; 0 if it is no whole number.
+  !> Value of a word; 0 if it is no whole number.
   pure integer function whole_number(word) result(number)
     !> The word
     character(len=*), intent(in) :: word
@@ -279,7 +279,7 @@ contains
     end do
   end function clock_seconds
 
-  !> Seconds that a word says; 0 if it is no number.
+  !> Value of a word in seconds; 0 if it is no number.
   pure real(wp) function seconds_of(word) result(seconds)
     !> The word
     character(len=*), intent(in) :: word
@@ -293,9 +293,9 @@ contains
 
   !> Checks that the verbs that need a file have one.
   subroutine require_target(command, error)
-    !> What is asked
+    !> The parsed command line
     type(command_t), intent(inout) :: command
-    !> Set (usage) if nothing is named, (files) if a deck is to be restarted
+    !> Set (usage) if no file is given, (files) if restart is given a deck
     type(error_t), allocatable, intent(inout) :: error
 
     if (command%verb == verb_restart .and. index(command%target, '.nml', back=.true.) > 0 .and. &
@@ -341,7 +341,7 @@ contains
                                      scan(word(1:1), '-') == 1 .and. scan(word(2:2), '0123456789.') == 1
   end function takes_value
 
-  !> One argument of the command line, whole.
+  !> One argument of the command line.
   function argument(i) result(word)
     !> Position
     integer, intent(in) :: i

@@ -1,5 +1,4 @@
-!> What a run remembers of a plate whose ends are pressed together: the largest stress that they bear, and the stress at
-!> the strains between which a modulus is measured.
+!> Record of a compression: the largest stress, and the stresses at the strains between which the modulus is measured.
 module compression_records
   use archives, only: archive_t
   use kinds, only: wp
@@ -11,11 +10,11 @@ module compression_records
 
   !> Strains between which the effective modulus is the slope of the chord (ASTM D7137: 1000 and 3000 microstrain).
   real(wp), parameter :: strains(2) = [1.0e-3_wp, 3.0e-3_wp]
-  !> Part of its largest value below which the stress has to come for the plate to have failed: a test ends when the
-  !> force has dropped by about 30 % (ASTM D7137).
+  !> The plate has failed when the stress has dropped to this fraction of its maximum: a test ends when the force has
+  !> dropped by about 30 % (ASTM D7137).
   real(wp), parameter :: failure_ratio = 0.7_wp
-  !> Part of its largest compression that a gauge has to lose under a rising load for the plate to have buckled (strain
-  !> reversal, J. Singer, J. Arbocz, T. Weller, Buckling Experiments 1, 1998); less than that may be vibration.
+  !> The plate has buckled when a gauge has lost this fraction of its largest compression under a rising load (strain
+  !> reversal, J. Singer, J. Arbocz, T. Weller, Buckling Experiments 1, 1998); a smaller loss may be vibration.
   real(wp), parameter :: reversed = 0.1_wp
 
   !> The record.
@@ -24,20 +23,20 @@ module compression_records
     real(wp) :: strength = 0, at = 0, shortening = 0
     !> Percent bending then, by two gauges back to back
     real(wp) :: bending = 0
-    !> True once the stress has fallen far below that
+    !> True once the stress has dropped below the fraction of failure
     logical :: failed = .false.
-    !> Nominal strain at which the first of two gauges back to back turned round under a rising load; 0: none did
+    !> Nominal strain at which the first of two gauges back to back reversed under a rising load; 0: none has
     real(wp) :: buckling = 0
     !> Largest compression of both gauges, with the nominal strain and the stress then
     real(wp), private :: pressed(3, 2) = 0
     !> Stress at the strains; 0: not reached
     real(wp), private :: stresses(2) = 0
-    !> Strain and stress seen last
+    !> Last strain and stress
     real(wp), private :: strain = 0, stress = 0
   contains
-    !> Looks at a state.
+    !> Updates the record with a state.
     procedure :: observe
-    !> Looks at two gauges back to back.
+    !> Updates the record with two gauges back to back.
     procedure :: observe_gauges
     !> Effective modulus; 0: not known.
     procedure :: modulus
@@ -47,7 +46,7 @@ module compression_records
 
 contains
 
-  !> Looks at a state.
+  !> Updates the record with a state.
   pure subroutine observe(self, time, stress, shortening, strain, bending)
     !> The record
     class(compression_record_t), intent(inout) :: self
@@ -74,7 +73,7 @@ contains
     end if
   end subroutine observe
 
-  !> Looks at two gauges back to back, after the state itself.
+  !> Updates the record with two gauges back to back, after the state.
   pure subroutine observe_gauges(self, gauges)
     !> The record
     class(compression_record_t), intent(inout) :: self

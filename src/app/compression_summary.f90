@@ -1,4 +1,4 @@
-!> What the summary says of a plate whose ends were pressed together.
+!> Results of a compression in the summary.
 module compression_summary
   use compression_records, only: compression_record_t
   use gauges, only: gauge_t
@@ -15,7 +15,7 @@ contains
   subroutine put_compression(json, record, gauges)
     !> The summary
     type(json_t), intent(inout) :: json
-    !> What the run remembers
+    !> Record of the run
     type(compression_record_t), intent(in) :: record
     !> Strain gauges of the deck
     type(gauge_t), intent(in) :: gauges(:)
@@ -40,7 +40,7 @@ contains
 
   !> The same for the log.
   pure function compression_text(record) result(text)
-    !> What the run remembers
+    !> Record of the run
     type(compression_record_t), intent(in) :: record
     !> Figures after a label
     character(len=:), allocatable :: text

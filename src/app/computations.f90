@@ -1,4 +1,4 @@
-!> Runs of decks from the command line: from the start, from a checkpoint, and twice to verify what the first says.
+!> Runs of decks from the command line: from the start, from a checkpoint, and twice for verification.
 module computations
   use build_information, only: commit
   use case_deck, only: case_group, key_name
@@ -27,9 +27,9 @@ module computations
 
 contains
 
-  !> Runs a deck, or goes on from a checkpoint.
+  !> Runs a deck, or continues from a checkpoint.
   subroutine compute(command, communicator, code, error)
-    !> What is asked
+    !> The parsed command line
     type(command_t), intent(in) :: command
     !> The ranks
     type(communicator_t), intent(inout) :: communicator
@@ -82,15 +82,15 @@ contains
     call profile%release()
   end subroutine compute
 
-  !> Reports what is wrong with a deck, and sets what the command line overrides.
+  !> Reports the errors of a deck, and applies the options of the command line.
   subroutine accept_deck(command, communicator, deck, problems, code)
-    !> What is asked
+    !> The parsed command line
     type(command_t), intent(in) :: command
     !> The ranks
     type(communicator_t), intent(in) :: communicator
     !> The deck
     type(deck_t), intent(inout) :: deck
-    !> Faults found so far
+    !> Errors and warnings so far
     type(problems_t), intent(inout) :: problems
     !> Exit code
     integer, intent(inout) :: code
@@ -107,9 +107,9 @@ contains
     type(deck_t), intent(in) :: deck
     !> The ranks
     type(communicator_t), intent(in) :: communicator
-    !> Clock at the program's start, and where time goes if somebody asked
+    !> Clock at the program's start; its profile is unallocated unless requested
     type(profile_t), intent(in) :: profile
-    !> Checkpoint to go on from; empty: from the start
+    !> Checkpoint to continue from; empty: from the start
     character(len=*), intent(in) :: checkpoint
     !> Set if the run fails
     type(error_t), allocatable, intent(out) :: error
@@ -128,16 +128,16 @@ contains
     call simulation%log%close()
   end subroutine simulate
 
-  !> Runs a setup as it is and once more finer, and reports what its figures change by. What an earlier command has done
-  !> of that isn't done again.
+  !> Runs a setup twice, the second time finer, and reports the change of the results. Results of an earlier command are
+  !> reused.
   subroutine verify(command, communicator, deck, profile, code, error)
-    !> What is asked
+    !> The parsed command line
     type(command_t), intent(in) :: command
     !> The ranks
     type(communicator_t), intent(in) :: communicator
-    !> The deck as it is
+    !> The deck of the first run
     type(deck_t), intent(in) :: deck
-    !> Clock at the program's start, and where time goes if somebody asked
+    !> Clock at the program's start; its profile is unallocated unless requested
     type(profile_t), intent(in) :: profile
     !> Exit code
     integer, intent(inout) :: code
@@ -159,13 +159,13 @@ contains
     call print_changes(deck, finer, communicator, error)
   end subroutine verify
 
-  !> Runs a deck's setup from where an earlier command has left it.
+  !> Continues the run of an earlier command.
   subroutine go_on(deck, communicator, profile, error)
     !> The deck
     type(deck_t), intent(in) :: deck
     !> The ranks
     type(communicator_t), intent(in) :: communicator
-    !> Clock at the program's start, and where time goes if somebody asked
+    !> Clock at the program's start; its profile is unallocated unless requested
     type(profile_t), intent(in) :: profile
     !> Set if the run fails
     type(error_t), allocatable, intent(out) :: error
@@ -197,7 +197,7 @@ contains
     type(communicator_t), intent(in) :: communicator
     !> The deck
     type(deck_t), intent(out) :: deck
-    !> What is wrong with it
+    !> Its errors and warnings
     type(problems_t), intent(out) :: problems
     character(len=:), allocatable :: text
 
@@ -209,9 +209,9 @@ contains
     if (.not. communicator%is_root()) call read_deck_text(text, path, deck, problems)
   end subroutine read_deck_everywhere
 
-  !> The checkpoint to go on from: the file named, or else the newest whole one of a folder.
+  !> The checkpoint to continue from: the given file, or else the newest valid one of a folder.
   subroutine find_checkpoint(command, communicator, path, error)
-    !> What is asked
+    !> The parsed command line
     type(command_t), intent(in) :: command
     !> The ranks
     type(communicator_t), intent(in) :: communicator
@@ -234,7 +234,7 @@ contains
     if (.not. allocated(error)) call print_lines(communicator, [line_t('Going on from '//path//'.')])
   end subroutine find_checkpoint
 
-  !> Reads the deck that a checkpoint holds. Results go on in the folder of the checkpoint.
+  !> Reads the deck of a checkpoint. Results continue in the folder of the checkpoint.
   subroutine read_checkpoint_deck(path, communicator, deck, problems, error)
     !> The checkpoint
     character(len=*), intent(in) :: path
@@ -242,7 +242,7 @@ contains
     type(communicator_t), intent(in) :: communicator
     !> The deck
     type(deck_t), intent(out) :: deck
-    !> What is wrong with it
+    !> Its errors and warnings
     type(problems_t), intent(out) :: problems
     !> Set if the file is no checkpoint or damaged
     type(error_t), allocatable, intent(out) :: error

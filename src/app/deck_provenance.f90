@@ -1,4 +1,4 @@
-!> Where the results of a deck come from: program, deck, and the values in effect that neither gives.
+!> Provenance of the results: program, deck, and values in effect.
 module deck_provenance
   use build_information, only: this_build
   use deck_contents, only: deck_t

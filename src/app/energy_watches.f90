@@ -1,5 +1,5 @@
-!> Watches over a run whether its ledger accounts for the energy, by one rule for all of it: what integrators or load
-!> steps create or take, and what no entry accounts for, is to stay below 1 % of the energy.
+!> Checks the energy balance of a run by one rule: energy created or dissipated by integrators or load steps, and the
+!> energy error, must stay below 1 % of the energy.
 module energy_watches
   use kinds, only: wp
   use archives, only: archive_t
@@ -8,38 +8,39 @@ module energy_watches
   private
   public :: energy_watch_t
 
-  !> Part of the energy that must not have been created, taken or lost sight of.
+  !> Permitted fraction of energy created, dissipated or unaccounted for.
   real(wp), parameter, public :: energy_tolerance = 0.01_wp
-  !> Part of the energy of residual stresses below which energies are not judged. The equilibrium that they start from
-  !> leaves 1e-6 of the forces (`tolerance` of &solver), whose work is up to 1e-6 of this energy: 1 % of what is judged.
+  !> Fraction of the energy of residual stresses below which energies are not checked. The initial equilibrium has a
+  !> residual of 1e-6 of the forces (`tolerance` of &solver), whose work is up to 1e-6 of this energy: 1 % of the
+  !> smallest energy that is checked.
   real(wp), parameter :: fine = 1.0e-4_wp
-  !> What may be wrong: energy created, energy taken, energy that no entry accounts for.
+  !> Kinds of errors: energy created, energy dissipated, energy unaccounted for.
   integer, parameter, public :: energy_created = 1, energy_taken = 2, energy_unaccounted = 3
 
-  !> What was seen so far.
+  !> State of the check.
   type :: energy_watch_t
-    !> Largest energy so far that came with the impactor, was put in, or is in the plate, residual stresses left out:
-    !> these may hold far more than what loads the plate.
+    !> Largest energy so far of the impactor, of external work, or in the plate, without residual stresses: these may
+    !> have far more energy than the loads.
     real(wp) :: largest = 0
     !> Too much had been created after the step before
     logical, private :: doubtful = .false.
   contains
     procedure :: check
-    !> Saves or loads what was seen.
+    !> Saves or loads the check.
     procedure :: visit
   end type energy_watch_t
 
 contains
 
-  !> What is more than 1 % of the energy: created by the integrators or by the indentation, whose work can't be
-  !> negative; taken; not accounted for. What an integrator creates in the first step of a load that is there at once it
-  !> takes out in the next: of steps in time two in a row must say that energy was created.
+  !> Energies above 1 %: created by the integrators or by the indentation, whose work can't be negative; dissipated;
+  !> unaccounted for. An integrator creates energy in the first step of a sudden load and removes it in the next: in
+  !> time two consecutive steps must have created energy.
   function check(self, ledger, deficit, amplitude, static) result(alarms)
     !> The watch
     class(energy_watch_t), intent(inout) :: self
     !> The ledger after an accepted step
     type(ledger_t), intent(in) :: ledger
-    !> Energy booked as fracture that the fronts have not released yet: no integrator made it
+    !> Energy booked as fracture that the fronts have not released yet; it is not algorithmic
     real(wp), intent(in) :: deficit
     !> Load over its full value: the energies to come are larger by its square, which small ones are judged by
     real(wp), intent(in) :: amplitude
@@ -60,7 +61,7 @@ contains
     alarms(energy_unaccounted) = abs(ledger%error())*amplitude**2 > most
   end function check
 
-  !> Saves or loads what was seen.
+  !> Saves or loads the check.
   subroutine visit(self, archive)
     !> The watch
     class(energy_watch_t), intent(inout) :: self

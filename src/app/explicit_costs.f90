@@ -1,4 +1,4 @@
-!> What a run by central differences costs: its steps and the time that one processor takes.
+!> Cost of a run by central differences: steps and processor time.
 module explicit_costs
   use deck_contents, only: deck_t
   use kinds, only: wp
@@ -12,15 +12,15 @@ module explicit_costs
   private
   public :: explicit_sentence, duration_text
 
-  !> Seconds of one processor for an element of one layer in a step, what its interfaces add where they are cohesive,
-  !> and what plies add that soften, in the mean over an impact that breaks many of them. Measured on one core of an AMD
-  !> EPYC: Sun and Chen's plate .2 us, input/verify/cohesive_threshold.nml with 1e4 to 1e6 unknowns .30 to .46 us
+  !> Processor seconds for an element of one layer in a step, the additional time of cohesive interfaces, and that of
+  !> softening plies in the mean over an impact with much ply failure. Measured on one core of an AMD EPYC: Sun and
+  !> Chen's plate .2 us, input/verify/cohesive_threshold.nml with 1e4 to 1e6 unknowns .30 to .46 us
   !> (tests/bench/explicit_table.py costs), input/experiments/t700_m21_25J.nml 1.2 us (panels --run).
   real(wp), parameter :: of_elements = 0.2e-6_wp, of_interfaces = 0.2e-6_wp, of_crack_bands = 0.75e-6_wp
 
 contains
 
-  !> Steps of one length, whatever breaks.
+  !> Equal steps, with any damage.
   function explicit_sentence(deck, model_size) result(sentence)
     !> The deck, checked
     type(deck_t), intent(in) :: deck
@@ -63,7 +63,7 @@ contains
     if (deck%has_crack_bands()) seconds = seconds + of_crack_bands
   end function seconds_of_element
 
-  !> A time as people say it.
+  !> A time in a suitable unit.
   pure function duration_text(seconds) result(words)
     !> The time in seconds
     real(wp), intent(in) :: seconds

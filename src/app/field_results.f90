@@ -1,4 +1,4 @@
-!> What the field file holds of a run, joined from what each folder brings.
+!> Fields of the field file, joined from the rows of each folder.
 module field_results
   use deck_contents, only: deck_t
   use errors, only: error_t
@@ -30,7 +30,7 @@ module field_results
 
 contains
 
-  !> Part of the plate that the files hold.
+  !> Modelled part of the plate.
   pure function part_of(deck) result(part)
     !> The deck
     type(deck_t), intent(in) :: deck

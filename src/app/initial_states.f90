@@ -1,5 +1,5 @@
-!> The end of another run as the beginning of this one: it is read from that run's checkpoint, held against the deck,
-!> and carried over to this run's model.
+!> Initial state from the end of another run: it is read from that run's checkpoint, compared with the deck, and
+!> transferred to the model.
 module initial_states
   use checkpoints, only: checkpoint_archive_t
   use communicators, only: communicator_t
@@ -26,7 +26,7 @@ module initial_states
 
 contains
 
-  !> Holds a deck against the run that it begins from, and gives its interfaces layers as far as that has. Collective.
+  !> Compares a deck with the run it starts from, and gives its interfaces the zones of that run. Collective.
   subroutine fit_initial_state(deck, communicator, error, lacks)
     !> The deck, without faults
     type(deck_t), intent(inout) :: deck
@@ -64,7 +64,7 @@ contains
     end do
   end subroutine fit_initial_state
 
-  !> Opens a checkpoint and reads the deck that it holds, with the zones that its layers have come to. Collective.
+  !> Opens a checkpoint and reads its deck, with the zones at its end. Collective.
   subroutine open_checkpoint(path, communicator, archive, old, error)
     !> The checkpoint
     character(len=*), intent(in) :: path
@@ -89,13 +89,13 @@ contains
     end if
   end subroutine open_checkpoint
 
-  !> Carries the end of the other run over to this one. Collective.
+  !> Transfers the end of the other run to this one. Collective.
   subroutine take_initial_state(deck, model, stepper, log, error)
     !> The deck
     type(deck_t), intent(in) :: deck
     !> The model
     type(model_t), intent(inout) :: model
-    !> What evolves, at its start
+    !> The time stepper at its start
     type(time_stepper_t), intent(inout) :: stepper
     !> Receives a note
     type(log_t), intent(inout) :: log

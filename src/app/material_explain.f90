@@ -8,7 +8,7 @@ module material_explain
 
   !> Its name.
   character(len=*), parameter, public :: material_topic = 'materials'
-  !> How to ask for them.
+  !> The command that prints them.
   character(len=*), parameter, public :: material_topic_sentence = &
     '`implam explain materials` lists published materials that a deck can name, with the source of each value.'
 
@@ -16,7 +16,7 @@ contains
 
   !> True for the name of the list of materials. A key of the deck has the same name.
   pure logical function is_material_topic(topic)
-    !> What is asked
+    !> The parsed command line
     character(len=*), intent(in) :: topic
 
     is_material_topic = lower_case(topic) == material_topic

@@ -1,4 +1,4 @@
-!> What the program does for each verb of the command line.
+!> The commands of the program.
 module programs
   use, intrinsic :: iso_fortran_env, only: error_unit
   use errors, only: error_t, exit_done, exit_files
@@ -37,8 +37,8 @@ module programs
 
 contains
 
-  !> Does what the command line asks. Without a launcher MPI starts only when there is something to compute: what
-  !> reads or explains decks then returns at once, also on machines where MPI must not start.
+  !> Executes a command. Without a launcher MPI starts only for computations: commands that read or explain decks return
+  !> at once, also on machines where MPI must not start.
   subroutine run_program(code, close_failed)
     !> Exit code
     integer, intent(out) :: code
@@ -89,7 +89,7 @@ contains
     if (.not. close_failed) call finish_mpi()
   end subroutine run_program
 
-  !> Prints how the program is used.
+  !> Prints the usage.
   subroutine print_usage(communicator)
     !> The ranks
     type(communicator_t), intent(in) :: communicator
@@ -99,9 +99,9 @@ contains
     call print_lines(communicator, lines)
   end subroutine print_usage
 
-  !> Prints the manual page, or what a shell completes.
+  !> Prints the manual page or the completions of a shell.
   subroutine print_page(command, communicator, error)
-    !> What is asked
+    !> The parsed command line
     type(command_t), intent(in) :: command
     !> The ranks
     type(communicator_t), intent(in) :: communicator
@@ -121,7 +121,7 @@ contains
 
   !> Writes a deck to start from.
   subroutine start_deck(command, communicator, error)
-    !> What is asked
+    !> The parsed command line
     type(command_t), intent(in) :: command
     !> The ranks
     type(communicator_t), intent(in) :: communicator
@@ -139,7 +139,7 @@ contains
 
   !> Writes the script of a job.
   subroutine queue_deck(command, communicator, error)
-    !> What is asked
+    !> The parsed command line
     type(command_t), intent(in) :: command
     !> The ranks
     type(communicator_t), intent(in) :: communicator
@@ -162,9 +162,9 @@ contains
     call print_lines(communicator, lines)
   end subroutine queue_deck
 
-  !> Explains a group or key of the deck, or what results hold.
+  !> Explains a group or key of the deck, or the tables of results.
   subroutine explain_topic(command, communicator, error)
-    !> What is asked
+    !> The parsed command line
     type(command_t), intent(in) :: command
     !> The ranks
     type(communicator_t), intent(in) :: communicator
@@ -203,15 +203,15 @@ contains
       [line_t(result_topics_sentence), line_t(material_topic_sentence)])
   end subroutine explain_topic
 
-  !> Reads and checks a deck, lists what is wrong with it.
+  !> Reads and checks a deck, and lists its errors.
   subroutine check(command, communicator, code, error)
-    !> What is asked
+    !> The parsed command line
     type(command_t), intent(in) :: command
     !> The ranks
     type(communicator_t), intent(in) :: communicator
     !> Exit code
     integer, intent(out) :: code
-    !> Set if the state that the deck begins from can't be read or is of another plate
+    !> Set if the initial state can't be read or is of another plate
     type(error_t), allocatable, intent(inout) :: error
     type(deck_t) :: deck
     type(problems_t) :: problems

@@ -1,5 +1,5 @@
-!> Job scripts for queues: `implam queue slurm|pbs DECK`. A job ends in time with a checkpoint and exit code 75; a chain
-!> of jobs goes on from there until the run has ended; an array runs the decks of a sweep.
+!> Job scripts for queues: `implam queue slurm|pbs DECK`. A job ends before its limit with a checkpoint and exit code
+!> 75; a chain of jobs continues until the run is complete; an array runs the decks of a sweep.
 module queue_scripts
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
@@ -14,14 +14,14 @@ module queue_scripts
   private
   public :: write_queue_script
 
-  !> Memory asked for over the estimate: plies that crack and fronts that grow keep more than the first factor.
+  !> Requested memory over the estimate: ply failure and growing fronts need more than the first factor.
   real(wp), parameter :: spare_memory = 1.5_wp
-  !> Wall-clock seconds that a job gets without `--time`, and most of them that are kept for the checkpoint.
+  !> Wall-clock seconds of a job without `--time`, and the most that are reserved for the checkpoint.
   integer, parameter :: usual_seconds = 86400, max_kept = 600
-  !> Parts of a chain, lest one that never moves on goes on for ever.
+  !> Most parts of a chain, so that one without progress ends.
   integer, parameter :: max_parts = 100
 
-  !> What a script is to say.
+  !> Content of a script.
   type, public :: queue_job_t
     !> slurm or pbs
     character(len=:), allocatable :: queue
@@ -33,7 +33,7 @@ module queue_scripts
     integer :: ranks = 0
     !> Wall-clock seconds; 0: a day
     integer :: seconds = 0
-    !> True: a job that is stopped by its limit comes again until the run has ended
+    !> True: a job stopped by its limit is repeated until the run is complete
     logical :: chain = .false.
     !> Name of the job, and checkpoint of the run
     character(len=:), allocatable, private :: name, checkpoint
@@ -47,7 +47,7 @@ contains
 
   !> Writes the script beside the caller and prints what to do with it.
   subroutine write_queue_script(job, lines, error)
-    !> What it is to say
+    !> Its content
     type(queue_job_t), intent(inout) :: job
     !> What to print for the user
     type(line_t), allocatable, intent(out) :: lines(:)
@@ -124,7 +124,7 @@ contains
       call read_valid_deck(trim(path), deck, error)
       if (allocated(error)) exit
       found = size_of_model(deck%setup_t, is_explicit(deck%stepping))
-      ! What `--program` of the sweep says decides on the ranks: one without it.
+      ! Ranks follow from `--program` of the sweep: one without it.
       if (job%ranks == 0) job%ranks = 1
       job%megabytes = max(job%megabytes, ceiling(spare_memory*found%megabytes_a_rank(job%ranks)))
     end do
@@ -147,9 +147,9 @@ contains
     if (problems%errors() > 0) call fail(error, exit_deck, path//' has faults, which `implam check` lists.')
   end subroutine read_valid_deck
 
-  !> What Slurm is asked for. It may send the signal up to a minute early.
+  !> Resources requested from Slurm. It may send the signal up to a minute early.
   subroutine head_of_slurm(job, script)
-    !> What the script is to say
+    !> Content of the script
     type(queue_job_t), intent(in) :: job
     !> Lines are added
     type(line_t), allocatable, intent(inout) :: script(:)
@@ -171,9 +171,9 @@ contains
     call append(script, 'task=${SLURM_ARRAY_TASK_ID:-} parts=${SLURM_RESTART_COUNT:-0} in_time=()')
   end subroutine head_of_slurm
 
-  !> What PBS is asked for. It sends no signal ahead, so a clock of our own does.
+  !> Resources requested from PBS. It sends no signal before the limit; `timeout` in the script does.
   subroutine head_of_pbs(job, script)
-    !> What the script is to say
+    !> Content of the script
     type(queue_job_t), intent(in) :: job
     !> Lines are added
     type(line_t), allocatable, intent(inout) :: script(:)
@@ -194,9 +194,9 @@ contains
                 ')  # ahead of the limit')
   end subroutine head_of_pbs
 
-  !> What both queues run.
+  !> Commands for both queues.
   subroutine append_body(job, script)
-    !> What the script is to say
+    !> Content of the script
     type(queue_job_t), intent(in) :: job
     !> Lines are added
     type(line_t), allocatable, intent(inout) :: script(:)
@@ -237,7 +237,7 @@ contains
     call append(script, 'exit "$code"')
   end subroutine append_body
 
-  !> What submits a job that goes on from the checkpoint.
+  !> Command that submits a job that continues from the checkpoint.
   pure function go_on(job) result(words)
     !> The job
     type(queue_job_t), intent(in) :: job
@@ -249,7 +249,7 @@ contains
     if (job%tasks > 0) words = 'the same script again'
   end function go_on
 
-  !> Seconds before the limit that are kept for the step at hand and the checkpoint.
+  !> Seconds before the limit that are reserved for the current step and the checkpoint.
   pure integer function kept(job)
     !> The job
     type(queue_job_t), intent(in) :: job
@@ -269,7 +269,7 @@ contains
     words = trim(buffer)
   end function clock
 
-  !> A word as a shell takes it, whatever it holds.
+  !> A word quoted for a shell.
   pure function quoted(word) result(safe)
     !> The word
     character(len=*), intent(in) :: word

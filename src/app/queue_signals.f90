@@ -1,5 +1,5 @@
-!> Signals by which a queue announces that the time is up: TERM, INT, USR1, USR2 and XCPU. The program holds them back
-!> from its start on (held_signals.c), so that they wait until they are asked for.
+!> Signals by which a queue announces the time limit: TERM, INT, USR1, USR2 and XCPU. They are blocked from the start of
+!> the program (held_signals.c) and remain pending until they are queried.
 module queue_signals
   use, intrinsic :: iso_c_binding, only: c_int
   implicit none
@@ -7,12 +7,11 @@ module queue_signals
   public :: announce_stop_signals, release_stop_signals, stop_signal
 
   interface
-    !> From now on they end the program, as they do others; for what computes nothing.
+    !> Restores their default action, for commands that compute nothing.
     subroutine release_stop_signals() bind(c, name='implam_release_stop_signals')
     end subroutine release_stop_signals
 
-    !> From now on a line on standard error says at once that such a signal has come: the run ends with the step at
-    !> hand, which may take minutes.
+    !> Reports such a signal at once on standard error: the run ends after the current step, which may take minutes.
     subroutine announce_stop_signals() bind(c, name='implam_announce_stop_signals')
     end subroutine announce_stop_signals
 

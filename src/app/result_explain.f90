@@ -1,4 +1,4 @@
-!> Explains what results hold, for the terminal and for the manual.
+!> Explains the tables of results, for the terminal and the manual.
 module result_explain
   use field_results, only: field_rows
   use result_rows, only: column_rows
@@ -11,7 +11,7 @@ module result_explain
 
   !> Their names.
   character(len=*), parameter, public :: result_topics = 'history fields'
-  !> How to ask for the tables.
+  !> The command that prints the tables.
   character(len=*), parameter, public :: result_topics_sentence = &
     '`implam explain history` lists the columns of NAME_history.csv, `implam explain fields` the fields of NAME.h5.'
 
@@ -19,7 +19,7 @@ contains
 
   !> True for the name of a table of results. Keys of the deck may have the same name.
   pure logical function is_result_topic(topic)
-    !> What is asked
+    !> The parsed command line
     character(len=*), intent(in) :: topic
 
     is_result_topic = lower_case(topic) == 'history' .or. lower_case(topic) == 'fields'

@@ -22,11 +22,11 @@ module result_rows
   private
   public :: column_names, column_whole, row_of
 
-  !> What the run has warned of.
+  !> Warnings of the run.
   character(len=result_row_length), parameter :: limit_rows(*) = [character(len=result_row_length) :: &
     'limits_passed | integer | - | Limits of the model that the run has passed so far; log and summary name which, &
       &and when.']
-  !> What a low pass leaves of the force.
+  !> The low-pass filtered force.
   character(len=result_row_length), parameter :: filter_rows(*) = [character(len=result_row_length) :: &
     'force_filtered | real | force | Contact force behind the low pass of &output force_filter.']
   !> Columns that every history has, of which the first seventeen are the public interface.
@@ -41,7 +41,7 @@ contains
 
   !> Names of the columns.
   pure function column_names(deck) result(names)
-    !> The deck, which says what there is
+    !> The deck
     type(deck_t), intent(in) :: deck
     !> In the order of the table
     character(len=result_name_length), allocatable :: names(:)
@@ -90,7 +90,7 @@ contains
     end do
   end function numbered
 
-  !> Which of some rows hold whole numbers.
+  !> Which of some rows have whole numbers.
   pure function are_whole(rows) result(whole)
     !> Rows of the table
     character(len=*), intent(in) :: rows(:)
@@ -103,7 +103,7 @@ contains
     end do
   end function are_whole
 
-  !> Which columns hold whole numbers.
+  !> Which columns have whole numbers.
   pure function column_whole(deck) result(whole)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -141,7 +141,7 @@ contains
     type(model_t), intent(in) :: model
     !> The time stepper
     type(time_stepper_t), intent(in) :: stepper
-    !> What the run remembers
+    !> Record of the run
     type(run_record_t), intent(in) :: record
     !> Values in the order of the columns
     real(wp), allocatable :: row(:)

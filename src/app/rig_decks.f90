@@ -1,5 +1,5 @@
-!> The deck that `implam new --rig d7136` writes: a drop-weight test after ASTM D7136 on a panel of the thickness and
-!> with the energy that the standard asks for.
+!> The deck that `implam new --rig d7136` writes: a drop-weight test after ASTM D7136 on a panel with the thickness and
+!> energy of the standard.
 module rig_decks
   implicit none
   private

@@ -1,4 +1,4 @@
-!> How far a run is, and what it has left: steps where all have one length, else time or load.
+!> Progress of a run: steps if all have one length, else time or load.
 module run_advances
   use deck_contents, only: deck_t
   use kinds, only: wp
@@ -13,7 +13,7 @@ module run_advances
 
 contains
 
-  !> Starts the clock of a run, or of what a restart has left of it.
+  !> Starts the clock of a run or restart.
   subroutine start_progress(progress, stepper, end)
     !> The progress
     type(progress_t), intent(inout) :: progress
@@ -57,7 +57,7 @@ contains
     if (allocated(stepper%explicit)) done = stepper%now%step
   end function done
 
-  !> What is left, in the same unit. Steps by central differences are taken to go on with their present length.
+  !> The remainder, in the same unit. Steps by central differences are assumed to keep their length.
   pure real(wp) function left(stepper, end)
     !> The time stepper
     type(time_stepper_t), intent(in) :: stepper

@@ -1,4 +1,4 @@
-!> What a run costs, for `implam check`: its steps and the processor time to expect.
+!> Cost of a run, for `implam check`: steps and processor time.
 module run_costs
   use deck_contents, only: deck_t
   use explicit_costs, only: explicit_sentence, duration_text
@@ -44,7 +44,7 @@ contains
     end if
   end function cost_lines
 
-  !> Implicit steps: what an undamaged plate takes is the least.
+  !> Implicit steps: the time of an undamaged plate is a lower bound.
   function implicit_sentence(deck, model_size) result(sentence)
     !> The deck
     type(deck_t), intent(in) :: deck

@@ -1,16 +1,16 @@
-!> How far the figures of a summary may be off by step and mesh, and where that is known from.
+!> Estimated discretization errors of the results in a summary, and their source.
 module run_errors
-  use companion_runs, only: companion_t
+  use coarse_runs, only: coarse_run_t
   use deck_contents, only: deck_t
   use kinds, only: wp
   use run_records, only: run_record_t
   implicit none
   private
-  public :: run_errors_t, errors_by_pilot, errors_by_companion
+  public :: run_errors_t, errors_by_elastic_impact, errors_by_coarse_run
 
   !> Errors of figures, in their units; negative: not known.
   type :: run_errors_t
-    !> What they are from: none, pilot or companion
+    !> Their source: none, elastic or coarse_run
     character(len=9) :: source = 'none'
     !> Of the largest force and its time
     real(wp) :: peak_force = -1, peak_time = -1
@@ -24,29 +24,29 @@ module run_errors
     real(wp) :: area = -1
   end type run_errors_t
 
-  !> Part of the largest force by which run and pilot, linear and undamaged, may differ and still be of one setup.
+  !> Relative difference of the peak forces of run and elastic impact up to which the estimate applies.
   real(wp), parameter :: same_setup = 0.1_wp
 
 contains
 
-  !> Errors by the pilot calculation, of a run that is its linear, undamaged plate. Nothing is known of a run whose
-  !> largest force isn't that of the pilot.
-  pure function errors_by_pilot(deck, record) result(errors)
+  !> Errors by the preliminary elastic impact, for a run without much damage or large deflection: its peak force must be
+  !> that of the elastic impact.
+  pure function errors_by_elastic_impact(deck, record) result(errors)
     !> The deck
     type(deck_t), intent(in) :: deck
-    !> What the run remembers
+    !> Record of the run
     type(run_record_t), intent(in) :: record
     !> The errors
     type(run_errors_t) :: errors
 
     if (abs(record%peak_force - deck%expected%force) > same_setup*deck%expected%force) return
-    errors = pilot_errors(deck)
-    if (errors%peak_force >= 0) errors%source = 'pilot'
-  end function errors_by_pilot
+    errors = elastic_errors(deck)
+    if (errors%peak_force >= 0) errors%source = 'elastic'
+  end function errors_by_elastic_impact
 
-  !> What step and mesh of the deck make of the linear, undamaged plate, by the pilot calculation of the deck's check:
-  !> with half the step, and with the frequencies that modes have on the mesh.
-  pure function pilot_errors(deck) result(errors)
+  !> Errors of step and mesh for the linear, undamaged plate, by the preliminary elastic impact of the deck's check:
+  !> with half the step, and with the natural frequencies of the discrete plate.
+  pure function elastic_errors(deck) result(errors)
     !> The deck
     type(deck_t), intent(in) :: deck
     !> The errors
@@ -60,35 +60,34 @@ contains
       errors%deflection = o%figure_error(4)
       errors%velocity = o%figure_error(5)
     end associate
-  end function pilot_errors
+  end function elastic_errors
 
-  !> Errors by a run of the same setup with half the elements and twice the step. It errs four times as much by the step
-  !> and more by the mesh, so a third of the difference is the estimate. The two may cancel in a difference, and peaks
-  !> of waves that neither resolves differ by chance: what the pilot gives for the linear, undamaged plate on the same
-  !> mesh holds as the least, as a part of the force.
-  pure function errors_by_companion(deck, record, velocity, area, companion) result(errors)
+  !> Errors by a run of the same setup with half the elements and twice the step. Its error of the step is four times as
+  !> large, that of the mesh larger, so that a third of the difference is the estimate. Both may cancel in a difference,
+  !> and unresolved peaks differ by chance: the relative error of the elastic impact on the same mesh is a lower bound.
+  pure function errors_by_coarse_run(deck, record, velocity, area, coarse_run) result(errors)
     !> The deck
     type(deck_t), intent(in) :: deck
-    !> What the run remembers
+    !> Record of the run
     type(run_record_t), intent(in) :: record
     !> Velocity of the impactor and delaminated area at its end
     real(wp), intent(in) :: velocity, area
-    !> What the companion has come to
-    type(companion_t), intent(in) :: companion
+    !> Results of the coarse run
+    type(coarse_run_t), intent(in) :: coarse_run
     !> The errors
     type(run_errors_t) :: errors
 
-    errors = pilot_errors(deck)
+    errors = elastic_errors(deck)
     if (errors%peak_force >= 0) errors%peak_force = errors%peak_force*record%peak_force/deck%expected%force
-    errors%source = 'companion'
-    errors%peak_force = max(errors%peak_force, abs(record%peak_force - companion%record%peak_force)/3)
-    errors%peak_time = max(errors%peak_time, abs(record%peak_time - companion%record%peak_time)/3, &
+    errors%source = 'coarse_run'
+    errors%peak_force = max(errors%peak_force, abs(record%peak_force - coarse_run%record%peak_force)/3)
+    errors%peak_time = max(errors%peak_time, abs(record%peak_time - coarse_run%record%peak_time)/3, &
                            deck%stepping%time%step/2)
     errors%contact_duration = max(errors%contact_duration, deck%stepping%time%step, &
-                                  abs(record%contact_duration - companion%record%contact_duration)/3)
-    errors%deflection = max(errors%deflection, abs(record%deflection - companion%record%deflection)/3)
-    errors%velocity = max(errors%velocity, abs(velocity - companion%velocity)/3)
-    ! A delamination moves by whole elements: its area falls with the first power of their side.
-    errors%area = abs(area - companion%area)
-  end function errors_by_companion
+                                  abs(record%contact_duration - coarse_run%record%contact_duration)/3)
+    errors%deflection = max(errors%deflection, abs(record%deflection - coarse_run%record%deflection)/3)
+    errors%velocity = max(errors%velocity, abs(velocity - coarse_run%velocity)/3)
+    ! A delamination grows by whole elements: the error of its area is of first order in their side.
+    errors%area = abs(area - coarse_run%area)
+  end function errors_by_coarse_run
 end module run_errors

@@ -1,4 +1,4 @@
-!> What is found out at the end of a run for its summary, beside what the run has recorded on its way.
+!> Results for the summary that are computed at the end of a run, besides its record.
 module run_figures
   use delamination_parameters, only: toughnesses
   use dent_depths, only: dent_depth
@@ -20,7 +20,7 @@ module run_figures
     integer :: code = exit_done
     !> done, stopped or failed
     character(len=7) :: kind = 'done'
-    !> What ended it before its time; empty if nothing did
+    !> Reason of a premature end; empty if complete
     character(len=:), allocatable :: message
   end type ending_t
 
@@ -30,7 +30,7 @@ module run_figures
     type(interface_figures_t), allocatable :: interfaces(:)
     !> Area that a C-scan sees
     real(wp) :: projected_area = 0
-    !> Depth of the dent, and the part of it that the indentation law keeps
+    !> Depth of the dent, and the permanent indentation in it
     real(wp) :: dent(2) = 0
     !> Plies of elements failed in each mode
     integer :: failures(failure_modes) = 0
@@ -74,7 +74,7 @@ contains
 
   !> How a run ended.
   pure function ending_of(error) result(ending)
-    !> What ended it; not allocated: it was done
+    !> Reason of a premature end; not allocated: complete
     type(error_t), allocatable, intent(in) :: error
     !> The ending
     type(ending_t) :: ending

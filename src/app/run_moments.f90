@@ -9,7 +9,7 @@ module run_moments
 
 contains
 
-  !> Time, load factor, or part of a static analysis whose load factor may fall.
+  !> Time, load factor, or fraction of a static analysis with a variable load factor.
   pure function moment(deck, time) result(words)
     !> The deck
     type(deck_t), intent(in) :: deck

@@ -1,4 +1,4 @@
-!> What a run remembers of its course for the summary at its end: extremes, contacts, onsets and warnings.
+!> Record of a run for its summary: extremes, contacts, onsets and warnings.
 module run_records
   use archives, only: archive_t
   use compression_records, only: compression_record_t
@@ -23,7 +23,7 @@ module run_records
                                 warning_steps = 9, warning_ledger = 10, warning_kinetic = 11, &
                                 warning_scaled = 12
 
-  !> Record of a run. It has many components because it is nothing but what the summary asks for.
+  !> Record of a run. It has many components because each item of the summary is one.
   type :: run_record_t
     !> Largest contact force and its time
     real(wp) :: peak_force = 0, peak_time = 0
@@ -31,7 +31,7 @@ module run_records
     type(force_filter_t) :: filter
     !> Largest force that it lets pass, and its time
     real(wp) :: peak_filtered = 0, peak_filtered_time = 0
-    !> Largest deflection of the struck point, either way, with its sign, and its time
+    !> Largest deflection of the struck point in magnitude, with its sign, and its time
     real(wp) :: deflection = 0, deflection_time = 0
     !> How often impactor and plate came into contact
     integer :: contacts = 0
@@ -43,7 +43,7 @@ module run_records
     integer, allocatable :: stage(:)
     !> Time, contact force and deflection when each was first seen damaged and grown, (3, zones)
     real(wp), allocatable :: onset(:, :), growth(:, :)
-    !> Ends of the plate that lines press together
+    !> Ends of a plate under compression by lines
     type(compression_record_t) :: compression
     !> Largest kinetic energy in motions whose inertia is scaled, and largest energy of the run
     real(wp) :: scaled_energy = 0, energy = 0
@@ -52,9 +52,9 @@ module run_records
     !> Their times
     real(wp), allocatable :: warning_times(:)
   contains
-    !> Looks at an accepted step.
+    !> Updates the record with an accepted step.
     procedure :: observe
-    !> Looks at a state that is complete.
+    !> Updates the record with a complete state.
     procedure :: observe_reactions
     !> Notes the energy in motions whose inertia is scaled.
     procedure :: note_scaled
@@ -83,7 +83,7 @@ contains
     allocate (self%warning_kinds(0), self%warning_zones(0), self%warning_times(0))
   end function new_run_record
 
-  !> Looks at an accepted step. Collective.
+  !> Updates the record with an accepted step. Collective.
   subroutine observe(self, model, now, between_stages)
     !> The record
     class(run_record_t), intent(inout) :: self
@@ -119,7 +119,8 @@ contains
     self%stage = max(self%stage, stages)
   end subroutine observe
 
-  !> Looks at a state that is complete: with reactions, which central differences find from time to time. Collective.
+  !> Updates the record with a complete state: with reactions, which central differences compute at intervals.
+  !> Collective.
   subroutine observe_reactions(self, model, now)
     !> The record
     class(run_record_t), intent(inout) :: self
@@ -150,8 +151,7 @@ contains
     figures_at = [shown_time(now%time), now%force, now%deflection]
   end function figures_at
 
-  !> Counts contacts and their time. A contact that begins or ends within a step is taken to do so in its middle; that
-  !> of the start begins with the run.
+  !> Counts contacts and their time. A contact begins or ends at mid-step; one at the start begins with the run.
   pure subroutine count_contacts(self, time, force)
     !> The record, of the step before
     type(run_record_t), intent(inout) :: self

@@ -1,4 +1,4 @@
-!> What a run reports of itself in its log: the keys in effect at its start, what it took at its end.
+!> Reports of a run in its log: keys in effect at the start, costs at the end.
 module run_reports
   use text, only: line_t, rounded_text, to_text
   use logger, only: log_t
@@ -41,7 +41,7 @@ contains
     end do
   end subroutine log_echo
 
-  !> Says in the log how large the model is, and what factors its operator. Collective.
+  !> Reports the size of the model and the factorization package. Collective.
   subroutine log_model(model, stepper, log)
     type(model_t), intent(in) :: model
     !> The time stepper
@@ -72,7 +72,7 @@ contains
     end associate
   end subroutine log_model
 
-  !> Says what sets the stable step, and whether the deck's is longer.
+  !> Reports the element that sets the stable step, and whether the deck's step is longer.
   subroutine log_stable_step(stepper, log)
     !> The time stepper, by central differences
     type(time_stepper_t), intent(in) :: stepper
@@ -89,9 +89,9 @@ contains
     end associate
   end subroutine log_stable_step
 
-  !> Lists in the log what the profile has found, the parts that took longest first.
+  !> Lists the profile in the log, the longest parts first.
   subroutine log_profile(rows, log)
-    !> The parts; none if nobody asked
+    !> The parts; none without a profile
     type(profile_row_t), intent(in) :: rows(:)
     !> The log
     type(log_t), intent(inout) :: log
@@ -113,7 +113,7 @@ contains
     call log%detail(trim(line))
   end subroutine log_profile
 
-  !> Lists in the log where time and memory went; the second part of the list is contained in the steps.
+  !> Lists time and memory in the log; the second part of the list is contained in the steps.
   subroutine log_costs(timers, operator, log)
     !> Time spent in set-up, steps and results
     type(timer_set_t), intent(in) :: timers
@@ -139,9 +139,9 @@ contains
     call log_profile(timers%profile%rows(), log)
   end subroutine log_costs
 
-  !> What a run took, in one line.
+  !> Cost of a run in one line.
   function summary(stepper) result(line)
-    !> What the run has stepped with
+    !> The time stepper
     type(time_stepper_t), intent(in) :: stepper
     !> The line
     character(len=:), allocatable :: line

@@ -1,4 +1,4 @@
-!> Steps between two looks of a run at its results: one if steps are implicit, many by central differences.
+!> Steps between two evaluations of results: one if steps are implicit, many by central differences.
 module run_steps
   use deck_contents, only: deck_t
   use deck_slow_motion, only: slow_motion_advice
@@ -23,7 +23,7 @@ contains
     type(deck_t), intent(in) :: deck
     !> The model; layers may grow with the damage
     type(model_t), intent(inout) :: model
-    !> What evolves
+    !> The time stepper, with the state
     type(time_stepper_t), intent(inout) :: stepper
     !> Looks at each step
     type(run_record_t), intent(inout) :: record

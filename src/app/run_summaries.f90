@@ -1,13 +1,13 @@
 !> The end of a run in words and figures: found once, printed in the log and written to NAME_summary.json.
 module run_summaries
-  use case_deck, only: needs_companion
-  use companion_runs, only: companion_t, run_companion
+  use case_deck, only: needs_coarse_run
+  use coarse_runs, only: coarse_run_t, run_coarse_model
   use deck_contents, only: deck_t
   use errors, only: error_t
   use kinds, only: wp
   use logger, only: log_t
   use models, only: model_t
-  use run_errors, only: run_errors_t, errors_by_companion, errors_by_pilot
+  use run_errors, only: run_errors_t, errors_by_coarse_run, errors_by_elastic_impact
   use run_figures, only: run_figures_t, ending_of, find_figures
   use run_provenance, only: provenance_t
   use run_records, only: run_record_t
@@ -19,21 +19,21 @@ module run_summaries
   private
   public :: summarise
 
-  !> Why errors are not known, or not as was asked.
+  !> Why errors are not known, or not as requested.
   character(len=*), parameter :: &
     unasked = 'not known; a coarser run, about an eighth of the work, gives them with &case error_estimate=.true.', &
-    cut = 'not known; the coarser run that gives them has not come to its end', &
-    pilots = 'those of the pilot; the coarser run that gives more accurate ones has not come to its end'
+    cut = 'not known; the coarser run that gives them is not complete', &
+    elastic_only = 'those of the preliminary elastic impact; the coarser run for more accurate ones is not complete'
 
 contains
 
-  !> Says what a run has come to, also one that has been stopped or has failed. A companion runs first if the deck asks
-  !> for one, or for an accuracy that nothing else gives; the run's own factor has been released by then. Collective.
+  !> Prints and writes the summary, also of a run that was stopped or has failed. A coarse run precedes it if the deck
+  !> requests one, or an accuracy without another error estimate; the run's factor has been released. Collective.
   subroutine summarise(deck, model, stepper, record, provenance, seconds, path, log, error)
     !> The deck
     type(deck_t), intent(in) :: deck
     type(model_t), intent(in) :: model
-    !> What the run has stepped with
+    !> The time stepper
     type(time_stepper_t), intent(in) :: stepper
     !> What it remembers
     type(run_record_t), intent(in) :: record
@@ -45,11 +45,11 @@ contains
     character(len=*), intent(in) :: path
     !> The log
     type(log_t), intent(inout) :: log
-    !> What ended the run before its time; set, if nothing did, if the summary cannot be written
+    !> Reason of a premature end; otherwise set if the summary cannot be written
     type(error_t), allocatable, intent(inout) :: error
     type(run_figures_t) :: figures
     type(run_errors_t) :: errors
-    type(companion_t) :: companion
+    type(coarse_run_t) :: coarse_run
     type(error_t), allocatable :: fault
     type(line_t), allocatable :: lines(:)
     character(len=:), allocatable :: unknown_because
@@ -57,16 +57,16 @@ contains
     integer :: i
 
     call find_figures(model, stepper%now, figures)
-    if (.not. allocated(error)) errors = errors_by_pilot(deck, record)
+    if (.not. allocated(error)) errors = errors_by_elastic_impact(deck, record)
     ended = .not. (allocated(error) .or. deck%has_static .or. deck%inherits)
-    wanted = ended .and. needs_companion(deck%settings, errors%source /= 'none')
-    if (wanted) call run_companion(deck, model%communicator, companion)
-    if (companion%done) errors = errors_by_companion(deck, record, stepper%now%impactor%velocity, &
-                                                     sum(figures%interfaces%area), companion)
+    wanted = ended .and. needs_coarse_run(deck%settings, errors%source /= 'none')
+    if (wanted) call run_coarse_model(deck, model%communicator, coarse_run)
+    if (coarse_run%done) errors = errors_by_coarse_run(deck, record, stepper%now%impactor%velocity, &
+                                                     sum(figures%interfaces%area), coarse_run)
     unknown_because = ''
-    if (wanted .and. .not. companion%done) then
+    if (wanted .and. .not. coarse_run%done) then
       unknown_because = cut
-      if (errors%source == 'pilot') unknown_because = pilots
+      if (errors%source == 'elastic') unknown_because = elastic_only
     else if (ended .and. errors%source == 'none') then
       unknown_because = unasked
     end if

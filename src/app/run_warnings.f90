@@ -32,11 +32,11 @@ module run_warnings
   real(wp), parameter :: steepest = 0.2_wp
   !> Deflection over thickness beyond which membrane forces carry a clamped plate.
   real(wp), parameter :: deepest = 3
-  !> Part of an area that rounding may take away.
+  !> Relative round-off of an area.
   real(wp), parameter :: rounded_off = 1.0e-9_wp
 
-  !> Share of the work that the kinetic energy of a slow motion may be, a few per cent, and part of the run from
-  !> which on it is looked at: by then the velocity is constant, and the work no longer that of the start alone.
+  !> Permitted ratio of kinetic energy to work in slow motion, a few per cent, and fraction of the run after which it is
+  !> checked: the velocity is then constant.
   real(wp), parameter :: max_kinetic = 0.05_wp, slow_start = 0.25_wp
   !> Share of the energy that may be kinetic energy of motions whose inertia is scaled. Forces and velocities go by the
   !> root of energies: 2 % of these is 1 % of them, the error that the default factor may make. On decks of input/ it
@@ -45,7 +45,7 @@ module run_warnings
 
 contains
 
-  !> Warns, once each, of what a user must not overlook; a strict run ends there. Collective.
+  !> Warns once of each condition that affects the validity; a strict run ends there. Collective.
   subroutine give_warnings(deck, model, stepper, record, watch, log, error)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -54,7 +54,7 @@ contains
     type(time_stepper_t), intent(in) :: stepper
     !> Receives what is reported
     type(run_record_t), intent(inout) :: record
-    !> Looks after the energy that integrators create
+    !> The check of energies
     type(energy_watch_t), intent(inout) :: watch
     !> Where it is reported
     type(log_t), intent(inout) :: log
@@ -84,7 +84,7 @@ contains
     logical, intent(in) :: step_errs
     !> Receives what is reported
     type(run_record_t), intent(inout) :: record
-    !> Looks after the energy that integrators create
+    !> The check of energies
     type(energy_watch_t), intent(inout) :: watch
     !> One sentence each; empty: nothing new
     type(line_t), allocatable, intent(out) :: warnings(:)
@@ -106,7 +106,7 @@ contains
     if (.not. record%has_warned(warning_torn, 0) .and. abs(now%deflection) > deepest*thickness) then
       if (is_torn(deck, model, now)) call add_warning(warning_torn, 0)
     end if
-    ! Once the impactor has left, what it pressed on says nothing.
+    ! After the impactor has left, the check does not apply.
     if (.not. record%has_warned(warning_hole, 0) .and. deck%has_ply_damage .and. now%force > 0) then
       if (has_hole(model, now)) call add_warning(warning_hole, 0)
     end if
@@ -174,8 +174,8 @@ contains
     is_steep = model%communicator%any(maxval(abs(now%motion%displacement(4:5, :))) > steepest)
   end function is_steep
 
-  !> True: fibres of every ply have failed over an area as large as the contact, so nothing bears what presses on it any
-  !> more. Collective.
+  !> True: the fibres of every ply have failed over an area as large as the contact, so that the contact force has no
+  !> support. Collective.
   logical function has_hole(model, now)
     type(model_t), intent(in) :: model
     !> The step reached
@@ -264,11 +264,11 @@ contains
 
   contains
 
-    !> What was done to more than the energy allowed, and what helps.
+    !> Sentence on an energy above its limit, with a remedy.
     pure function energy_text(what, cure, explicit_cure) result(words)
       !> created or taken
       character(len=*), intent(in) :: what
-      !> What helps in a run in time, by implicit steps and by central differences
+      !> Remedies for implicit steps and for central differences
       character(len=*), intent(in) :: cure, explicit_cure
       !> The sentence
       character(len=:), allocatable :: words
@@ -289,7 +289,7 @@ contains
     end function energy_text
   end function warning_text
 
-  !> All warnings given in a run, those of its part before a restart too.
+  !> All warnings of a run, with those before a restart.
   function warnings_given(record, deck) result(lines)
     !> What was given
     type(run_record_t), intent(in) :: record

@@ -54,7 +54,7 @@ contains
     subroutine append_terms(heading, markup, rows)
       !> Name of the section
       character(len=*), intent(in) :: heading
-      !> What each term begins with
+      !> Beginning of each term
       character(len=*), intent(in) :: markup
       !> Terms and explanations, (2, rows)
       character(len=*), intent(in) :: rows(:, :)

@@ -40,7 +40,7 @@ module simulations
   private
   public :: simulation_t
 
-  !> A run with all that it has open. It has many components because nothing else owns files, clocks and timers.
+  !> A run with its open files. It has many components because it alone owns files, clocks and timers.
   type :: simulation_t
     !> The deck
     type(deck_t) :: deck
@@ -48,7 +48,7 @@ module simulations
     type(communicator_t) :: communicator
     !> What does not change
     type(model_t) :: model
-    !> What evolves
+    !> The time stepper, with the state
     type(time_stepper_t) :: stepper
     !> Log, progress and result files
     type(log_t) :: log
@@ -66,11 +66,11 @@ module simulations
     type(clock_t) :: history_clock, fields_clock, checkpoint_clock
     !> Wall-clock time granted
     type(wall_limit_t), private :: wall_limit
-    !> What the summary needs of the run's course
+    !> Record for the summary
     type(run_record_t), private :: record
     !> The run has been set up: it can report what it has reached
     logical, private :: is_ready = .false.
-    !> Looks after the energy that integrators create
+    !> The check of energies
     type(energy_watch_t), private :: energy_watch
     !> Folder and name that all results share
     character(len=:), allocatable :: base
@@ -81,9 +81,9 @@ module simulations
     procedure :: resume
     !> Steps until the end.
     procedure :: run
-    !> Writes what is left and closes the files.
+    !> Writes the last output and closes the files.
     procedure :: finalize
-    !> Says what the run has come to.
+    !> Prints and writes the summary.
     procedure :: conclude
   end type simulation_t
 
@@ -97,7 +97,7 @@ contains
     type(deck_t), intent(in) :: deck
     !> The ranks
     type(communicator_t), intent(in) :: communicator
-    !> Clock at the program's start, and where time goes if somebody asked
+    !> Clock at the program's start; its profile is unallocated unless requested
     type(profile_t), intent(in) :: profile
     !> Set if files cannot be written or the model cannot be set up
     type(error_t), allocatable, intent(out) :: error
@@ -118,7 +118,7 @@ contains
     if (.not. allocated(error)) call make_ready(self)
   end subroutine initialize
 
-  !> From now on the run can report what it has reached, and what one before it did no longer holds.
+  !> Marks the run as set up; the summary of an earlier run is removed.
   subroutine make_ready(self)
     !> The run
     class(simulation_t), intent(inout) :: self
@@ -127,7 +127,7 @@ contains
     if (self%communicator%is_root()) call remove_file(self%base//summary_ending)
   end subroutine make_ready
 
-  !> What initialise and resume have in common: log, model, state at rest.
+  !> Common part of initialise and resume: log, model, state at rest.
   subroutine prepare(self, deck, communicator, profile, append, error)
     !> The run
     class(simulation_t), intent(inout) :: self
@@ -135,9 +135,9 @@ contains
     type(deck_t), intent(in) :: deck
     !> The ranks
     type(communicator_t), intent(in) :: communicator
-    !> Clock at the program's start, and where time goes if somebody asked
+    !> Clock at the program's start; its profile is unallocated unless requested
     type(profile_t), intent(in) :: profile
-    !> True: go on with the log that is there
+    !> True: append to the existing log
     logical, intent(in) :: append
     !> Set if something cannot be set up
     type(error_t), allocatable, intent(out) :: error
@@ -157,7 +157,7 @@ contains
     if (.not. allocated(error)) call self%log%open(self%base//'.log', communicator%is_root(), append, error)
     call communicator%agree(error)
     if (allocated(error)) return
-    ! A launcher hands its ranks a terminal of its own, whose output may go to a file.
+    ! A launcher gives its ranks a terminal of its own, whose output may go to a file.
     if (launched()) self%log%interactive = .false.
     self%provenance = provenance_of(deck, communicator%size)
     call self%provenance%report(self%log)
@@ -179,11 +179,11 @@ contains
   subroutine resume(self, deck, communicator, profile, path, error)
     !> The run
     class(simulation_t), intent(out) :: self
-    !> The deck that the checkpoint holds
+    !> The deck of the checkpoint
     type(deck_t), intent(in) :: deck
     !> The ranks
     type(communicator_t), intent(in) :: communicator
-    !> Clock at the program's start, and where time goes if somebody asked
+    !> Clock at the program's start; its profile is unallocated unless requested
     type(profile_t), intent(in) :: profile
     !> The checkpoint
     character(len=*), intent(in) :: path
@@ -293,8 +293,8 @@ contains
               moment(self%deck, self%stepper%now%time)//'; go on with: implam restart '//self%base//checkpoint_ending)
   end subroutine stop_if_due
 
-  !> Writes what is due after a step that is looked at. The clocks move before the checkpoint is saved, so that
-  !> a run that goes on from it does not write twice.
+  !> Writes the output that is due after a step. The clocks advance before the checkpoint is saved, so that a restart
+  !> does not write it twice.
   subroutine write_results(self, at_event, error)
     !> The run
     class(simulation_t), intent(inout) :: self
@@ -356,7 +356,7 @@ contains
     call self%timers%stop('checkpoint')
   end subroutine save_checkpoint
 
-  !> Writes the last fields, closes the files and says what the run took.
+  !> Writes the last fields, closes the files and reports the cost of the run.
   subroutine finalize(self, error)
     !> The run
     class(simulation_t), intent(inout) :: self
@@ -374,12 +374,12 @@ contains
     call self%stepper%operator%release()
   end subroutine finalize
 
-  !> Says what the run has come to, also one that has been stopped or has failed: in NAME_summary.json, and rounded for
-  !> reading in the log. Collective.
+  !> Writes the summary, also of a run that was stopped or has failed: to NAME_summary.json, and rounded to the log.
+  !> Collective.
   subroutine conclude(self, error)
     !> The run
     class(simulation_t), intent(inout) :: self
-    !> What ended the run before its time; set, if nothing did, if the summary cannot be written
+    !> Reason of a premature end; otherwise set if the summary cannot be written
     type(error_t), allocatable, intent(inout) :: error
 
     if (self%is_ready) call summarise(self%deck, self%model, self%stepper, self%record, self%provenance, &

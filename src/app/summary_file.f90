@@ -1,4 +1,4 @@
-!> NAME_summary.json: what a run says at its end, in full precision. doc/manual/summary.md describes it.
+!> NAME_summary.json: the summary in full precision. doc/manual/summary.md describes it.
 module summary_file
   use compression_summary, only: put_compression
   use summary_provenance, only: put_provenance
@@ -35,7 +35,7 @@ contains
   function summary_text(deck, stepper, record, figures, errors, ending, provenance, seconds) result(content)
     !> The deck
     type(deck_t), intent(in) :: deck
-    !> What the run has stepped with
+    !> The time stepper
     type(time_stepper_t), intent(in) :: stepper
     !> What it remembers
     type(run_record_t), intent(in) :: record
@@ -90,7 +90,7 @@ contains
     type(json_t), intent(inout) :: json
     !> The state reached
     type(state_t), intent(in) :: now
-    !> What the run remembers
+    !> Record of the run
     type(run_record_t), intent(in) :: record
     !> Figures of the state
     type(run_figures_t), intent(in) :: figures
@@ -120,7 +120,7 @@ contains
     end if
   end subroutine put_impact
 
-  !> How far the figures may be off by step and mesh.
+  !> Estimated errors.
   subroutine put_errors(json, errors)
     !> The summary
     type(json_t), intent(inout) :: json
@@ -177,7 +177,7 @@ contains
     end associate
   end subroutine put_energies
 
-  !> What the impactor brought, has and has lost; that is known once it has left the plate.
+  !> Energy of the impactor at first touch, at the end, and lost; the last is known once it has left the plate.
   subroutine put_impact_energies(json, deck, now)
     !> The summary
     type(json_t), intent(inout) :: json
@@ -205,7 +205,7 @@ contains
     type(deck_t), intent(in) :: deck
     !> The state reached
     type(state_t), intent(in) :: now
-    !> What the run remembers
+    !> Record of the run
     type(run_record_t), intent(in) :: record
     !> Figures of the state
     type(run_figures_t), intent(in) :: figures
@@ -256,7 +256,7 @@ contains
     call json%close()
   end subroutine put_event
 
-  !> What has failed in the plies.
+  !> Failures of the plies.
   subroutine put_failures(json, figures)
     !> The summary
     type(json_t), intent(inout) :: json
@@ -302,7 +302,7 @@ contains
     type(json_t), intent(inout) :: json
     !> The deck
     type(deck_t), intent(in) :: deck
-    !> What the run remembers
+    !> Record of the run
     type(run_record_t), intent(in) :: record
     type(line_t), allocatable :: given(:)
     integer :: i
@@ -328,7 +328,7 @@ contains
   subroutine put_costs(json, stepper, seconds)
     !> The summary
     type(json_t), intent(inout) :: json
-    !> What the run has stepped with
+    !> The time stepper
     type(time_stepper_t), intent(in) :: stepper
     !> Wall-clock time since this process began
     real(wp), intent(in) :: seconds
@@ -344,11 +344,11 @@ contains
     call json%close()
   end subroutine put_costs
 
-  !> Where time and memory went, if somebody asked.
+  !> Profile of time and memory, if requested.
   subroutine put_profile(json, rows)
     !> The summary
     type(json_t), intent(inout) :: json
-    !> The parts; none if nobody asked
+    !> The parts; none without a profile
     type(profile_row_t), intent(in) :: rows(:)
     integer :: i
 

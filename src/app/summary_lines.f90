@@ -1,4 +1,4 @@
-!> What a run says at its end in its log: the summary rounded for reading, in the deck's units.
+!> The summary in the log: rounded, in the deck's units.
 module summary_lines
   use compression_summary, only: compression_text
   use deck_contents, only: deck_t
@@ -27,7 +27,7 @@ contains
     type(deck_t), intent(in) :: deck
     !> The state reached
     type(state_t), intent(in) :: now
-    !> What the run remembers
+    !> Record of the run
     type(run_record_t), intent(in) :: record
     !> Figures of the state
     type(run_figures_t), intent(in) :: figures
@@ -68,7 +68,7 @@ contains
   subroutine add_figure(lines, label, figures)
     !> The lines
     type(line_t), allocatable, intent(inout) :: lines(:)
-    !> What is reported; empty goes on with the line before
+    !> The label; empty: the line continues the one before
     character(len=*), intent(in) :: label
     !> Its figures
     character(len=*), intent(in) :: figures
@@ -82,9 +82,9 @@ contains
     type(line_t), allocatable, intent(inout) :: lines(:)
     !> The state reached
     type(state_t), intent(in) :: now
-    !> What the run remembers
+    !> Record of the run
     type(run_record_t), intent(in) :: record
-    !> How far the figures may be off
+    !> Estimated errors
     type(run_errors_t), intent(in) :: errors
 
     call add_figure(lines, 'peak force', rounded_text(record%peak_force)//' at time '// &
@@ -124,11 +124,11 @@ contains
     end if
   end subroutine add_dent
 
-  !> How far a figure may be off.
+  !> Estimated error of a result.
   pure function within(error, figure) result(clause)
     !> Its error; negative: not known
     real(wp), intent(in) :: error
-    !> The figure that it is given as a part of; left out: it is given in its unit
+    !> The value that it is relative to; left out: it is printed in its unit
     real(wp), intent(in), optional :: figure
     !> Such as (+-0.4 %); empty if it isn't known
     character(len=:), allocatable :: clause
@@ -152,7 +152,7 @@ contains
     if (contacts > 1) clause = ' in '//to_text(contacts)//' contacts'
   end function repeated
 
-  !> What the impactor brought, and has lost: absorbed is what it has not got back once contact has ended.
+  !> Energy of the impactor and its loss, which is the absorbed energy once the contact has ended.
   subroutine add_impact_energy(lines, deck, now)
     !> The lines
     type(line_t), allocatable, intent(inout) :: lines(:)
@@ -199,7 +199,7 @@ contains
     type(line_t), allocatable, intent(inout) :: lines(:)
     !> The deck
     type(deck_t), intent(in) :: deck
-    !> What the run remembers
+    !> Record of the run
     type(run_record_t), intent(in) :: record
     !> Figures of the state reached
     type(run_figures_t), intent(in) :: figures
@@ -268,7 +268,7 @@ contains
     type(line_t), allocatable, intent(inout) :: lines(:)
     !> The deck
     type(deck_t), intent(in) :: deck
-    !> What the run remembers
+    !> Record of the run
     type(run_record_t), intent(in) :: record
     type(line_t), allocatable :: given(:)
     integer :: i

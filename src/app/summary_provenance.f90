@@ -1,4 +1,4 @@
-!> What the summary reports of where its result comes from.
+!> Provenance in the summary.
 module summary_provenance
   use json_text, only: json_t
   use run_provenance, only: citation_of, provenance_t

@@ -1,6 +1,5 @@
-!> What the program reports of its use: one table of commands, options and exit codes, for --help, the manual page of
-!> Unix
-!> and the completions of shells.
+!> Usage of the program: one table of commands, options and exit codes, for --help, the manual page and the completions
+!> of shells.
 module usage_texts
   use text, only: line_t, append, words_of
   implicit none
@@ -11,7 +10,7 @@ module usage_texts
   integer, parameter, public :: text_length = 400
   integer, parameter :: indent = 31, width = 96
 
-  !> Commands: what is typed behind `implam`, and what it does.
+  !> Commands and their meaning.
   character(len=text_length), parameter, public :: command_rows(2, 11) = reshape([character(len=text_length) :: &
     '[run] DECK.nml', 'run a deck', &
     'check DECK.nml', 'read and check a deck and list every fault, without a run', &
@@ -80,7 +79,7 @@ contains
     type(line_t), allocatable, intent(inout) :: lines(:)
     !> Line above
     character(len=*), intent(in) :: heading
-    !> What every term begins with
+    !> Beginning of each term
     character(len=*), intent(in) :: prefix
     !> Terms and explanations, (2, rows)
     character(len=*), intent(in) :: rows(:, :)

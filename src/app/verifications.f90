@@ -1,4 +1,4 @@
-!> What a setup's figures change by on a finer mesh with shorter steps, from the summaries of both runs.
+!> Change of the results on a finer mesh with shorter steps, from the summaries of both runs.
 module verifications
   use checkpoints, only: checkpoint_archive_t, checkpoint_ending
   use communicators, only: communicator_t
@@ -88,7 +88,7 @@ contains
     holds = index(summary, member) > 0
   end function holds
 
-  !> Prints what the figures change by, and writes it to NAME_verification.json. Collective.
+  !> Prints the changes of the results, and writes them to NAME_verification.json. Collective.
   subroutine print_changes(deck, finer, communicator, error)
     !> The deck, and the same refined
     type(deck_t), intent(in) :: deck, finer
@@ -144,7 +144,7 @@ contains
     call json%finished(content)
   end subroutine compare_summaries
 
-  !> Number of a member of the outermost object, which stands in a line of its own.
+  !> Number of a member of the outermost object, which has a line of its own.
   pure subroutine find_number(summary, name, value, found)
     !> The summary
     character(len=*), intent(in) :: summary
@@ -181,7 +181,7 @@ contains
   pure function change(values) result(word)
     !> As it is, and finer
     real(wp), intent(in) :: values(2)
-    !> Such as -0.27 %; from nothing there is none
+    !> Such as -0.27 %; empty if the first value is 0
     character(len=:), allocatable :: word
 
     word = '-'

@@ -6,7 +6,7 @@ module case_deck
   use text, only: lower_case
   implicit none
   private
-  public :: fill_case, fill_claims, has_accuracy, needs_companion
+  public :: fill_case, fill_claims, has_accuracy, needs_coarse_run
 
   !> Names of the group and of keys.
   character(len=*), parameter, public :: case_group = 'case', key_name = 'name', &
@@ -29,11 +29,11 @@ module case_deck
     'case | strict | logical | 1 | - | .false. | .true. .false. | &
       &Whether a run ends with exit code 3 where it passes the model''s limits, instead of a warning.', &
     'case | error_estimate | logical | 1 | - | none | .true. .false. | &
-      &Whether a coarser run, an eighth of the work, gives errors. Left out: with accuracy, unless the pilot does.', &
+      &Whether a coarser run, an eighth of the work, gives errors. Default: accuracy without elastic estimate.', &
     'case | refine | integer | 1 | - | 0 | >= 0, <= 4 | &
       &Times that elements and steps are halved; the results are then those of NAME_finer1 and so on.']
 
-  !> Errors of the peak force that the names of `accuracy` stand for, %.
+  !> Permitted errors of the peak force for each `accuracy`, %.
   real(wp), parameter :: draft_error = 5, standard_error = 1, reference_error = 0.2_wp
 
 contains
@@ -62,18 +62,18 @@ contains
     has_accuracy = settings%is_given(group, key_accuracy)
   end function has_accuracy
 
-  !> True: a companion run is to give the errors of the results.
-  pure logical function needs_companion(settings, has_estimate)
+  !> True: a coarse run run is to give the errors of the results.
+  pure logical function needs_coarse_run(settings, has_estimate)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
-    !> True: the pilot calculation gives them
+    !> True: the preliminary elastic impact gives them
     logical, intent(in) :: has_estimate
 
-    needs_companion = has_accuracy(settings) .and. .not. has_estimate
-    if (settings%is_given(group, key_error_estimate)) needs_companion = settings%logical_of(group, key_error_estimate)
-  end function needs_companion
+    needs_coarse_run = has_accuracy(settings) .and. .not. has_estimate
+    if (settings%is_given(group, key_error_estimate)) needs_coarse_run = settings%logical_of(group, key_error_estimate)
+  end function needs_coarse_run
 
-  !> What the case claims of its results.
+  !> Accuracy that the case requests.
   pure subroutine fill_claims(settings, accuracy, units, strict, refine)
     !> Keys in effect
     type(settings_t), intent(in) :: settings

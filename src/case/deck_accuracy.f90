@@ -1,4 +1,4 @@
-!> Mesh, step and output clocks that a deck leaves to the accuracy it asks for. What the deck gives stands.
+!> Mesh, step and output intervals by the requested accuracy, where the deck does not give them.
 module deck_accuracy
   use case_deck, only: case_group, key_accuracy, has_accuracy
   use deck_contents, only: deck_t
@@ -11,8 +11,8 @@ module deck_accuracy
   use mesh_deck, only: mesh_group, key_elements, key_patch, key_core, key_cell, key_grading, fill_mesh
   use mesh_parameters, only: symmetry_quarter
   use output_deck, only: output_group, key_fields_every
-  use pilot_impacts, only: pilot_t
-  use setup_pilots, only: setup_pilot_t, start_pilot, contact_end, largest_step, largest_cell
+  use elastic_impacts, only: elastic_impact_t
+  use setup_elastic_impacts, only: setup_elastic_impact_t, start_elastic_impact, contact_end, largest_step, largest_cell
   use setup_scales, only: setup_scales_t, scales_of, contact_side, has_impact_velocity
   use short_numbers, only: short_text
   use stepping_parameters, only: is_explicit, past_contact
@@ -24,19 +24,19 @@ module deck_accuracy
 
   !> Error of the history allowed over that of the peak: 3 % and 1 %. Mesh and step get half of both each.
   real(wp), parameter :: history_over_peak = 3, share = 0.5_wp
-  !> Most elements along one direction of the part modelled, twice that of a full plate: more take hours.
+  !> Most elements along one direction of the modelled part, twice that of a full plate: more take hours.
   integer, parameter :: max_along = 100
-  !> Waves of first contact on either side of the patch that have the elements asked for, where they are too many for
-  !> the plate. On random setup 9 of `tests/bench/elastic_models.py` the first peak is 2.9 % off without, 0.3 % with one
-  !> wave, 0.03 % with two.
+  !> Waves of first contact on either side of the patch that have the required elements, where these are too many for
+  !> the plate. On random model 9 of `tests/bench/elastic_models.py` the error of the first peak is 2.9 % without, 0.3 %
+  !> with one wave, 0.03 % with two.
   real(wp), parameter :: core_waves = 2
   !> Elements across the smaller side of the zone of an interface that may delaminate.
   integer, parameter :: zone_elements = 24
   !> Fields written in a run, and the largest accuracy, %, with which they are: they cost a draft half its time.
   integer, parameter :: fields_written = 10
   real(wp), parameter :: max_with_fields = 2
-  !> Parts of the plate's shorter side that elements have without an impactor, at an error of 1 %, and of its first
-  !> period that steps have. The element's error falls with the fourth power of its side, the step's with the square.
+  !> Elements in the plate's shorter side and steps in its first period, without an impactor, for an error of 1 %. The
+  !> error is of fourth order in the elements and of second order in the step.
   real(wp), parameter :: part_of_side = 1.0_wp/16, part_of_period = 1.0_wp/40
 
 contains
@@ -76,7 +76,7 @@ contains
     end subroutine require
   end subroutine check_left_out
 
-  !> Chooses what the deck leaves out, once all that it follows from is without fault.
+  !> Chooses the keys that the deck leaves out, if the keys they depend on are valid.
   subroutine choose_by_accuracy(deck, problems)
     !> Plate, laminate, impactor and interfaces are filled; receives mesh and times
     type(deck_t), intent(inout) :: deck
@@ -95,7 +95,7 @@ contains
     call fill_mesh(deck%settings, deck%mesh)
   end subroutine choose_by_accuracy
 
-  !> Patch, end, step and mesh of an impact, by pilot calculations.
+  !> Patch, end, step and mesh of an impact, by preliminary elastic impacts.
   subroutine choose_for_impact(deck, scales, problems)
     !> The deck
     type(deck_t), intent(inout) :: deck
@@ -103,41 +103,41 @@ contains
     type(setup_scales_t), intent(in) :: scales
     !> Remarks are added
     type(problems_t), intent(inout) :: problems
-    type(setup_pilot_t) :: pilot
-    type(pilot_t) :: first
+    type(setup_elastic_impact_t) :: elastic
+    type(elastic_impact_t) :: first
     real(wp) :: end, step, bounds(2), error(2)
     logical :: follows
 
     bounds = share*deck%accuracy/100*[1.0_wp, history_over_peak]
     end = deck%settings%real_of(time_group, key_end)
-    pilot = start_pilot(deck%setup_t, scales)
-    first = contact_end(pilot, end)
+    elastic = start_elastic_impact(deck%setup_t, scales)
+    first = contact_end(elastic, end)
     if (.not. deck%mesh%patch > 0) then
       call choose_one(deck, mesh_group, key_patch, min(contact_side(deck%setup_t, first%indentation), &
                                                        minval(deck%plate%length)/4))
       deck%mesh%patch = deck%settings%real_of(mesh_group, key_patch)
       call append(deck%reasons, 'Patch '//short_text(deck%mesh%patch)//': the circle of contact at an indentation '// &
                   'of '//short_text(first%indentation)//', spread over the thickness.')
-      pilot = start_pilot(deck%setup_t, scales)
-      first = contact_end(pilot, end)
+      elastic = start_elastic_impact(deck%setup_t, scales)
+      first = contact_end(elastic, end)
     end if
     deck%stepping%time%follows_contact = is_explicit(deck%stepping) .and. .not. end > 0
     if (.not. end > 0) then
       call choose_one(deck, time_group, key_end, past_contact*first%last_contact)
       end = deck%settings%real_of(time_group, key_end)
       call append(deck%reasons, 'End '//short_text(end)//': the contact, '//to_text(first%contacts)// &
-                  ' time(s), is over at '//short_text(first%last_contact)//' in a pilot calculation by modes.')
+                  ' time(s), is over at '//short_text(first%last_contact)//' in a preliminary elastic impact by modes.')
     end if
     step = deck%settings%real_of(time_group, key_step)
     follows = .not. step > 0
     if (follows) then
-      call largest_step(pilot, end, bounds, step, error)
+      call largest_step(elastic, end, bounds, step, error)
       if (.not. is_explicit(deck%stepping)) call choose_step(deck, end, error(2), step)
     end if
     if (.not. is_explicit(deck%stepping)) call choose_integrator(deck)
     call choose_clocks(deck, step, end)
     if (deck%settings%is_given(mesh_group, key_elements)) return
-    call choose_elements(deck, largest_cell(pilot, step, min(end, past_contact*first%last_contact), bounds, &
+    call choose_elements(deck, largest_cell(elastic, step, min(end, past_contact*first%last_contact), bounds, &
                                             follows), scales, problems)
   end subroutine choose_for_impact
 
@@ -153,7 +153,7 @@ contains
     call choose_one(deck, time_group, key_step, step)
     step = deck%settings%real_of(time_group, key_step)
     call append(deck%reasons, 'Step '//short_text(step)//': '//to_text(ceiling(end/step))// &
-                ' steps; by pilot calculations it changes the force history by '//short_text(100*error)//' %.')
+                ' steps; by preliminary elastic impacts it changes the force history by '//short_text(100*error)//' %.')
   end subroutine choose_step
 
   !> Mesh, and in time the step, of a plate under pressure.
@@ -216,13 +216,13 @@ contains
     end if
   end subroutine choose_elements
 
-  !> Elements as small as wanted around the struck point at least: the first contact is over before its waves have left.
+  !> Elements of the required size around the struck point: the first contact ends before its waves have left them.
   subroutine choose_core(deck, cell, wave_length)
     !> The deck
     type(deck_t), intent(inout) :: deck
     !> Side of the elements wanted
     real(wp), intent(in) :: cell
-    !> Length of the waves; 0: nothing strikes
+    !> Length of the waves; 0: no impactor
     real(wp), intent(in) :: wave_length
     type(line_t), allocatable :: extents(:)
     integer :: direction
@@ -249,7 +249,8 @@ contains
     end do
   end function smallest_zone
 
-  !> The impactor's integrator: that of the pilot calculations, which bears long steps. gear4 would cut them.
+  !> The impactor's integrator: that of the preliminary elastic impacts, which permits long steps. gear4 would shorten
+  !> them.
   subroutine choose_integrator(deck)
     !> The deck
     type(deck_t), intent(inout) :: deck
@@ -259,7 +260,7 @@ contains
     deck%impactor%integrator = integrator_trapezoidal
   end subroutine choose_integrator
 
-  !> Fields are written at whole steps; a draft has only the last.
+  !> Fields are written at the ends of steps; a draft has only the last.
   subroutine choose_clocks(deck, step, end)
     !> The deck
     type(deck_t), intent(inout) :: deck

@@ -1,5 +1,5 @@
-!> What a deck leaves out for central differences: end, factor of in-plane and rotary inertia, rows of the history, and
-!> the stable step. What the deck gives stands.
+!> Defaults for central differences: end, factor of in-plane and rotary inertia, rows of the history, and the stable
+!> step.
 module deck_central_differences
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
@@ -12,9 +12,9 @@ module deck_central_differences
   use element_deck, only: key_mass
   use mesh_deck, only: mesh_group
   use output_deck, only: output_group, key_history_every
-  use pilot_impacts, only: pilot_t
+  use elastic_impacts, only: elastic_impact_t
   use plate_options, only: mass_lumped
-  use setup_pilots, only: contact_end, start_pilot
+  use setup_elastic_impacts, only: contact_end, start_elastic_impact
   use setup_scales, only: has_impact_velocity, scales_of, setup_scales_t
   use short_numbers, only: short_text
   use stepping_parameters, only: past_contact
@@ -24,15 +24,16 @@ module deck_central_differences
   private
   public :: choose_for_central_differences, find_stable_step
 
-  !> Largest factor of in-plane and rotary inertia that is chosen. It slows membrane waves too, which no estimate here
-  !> knows, by its root.
+  !> Largest factor of in-plane and rotary inertia that is chosen. It also slows membrane waves by its root, which no
+  !> estimate covers.
   real(wp), parameter :: max_scaling = 10
   !> Error of a bending wave's frequency up to which inertia is scaled. By s times the rotary inertia a wave of number k
   !> in a plate of thickness h is slower by (s - 1) (k h)**2/24: rho h**3/12 k**2 beside rho h, halved by the root.
   !> The history of the force errs by up to 2.7 times as much, in the relative L2 norm over twenty random setups
   !> (tests/bench/explicit_table.py elastic): so it errs by less than 1 %.
   real(wp), parameter :: frequency_error = 0.0035_wp
-  !> Rows of a history, about: as many as a plot shows. They are written at whole steps, which none is cut for.
+  !> Approximate rows of a history, as many as a plot shows. They are written at the ends of steps; no step is shortened
+  !> for them.
   real(wp), parameter :: rows = 2000
 
 contains
@@ -59,8 +60,8 @@ contains
     if (.not. deck%settings%is_given(time_group, key_mass_scaling)) call choose_scaling(deck, scales)
   end subroutine choose_for_central_differences
 
-  !> End of the run: that of the contact of an undamaged plate, and some time. The contact of a damaged plate, which is
-  !> softer, lasts longer by as much as no pilot calculation knows; the run itself goes on until the impactor has left.
+  !> End of the run: that of the contact of an undamaged plate, and a margin. The contact of a damaged plate lasts
+  !> longer by an unknown time; the run continues until the impactor has left.
   subroutine choose_end(deck, scales, problems)
     !> The deck
     type(deck_t), intent(inout) :: deck
@@ -68,7 +69,7 @@ contains
     type(setup_scales_t), intent(in) :: scales
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
-    type(pilot_t) :: pilot
+    type(elastic_impact_t) :: elastic
 
     deck%stepping%time%follows_contact = .true.
     if (deck%settings%is_known(time_group, key_end)) return
@@ -79,14 +80,14 @@ contains
                             'velocity.', 1)
       return
     end if
-    pilot = contact_end(start_pilot(deck%setup_t, scales), 0.0_wp)
-    call deck%settings%derive(time_group, key_end, short_text(past_contact*pilot%last_contact), .false.)
-    call append(deck%reasons, 'End '//short_text(past_contact*pilot%last_contact)//': the contact of an undamaged '// &
-                'plate is over at '//short_text(pilot%last_contact)//' in a pilot calculation by modes; while it '// &
-                'lasts longer the run goes on.')
+    elastic = contact_end(start_elastic_impact(deck%setup_t, scales), 0.0_wp)
+    call deck%settings%derive(time_group, key_end, short_text(past_contact*elastic%last_contact), .false.)
+    call append(deck%reasons, 'End '//short_text(past_contact*elastic%last_contact)//': the contact of an '// &
+                'undamaged plate ends at '//short_text(elastic%last_contact)//' in a preliminary elastic impact; '// &
+                'the run continues while it lasts longer.')
   end subroutine choose_end
 
-  !> Factor of in-plane and rotary inertia that the waves of first contact bear.
+  !> Factor of in-plane and rotary inertia permitted by the waves of first contact.
   subroutine choose_scaling(deck, scales)
     !> The deck
     type(deck_t), intent(inout) :: deck
@@ -107,7 +108,7 @@ contains
     call deck%settings%derive(time_group, key_mass_scaling, short_text(scaling), .false.)
   end subroutine choose_scaling
 
-  !> Finds the stable step, which pilot calculations, costs and the number of rows go by; the run finds its own.
+  !> Finds the stable step for preliminary elastic impacts, costs and the number of rows; the run computes its own.
   subroutine find_stable_step(deck, problems)
     !> The deck, its mesh checked; receives the step
     type(deck_t), intent(inout) :: deck

@@ -1,4 +1,4 @@
-!> What a deck says, as plain parameters together with the text they came from.
+!> Content of a deck, as plain parameters with its text.
 module deck_contents
   use deck_settings, only: settings_t
   use initial_state_parameters, only: initial_state_t
@@ -6,14 +6,14 @@ module deck_contents
   use stepping_parameters, only: stepping_t
   use linear_solver_parameters, only: linear_solver_parameters_t
   use output_parameters, only: output_t
-  use setup_pilots, only: expected_scales_t
+  use setup_elastic_impacts, only: expected_scales_t
   use setups, only: setup_t
   use text, only: line_t
   implicit none
   private
   public :: deck_t
 
-  !> A deck that was read: the setup to model, and what is around it; it has many components because every group of the
+  !> A deck: the setup to model, and output and stepping parameters; it has many components because every group of the
   !> deck has one.
   type, extends(setup_t) :: deck_t
     !> Path or name it was read from
@@ -34,9 +34,9 @@ module deck_contents
     integer :: refine = 0
     !> The state that another run has left, if this one begins from it
     type(initial_state_t) :: initial
-    !> What was chosen for the accuracy and why
+    !> Values chosen for the accuracy, with reasons
     type(line_t), allocatable :: reasons(:)
-    !> Scales of the setup, and what the run is to show
+    !> Scales of the setup, and expected results
     type(expected_scales_t) :: expected
     !> Which groups on the steps the deck has
     logical :: has_time = .false., has_adapt = .false.
@@ -46,7 +46,7 @@ module deck_contents
     type(linear_solver_parameters_t) :: linear_solver
     !> What is written
     type(output_t) :: output
-    !> Warnings on the deck, which its run ends with once more
+    !> Warnings on the deck, repeated at the end of its run
     type(line_t), allocatable :: remarks(:)
     !> Every key in effect, for the echo
     type(settings_t) :: settings

@@ -1,5 +1,4 @@
-!> Plies that soften by their fracture energies. Are all energies there, what has no effect beside them, does the mesh
-!> bear them?
+!> Checks of softening plies: are all fracture energies given, which keys have no effect, are elements short enough?
 module deck_crack_bands
   use cell_grids, only: cell_edges
   use crack_bands, only: create_crack_band, longest_element

@@ -1,6 +1,5 @@
-!> Checks across the groups of a deck: whether what it asks for can be modelled and makes sense together. Checks within
-!> a group stand beside its rows, those of sizes against each other in `deck_extents`.
-!> A check whose keys are already at fault is left out, so that one fault is reported once.
+!> Checks across the groups of a deck: whether they can be modelled together. Checks within a group are beside its rows,
+!> those of sizes in `deck_extents`. A check with invalid keys is omitted, so that an error is reported once.
 module deck_cross_checks
   use adapt_deck, only: adapt_group, key_growth_step
   use deck_contents, only: deck_t
@@ -114,14 +113,14 @@ contains
                      keys_of_motion(deck%settings), 'has no effect where the travel is given.')
   end subroutine check_travel_in_time
 
-  !> True if a line moves the plate or presses on it.
+  !> True if a line moves or loads the plate.
   pure logical function loads(lines)
     !> The lines
     type(line_load_t), intent(in) :: lines(:)
     loads = any(abs(lines%value) > 0)
   end function loads
 
-  !> What a static analysis needs, and what has no effect on it.
+  !> Keys that a static analysis needs, and keys without effect in it.
   subroutine check_static(deck, problems)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -151,7 +150,7 @@ contains
                   'has no effect without a cohesive interface.')
   end subroutine check_static
 
-  !> Lines and edges that together hold the plate across itself: its deflection, and its tilt along x and along y.
+  !> Lines and edges that together support the plate: its deflection, and its tilt along x and along y.
   subroutine check_line_supports(deck, problems)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -179,7 +178,7 @@ contains
               'in a static analysis; support another line.', 1)
   end subroutine check_line_supports
 
-  !> What a run in time needs, and what has no effect on it.
+  !> Keys that a run in time needs, and keys without effect in it.
   subroutine check_transient(deck, problems)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -214,7 +213,7 @@ contains
       end if
       if (deck%mesh%patch <= 0 .and. s%has_group(mesh_group) .and. are_clear(s, problems, mesh_group, key_patch)) &
         call report(s, problems, mesh_group, key_patch, 'an impactor needs a loaded patch; give its side > 0.')
-      ! The force presses on all of the patch, which has no nose above it there.
+      ! The force acts on all of the patch, which has no nose above it there.
       if (deck%impactor%spreads .and. deck%impactor%radius > 0 .and. &
           deck%mesh%patch/sqrt(2.0_wp) > deck%impactor%radius) &
         call remark(s, problems, mesh_group, key_patch, 'reaches beyond the nose that presses on it: its corners '// &

@@ -1,5 +1,5 @@
-!> What central differences cannot do, and what has no effect on them. The key that asks for it is named with what to
-!> write instead.
+!> Features that central differences do not have, and keys without effect on them. Messages name the key and an
+!> alternative.
 module deck_explicit_checks
   use adapt_deck, only: adapt_group
   use deck_contents, only: deck_t
@@ -23,7 +23,7 @@ module deck_explicit_checks
 
 contains
 
-  !> Refuses what the method cannot do, and remarks on what changes nothing.
+  !> Refuses features that the method does not have, and reports keys without effect.
   subroutine check_central_differences(deck, problems)
     !> The deck, filled
     type(deck_t), intent(in) :: deck

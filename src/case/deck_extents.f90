@@ -31,11 +31,11 @@ module deck_extents
   real(wp), parameter :: min_patch = 1.0e-5_wp
   !> Side of a starter over the loaded patch's below which growth may never start.
   real(wp), parameter :: min_starter = 1.5_wp
-  !> Difference from the size asked for, relative to it, that a user is warned of.
+  !> Relative difference from the requested size above which a warning is given.
   real(wp), parameter :: size_tolerance = 0.05_wp
   !> Distance from its place at which a line counts as moved, relative to the plate's length.
   real(wp), parameter :: moved_line = 1.0e-3_wp
-  !> Part by which rounding may carry a length beyond its limit.
+  !> Relative round-off of a length at its limit.
   real(wp), parameter :: rounded_off = 1.0e-9_wp
 
 contains
@@ -129,7 +129,7 @@ contains
     end if
   end subroutine check_thickness
 
-  !> Loaded patch: not larger than the plate nor next to nothing, and with elements left for the rest.
+  !> Loaded patch: not larger than the plate, not too small, and with elements left for the rest.
   subroutine check_patch(deck, problems)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -228,7 +228,7 @@ contains
     if (i > 1) repeats = deck%delaminations(i)%group == deck%delaminations(i - 1)%group
   end function repeats
 
-  !> Warns of lines, zones and starters that the mesh makes noticeably larger or smaller than the deck asks.
+  !> Warns of lines, zones and starters whose size on the mesh differs from the deck's.
   subroutine check_extents(deck, problems)
     !> The deck, filled and checked
     type(deck_t), intent(in) :: deck
@@ -260,8 +260,8 @@ contains
     end do
   end subroutine check_extents
 
-  !> Remarks on a front that is smoothed over more than its own radius: a rate that goes as the cosine of twice the
-  !> angle around a disc loses 29 % of its amplitude there, 8 % at half the radius.
+  !> Remarks on a front that is smoothed over more than its radius: a rate proportional to the cosine of twice the angle
+  !> around a disc loses 29 % of its amplitude there, 8 % at half the radius.
   subroutine check_smoothing(deck, delamination, cell, radius, problems)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -307,7 +307,7 @@ contains
                   /product([columns(2) - columns(1), rows(2) - rows(1)] + 1))
   end function mean_cell
 
-  !> What zone and starter of each interface are, for the log.
+  !> Zone and starter of each interface, for the log.
   pure function extent_lines(deck) result(lines)
     !> The deck, checked
     type(deck_t), intent(in) :: deck
@@ -348,7 +348,7 @@ contains
     starter = min(starter, zone)
   end subroutine extents_of
 
-  !> True if a size differs from what was asked for by more than a user would overlook.
+  !> True if a size differs noticeably from the requested one.
   pure logical function differs(given, asked)
     !> Extents on the mesh and in the deck
     real(wp), intent(in) :: given(2), asked(2)

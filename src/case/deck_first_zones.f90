@@ -18,8 +18,8 @@ module deck_first_zones
 
 contains
 
-  !> Layers can follow the damage of a cohesive law. A front has no damage ahead of it, a strip runs across the whole
-  !> width of a zone, and lines act on the layers that there are at the start.
+  !> Zones can adapt to the damage of a cohesive law. A front has no damage ahead of it, a strip crosses the full width
+  !> of a zone, and lines act on the initial layers.
   subroutine check_left_out_zones(deck, problems)
     !> The deck, filled
     type(deck_t), intent(in) :: deck
@@ -54,7 +54,7 @@ contains
     end subroutine want
   end subroutine check_left_out_zones
 
-  !> Lines that layers do not come to: those that move an edge of the plate in its plane.
+  !> Lines outside of layers: those that move an edge of the plate in its plane.
   pure function beside_layers(deck)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -71,7 +71,7 @@ contains
   subroutine set_first_zones(deck, problems)
     !> The deck, filled; its interfaces receive the zones
     type(deck_t), intent(inout) :: deck
-    !> Faults found so far; with any nothing is done
+    !> Errors so far; with any it returns
     type(problems_t), intent(in) :: problems
     real(wp) :: least, thickness
     integer :: i, direction
@@ -96,9 +96,9 @@ contains
     end do
   end subroutine set_first_zones
 
-  !> Gives interfaces with adaptive layers their largest layers from the start. By equilibrium
-  !> through the thickness the plate is softer in transverse shear than its layers together, a sandwich many times: its
-  !> strain energy would jump where layers appear.
+  !> Gives interfaces with adaptive zones their largest zones from the start. By equilibrium through the thickness the
+  !> plate is more compliant in transverse shear than its layers together, a sandwich many times: its strain energy
+  !> would be discontinuous as layers appear.
   subroutine set_permanent_zones(deck)
     !> The deck; its interfaces receive the zones
     type(deck_t), intent(inout) :: deck

@@ -1,5 +1,4 @@
-!> Remarks on what a deck gives without effect, as a group that would use it is missing: a user who gave it expects
-!> that it counts.
+!> Reports keys without effect because the group that uses them is missing.
 module deck_idle_keys
   use adapt_deck, only: adapt_group
   use deck_contents, only: deck_t
@@ -48,7 +47,7 @@ contains
     end associate
   end subroutine check_idle_keys
 
-  !> A material that no ply has, and constants that nothing uses.
+  !> A material without plies, and constants without use.
   subroutine check_material(deck, place, problems)
     !> The deck
     type(deck_t), intent(in) :: deck

@@ -1,4 +1,4 @@
-!> A deck that begins from the end of another run: whether it can, and whether it is about the same plate.
+!> Checks of a deck that starts from the end of another run: whether it can, and whether the plate is the same.
 module deck_initial_states
   use cell_grids, only: cell_edges
   use deck_contents, only: deck_t
@@ -29,7 +29,7 @@ module deck_initial_states
 
 contains
 
-  !> What a run from another's end cannot have.
+  !> Refuses features that a run from another's end cannot have.
   subroutine check_initial_state(deck, problems)
     !> The deck, filled
     type(deck_t), intent(in) :: deck
@@ -66,10 +66,9 @@ contains
     end associate
   end subroutine check_initial_state
 
-  !> What in a deck contradicts the one whose run has left its initial state: one sentence with both values, or an empty
-  !> text.
+  !> First contradiction between a deck and that of its initial state: one sentence with both values, or an empty text.
   function inheritance_objection(deck, old) result(objection)
-    !> The deck, and that of the other run with the zones that it has come to
+    !> The deck, and that of the other run with the zones at its end
     type(deck_t), intent(in) :: deck, old
     !> The sentence
     character(len=:), allocatable :: objection
@@ -92,11 +91,11 @@ contains
     if (objection == '') objection = mesh_objection(deck, old, 2)
   end function inheritance_objection
 
-  !> What differs in plies and materials.
+  !> First difference of plies and materials.
   function laminate_objection(deck, old) result(objection)
     !> The deck, and that of the other run
     type(deck_t), intent(in) :: deck, old
-    !> One clause; empty: nothing
+    !> One clause; empty: no difference
     character(len=:), allocatable :: objection
     real(wp) :: here(constants), there(constants)
     integer :: ply, i
@@ -123,11 +122,11 @@ contains
     end associate
   end function laminate_objection
 
-  !> What differs in the damage of plies.
+  !> First difference of ply damage.
   function damage_objection(deck, old) result(objection)
     !> The deck, and that of the other run
     type(deck_t), intent(in) :: deck, old
-    !> One clause; empty: nothing
+    !> One clause; empty: no difference
     character(len=:), allocatable :: objection
     real(wp) :: here(size(damage_names)), there(size(damage_names))
     integer :: i
@@ -156,11 +155,11 @@ contains
     end function given
   end function damage_objection
 
-  !> What differs in the interfaces.
+  !> First difference of interfaces.
   function interface_objection(deck, old) result(objection)
     !> The deck, and that of the other run
     type(deck_t), intent(in) :: deck, old
-    !> One clause; empty: nothing
+    !> One clause; empty: no difference
     character(len=:), allocatable :: objection
     real(wp) :: here(size(law_names)), there(size(law_names))
     integer :: i, k
@@ -189,13 +188,13 @@ contains
     end associate
   end function interface_objection
 
-  !> What differs in the lines of the mesh along one direction.
+  !> First difference of mesh lines along one direction.
   function mesh_objection(deck, old, direction) result(objection)
     !> The deck, and that of the other run
     type(deck_t), intent(in) :: deck, old
     !> 1: along x, 2: along y
     integer, intent(in) :: direction
-    !> One clause; empty: nothing
+    !> One clause; empty: no difference
     character(len=:), allocatable :: objection
     real(wp), allocatable :: here(:), there(:)
     logical :: halved(2), halved_before(2), same

@@ -33,7 +33,7 @@ contains
     deck%stepping%time%integrator = integrator_of(deck%settings)
   end subroutine choose_integrator
 
-  !> What of a dynamic setup softens; empty: nothing, or the deck has what only implicit steps do.
+  !> The softening part of a dynamic setup; empty: none, or the deck requires implicit steps.
   function what_softens(deck) result(softening)
     !> The deck
     type(deck_t), intent(in) :: deck

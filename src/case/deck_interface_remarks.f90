@@ -57,7 +57,7 @@ contains
     end associate
   end function lies_within_a_block
 
-  !> True for a material whose angle means nothing.
+  !> True for a material without a direction.
   pure logical function is_isotropic(material)
     !> The material
     type(material_t), intent(in) :: material
@@ -73,7 +73,7 @@ contains
     is_parallel = abs(difference - 180*anint(difference/180)) < same
   end function is_parallel
 
-  !> True for directions in which a zone reaches a whole cell or more beyond the core; false without a core.
+  !> True for directions in which a zone extends at least one cell beyond the core; false without a core.
   pure function beyond_core(deck, zone) result(beyond)
     !> The deck
     type(deck_t), intent(in) :: deck

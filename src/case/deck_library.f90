@@ -1,4 +1,4 @@
-!> Fills in the keys that a deck leaves to a published material, in the units of the deck. What the deck gives stands.
+!> Fills in the keys of a published material, in the units of the deck, where the deck does not give them.
 module deck_library
   use case_deck, only: case_group, key_units
   use deck_problems, only: problems_t
@@ -52,7 +52,7 @@ contains
     end do
   end subroutine take_library
 
-  !> Index of the deck's system of units; 0: it does not say.
+  !> Index of the deck's system of units; 0: not given.
   pure integer function system_of(settings) result(system)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
@@ -83,9 +83,9 @@ contains
                             place=1, settings%groups_named(material_group))])
   end function is_one_material
 
-  !> Gives one group what it leaves out.
+  !> Fills in the missing keys of one group.
   subroutine adopt_values(vocabulary, system, name, group, place, settings)
-    !> The table of the deck, which knows the units of keys
+    !> The table of the deck, with the units of keys
     type(vocabulary_t), intent(in) :: vocabulary
     !> Index of the deck's system of units
     integer, intent(in) :: system

@@ -1,5 +1,4 @@
-!> What the mesh resolves of the process zones of cohesive interfaces: a warning where that is too little, and the
-!> strength beside cracks.
+!> Resolution of the process zones of cohesive interfaces: warnings, and the strength beside cracks.
 module deck_process_zones
   use cell_grids, only: cell_edges
   use deck_contents, only: deck_t
@@ -42,7 +41,7 @@ contains
     end do
   end subroutine check_process_zones
 
-  !> Finds what strength interfaces have beside cracks, and reports where cracks make no difference.
+  !> Finds the strength of interfaces beside cracks, and reports where cracks have no effect.
   subroutine set_flaws(deck, problems)
     !> The deck, filled and checked; its interfaces receive that strength
     type(deck_t), intent(inout) :: deck
@@ -68,7 +67,7 @@ contains
     end do
   end subroutine set_flaws
 
-  !> Reports where cracks of the plies by transverse shear make no difference.
+  !> Reports where transverse shear cracks of the plies have no effect.
   subroutine remark_shear_cracks(deck, delamination, problems)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -93,7 +92,7 @@ contains
     end if
   end subroutine remark_shear_cracks
 
-  !> What the process zone of an interface depends on.
+  !> Data of the process zone of an interface.
   pure function process_zone(deck, delamination) result(zone)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -151,8 +150,8 @@ contains
     moduli = 12*moduli/thickness_of(layer)**3
   end function bending_moduli
 
-  !> Largest bending modulus over all directions. Delaminations run first and farthest where the thinner layer is stiff,
-  !> and cells that resolve that front were measured to be enough (doc/studies/accuracy.md).
+  !> Largest bending modulus over all directions. Delaminations grow first and farthest along the stiff direction of the
+  !> thinner layer, and cells that resolve that front suffice (doc/studies/accuracy.md).
   pure real(wp) function largest_modulus(moduli) result(largest)
     !> Along x and y, as of bending_moduli
     real(wp), intent(in) :: moduli(6)

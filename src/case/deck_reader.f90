@@ -27,6 +27,8 @@ module deck_reader
   use deck_table, only: load_deck_table
   use deck_units, only: check_units
   use deck_vocabulary, only: vocabulary_t
+  use deprecated_keys, only: deprecated_rows
+  use deprecated_names, only: replace_deprecated
   use delamination_deck, only: fill_delaminations, check_delaminations
   use interface_places, only: interfaces_between, remark_left_out
   use element_deck, only: fill_kinematics, fill_element
@@ -60,7 +62,7 @@ module deck_reader
   private
   public :: deck_t, problems_t, read_deck, read_deck_text
 
-  !> Part of a run in time over which a travel sets in: at its end the velocity is 8/7 of the mean.
+  !> Default rise of a travel, relative to the run: at its end the velocity is 8/7 of the mean.
   real(wp), parameter :: usual_rise = 0.25_wp
 
 contains
@@ -106,6 +108,7 @@ contains
     call load_deck_table(vocabulary)
     call scan_deck(content, scan, problems)
     if (size(scan%blocks) == 0 .or. problems%is_full()) return
+    call replace_deprecated(deprecated_rows, scan, problems)
     call resolve_settings(scan, vocabulary, deck%settings, problems)
     if (problems%is_full()) return
     call take_library(deck%settings, problems)
@@ -208,8 +211,8 @@ contains
                           ply=1, size(deck%laminate%material))], [2, size(deck%laminate%material)])
   end function ply_strengths
 
-  !> Impactor, indentation, time, pressure and load steps, as far as the deck has them; what the deck leaves to its
-  !> accuracy is chosen before the rest follows.
+  !> Impactor, indentation, time, pressure and load steps of the deck; values by `accuracy` are chosen before others
+  !> that depend on them.
   subroutine fill_loads(deck, problems)
     !> Receives them
     type(deck_t), intent(inout) :: deck
@@ -245,8 +248,8 @@ contains
     if (deck%has_static) call fill_static(deck%settings, deck%stepping%static_steps, deck%stepping%dissipation)
   end subroutine fill_loads
 
-  !> Spectral radius at high frequency that suits a setup: ties that vanish excite the mesh's highest frequencies, a law
-  !> that softens less. With it doc/studies/accuracy.md has the same area at steps of 16, 8 and 4 us.
+  !> Default spectral radius at high frequency: released ties excite the highest frequencies of the mesh, softening laws
+  !> less. With it doc/studies/accuracy.md has the same area at steps of 16, 8 and 4 us.
   pure real(wp) function natural_rho_infinity(deck) result(rho_infinity)
     !> The deck, its interfaces filled
     type(deck_t), intent(in) :: deck

@@ -1,4 +1,4 @@
-!> A deck's setup on finer elements with shorter steps, to see what its figures change by.
+!> A deck's setup on finer elements with shorter steps, for the change of its results.
 module deck_refinements
   use case_deck, only: case_group, key_refine
   use deck_contents, only: deck_t
@@ -8,13 +8,13 @@ module deck_refinements
   private
   public :: refine, refined_text
 
-  !> What the names of finer results end with, before the number of refinements.
+  !> Suffix of the names of finer results, before the number of refinements.
   character(len=*), parameter, public :: finer_ending = '_finer'
 
 contains
 
-  !> Halves the sides of the elements, the steps, and, where these follow the error, the part of it that a step of third
-  !> order adds, as often as the deck asks for. The results get names of their own.
+  !> Halves elements and steps, or with error control an eighth of the permitted error, `refine` times. The results have
+  !> a name of their own.
   subroutine refine(deck)
     !> The deck, filled
     type(deck_t), intent(inout) :: deck
@@ -39,7 +39,7 @@ contains
                 to_text(deck%mesh%elements(2))//' elements'//steps_of(deck)//'.')
   end subroutine refine
 
-  !> What is said of the steps.
+  !> Clause on the steps.
   function steps_of(deck) result(clause)
     !> The deck, refined
     type(deck_t), intent(in) :: deck
@@ -55,7 +55,7 @@ contains
     end if
   end function steps_of
 
-  !> The text of a deck that asks for one refinement more than the deck, which asks for none.
+  !> The text of a deck with one refinement, from one without.
   pure function refined_text(text) result(finer)
     !> Text of the deck
     character(len=*), intent(in) :: text

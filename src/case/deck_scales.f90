@@ -1,4 +1,4 @@
-!> What the deck's setup has to resolve: found by pilot calculations, with warnings where mesh or step don't.
+!> Scales that the setup must resolve, by preliminary elastic impacts, with warnings on mesh and step.
 module deck_scales
   use case_deck, only: case_group, key_accuracy
   use cell_grids, only: cell_edges
@@ -7,7 +7,7 @@ module deck_scales
   use deck_remarks, only: remark
   use kinds, only: wp
   use mesh_deck, only: mesh_group, key_core, key_elements, key_patch
-  use setup_pilots, only: expected_scales_of
+  use setup_elastic_impacts, only: expected_scales_of
   use setup_scales, only: setup_scales_t, scales_of, has_impact_velocity
   use short_numbers, only: short_text
   use stepping_parameters, only: is_explicit, expected_response_t
@@ -16,19 +16,19 @@ module deck_scales
   private
   public :: check_scales
 
-  !> Errors of peak and history, by pilot calculations, that a user is warned of.
+  !> Errors of peak and history, by preliminary elastic impacts, that a user is warned of.
   real(wp), parameter :: error_limits(2) = [0.05_wp, 0.2_wp]
   !> The same for the size of the patch, which is an estimate itself.
   real(wp), parameter :: patch_error_limits(2) = [0.1_wp, 0.2_wp]
-  !> Part of the accuracy asked for above which pilots' errors are reported: they are 1.2 to 2 times the true ones.
+  !> Ratio of estimated to requested error above which it is reported: estimates are 1.2 to 2 times the true errors.
   real(wp), parameter :: missed = 1.5_wp
-  !> Steps of pilots in the rise of first contact where the run takes many more, as central differences do: these are
-  !> less than .1 % off, more than the run with its own is.
+  !> Steps of elastic impacts in the rise of first contact where the run has many more, as by central differences: their
+  !> error is below .1 %, and larger than that of the run.
   real(wp), parameter :: fine_steps = 64
 
 contains
 
-  !> Looks ahead at the run, and warns of a step, a mesh and a patch that don't resolve the impact.
+  !> Estimates the run, and warns of a step, a mesh and a patch that don't resolve the impact.
   subroutine check_scales(deck, problems)
     !> The deck, checked; receives the outlook
     type(deck_t), intent(inout) :: deck
@@ -64,12 +64,12 @@ contains
 
     associate (o => deck%expected)
       if (any(o%step_error > error_limits)) call remark(deck%settings, problems, time_group, key_step, &
-        'is too long for this impact: by a pilot calculation the largest force would be '// &
+        'is too long for this impact: by a preliminary elastic impact the largest force would be '// &
         short_text(100*o%step_error(1))//' % off, its history '//short_text(100*o%step_error(2))// &
         ' %; make it shorter, or leave it out with &case accuracy.')
       if (any(o%mesh_error > error_limits)) call remark(deck%settings, problems, mesh_group, key_elements, &
-        'are too large for this impact, '//short_text(o%edge)//' near the struck point: by a pilot calculation the '// &
-        'largest force would be '//short_text(100*o%mesh_error(1))//' % off, its history '// &
+        'are too large for this impact, '//short_text(o%edge)//' near the struck point: by a preliminary elastic '// &
+        'impact the largest force would be '//short_text(100*o%mesh_error(1))//' % off, its history '// &
         short_text(100*o%mesh_error(2))//' %; give more, or leave them out with &case accuracy.')
       if (any(o%patch_error > patch_error_limits)) call remark(deck%settings, problems, mesh_group, key_patch, &
         'is larger than the contact that it stands for, whose force spreads over '//short_text(o%contact_side)// &
@@ -78,8 +78,8 @@ contains
     end associate
   end subroutine check_resolution
 
-  !> Reports where mesh and step do not reach the accuracy asked for, or where nobody knows: a contact so long that
-  !> pilot calculations with half the step would take too long.
+  !> Reports mesh and step below the requested accuracy, or where it is unknown: a contact too long for preliminary
+  !> elastic impacts with half the step.
   subroutine check_accuracy(deck, problems)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -89,11 +89,11 @@ contains
     if (.not. deck%accuracy > 0) return
     associate (o => deck%expected)
       if (o%step_error(1) < 0 .or. o%mesh_error(1) < 0) then
-        call remark(deck%settings, problems, case_group, key_accuracy, 'can''t be held against pilot calculations '// &
-                    'for this step: so many steps would take them too long.')
+        call remark(deck%settings, problems, case_group, key_accuracy, 'can''t be verified by preliminary elastic '// &
+                    'impacts for this step: so many steps would take them too long.')
       else if (100*(o%step_error(1) + o%mesh_error(1)) > missed*deck%accuracy) then
-        call remark(deck%settings, problems, case_group, key_accuracy, 'isn''t reached: by a pilot calculation the '// &
-                    'largest force will be '//short_text(100*(o%step_error(1) + o%mesh_error(1)))//' % off.')
+        call remark(deck%settings, problems, case_group, key_accuracy, 'isn''t reached: by a preliminary elastic '// &
+                    'impact the largest force will be '//short_text(100*(o%step_error(1) + o%mesh_error(1)))//' % off.')
       end if
     end associate
   end subroutine check_accuracy

@@ -1,5 +1,5 @@
-!> Load steps of what softens may find no equilibrium: beyond a limit the load can only fall. Moved slowly in time, the
-!> same plate goes through it. This says when that is to be expected, and what to write.
+!> Load steps of a softening plate may find no equilibrium beyond the limit load; slow motion in time passes it. Remarks
+!> where that is expected, with the keys to write.
 module deck_slow_motion
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
@@ -18,7 +18,7 @@ module deck_slow_motion
 
 contains
 
-  !> Remarks on an impactor that presses by load steps where plies or several interfaces soften.
+  !> Remarks on an impactor in load steps where plies or several interfaces soften.
   subroutine check_softening_steps(deck, problems)
     !> The deck, checked, with its scales
     type(deck_t), intent(in) :: deck
@@ -31,11 +31,11 @@ contains
                 'several interfaces soften'//slow_motion(deck)//'.')
   end subroutine check_softening_steps
 
-  !> What a load step that finds no equilibrium may be replaced by.
+  !> Alternative to a load step without equilibrium.
   function slow_motion_advice(deck) result(clause)
     !> The deck
     type(deck_t), intent(in) :: deck
-    !> Goes on with a sentence that ends with a full stop; empty where it does not help
+    !> Continues a sentence that ends with a full stop; empty where it does not help
     character(len=:), allocatable :: clause
 
     clause = ''
@@ -50,11 +50,11 @@ contains
     is_pressed = deck%has_static .and. deck%impactor%travel > 0
   end function is_pressed
 
-  !> What to write.
+  !> The keys to write.
   function slow_motion(deck) result(clause)
     !> The deck
     type(deck_t), intent(in) :: deck
-    !> Goes on with a sentence
+    !> Continues a sentence
     character(len=:), allocatable :: clause
     real(wp) :: period
 

@@ -1,5 +1,4 @@
-!> Which part of the plate can stand for the whole: what laminate, edges, rigs, struck point and interfaces leave
-!> possible.
+!> Symmetries of the case: those of laminate, edges, rigs, struck point and interfaces.
 module deck_symmetries
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
@@ -86,7 +85,7 @@ contains
     end do
   end subroutine check_starters
 
-  !> True if a starter has its centre beside a line of symmetry.
+  !> True if the centre of a starter is not on a line of symmetry.
   pure logical function starter_aside(delamination, symmetry)
     !> The interface
     type(delamination_t), intent(in) :: delamination
@@ -97,7 +96,7 @@ contains
                         (is_halved(symmetry) .or. symmetry == symmetry_point))
   end function starter_aside
 
-  !> Sentence on the smallest part of the plate that could stand for the whole; empty if the deck has it already.
+  !> Sentence on the smallest part of the plate that suffices; empty if the deck has it already.
   function symmetry_sentence(deck) result(sentence)
     !> The deck, checked
     type(deck_t), intent(in) :: deck
@@ -112,7 +111,7 @@ contains
                                                 trim(names(part))//''', which computes less of the plate.'
   end function symmetry_sentence
 
-  !> The smallest part of the plate that could stand for the whole; that of the deck if there is none smaller.
+  !> The smallest part of the plate that suffices; that of the deck if there is none smaller.
   integer function smallest_part(deck) result(part)
     !> The deck, checked
     type(deck_t), intent(in) :: deck
@@ -126,7 +125,7 @@ contains
     end do
   end function smallest_part
 
-  !> Notes the symmetry that a full plate is to keep as it breaks. Without anything that breaks it does so by itself.
+  !> Notes the symmetry that a full plate keeps during failure. Without failure it keeps it by itself.
   subroutine note_symmetry(deck)
     !> The deck, checked
     type(deck_t), intent(inout) :: deck
@@ -135,7 +134,7 @@ contains
       deck%plate%kept = smallest_part(deck)
   end subroutine note_symmetry
 
-  !> True if a part of the plate can stand for the whole.
+  !> True if a part of the plate suffices.
   logical function suits(deck, symmetry)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -223,7 +222,7 @@ contains
     end function have_images
   end function rigs_alike
 
-  !> What of a laminate that is coupled couples: all of it, or only parts.
+  !> Subject of a message on coupling: the laminate, or parts of it.
   pure function culprit(deck) result(words)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -236,8 +235,8 @@ contains
     if (deck%has_ply_damage) words = 'a ply that may fail'
   end function culprit
 
-  !> True: the laminate is clear and is not symmetric about the axes of the plate, or a part of it is not that may act
-  !> by itself: a layer between interfaces, or with damage each ply.
+  !> True: the laminate is valid and not symmetric about the axes of the plate, or a part of it is not: a layer between
+  !> interfaces, or with damage each ply.
   pure logical function is_coupled(deck)
     !> The deck
     type(deck_t), intent(in) :: deck

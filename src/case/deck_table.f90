@@ -45,7 +45,7 @@ module deck_table
 
 contains
 
-  !> Takes the table apart.
+  !> Parses the table.
   pure subroutine load_deck_table(vocabulary)
     !> Groups and keys
     type(vocabulary_t), intent(out) :: vocabulary

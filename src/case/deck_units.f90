@@ -1,10 +1,9 @@
-!> Values of the deck that look as if they were in another unit than the rest.
+!> Values of the deck that are probably in another unit than the rest.
 !>
-!> Any consistent units will do, so the system is the one of `&case units`, or else that which most values fit. A value
-!> is reported only if its size is odd in that system and usual in a unit that people write. Three figures are held
-!> against
-!> each other rather than against ranges: the run's time against the plate's period, the mass of a steel ball against
-!> its radius, and the contact stiffness against Sun's formula.
+!> The system of units is that of `&case units`, or else the one that most values fit. A value is reported only if its
+!> size is unusual in that system and usual in another common unit. Three values are compared with others rather than
+!> with ranges: the run's time with the plate's period, the mass of a steel ball with its radius, and the contact
+!> stiffness with Sun's formula.
 module deck_units
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
@@ -41,13 +40,13 @@ module deck_units
     integer :: place = 1
   end type quantity_t
 
-  !> End of the run over the plate's period or the contact, whichever is longer: beyond these it looks wrong.
+  !> Usual range of the end of the run over the plate's period or the contact, whichever is longer.
   real(wp), parameter :: shortest_run = 5.0e-3_wp, longest_run = 100
   !> Times that a contact takes as long as its force rises.
   real(wp), parameter :: contact_rises = 10
   !> Density of steel, kg/m^3, and how near to it a ball's is taken to be steel's.
   real(wp), parameter :: steel = 7850, near = 0.03_wp
-  !> Contact stiffness over that of Sun's formula for a rigid ball: a usual one, and one that looks wrong.
+  !> Contact stiffness over that of Sun's formula for a rigid ball: usual and improbable values.
   real(wp), parameter :: usual_stiffness(2) = [0.02_wp, 5.0_wp], odd_stiffness(2) = [1.0e-3_wp, 1.0e3_wp]
   !> N/m^1.5 in one N/mm^1.5.
   real(wp), parameter :: per_millimetre = 31622.8_wp
@@ -155,8 +154,8 @@ contains
     end subroutine add
   end subroutine gather
 
-  !> The system that the deck names, or else that with the fewest kinds of quantities at odds; 0: the deck fits none, so
-  !> it is in units of its own.
+  !> The system of the deck, or else the one with the fewest unusual kinds of quantities; 0: none fits, the deck has
+  !> units of its own.
   pure integer function likeliest_system(deck, list) result(system)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -193,7 +192,7 @@ contains
     number = count(odd)
   end function odd_kinds
 
-  !> The run's time against what is to happen in it.
+  !> The run's time against the expected events.
   subroutine check_times(deck, system, problems)
     !> The deck
     type(deck_t), intent(in) :: deck

@@ -21,7 +21,7 @@ module scale_tables
 
   !> A physical dimension.
   type :: dimension_t
-    !> What it is called, and the unit that it is read in
+    !> Its name, and the unit in which it is printed
     character(len=16) :: name, unit
     !> Exponents of length, mass and time
     real(wp) :: exponents(3)
@@ -43,7 +43,7 @@ module scale_tables
 
 contains
 
-  !> The scales of the setup and what a run is expected to show.
+  !> The scales of the setup and expected results.
   function scale_lines(deck) result(lines)
     !> The deck, checked
     type(deck_t), intent(in) :: deck
@@ -100,7 +100,7 @@ contains
   function strength_lines(deck) result(lines)
     !> The deck, checked
     type(deck_t), intent(in) :: deck
-    !> The lines; none unless the deck asks for these strengths
+    !> The lines; none unless the deck requests these strengths
     type(line_t), allocatable :: lines(:)
     type(ply_t), allocatable :: plies(:)
     type(material_t) :: material

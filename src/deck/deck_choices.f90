@@ -1,4 +1,4 @@
-!> Choices of the deck as the numbers that stand for them.
+!> Numbers of the choices of the deck.
 module deck_choices
   use text, only: line_t, lower_case, words_of
   implicit none

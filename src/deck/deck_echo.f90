@@ -54,7 +54,7 @@ contains
     end do
   end function adopted_values
 
-  !> Values of a key as they would stand in a deck, or what the absence of one means; empty if it means nothing.
+  !> Values of a key as written in a deck, or the meaning of its absence; empty if there is none.
   pure function value_in_effect(vocabulary, item) result(words)
     !> The table
     type(vocabulary_t), intent(in) :: vocabulary

@@ -173,7 +173,7 @@ contains
     end select
   end function presence_in_words
 
-  !> What holds if a key isn't given.
+  !> The default of a key.
   pure function default_in_words(key) result(words)
     !> The key
     type(key_entry_t), intent(in) :: key

@@ -68,7 +68,7 @@ contains
     allocate (self%list(0))
   end subroutine begin
 
-  !> The file can't be read: nothing else can be said about it.
+  !> The file can't be read.
   subroutine cannot_read(self, message)
     class(problems_t), intent(inout) :: self
     !> Path and reason
@@ -171,7 +171,7 @@ contains
     number = count(.not. self%list%is_warning)
   end function number_of_errors
 
-  !> Exit code that the program ends with after a mere check.
+  !> Exit code of a check.
   pure integer function exit_code(self)
     class(problems_t), intent(in) :: self
 
@@ -200,7 +200,7 @@ contains
     end do
   end function lines
 
-  !> The warnings without the deck's name, which a restart does not know, in the order they were found.
+  !> The warnings in the order they were found, without the deck's name, which a restart does not have.
   function remarks(self) result(list)
     class(problems_t), intent(in) :: self
     !> Lines such as `line 7: &time step = 1e-6: ...`

@@ -18,7 +18,7 @@ contains
     type(problems_t), intent(inout) :: problems
     !> Names of group and key
     character(len=*), intent(in) :: group, key
-    !> What is wrong; what is allowed
+    !> The error and what is allowed
     character(len=*), intent(in) :: fault
     !> Which of the groups of this name
     integer, intent(in), optional :: place
@@ -43,7 +43,7 @@ contains
     call problems%warning(line_of(settings, group, key, place), group, key, head(settings, group, key, place)//message)
   end subroutine remark
 
-  !> Adds a warning for each of some keys that is soundly given but changes nothing.
+  !> Adds a warning for each of some keys that is valid but has no effect.
   subroutine remark_idle(settings, problems, group, keys, message, place)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
@@ -69,8 +69,7 @@ contains
     end do
   end subroutine remark_idle
 
-  !> True: the values of some keys, or their absence, are what the user meant, as far as one can know. A check that
-  !> asks this first reports no fault that another one brings along.
+  !> True: some keys are valid or absent. A check that calls this first reports no error that follows from another.
   pure logical function are_clear(settings, problems, group, keys, place)
     !> Keys in effect
     type(settings_t), intent(in) :: settings

@@ -1,4 +1,4 @@
-!> Holds a scanned deck against the vocabulary: unknown and repeated names, types, counts and ranges.
+!> Checks a scanned deck against the vocabulary: unknown and repeated names, types, counts and ranges.
 module deck_rules
   use deck_entries, only: value_t, entry_t, shown, shown_values
   use deck_problems, only: problems_t
@@ -18,9 +18,9 @@ contains
 
   !> Turns a scanned deck into keys in effect and reports every name and value that isn't allowed.
   subroutine resolve_settings(scan, vocabulary, settings, problems)
-    !> What the deck consists of
+    !> The scanned deck
     type(scan_t), intent(in) :: scan
-    !> What it may consist of
+    !> The vocabulary
     type(vocabulary_t), intent(in) :: vocabulary
     !> Every key in effect
     type(settings_t), intent(out) :: settings
@@ -46,11 +46,11 @@ contains
 
   !> Whether a group is known and allowed here.
   subroutine check_group(scan, block, vocabulary, settings, problems, accepted)
-    !> What the deck consists of
+    !> The scanned deck
     type(scan_t), intent(in) :: scan
     !> Index of the group in it
     integer, intent(in) :: block
-    !> What it may consist of
+    !> The vocabulary
     type(vocabulary_t), intent(in) :: vocabulary
     !> The group is added to these
     type(settings_t), intent(inout) :: settings
@@ -106,7 +106,7 @@ contains
 
   !> Whether a key belongs to its group and comes once.
   subroutine check_key(scan, entry, place, vocabulary, problems)
-    !> What the deck consists of
+    !> The scanned deck
     type(scan_t), intent(in) :: scan
     !> Index of the key in it
     integer, intent(in) :: entry
@@ -161,7 +161,7 @@ contains
 
   !> Adds all keys of the groups of one name, given or by default.
   subroutine resolve_group(scan, accepted, vocabulary, group, settings, problems)
-    !> What the deck consists of
+    !> The scanned deck
     type(scan_t), intent(in) :: scan
     !> Which of its groups count
     logical, intent(in) :: accepted(:)
@@ -196,7 +196,7 @@ contains
 
   !> Adds all keys of one group.
   subroutine resolve_keys(scan, block, place, vocabulary, group, settings, problems)
-    !> What the deck consists of
+    !> The scanned deck
     type(scan_t), intent(in) :: scan
     !> Index of the group in it; 0: the deck hasn't got it
     integer, intent(in) :: block
@@ -298,7 +298,7 @@ contains
 
   !> Which of the groups of its name a group is.
   pure integer function place_of(scan, accepted, block) result(place)
-    !> What the deck consists of
+    !> The scanned deck
     type(scan_t), intent(in) :: scan
     !> Which of its groups count
     logical, intent(in) :: accepted(:)
@@ -312,7 +312,7 @@ contains
 
   !> First key of this name in a group, 0 if it has none.
   pure integer function entry_of(scan, block, key) result(index)
-    !> What the deck consists of
+    !> The scanned deck
     type(scan_t), intent(in) :: scan
     !> Index of the group in it
     integer, intent(in) :: block

@@ -1,5 +1,5 @@
-!> Scans a deck before anything is read from it, because a compiler's own namelist READ takes a mis-spelt
-!> group as absent and passes over a missing slash, a repeated key, a cut text or an empty value in silence.
+!> Scans a deck before its values are read, because a compiler's namelist READ takes a misspelt group as absent and
+!> silently ignores a missing slash, a repeated key, a truncated text or an empty value.
 module deck_scanner
   use deck_entries, only: value_t, entry_t, block_t, append_entry, append_values, split_repeats, shown, shown_values, &
                           max_values
@@ -298,7 +298,7 @@ contains
       call problems%error(token%line, group, token%text, '&'//shown(group)//': '//shown(token%text)// &
                           ' has no key or no = behind it; write key = value.')
     end associate
-    ! What follows up to the next key belongs to the same fault.
+    ! Text up to the next key belongs to the same error.
     entry%block = size(scan%blocks)
     entry%key = ''
     entry%line = token%line
@@ -315,11 +315,11 @@ contains
     type(scan_t), intent(inout) :: scan
     !> Line of the fault
     integer, intent(in) :: line
-    !> What is wrong, and what is allowed
+    !> The error and what is allowed
     character(len=*), intent(in) :: fault
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
-    !> What the fault concerns if not just this key
+    !> Keys of the error if not this one alone
     character(len=*), intent(in), optional :: keys
     character(len=:), allocatable :: concerned
     integer :: last

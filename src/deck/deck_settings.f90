@@ -1,4 +1,4 @@
-!> Every key in effect, from the deck or by default: what the parameters are filled from and the echo shows.
+!> Every key in effect, from the deck or by default: the source of the parameters and of the echo.
 module deck_settings
   use deck_entries, only: value_t
   use deck_values, only: real_value, integer_value, logical_value
@@ -20,7 +20,7 @@ module deck_settings
     logical :: given = .false.
     !> True: the values can be used
     logical :: valid = .true.
-    !> True: not from the deck but chosen for the accuracy that it asks for
+    !> True: chosen for the accuracy of the deck
     logical :: chosen = .false.
     !> Table that gave the value as the deck refers to it; unallocated: none
     character(len=:), allocatable :: origin
@@ -355,7 +355,7 @@ contains
     call move_alloc(values, self%items(item)%values)
   end subroutine derive_numbers
 
-  !> Sets the values of a key that the deck leaves to the accuracy it asks for.
+  !> Sets the values of a key that are chosen for the accuracy.
   pure subroutine choose(self, group, key, words, quoted)
     class(settings_t), intent(inout) :: self
     !> Names of group and key

@@ -1,5 +1,5 @@
-!> Characters that word processors and web pages put in the place of plain ones: each is reported with its line, and
-!> replaced, so that the rest of the deck is read as it was meant. In texts and comments they may stand.
+!> Typographic characters of word processors and web pages: each is reported with its line, and replaced for the rest of
+!> the check. They are allowed in texts and comments.
 module deck_typography
   use deck_problems, only: problems_t
   implicit none
@@ -13,7 +13,7 @@ module deck_typography
     char(226)//char(128)//char(153), char(226)//char(128)//char(156), char(226)//char(128)//char(157)]
   !> What each stands for.
   character(len=1), parameter :: plain(*) = ['-', '-', ' ', ' ', ' ', '''', '''', '"', '"']
-  !> What a message says of it.
+  !> Its name in messages.
   character(len=40), parameter :: advice(*) = [character(len=40) :: &
     'a Unicode minus (U+2212); write -', 'a dash (U+2013); write -', 'a no-break space (U+00A0); write a blank', &
     'a no-break space (U+202F); write a blank', 'a thin space (U+2009); write a blank', &
@@ -94,7 +94,7 @@ contains
     counts = place%quote == ' ' .or. (place%curly .and. plain(kind) == place%quote)
   end function counts
 
-  !> What a plain character changes: lines end, texts and comments begin and end.
+  !> Effect of a plain character: ends of lines, starts and ends of texts and comments.
   pure subroutine pass(place, next)
     !> Where it stands
     type(place_t), intent(inout) :: place

@@ -9,8 +9,8 @@ module deck_values
   public :: fault_of_value, fault_of_count, decimal_commas, allowed_sentence, limit_of_size, literal_value, &
             real_value, integer_value, logical_value
 
-  !> Decades that numbers keep within, so that their products stay finite and nonzero: reals other than 0 are at least
-  !> 10**-29 and less than 10**30 in size, whole numbers less than 10**9.
+  !> Range of numbers, so that their products remain finite and nonzero: the size of reals other than 0 is at least
+  !> 10**-29 and less than 10**30, that of integers less than 10**9.
   integer, parameter :: max_decades = 30, max_integer_decades = 9
   !> Characters of a name, in lower case
   character(len=*), parameter :: name_characters = 'abcdefghijklmnopqrstuvwxyz0123456789._-'
@@ -19,7 +19,7 @@ module deck_values
 
 contains
 
-  !> What is wrong with a value, or an empty text.
+  !> Error of a value, or an empty text.
   pure function fault_of_value(key, value) result(fault)
     !> The key as the table has it
     type(key_entry_t), intent(in) :: key
@@ -66,7 +66,7 @@ contains
     if (kind == 'real') branch%allowed = key%allowed(comma + 2:)
   end function branch_of
 
-  !> What is wrong with a number, or with a word that the key takes in its place, or an empty text.
+  !> Error of a number, or of a word that the key accepts in its place, or an empty text.
   pure function fault_of_number(key, value) result(fault)
     !> The key as the table has it
     type(key_entry_t), intent(in) :: key
@@ -95,7 +95,7 @@ contains
     end if
   end function fault_of_number
 
-  !> What is wrong with a text, or an empty text.
+  !> Error of a text, or an empty text.
   pure function fault_of_text(key, word) result(fault)
     !> The key as the table has it
     type(key_entry_t), intent(in) :: key
@@ -124,8 +124,7 @@ contains
     end select
   end function fault_of_text
 
-  !> What is wrong with a choice, or an empty text. Where a key takes several, one text may hold them all,
-  !> separated by commas.
+  !> Error of a choice, or an empty text. A key of several choices accepts one text with all, separated by commas.
   pure function fault_of_choice(key, word) result(fault)
     !> The key as the table has it
     type(key_entry_t), intent(in) :: key
@@ -154,7 +153,7 @@ contains
     end do
   end function fault_of_choice
 
-  !> What is wrong with the number of values, or an empty text; lists over the plies are checked where these are known.
+  !> Error of the number of values, or an empty text; lists over the plies are checked with the laminate.
   pure function fault_of_count(key, number) result(fault)
     !> The key as the table has it
     type(key_entry_t), intent(in) :: key
@@ -178,7 +177,7 @@ contains
     if (.not. right) fault = trim(merge('too many', 'too few ', number > 2 .or. key%values == '1'))//' values'
   end function fault_of_count
 
-  !> What may be behind too many values, or an empty text: halves of numbers that were written with decimal commas.
+  !> Probable cause of too many values, or an empty text: numbers with decimal commas.
   pure function decimal_commas(key, values) result(hint)
     !> The key as the table has it
     type(key_entry_t), intent(in) :: key
@@ -201,7 +200,7 @@ contains
     hint = ' (a comma parts values; for a decimal write '//whole//'.'//fraction//')'
   end function decimal_commas
 
-  !> What a key takes, for the end of a message.
+  !> Allowed values of a key, for the end of a message.
   pure recursive function allowed_sentence(key) result(sentence)
     !> The key as the table has it
     type(key_entry_t), intent(in) :: key
@@ -230,7 +229,7 @@ contains
     if (key%kind == 'text') sentence = sentence//' in quotes'
   end function allowed_sentence
 
-  !> What the size of numbers adds to the range of a key, if a value breaks it; else an empty text.
+  !> Limit by the size of numbers, if a value exceeds it; else an empty text.
   pure function limit_of_size(key, value) result(limit)
     !> The key as the table has it
     type(key_entry_t), intent(in) :: key

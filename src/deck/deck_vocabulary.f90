@@ -1,4 +1,4 @@
-!> The table of the deck as data that can be asked: which groups and keys there are, and what a key takes.
+!> The table of the deck as data: groups, keys, and the values of a key.
 module deck_vocabulary
   use text, only: line_t, append, lower_case, words_of
   implicit none
@@ -29,8 +29,7 @@ module deck_vocabulary
     character(len=:), allocatable :: values
     !> Physical dimension, - if none
     character(len=:), allocatable :: unit
-    !> required; none: the key may be left out; = and what it is worked out from; or the value as it would stand in a
-    !> deck
+    !> required; none: the key may be left out; = and the origin of its value; or the value as written in a deck
     character(len=:), allocatable :: default
     !> Choices separated by blanks, or conditions separated by commas and after them words as `or 'all'`
     character(len=:), allocatable :: allowed
@@ -56,7 +55,7 @@ module deck_vocabulary
 
 contains
 
-  !> Takes the table apart.
+  !> Parses the table.
   pure subroutine load_vocabulary(group_rows, key_rows, vocabulary)
     !> Rows of groups: name, presence and meaning, separated by bars
     character(len=*), intent(in) :: group_rows(:)

@@ -13,7 +13,7 @@ module grouped_messages
 
 contains
 
-  !> A message without its numbers: what is alike in messages that are reported as one.
+  !> A message without its numbers: the common part of messages that are reported as one.
   pure function skeleton(message) result(bare)
     !> The message
     character(len=*), intent(in) :: message
@@ -80,6 +80,8 @@ contains
       if (digit == 0) return
       from = to + digit
       to = from + span(message(from:))
+      ! Two points make a version.
+      if (index(message(from:to), '.') /= index(message(from:to), '.', .true.)) cycle
       if (from == 1) exit
       if (message(from - 1:from - 1) == '-') from = from - 1
       if (from == 1) exit

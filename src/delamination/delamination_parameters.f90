@@ -86,7 +86,8 @@ module delamination_parameters
   !> with 3 cells by 4 to 13 %; a cross-ply with cells of 1 mm releases .97 of what it books, with 2.6 cells .84.
   integer, parameter, public :: min_smoothed_cells = 5
 
-  !> What two runs must have in common for one to begin with the damage of the other, by its names in the deck.
+  !> Properties that two runs must have in common for one to start with the damage of the other, by their names in the
+  !> deck.
   character(len=*), parameter, public :: law_names(*) = [character(len=16) :: 'law', 'G_c', 'G_Ic', 'G_IIc', 'eta', &
     'strength_opening', 'strength_shear', 'stiffness', 'friction', 'cracks_as_flaws', 'shear_cracks']
 

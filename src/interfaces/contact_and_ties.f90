@@ -6,15 +6,15 @@ module contact_and_ties
   use kinds, only: wp
   use archives, only: archive_t
   use delamination_parameters, only: contact_augmented_lagrangian
-  use interface_ties, only: interface_ties_t, create_interface_ties, tie_stiffness, bond_held, bond_penalty, &
-                            bond_contact
+  use interface_ties, only: interface_ties_t, create_interface_ties, tie_stiffness, connection_exact, &
+                            connection_penalty, connection_contact
   use face_contact, only: contact_pressure, contact_residual, updated_decay, updated_multiplier
   use models, only: model_t
   implicit none
   private
   public :: contact_and_ties_t, new_contact_and_ties
 
-  !> State of all interfaces: their bonds, and the pressure where faces touch.
+  !> State of all interfaces: their connections, and the pressure where faces touch.
   type, extends(interface_ties_t) :: contact_and_ties_t
     !> Multiplier of the augmented Lagrangian and contact pressure, (local points)
     real(wp), allocatable :: multiplier(:), pressure(:)
@@ -78,10 +78,10 @@ contains
         if (zone == 0) cycle
         self%pressure(i) = 0
         self%slope(i) = 0
-        select case (self%bond(model, i))
-        case (bond_held)
+        select case (self%connection(model, i))
+        case (connection_exact)
           residual(1:3, i) = 0
-        case (bond_contact)
+        case (connection_contact)
           call contact_pressure(model%contact_laws(zone), self%decay(zone), displacement(3, i), self%multiplier(i), &
                                 self%pressure(i), self%slope(i))
         end select
@@ -103,10 +103,10 @@ contains
     real(wp) :: force(3)
 
     force = 0
-    select case (self%bond(model, i))
-    case (bond_penalty)
+    select case (self%connection(model, i))
+    case (connection_penalty)
       force = -tie_stiffness(model, i)*jumps
-    case (bond_contact)
+    case (connection_contact)
       force(3) = model%contact_area(i)*self%pressure(i)
     end select
   end function force
@@ -235,13 +235,13 @@ contains
 
     added = 0
     do i = 1, model%distribution%owned
-      select case (self%bond(model, i))
-      case (bond_held)
+      select case (self%connection(model, i))
+      case (connection_exact)
         added(:, i) = held_stiffness*maxval(diagonal(1:3, i))
         added(3, i) = tie_like_contact(i)
-      case (bond_penalty)
+      case (connection_penalty)
         added(:, i) = tie_stiffness(model, i)
-      case (bond_contact)
+      case (connection_contact)
         added(3, i) = -model%contact_area(i)*self%slope(i)
       end select
     end do

@@ -9,8 +9,9 @@ module interface_ties
   private
   public :: interface_ties_t, create_interface_ties, tie_stiffness
 
-  !> What acts on the jumps of a point: nothing, ties that hold them exactly, penalty ties, contact, a cohesive law.
-  integer, parameter, public :: bond_none = 0, bond_held = 1, bond_penalty = 2, bond_contact = 3, bond_cohesive = 4
+  !> Connections of a point: none, exact ties, penalty ties, contact, a cohesive law.
+  integer, parameter, public :: connection_none = 0, connection_exact = 1, connection_penalty = 2, &
+                                connection_contact = 3, connection_cohesive = 4
 
   !> Bonds of all interfaces.
   type :: interface_ties_t
@@ -26,7 +27,7 @@ module interface_ties
     !> Finds which jumps are free, after a growth.
     procedure :: free_jumps
     !> What acts on the jumps of a point.
-    procedure :: bond
+    procedure :: connection
     !> Owned points whose faces press on each other where they meet.
     procedure :: in_contact
     !> Keeps tied jumps as they are.
@@ -44,7 +45,7 @@ contains
   !> Bonds of all interfaces with their starters.
   pure subroutine create_interface_ties(model, self)
     type(model_t), intent(in) :: model
-    !> The bonds
+    !> The connections
     class(interface_ties_t), intent(inout) :: self
     integer :: zone
 
@@ -63,7 +64,7 @@ contains
 
   !> Finds which jumps are free: those at nodes around which all cells have delaminated.
   pure subroutine free_jumps(self, model)
-    !> The bonds
+    !> The connections
     class(interface_ties_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     integer :: i, line(2)
@@ -76,27 +77,27 @@ contains
   end subroutine free_jumps
 
   !> What acts on the jumps of a point.
-  pure integer function bond(self, model, i)
-    !> The bonds
+  pure integer function connection(self, model, i)
+    !> The connections
     class(interface_ties_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> Point of this rank
     integer, intent(in) :: i
 
-    bond = bond_none
+    connection = connection_none
     if (model%zone(i) == 0) return
     associate (interface => model%setup%delaminations(model%zone(i)))
       if (interface%law == law_cohesive) then
-        bond = bond_cohesive
+        connection = connection_cohesive
       else if (.not. self%free(i)) then
-        bond = merge(bond_penalty, bond_held, interface%tie == tie_penalty)
+        connection = merge(connection_penalty, connection_exact, interface%tie == tie_penalty)
       else if (self%glued .and. interface%unloading == unloading_glued) then
-        bond = bond_held
+        connection = connection_exact
       else if (interface%contact /= contact_none) then
-        bond = bond_contact
+        connection = connection_contact
       end if
     end associate
-  end function bond
+  end function connection
 
   !> Stiffness of a penalty tie at a point.
   pure real(wp) function tie_stiffness(model, i) result(stiffness)
@@ -111,7 +112,7 @@ contains
 
   !> Owned points whose faces press on each other where they meet.
   pure function in_contact(self, model) result(points)
-    !> The bonds
+    !> The connections
     class(interface_ties_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> Points of this rank, ascending
@@ -119,13 +120,13 @@ contains
     integer :: i
 
     associate (owned => model%distribution%owned)
-      points = pack([(i, i=1, owned)], [(self%bond(model, i) == bond_contact, i=1, owned)])
+      points = pack([(i, i=1, owned)], [(self%connection(model, i) == connection_contact, i=1, owned)])
     end associate
   end function in_contact
 
   !> Keeps tied jumps as they are.
   pure subroutine hold(self, model, correction)
-    !> The bonds
+    !> The connections
     class(interface_ties_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> Correction of the unknowns, (5, points)
@@ -134,13 +135,13 @@ contains
 
     if (.not. model%map%layered) return
     do i = 1, size(correction, 2)
-      if (self%bond(model, i) == bond_held) correction(1:3, i) = 0
+      if (self%connection(model, i) == connection_exact) correction(1:3, i) = 0
     end do
   end subroutine hold
 
   !> Largest penetration of separated faces, the same on every rank.
   real(wp) function penetration(self, model, displacement)
-    !> The bonds
+    !> The connections
     class(interface_ties_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> Unknowns, (5, points)
@@ -151,14 +152,15 @@ contains
     penetration = 0
     if (.not. model%map%layered) return
     do i = 1, model%distribution%owned
-      if (self%free(i) .or. self%bond(model, i) == bond_cohesive) penetration = max(penetration, -displacement(3, i))
+      if (self%free(i) .or. self%connection(model, i) == connection_cohesive) &
+        penetration = max(penetration, -displacement(3, i))
     end do
     call model%communicator%maximum(penetration)
   end function penetration
 
   !> Delaminated area of each zone of the full plate where fronts release ties.
   pure function area(self, model)
-    !> The bonds
+    !> The connections
     class(interface_ties_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> The area, (zones); zero for zones with a cohesive law
@@ -179,7 +181,7 @@ contains
 
   !> Saves or loads.
   subroutine visit(self, archive, model)
-    !> The bonds
+    !> The connections
     class(interface_ties_t), intent(inout) :: self
     !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive

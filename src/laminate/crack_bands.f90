@@ -45,7 +45,7 @@ module crack_bands
     real(wp) :: shear_beta = 0
     !> True: shear strain beyond s12/G12 is permanent
     logical :: permanent_shear = .false.
-    !> True: what tension has cracked bears compression
+    !> True: tensile cracks carry compression
     logical :: crack_closure = .false.
   end type crack_band_t
 
@@ -61,7 +61,7 @@ module crack_bands
     real(wp) :: permanent = 0, accumulated = 0
     !> Part of the damage of fibres and matrix that stays when cracks close
     real(wp) :: closed(2) = 0
-    !> Stresses that closed cracks bear, and half their product with the mean strains
+    !> Stresses of closed cracks, and half their product with the mean strains
     real(wp) :: recovered(3) = 0
   end type band_state_t
 
@@ -220,7 +220,7 @@ contains
     end function cracks_at
   end subroutine shear_band
 
-  !> Parts of the stiffness that a ply has lost: along, across, in shear before it cracked.
+  !> Fractions of the stiffness that a ply has lost: along and across the fibres, in shear before cracking.
   pure function stiffness_lost(state) result(lost)
     !> The ply
     type(band_state_t), intent(in) :: state
@@ -269,7 +269,7 @@ contains
     elasticity%g12 = elasticity%g12*(1 - state%sheared)*left(2)
   end function elasticity_left
 
-  !> Parts of the stiffness along and across the fibres that damage leaves.
+  !> Remaining fractions of the stiffness along and across the fibres.
   pure function stiffness_left(band, damage) result(left)
     !> The law
     type(crack_band_t), intent(in) :: band
@@ -281,7 +281,7 @@ contains
     left = 1 - (1 - band%remainder)*damage
   end function stiffness_left
 
-  !> Parts of the stiffness that a state leaves under strains.
+  !> Remaining fractions of the stiffness of a state under strains.
   pure function parts_left(band, strains, state) result(left)
     !> The law
     type(crack_band_t), intent(in) :: band
@@ -305,7 +305,7 @@ contains
     real(wp), intent(in) :: length
     !> Strains of the ply
     type(band_strains_t), intent(in) :: strains
-    !> Parts of the stiffness along and across the fibres that damage leaves
+    !> Remaining fractions of the stiffness along and across the fibres
     type(left_t), intent(in) :: left
     !> Of tension and compression
     type(softening_t) :: signs(2)
@@ -329,7 +329,7 @@ contains
     real(wp), intent(in) :: length
     !> Strains of the ply
     type(band_strains_t), intent(in) :: strains
-    !> Parts of the stiffness along and across the fibres that damage leaves
+    !> Remaining fractions of the stiffness along and across the fibres
     type(left_t), intent(in) :: left
     !> Of tension and compression
     type(softening_t) :: signs(2)
@@ -354,9 +354,8 @@ contains
     end associate
   end function matrix_softening
 
-  !> A strain below which a ply can't begin to be damaged, whatever its direction: strains in its plane are measured by
-  !> the root of e1**2 + e2**2 + g12**2/2, which a turn of the axes leaves as it is. Shear that is not linear takes its
-  !> part from zero on.
+  !> A strain below which a ply can't be damaged, for any direction: in-plane strains are measured by the root of e1**2
+  !> + e2**2 + g12**2/2, which is invariant under rotation. Nonlinear shear acts from zero on.
   pure real(wp) function onset_strain(band)
     !> The law
     type(crack_band_t), intent(in) :: band

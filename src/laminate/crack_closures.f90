@@ -1,10 +1,10 @@
-!> Cracks that close: what tension has taken from a ply's stiffness acts again where the ply is compressed.
+!> Crack closure: stiffness lost in tension is recovered in compression.
 !>
-!> The mean over a ply of an element of the stress along or across the fibres decides. If it is compressive, the part of
-!> the stiffness that tension took acts on the mean strains; deviations from the mean keep the stiffness of open cracks.
-!> So the recovered stress is uniform and zero where a crack closes, and force and energy stay those of one potential.
-!> Shear stiffness is not recovered, since faces of a crack are taken to slide freely.
-!> The unilateral condition is that of P. Maimi et al., Mechanics of Materials 39 (2007) 897-908.
+!> The mean stress along or across the fibres over a ply of an element decides. If it is compressive, the stiffness lost
+!> in tension acts on the mean strains; deviations from the mean keep the stiffness of open cracks. The recovered stress
+!> is thus uniform, and zero where a crack closes, and force and energy derive from one potential. Shear stiffness is
+!> not recovered, as the surfaces of a crack slide freely. The unilateral condition is that of P. Maimi et al.,
+!> Mechanics of Materials 39 (2007) 897-908.
 module crack_closures
   use kinds, only: wp
   use plies, only: elasticity_t, ply_t
@@ -23,7 +23,7 @@ module crack_closures
     real(wp) :: shear_mean = 0
   end type band_strains_t
 
-  !> Parts of the stiffness along and across the fibres that are left.
+  !> Remaining fractions of the stiffness along and across the fibres.
   type :: left_t
     !> With open cracks
     real(wp) :: open(2) = 1
@@ -33,14 +33,14 @@ module crack_closures
 
 contains
 
-  !> Parts of the stiffness left under mean strains: of the four combinations of open and closed that one whose mean
-  !> stresses have the signs that it supposes. The complementary energy is convex, so there is one.
+  !> Remaining fractions of the stiffness under mean strains: of the four combinations of open and closed cracks the one
+  !> whose mean stresses have the assumed signs. The complementary energy is convex, so that there is one.
   pure function left_under(elasticity, mean, open, closed) result(left)
     !> Constants without damage
     type(elasticity_t), intent(in) :: elasticity
     !> Mean strains along and across the fibres
     real(wp), intent(in) :: mean(2)
-    !> Parts left along and across the fibres with open and with closed cracks
+    !> Remaining fractions along and across the fibres with open and with closed cracks
     real(wp), intent(in) :: open(2), closed(2)
     !> The parts
     type(left_t) :: left
@@ -63,7 +63,7 @@ contains
     type(elasticity_t), intent(in) :: elasticity
     !> Mean strains along and across the fibres
     real(wp), intent(in) :: mean(2)
-    !> Parts of the stiffness that are left
+    !> Remaining fractions of the stiffness
     real(wp), intent(in) :: left(2)
     !> The strains
     real(wp) :: strains(2)
@@ -77,7 +77,7 @@ contains
   pure function coupling(elasticity, left) result(part)
     !> Constants without damage
     type(elasticity_t), intent(in) :: elasticity
-    !> Parts of the stiffness that are left
+    !> Remaining fractions of the stiffness
     real(wp), intent(in) :: left(2)
     !> Part of the other strain in that of each direction
     real(wp) :: part(2)
@@ -91,7 +91,7 @@ contains
     type(elasticity_t), intent(in) :: elasticity
     !> Strains of the ply
     type(band_strains_t), intent(in) :: strains
-    !> Parts of the stiffness along and across the fibres that damage leaves
+    !> Remaining fractions of the stiffness along and across the fibres
     type(left_t), intent(in) :: left
     !> 1: along the fibres, 2: across
     integer, intent(in) :: direction
@@ -122,7 +122,7 @@ contains
     type(elasticity_t), intent(in) :: elasticity
     !> Strains of the ply
     type(band_strains_t), intent(in) :: strains
-    !> Parts of the stiffness that damage leaves
+    !> Remaining fractions of the stiffness
     type(left_t), intent(in) :: left
     !> From 0 to 1
     real(wp) :: share(2)
@@ -141,13 +141,13 @@ contains
     end do
   end function compressed_share
 
-  !> Stresses along and across the fibres that closed cracks bear, and half their product with the mean strains.
+  !> Stresses of closed cracks along and across the fibres, and half their product with the mean strains.
   pure function find_recovered(elasticity, mean, left) result(recovered)
     !> Constants without damage
     type(elasticity_t), intent(in) :: elasticity
     !> Mean strains along and across the fibres
     real(wp), intent(in) :: mean(2)
-    !> Parts of the stiffness that damage leaves
+    !> Remaining fractions of the stiffness
     type(left_t), intent(in) :: left
     !> Two stresses and an energy per volume
     real(wp) :: recovered(3)
@@ -159,8 +159,8 @@ contains
     recovered(3) = dot_product(recovered(:2), mean)/2
   end function find_recovered
 
-  !> What the stress of closed cracks adds to the resultants of strains without stress, which are subtracted from those
-  !> of the section: forces and moments, and energy per area.
+  !> Contribution of closed cracks to the resultants of stress-free strains, which are subtracted from those of the
+  !> section: forces and moments, and energy per area.
   pure function closing_resultants(plies, recovered) result(resultants)
     !> Neighbouring plies
     type(ply_t), intent(in) :: plies(:)

@@ -1,5 +1,5 @@
-!> Resultants that hold a section flat whose plies would take strains without stress, as those by cooling from the
-!> temperature at which they were joined, and permanent shear strains.
+!> Resultants that keep a section with stress-free strains flat: thermal strains from the curing temperature, and
+!> permanent shear strains.
 module free_strains
   use kinds, only: wp
   use plies, only: ply_t, elasticity_t, reduced_stiffness

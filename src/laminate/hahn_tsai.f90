@@ -18,7 +18,7 @@ contains
     if (strain > 0 .and. strength > 0) beta = max(0.0_wp, (strain - strength/modulus)/strength**3)
   end function shear_coefficient
 
-  !> Part of the shear modulus that a strain takes: 1 - s12/(G12 g12).
+  !> Fraction of the shear modulus lost at a strain: 1 - s12/(G12 g12).
   elemental real(wp) function shear_loss(modulus, beta, strain) result(loss)
     !> G12 without loss and the coefficient
     real(wp), intent(in) :: modulus, beta
@@ -77,7 +77,7 @@ contains
   elemental real(wp) function energy_of_loss(modulus, beta, loss) result(energy)
     !> G12 without loss and the coefficient
     real(wp), intent(in) :: modulus, beta
-    !> Part of the modulus that is lost
+    !> Lost fraction of the modulus
     real(wp), intent(in) :: loss
 
     energy = 0

@@ -41,7 +41,7 @@ contains
   end function fibre_strength
 
   !> Crushing, Table 1 with its printed terms. It is 1 at s22 = -Yc; where Yc > 2 S12, moderate compression makes it
-  !> negative, which raises the shear stress that the ply bears.
+  !> negative, which increases the shear stress at failure.
   pure real(wp) function crushing_index(pressure, s12, yc, strength)
     !> -s22, positive
     real(wp), intent(in) :: pressure

@@ -1,6 +1,6 @@
-!> Strengths of the matrix of plies in place: neighbours of another angle hold its cracks together, the more so the
-!> thinner the block of plies that a crack runs through (P. P. Camanho, C. G. Davila, S. T. Pinho, L. Iannucci,
-!> P. Robinson, Composites Part A 37 (2006) 165-176).
+!> In-situ strengths of the matrix: plies of another angle constrain its cracks, the more so the thinner the block of
+!> plies of a crack (P. P. Camanho, C. G. Davila, S. T. Pinho, L. Iannucci, P. Robinson, Composites Part A 37 (2006)
+!> 165-176).
 module in_situ_strengths
   use kinds, only: wp
   use mathematical_constants, only: pi
@@ -19,8 +19,8 @@ module in_situ_strengths
 
 contains
 
-  !> Material of a ply with the strengths that its failure is judged by: those in place if the deck asks for them. A
-  !> block that is the whole laminate has no neighbours; its strengths are the material's.
+  !> Material of a ply with the strengths of its failure criteria: in-situ strengths if the deck requests them. A block
+  !> that is the complete laminate has no neighbours; its strengths are the material's.
   pure function material_in_place(plies, ply, materials, damage) result(material)
     !> All plies, from the struck face
     type(ply_t), intent(in) :: plies(:)
@@ -74,7 +74,7 @@ contains
     associate (m => material)
       compliance = 2*(1/m%e2 - (m%nu12*m%e2/m%e1)**2/m%e1)
       opening = sqrt(m%toughness(matrix_tension)/(pi*thickness*compliance))
-      ! What the paper calls phi, for a block at a face; thick, where it leaves S12 as it is, or thin.
+      ! phi of the paper for a block at a face; thick, where S12 is unchanged, or thin.
       shear = max(6*m%s12**2/m%g12 + 9*m%shear_beta*m%s12**4, 24*m%toughness(matrix_compression)/(pi*thickness))
       strengths(1) = merge(max(m%yt, thin_at_face*opening), sqrt(2.0_wp)*max(at_free_face*m%yt, 2*opening), at_face)
       if (.not. at_face) shear = 2*shear

@@ -37,9 +37,9 @@ contains
     call find_unit_stresses([stack(1)%z_top, stack%z_bottom], in_plane, self%shear, self%carried)
   end function unit_stresses_of
 
-  !> Normal stress below a ply, from sigma_z,z = -tau_xz,x - tau_yz,y. What the shear forces lack in balance is taken
-  !> for a load that presses on the upper face, or on the lower one. Inertia and membrane forces of a curved plate are
-  !> not found from it; where they are, the stress is too low by their force per area at most.
+  !> Normal stress below a ply, from sigma_z,z = -tau_xz,x - tau_yz,y. A non-zero divergence of the shear forces is
+  !> interpreted as pressure on the upper or lower face. Inertia and membrane forces of a curved plate are neglected;
+  !> the stress is too low by at most their force per area.
   pure real(wp) function opening(self, ply, gradient) result(stress)
     !> The stresses
     class(unit_stresses_t), intent(in) :: self

@@ -43,9 +43,9 @@ module laminate_deck
 
 contains
 
-  !> The plies. Lists that aren't clear stay unallocated.
+  !> The plies. Invalid lists remain unallocated.
   subroutine fill_laminate(settings, materials, laminate, problems)
-    !> Keys in effect; get the angles and thicknesses that stacking stands for
+    !> Keys in effect; receive angles and thicknesses of the stacking sequence
     type(settings_t), intent(inout) :: settings
     !> The materials
     type(material_t), intent(in) :: materials(:)
@@ -116,7 +116,7 @@ contains
       all([(material_objection(materials(laminate%material(i))) == '', i=1, size(laminate%material))])
   end function is_valid
 
-  !> Turns stacking and ply_thickness into angles and thicknesses, and reports what is missing or given twice.
+  !> Turns stacking and ply_thickness into angles and thicknesses, and reports missing and repeated values.
   subroutine resolve_stacking(settings, problems)
     !> Keys in effect
     type(settings_t), intent(inout) :: settings
@@ -206,7 +206,7 @@ contains
       call append(names, materials(index)%name)
     end do
     index = 0
-    ! Without sound names of materials, and once for the same list, there is nothing to say.
+    ! Only with valid names of materials, and once for the same list.
     if (problems%concern(material_group, 'name') .or. problems%concern(laminate_group, 'materials')) return
     if (problems%concern(material_group) .and. size(names) == 0) return
     if (nearest_name(name, names) /= '') then

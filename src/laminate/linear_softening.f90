@@ -17,14 +17,14 @@ module linear_softening
     real(wp) :: ratio = huge(1.0_wp)
     !> Total energy dissipated per volume
     real(wp) :: energy = 0
-    !> Mode in which it is booked
+    !> Mode to which the energy is assigned
     integer :: mode = fibre_tension
   end type softening_t
 
 contains
 
-  !> Parts that tension and compression have in the root mean square of a strain. They are those of two halves of the
-  !> ply that differ as much as needed, and change smoothly where the mean changes its sign.
+  !> Fractions of tension and compression in the root mean square of a strain. They are those of two halves of the ply
+  !> with the same mean and mean square, and change smoothly where the mean changes its sign.
   pure function weights_of_signs(mean, size) result(weights)
     !> Mean and root mean square
     real(wp), intent(in) :: mean, size

@@ -1,4 +1,4 @@
-!> Materials of the deck: rows of its table, filling, and the checks that decide what a material is.
+!> Materials of the deck: rows of its table, assignment, and checks.
 module material_deck
   use deck_problems, only: problems_t
   use deck_remarks, only: report, are_clear
@@ -160,7 +160,7 @@ contains
     contrast = maxval(moduli)/minval(moduli)
   end function contrast
 
-  !> Whether the elastic constants are all there and sound; reports what is missing.
+  !> Whether the elastic constants are complete and valid; reports missing ones.
   subroutine check_completeness(settings, place, problems, complete)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
@@ -286,8 +286,8 @@ contains
     end do
   end subroutine require_densities
 
-  !> What a half-space of a material gives way under a sphere in Sun's formula: 1/E2; Hertz' (1 - nu**2)/E if it is
-  !> isotropic; 0 if its constants aren't known.
+  !> Compliance of a half-space in Sun's formula: 1/E2; Hertz' (1 - nu**2)/E if isotropic; 0 if the constants aren't
+  !> known.
   pure real(wp) function normal_compliance(settings, place, material) result(compliance)
     !> Keys in effect
     type(settings_t), intent(in) :: settings

@@ -16,7 +16,7 @@ module matrix_exposures
   !> Planes that are looked at, a degree apart: between two of them the exposure is larger by less than 2e-4.
   integer, parameter :: planes = 180
 
-  !> What the criteria of the matrix ask for.
+  !> Strengths for the matrix criteria.
   type :: matrix_strengths_t
     !> Strengths across the fibres in tension and compression, in shear along and across the fibres
     real(wp) :: tension = 0, compression = 0, shear = 0, shear_across = 0

@@ -8,7 +8,7 @@ module plies
   public :: elasticity_t, ply_t, elasticity_of, material_objection
   public :: reduced_stiffness, in_plane_stiffness, shear_stiffness, set_angle
 
-  !> Elastic constants that a ply in plane stress depends on; damage reduces them (nu23 plays no part).
+  !> Elastic constants of a ply in plane stress; damage reduces them (nu23 has no effect).
   type :: elasticity_t
     !> Young's moduli along and across the fibres
     real(wp) :: e1 = 0, e2 = 0
@@ -18,7 +18,7 @@ module plies
     real(wp) :: nu12 = 0
   end type elasticity_t
 
-  !> A ply in its place. z is measured downwards from the mid-plane of the whole laminate.
+  !> A ply of the laminate. z is measured downwards from the mid-plane of the laminate.
   type :: ply_t
     !> Index of its material in the list of materials
     integer :: material = 0
@@ -48,8 +48,8 @@ contains
     elasticity = elasticity_t(material%e1, material%e2, material%g12, material%g13, material%g23, material%nu12)
   end function elasticity_of
 
-  !> What is wrong with the elastic constants of a material, or an empty text: they must store positive energy in
-  !> any strain, in plane stress and, where nu23 is given, also in three dimensions with E3 = E2 and nu13 = nu12.
+  !> Error of the elastic constants of a material, or an empty text: the strain energy must be positive for any strain,
+  !> in plane stress and, where nu23 is given, also in three dimensions with E3 = E2 and nu13 = nu12.
   pure function material_objection(material) result(objection)
     !> The material
     type(material_t), intent(in) :: material

@@ -18,7 +18,8 @@ module ply_damage_parameters
   !> Where in a ply the stresses are taken: in its mid-plane, or on the worse of its faces.
   integer, parameter, public :: stress_at_middle = 1, stress_at_faces = 2
 
-  !> What two runs must have in common for one to begin with the damage of the other, by its names in the deck.
+  !> Properties that two runs must have in common for one to start with the damage of the other, by their names in the
+  !> deck.
   character(len=*), parameter, public :: damage_names(*) = [character(len=13) :: 'd', 'e', 'criteria', 'stress', &
     'in_situ', 'crack_closure']
 
@@ -36,7 +37,7 @@ module ply_damage_parameters
     logical :: in_situ = .false.
     !> True: shear strain beyond s12/G12 is permanent, otherwise shear unloads to the origin
     logical :: permanent_shear = .false.
-    !> True: what tension has cracked bears compression
+    !> True: tensile cracks carry compression
     logical :: crack_closure = .false.
   end type ply_damage_t
 

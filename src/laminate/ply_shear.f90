@@ -12,8 +12,8 @@ module ply_shear
   private
   public :: shear_shares_of, shear_of_plies
 
-  !> Least determinant of what a layer takes of unit forces, over the product of its diagonal, at which its plies still
-  !> follow the laminate. Both are equal without coupling between the directions.
+  !> Smallest ratio of the determinant of a layer's response to unit forces to the product of its diagonal at which its
+  !> plies share the laminate's response. It is 1 without coupling between the directions.
   real(wp), parameter :: min_determinant = 0.1_wp
 
 contains

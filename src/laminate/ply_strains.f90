@@ -54,7 +54,7 @@ contains
               reshape(moments%curvature, [9])]
   end function values_of
 
-  !> The means from what `values_of` made of them.
+  !> The means from the result of `values_of`.
   pure function moments_from(values) result(moments)
     !> Strains, then products
     real(wp), intent(in) :: values(moment_values)
@@ -67,7 +67,7 @@ contains
     moments%curvature = reshape(values(25:33), [3, 3])
   end function moments_from
 
-  !> Strains of a ply in its own axes, less those that go without stress.
+  !> Strains of a ply in its material axes, minus stress-free strains.
   pure function strains_of_ply(ply, moments) result(strains)
     !> The ply
     type(ply_t), intent(in) :: ply

@@ -19,7 +19,7 @@ module stacking
 
 contains
 
-  !> Plies of a laminate, from the struck face down. Materials of equal constants count as one.
+  !> Plies of a laminate, from the struck face down. Materials with equal constants are one.
   pure function stacked_plies(laminate, materials) result(plies)
     !> Stacking sequence
     type(laminate_t), intent(in) :: laminate

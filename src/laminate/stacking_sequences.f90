@@ -10,7 +10,7 @@ module stacking_sequences
   integer, parameter, public :: max_plies = 1000
   !> Largest size of an angle, degrees.
   real(wp), parameter :: max_degrees = 360
-  !> Largest size of an angle that is meant as such; beyond, a subscript may have been lost, as in 302 for 30_2.
+  !> Largest plausible angle; a larger number may be a lost subscript, as in 302 for 30_2.
   real(wp), parameter, public :: usual_degrees = 180
   !> How plies of one angle are counted.
   character(len=*), parameter, public :: count_hint = 'a count of plies stands behind _, as in 0_2'
@@ -36,7 +36,7 @@ contains
     character(len=*), intent(in) :: text
     !> Degrees; to be used if there is no fault
     real(wp), allocatable, intent(out) :: angles(:)
-    !> Clause that says where and what is wrong; empty: nothing
+    !> Clause with place and error; empty: none
     character(len=:), allocatable, intent(out) :: fault
     type(reader_t) :: reader
     logical :: barred
@@ -127,7 +127,7 @@ contains
   pure subroutine read_suffix(reader, angles, barred)
     !> Where to read
     type(reader_t), intent(inout) :: reader
-    !> Degrees of the bracket; get what the suffix says
+    !> Angles of the bracket; receive the repetitions of the suffix
     real(wp), allocatable, intent(inout) :: angles(:)
     !> True: the last ply is the middle one; false after a mirror
     logical, intent(inout) :: barred
@@ -227,7 +227,7 @@ contains
     call step(reader, last)
   end subroutine read_count
 
-  !> Plies several times over; none more than what is found too many.
+  !> Repeats plies, up to one more than the permitted number.
   pure function repeated(angles, count) result(plies)
     !> Degrees
     real(wp), intent(in) :: angles(:)
@@ -241,7 +241,7 @@ contains
     plies = [(angles, i=1, times)]
   end function repeated
 
-  !> Goes on by some characters and past the blanks behind them.
+  !> Advances by some characters and the blanks after them.
   pure subroutine step(reader, length)
     !> Where to read
     type(reader_t), intent(inout) :: reader
@@ -281,7 +281,7 @@ contains
     words = reader%text(reader%at:)
   end function rest
 
-  !> Notes what is wrong at the next character, the first time only.
+  !> Stores the first error, with the next character.
   pure subroutine object(reader, clause)
     !> Where it is
     type(reader_t), intent(inout) :: reader
@@ -294,7 +294,7 @@ contains
       reader%fault = 'at its end: '//clause
       return
     end if
-    ! Bytes 10xxxxxx go on with a character of UTF-8.
+    ! Bytes 10xxxxxx continue a character of UTF-8.
     last = reader%at
     do while (last < len(reader%text))
       if (ibits(iachar(reader%text(last + 1:last + 1)), 6, 2) /= 2) exit

@@ -32,7 +32,7 @@ contains
     change = settings%real_of(thermal_group, 'delta_T')
   end subroutine fill_thermal
 
-  !> A change of the temperature that does nothing.
+  !> A change of temperature without effect.
   subroutine check_thermal(settings, materials, problems)
     !> Keys in effect
     type(settings_t), intent(in) :: settings

@@ -32,7 +32,7 @@ module cell_grids
     procedure :: in_patch
     !> On which side a cell borders on a line through the struck point.
     procedure :: struck_side
-    !> Node that moves as a node does on the line at which a turned plate is cut.
+    !> Node with the same motion as a given node on the cut line of point symmetry.
     procedure :: turned_node
     !> True for a node whose motion another one gives.
     procedure :: follows
@@ -93,8 +93,8 @@ contains
     if (direction == 2 .and. allocated(mesh%y_lines)) call move_to_lines(edges, kept, mesh%y_lines)
   end function cell_edges
 
-  !> Nodes at the edges and middles of the cells. The struck one lies on the line next to the struck point, which has
-  !> one of its own on every mesh that the checks let pass.
+  !> Nodes at the edges and centres of the cells. The struck node is on the line next to the struck point, which has a
+  !> line on every valid mesh.
   pure subroutine place_nodes(self)
     !> The grid, with its edges known
     class(cell_grid_t), intent(inout) :: self
@@ -153,9 +153,8 @@ contains
     area = product(self%cell_sides(place))
   end function cell_area
 
-  !> Image of a node on the line at which a plate is cut that a turn by 180 degrees leaves as it is: at (0, -y) for
-  !> (0, y). There w is the same; displacements in the plane and rotations have the other sign. The centre is its own
-  !> image; other nodes have none, 0.
+  !> Image of a node on the cut line of point symmetry: at (0, -y) for (0, y). There w is the same; in-plane
+  !> displacements and rotations have the opposite sign. The centre is its own image; other nodes have none, 0.
   pure integer function turned_node(self, node) result(image)
     !> The grid
     class(cell_grid_t), intent(in) :: self

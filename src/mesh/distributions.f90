@@ -1,5 +1,5 @@
-!> Who computes what: cells are dealt out by METIS, the points of a node belong to one rank, and every
-!> rank keeps copies (ghosts) of the points its elements touch but do not own.
+!> Distribution over ranks: METIS distributes the cells, the points of a node belong to one rank, and every rank keeps
+!> copies (ghosts) of the points its elements touch but does not own.
 module distributions
   use errors, only: error_t
   use communicators, only: communicator_t
@@ -31,7 +31,7 @@ module distributions
 
 contains
 
-  !> Deals the mesh out to the ranks of a communicator. Every rank finds the same distribution.
+  !> Distributes the mesh over the ranks of a communicator. Every rank finds the same distribution.
   subroutine distribute(mesh, communicator, self, error, first_image)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
@@ -63,7 +63,7 @@ contains
     end do
   end subroutine distribute
 
-  !> Deals cells out to ranks, each as much work as it has elements, those that are images of each other to one.
+  !> Distributes cells over ranks, weighted by their elements; images of each other go to one rank.
   subroutine partition_cells(mesh, ranks, first, part, error)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh

@@ -1,5 +1,5 @@
-!> Edges of the plate that give way: springs along them against deflection and against rotation about the edge, both per
-!> length of it, by three Gauss points on each side of a cell.
+!> Elastic edges of the plate: springs against deflection and rotation about the edge, both per length, at three Gauss
+!> points on each side of a cell.
 module elastic_edges
   use cell_grids, only: cell_grid_t
   use kinds, only: wp

@@ -6,7 +6,7 @@ module gradings
   private
   public :: graded_half_line, graded_line, cored_half_line, off_centre_line, core_elements, move_to_lines
 
-  !> Part of an element by which a tie between two numbers of elements goes to the larger one in all units.
+  !> Fraction of an element by which a tie between two numbers of elements is resolved to the larger one in all units.
   real(wp), parameter :: tie = 1.0e-9_wp
 
 contains
@@ -108,8 +108,8 @@ contains
     edges(:outside) = -edges(elements:elements - outside:-1)
   end function graded_line
 
-  !> Element edges from border to border about a struck point anywhere between them. Both sides share the elements so
-  !> that their sizes change alike.
+  !> Element edges from border to border around a struck point anywhere between them. The elements are divided between
+  !> both sides for similar sizes.
   pure function off_centre_line(length, elements, patch, grading, core, cell, struck) result(edges)
     !> Length of the plate
     real(wp), intent(in) :: length

@@ -1,9 +1,8 @@
-!> Between the unknowns of stacked layers and their motion.
+!> Map from the unknowns of stacked layers to their motion.
 !>
-!> The first layer of a node keeps u, v, w, theta_x, theta_y. A layer below has the jumps of the three
-!> face displacements across the interface above it, and its own rotations. Joined faces are then
-!> jumps held at zero, a gap is an unknown of its own, and with z measured from one mid-plane for all
-!> layers nothing is needed where layers meet at the border of a zone.
+!> The first layer of a node has u, v, w, theta_x, theta_y. A layer below has the jumps of the three displacements
+!> across the interface above it, and its own rotations. Ties are then jumps constrained to zero, a gap is one unknown,
+!> and with z measured from one mid-plane for all layers the border of a zone needs no constraint.
 module layer_maps
   use kinds, only: wp
   use layered_meshes, only: layered_mesh_t

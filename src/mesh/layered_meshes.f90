@@ -1,5 +1,5 @@
-!> The mesh of the modelled part: a grid of cells, and over each cell the layers of plies that may separate
-!> there. Every rank holds the whole of it; it is small beside a factor.
+!> The mesh of the modelled part: a grid of cells, and over each cell the layers of plies that may separate there. Every
+!> rank has the complete mesh; it is small compared with a factor.
 module layered_meshes
   use kinds, only: wp
   use mesh_parameters, only: plate_t, mesh_t
@@ -21,7 +21,7 @@ module layered_meshes
   type, extends(cell_grid_t) :: layered_mesh_t
     !> Zones, from the struck face downwards
     type(zone_t), allocatable :: zones(:)
-    !> Node of each point; points of a node follow each other from the struck face downwards
+    !> Node of each point; points of a node are in order from the struck face downwards
     integer, allocatable :: point_node(:)
     !> First point of each node, (nodes + 1)
     integer, allocatable :: first_point(:)
@@ -190,7 +190,7 @@ contains
     point = 0
   end function lower_point
 
-  !> Point that gives a point its motion, on the line at which a turned plate is cut; 0: it has its own.
+  !> Master point of a point on the cut line of point symmetry; 0: it is independent.
   pure integer function leader(self, point)
     !> The mesh
     class(layered_mesh_t), intent(in) :: self

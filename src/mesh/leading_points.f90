@@ -1,5 +1,5 @@
-!> Points that take their motion from others: on the line at which a turned plate is cut, and on all of a full plate
-!> that keeps its symmetry.
+!> Points constrained to the motion of others: on the cut line of point symmetry, and on all of a full plate that keeps
+!> its symmetry.
 module leading_points
   use kinds, only: wp
   use layered_meshes, only: layered_mesh_t
@@ -13,7 +13,7 @@ module leading_points
 
 contains
 
-  !> Finds the point that leads each point. What a point that is its own image would reverse is held.
+  !> Finds the master of each point. Components that a point at the centre would reverse are fixed.
   pure subroutine find_leading_points(mesh, leader, signs, held, images)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
@@ -21,7 +21,7 @@ contains
     integer, intent(out) :: leader(:)
     !> Signs by which its motion is multiplied, (5, points)
     real(wp), intent(out) :: signs(:, :)
-    !> Held unknowns; receives those that symmetry holds, (5, points)
+    !> Fixed unknowns; receives those fixed by symmetry, (5, points)
     logical, intent(inout) :: held(:, :)
     !> Images of the points; left out or empty: none
     type(symmetry_images_t), intent(in), optional :: images
@@ -43,7 +43,7 @@ contains
     integer, intent(inout) :: leader(:)
     !> Receives the signs of the points' motion, (5, points)
     real(wp), intent(inout) :: signs(:, :)
-    !> Receives what is held, (5, points)
+    !> Receives the fixed unknowns, (5, points)
     logical, intent(inout) :: held(:, :)
     integer :: point, k
 

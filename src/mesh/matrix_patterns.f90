@@ -1,5 +1,5 @@
-!> The pattern of the matrix: an unknown is coupled to all unknowns at the nodes that share a cell with its own, or with
-!> a node that follows it on the line at which a turned plate is cut.
+!> The pattern of the matrix: an unknown is coupled to all unknowns at the nodes that share a cell with its node, or
+!> with a node constrained to it on the cut line of point symmetry.
 module matrix_patterns
   use layered_meshes, only: layered_mesh_t
   use nine_node_grids, only: lines_around
@@ -13,7 +13,7 @@ contains
   pure subroutine find_pattern(mesh, equation, nodes, row_start, columns, folded)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
-    !> Equation (from 0) of every unknown of the mesh; -1: held, (5, points)
+    !> Equation (from 0) of every unknown of the mesh; -1: fixed, (5, points)
     integer, intent(in) :: equation(:, :)
     !> Node of each row; rows of a node that follow each other are taken as alike
     integer, intent(in) :: nodes(:)

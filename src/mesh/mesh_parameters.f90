@@ -9,8 +9,7 @@ module mesh_parameters
 
   !> Supports of an edge.
   integer, parameter, public :: edge_free = 0, edge_simple = 1, edge_clamped = 2, edge_elastic = 3
-  !> Parts of the plate that are modelled: all; x >= 0 and y >= 0; x >= 0; y >= 0; x >= 0 of a plate that a turn by 180
-  !> degrees leaves as it is.
+  !> Modelled parts of the plate: all; x >= 0 and y >= 0; x >= 0; y >= 0; x >= 0 with point symmetry.
   integer, parameter, public :: symmetry_none = 1, symmetry_quarter = 2, symmetry_half_x = 3, symmetry_half_y = 4, &
                                 symmetry_point = 5
 
@@ -25,7 +24,7 @@ module mesh_parameters
     integer :: edges(4) = edge_clamped
     !> Stiffness of elastic edges per length, against deflection, 0: rigid, and against rotation about the edge
     real(wp) :: edge_stiffness(2) = 0
-    !> True: supported edges hold the plate in its plane too
+    !> True: supported edges also fix the in-plane displacements
     logical :: in_plane_fixed = .true.
     !> Amplitude of the shape without stress; 0: the plate is flat
     real(wp) :: imperfection = 0
@@ -33,7 +32,7 @@ module mesh_parameters
     integer :: half_waves(2) = 1
     !> Part that is modelled, one of the constants above
     integer :: symmetry = symmetry_none
-    !> Part that could stand for the whole where all is modelled and something may break; symmetry_none: no part could
+    !> Symmetry of the case where the full plate is modelled and may fail; symmetry_none: none
     integer :: kept = symmetry_none
   end type plate_t
 

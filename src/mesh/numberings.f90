@@ -1,8 +1,8 @@
-!> Equations: one for every unknown that is not held, numbered rank by rank, and the pattern of the
-!> matrix that couples them. Renewed as a whole when unknowns are released.
+!> Equations: one for every free unknown, numbered rank by rank, and the pattern of the matrix. Created anew when
+!> unknowns are released.
 !>
-!> Points that follow others have the equations of these, but for signs: on the line at which a turned plate is cut, and
-!> on all of a full plate that keeps its symmetry. So a vector holds every free motion once, and a field all of it.
+!> Constrained points have the equations of their masters, except for signs: on the cut line of point symmetry, and on
+!> all of a full plate that keeps its symmetry. A vector thus contains every free motion once, and a field all of them.
 module numberings
   use kinds, only: wp
   use layered_meshes, only: layered_mesh_t
@@ -16,7 +16,7 @@ module numberings
 
   !> Equation numbers and the rows of this rank.
   type :: numbering_t
-    !> Equation (from 0) of each unknown of this rank's points, ghosts too; -1: held, (5, local points)
+    !> Equation (from 0) of each unknown of this rank's points, with ghosts; -1: fixed, (5, local points)
     integer, allocatable :: equation(:, :)
     !> First row of this rank, its rows, and all rows
     integer :: first_row = 0, rows = 0, total = 0
@@ -53,7 +53,7 @@ contains
     type(layered_mesh_t), intent(in) :: mesh
     !> Owners of the points
     type(distribution_t), intent(in) :: distribution
-    !> Held unknowns of every point of the mesh, (5, points)
+    !> Fixed unknowns of every point of the mesh, (5, points)
     logical, intent(in) :: held(:, :)
     !> The numbering
     type(numbering_t), intent(out) :: self
@@ -143,7 +143,7 @@ contains
     type(distribution_t), intent(in) :: distribution
     !> Unknowns that get one
     logical, intent(in) :: free(:, :)
-    !> Equations, from 0; -1: held
+    !> Equations, from 0; -1: fixed
     integer, intent(out) :: equation(:, :)
     integer :: in_order(size(free, 2)), place, component, next
 

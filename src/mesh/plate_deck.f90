@@ -110,7 +110,7 @@ contains
                 lower_case(settings%text_of(plate_group, key_symmetry))//''' needs the same support at opposite edges.')
   end subroutine check_plate
 
-  !> Edges that hold a plate without rigs in equilibrium; only a static analysis needs them.
+  !> Checks that edges support a plate without rigs; only a static analysis needs them.
   subroutine check_edges(settings, plate, problems)
     !> Keys in effect
     type(settings_t), intent(in) :: settings

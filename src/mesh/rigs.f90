@@ -1,8 +1,8 @@
-!> Where rigs hold the plate on a mesh.
+!> Supports by rigs on a mesh.
 !>
-!> The edges of a rectangular window are lines of the mesh. The edge of a circular one runs through the cells: w is held
-!> where it crosses their sides. (Held at the nodes nearest to it the plate is almost clamped, as these lie at several
-!> radii.) The face of a frame bears the nodes over it, and a clamp holds the node nearest to it.
+!> The edges of a rectangular window are lines of the mesh. The edge of a circular window crosses the cells: w is fixed
+!> where it crosses their sides. (Fixed at the nearest nodes instead, at several radii, the plate would be almost
+!> clamped.) The face of a frame supports the nodes over it, and a clamp fixes the nearest node.
 module rigs
   use kinds, only: wp
   use cell_grids, only: cell_grid_t
@@ -39,13 +39,13 @@ contains
     end do
   end function window_lines
 
-  !> Nodes that a frame bears: those over its face, or only those on the edge of a rectangular window.
+  !> Nodes supported by a frame: those over its face, or only those on the edge of a rectangular window.
   pure function nodes_on_frame(grid, support) result(on_frame)
     !> The grid
     class(cell_grid_t), intent(in) :: grid
     !> The rig
     type(support_t), intent(in) :: support
-    !> True where the frame bears the plate, (nodes)
+    !> True where the frame supports the plate, (nodes)
     logical, allocatable :: on_frame(:)
     real(wp) :: beyond(2), rounding
     integer :: node
@@ -67,7 +67,7 @@ contains
     end do
   end function nodes_on_frame
 
-  !> True if a rig holds w where the edge of its window crosses the sides of cells.
+  !> True if a rig fixes w where the edge of its window crosses the sides of cells.
   pure logical function has_crossings(support)
     !> The rig
     type(support_t), intent(in) :: support
@@ -126,7 +126,7 @@ contains
     end associate
   end subroutine add_crossings
 
-  !> Nodes that the clamps of a rig hold, those in parts of the plate that are not modelled by their images.
+  !> Nodes at the clamps of a rig; clamps in parts that are not modelled are represented by their images.
   pure function clamp_nodes(grid, plate, support) result(nodes)
     !> The grid
     class(cell_grid_t), intent(in) :: grid
@@ -150,8 +150,8 @@ contains
     end do
   end function clamp_nodes
 
-  !> Part of a clamp's stiffness that the model has, as each of the plate's clamps is listed and has its image in every
-  !> part of the plate.
+  !> Fraction of a clamp's stiffness in the model, as each clamp of the plate is listed and has an image in every part
+  !> of the plate.
   pure real(wp) function clamp_share(grid)
     !> The grid
     class(cell_grid_t), intent(in) :: grid

@@ -109,7 +109,7 @@ contains
     end do
   end subroutine check_rigs
 
-  !> True if clamps press only where a frame holds the plate both ways.
+  !> True if clamps press only where a bilateral frame supports the plate.
   pure logical function has_idle_clamps(clamped, supports)
     !> The rig with the clamps
     type(support_t), intent(in) :: clamped
@@ -126,7 +126,7 @@ contains
     end do
   end function has_idle_clamps
 
-  !> A rig that has something to hold the plate by, and no key that its shape has no use for.
+  !> Checks that a rig has a support, and no key without effect for its shape.
   subroutine check_parts(settings, support, place, problems)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
@@ -215,7 +215,7 @@ contains
     end if
   end subroutine check_clamps
 
-  !> Rigs that hold the plate in equilibrium without inertia.
+  !> Checks that rigs support the plate without inertia.
   subroutine check_static_rigs(settings, supports, problems)
     !> Keys in effect
     type(settings_t), intent(in) :: settings

@@ -7,7 +7,7 @@ module support_parameters
 
   !> Shapes of a window.
   integer, parameter, public :: window_none = 0, window_rectangle = 1, window_circle = 2
-  !> What of a frame bears the plate: the edge of its window, or all of its face.
+  !> Bearing of a frame: the edge of its window, or all of its face.
   integer, parameter, public :: bearing_edge = 1, bearing_face = 2
   !> Most supports of a plate: each has a column of its own in the history.
   integer, parameter :: max_supports = 3
@@ -28,7 +28,7 @@ module support_parameters
     real(wp), allocatable :: clamps(:, :)
     !> Force per displacement of a clamp along u, v and w; 0: rigid
     real(wp) :: clamp_stiffness = 0
-    !> Force with which a clamp presses the plate on the frame below it; 0: it holds the plate, whatever that takes
+    !> Force with which a clamp presses the plate on the frame below it; 0: no limit
     real(wp) :: clamp_force = 0
   contains
     !> Distance of a point from the window's edge.

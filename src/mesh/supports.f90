@@ -1,5 +1,4 @@
-!> Which unknowns of the points are held: by supports, by symmetry, because the layers are still
-!> joined, or because the setup never moves them.
+!> Fixed unknowns of the points: by supports, by symmetry, by ties between layers, or because they are always zero.
 module supports
   use kinds, only: wp
   use mesh_parameters, only: plate_t, edge_free, edge_clamped, edge_elastic
@@ -11,15 +10,15 @@ module supports
 
 contains
 
-  !> Table of the unknowns held at zero by supports and symmetry, and of the whole membrane when it is idle.
+  !> Table of the unknowns fixed by supports and symmetry, and of all in-plane displacements if they are zero.
   pure function held_unknowns(mesh, plate, membrane_idle, pin_plane) result(held)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Supports and symmetry
     type(plate_t), intent(in) :: plate
-    !> True: nothing ever moves u and v, so they need no equations
+    !> True: u and v are zero and need no equations
     logical, intent(in) :: membrane_idle
-    !> Rigid motions in the plane that no support holds: along x, along y, turning
+    !> In-plane rigid-body motions without support: along x, along y, rotation
     logical, intent(in) :: pin_plane(3)
     !> (5, points): u, v, w, theta_x, theta_y
     logical, allocatable :: held(:, :)
@@ -34,7 +33,7 @@ contains
     call pin(mesh, pin_plane, held)
   end function held_unknowns
 
-  !> Unknowns held at a node by the borders it lies on.
+  !> Unknowns fixed at a node by the borders it is on.
   pure function held_on_borders(mesh, plate, line) result(held)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
@@ -60,8 +59,8 @@ contains
     end do
   end function held_on_borders
 
-  !> Unknowns held by one edge. A simple support is a hard one: it also holds the rotation along the edge. An edge that
-  !> gives way leaves it free.
+  !> Unknowns fixed by one edge. A simple support is a hard one: it also fixes the rotation along the edge. An elastic
+  !> edge leaves it free.
   pure function held_by_edge(edge, normal, plate) result(held)
     !> Kind of support
     integer, intent(in) :: edge
@@ -80,12 +79,12 @@ contains
     if (plate%in_plane_fixed) held(1:2) = .true.
   end function held_by_edge
 
-  !> Holds what symmetry leaves of rigid motions in the plane: at the struck node, and the turn at the node beside it
-  !> along x.
+  !> Fixes the in-plane rigid-body motions that symmetry leaves: at the struck node, and the rotation at the node beside
+  !> it along x.
   pure subroutine pin(mesh, motions, held)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
-    !> Those to be held: along x, along y, turning
+    !> Those to be fixed: along x, along y, rotation
     logical, intent(in) :: motions(3)
     !> Table of constrained unknowns
     logical, intent(inout) :: held(:, :)

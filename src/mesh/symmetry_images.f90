@@ -1,9 +1,8 @@
-!> Images of the points of a full plate that is its own mirror image, or that a turn by 180 degrees leaves as it is.
+!> Images of the points of a full plate with mirror or point symmetry.
 !>
-!> Where something breaks, the equations of such a plate have solutions besides the symmetric one. Rounding would choose
-!> among them: another number of ranks, other units or a turned plate would break in other places, and a part of the
-!> plate that stands for the whole would not. So images share their equations (`numberings`), and every motion found is
-!> its own image to the last digit.
+!> With failure, the equations of such a plate have solutions besides the symmetric one, and round-off would choose
+!> among them: it would depend on the number of ranks, on units and on the orientation, and differ from that of the
+!> modelled part. Images therefore share their equations (`numberings`), and every solution is bitwise symmetric.
 module symmetry_images
   use kinds, only: wp
   use layered_meshes, only: layered_mesh_t
@@ -35,9 +34,9 @@ contains
   pure function find_images(mesh, symmetry, held) result(self)
     !> The mesh of the full plate
     type(layered_mesh_t), intent(in) :: mesh
-    !> Part that could stand for the whole, one of `mesh_parameters`
+    !> Symmetry of the plate, one of `mesh_parameters`
     integer, intent(in) :: symmetry
-    !> Unknowns held by supports, (5, points of the mesh)
+    !> Unknowns fixed by supports, (5, points of the mesh)
     logical, intent(in) :: held(:, :)
     !> The images
     type(symmetry_images_t) :: self

@@ -1,10 +1,10 @@
-!> Where a spherical nose presses on the plate: on the deck's patch, and beside it where the plate has come near the
-!> nose's surface.
+!> Contact area of a spherical nose: the deck's patch, and points around it where the plate is close to the nose's
+!> surface.
 !>
-!> At the edge of a Hertzian contact the undeformed surfaces are half the indentation farther apart than where they
-!> met first (K. L. Johnson, Contact Mechanics, 1985, section 4.2). So pressure is in proportion to what a place lacks
-!> of that distance, as on an elastic foundation (section 4.3): on a flat plate out to Hertz's radius, farther where the
-!> plate bends about the nose. Under the patch it is even, and the patch has its mean.
+!> At the edge of a Hertzian contact the separation of the undeformed surfaces is half the indentation larger than at
+!> first touch (K. L. Johnson, Contact Mechanics, 1985, section 4.2). The pressure is proportional to the difference
+!> from that separation, as on an elastic foundation (section 4.3): on a flat plate up to Hertz's radius, farther where
+!> the plate bends around the nose. On the patch it is uniform, with its mean value.
 module contact_areas
   use communicators, only: communicator_t
   use kinds, only: wp
@@ -13,7 +13,7 @@ module contact_areas
   private
   public :: contact_area_t, new_contact_area
 
-  !> Part of the indentation by which surfaces are farther apart at the edge of a Hertzian contact.
+  !> Additional separation of the surfaces at the edge of a Hertzian contact, relative to the indentation.
   real(wp), parameter, public :: edge_gap = 0.5_wp
   !> Weight over the largest from which a place counts as touched: as contact ends, weights fade.
   real(wp), parameter :: min_weight = 1.0e-3_wp
@@ -62,7 +62,7 @@ contains
     type(communicator_t), intent(in) :: communicator
     !> Deflection of the struck face, (local points)
     real(wp), intent(in) :: deflection(:)
-    !> Indentation; without it the patch alone is pressed
+    !> Indentation; absent: the patch alone is loaded
     real(wp), intent(in) :: indentation
     !> (local points); ghosts zero
     real(wp), allocatable :: weights(:)

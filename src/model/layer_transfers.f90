@@ -9,7 +9,7 @@ module layer_transfers
   private
   public :: layer_transfer_t
 
-  !> One item, of whatever kind, as a table of reals, which hold every integer.
+  !> One item of any type, as a table of reals, which represent every integer exactly.
   type :: stored_item_t
     !> Its name
     character(len=:), allocatable :: name
@@ -47,9 +47,9 @@ module layer_transfers
 
 contains
 
-  !> Turns from saving to loading, and finds where points and elements come from. Zones of the new mesh cover those
-  !> of the old one, so every point of the mesh saved is found again. What only the new mesh has of the plate comes from
-  !> its image in the part that the old one models.
+  !> Turns from saving to loading, and finds the sources of points and elements. Zones of the new mesh contain those of
+  !> the old one, so that every saved point has a place. Parts of the plate that only the new mesh models come from
+  !> their images in the old one.
   subroutine turn_to(self, old, new)
     !> The archive
     class(layer_transfer_t), intent(inout) :: self

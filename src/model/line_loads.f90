@@ -1,4 +1,4 @@
-!> Lines across the plate that hold it, move it or press on it, as the deck gives them: supports and loads of specimens.
+!> Lines across the plate that support, move or load it: supports and loads of specimens.
 module line_loads
   use kinds, only: wp
   use smooth_starts, only: smooth_ramp, smooth_step
@@ -26,13 +26,13 @@ module line_loads
     integer :: layer = all_layers
     !> Component of the motion, 1 to 5: u, v, w, theta_x, theta_y
     integer :: component = 3
-    !> True: `value` is a displacement or rotation of the line; false: a force or moment on the whole of it
+    !> True: `value` is a displacement or rotation of the line; false: the total force or moment
     logical :: prescribed = .false.
     !> Full value
     real(wp) :: value = 0
     !> line_ramp or line_fixed
     integer :: history = line_ramp
-    !> Part of the run in which its motion or load sets in smoothly; 0: at once
+    !> Rise of its motion or load, relative to the run; 0: at once
     real(wp) :: rise = 0
   contains
     !> Value at a time, and its first and second derivative.
@@ -43,7 +43,7 @@ module line_loads
     procedure :: at_factor
     !> Change of the value with the load factor.
     procedure :: slope
-    !> True: it holds or moves an end of the plate in its plane, in tension or compression.
+    !> True: it fixes or moves an end of the plate in its plane, in tension or compression.
     procedure :: is_end
   end type line_load_t
 
@@ -101,7 +101,7 @@ contains
     if (self%history == line_ramp) slope = self%value
   end function slope
 
-  !> True: it holds or moves an end of the plate in its plane, in tension or compression.
+  !> True: it fixes or moves an end of the plate in its plane, in tension or compression.
   pure logical function is_end(self, length)
     !> The line
     class(line_load_t), intent(in) :: self

@@ -30,8 +30,8 @@ module model_building
   private
   public :: create_model, zones_of
 
-  !> Stiffness of a line of a rigid frame over that of the laminate through its thickness: its part of the deflection is
-  !> far below that of rounding and tolerance, and the matrix still loses no more digits than tied jumps cost it.
+  !> Stiffness of a line of a rigid frame over that of the laminate through its thickness: its effect on the deflection
+  !> is far below round-off and tolerance, and the conditioning of the matrix is that of tied jumps.
   real(wp), parameter :: rigid = 1.0e3_wp
 
 contains
@@ -43,7 +43,7 @@ contains
     !> The ranks
     type(communicator_t), intent(in) :: communicator
     type(model_t), intent(out) :: self
-    !> Set if the mesh can't be dealt out or an element is ill-shaped; the same on every rank
+    !> Set if the mesh can't be distributed or an element is ill-shaped; the same on every rank
     type(error_t), allocatable, intent(out) :: error
     type(zone_t), allocatable :: zones(:)
     integer :: ply
@@ -94,11 +94,11 @@ contains
                 abs(section%mass(2)) <= 1.0e-12_wp*sqrt(section%mass(1)*section%mass(3))
   end function uncoupled
 
-  !> Which rigid motions of a static plate in its own plane nothing holds: along x, along y, turning.
+  !> In-plane rigid-body motions of a static plate without support: along x, along y, rotation.
   pure function unrestrained(setup)
     !> The setup
     type(setup_t), intent(in) :: setup
-    !> True: it has to be held unless symmetry does
+    !> True: it must be constrained unless symmetry does
     logical :: unrestrained(3)
     integer :: i
 
@@ -114,13 +114,13 @@ contains
     associate (in_plane => lines_in_plane(setup), lines => setup%lines)
       unrestrained(1) = unrestrained(1) .and. .not. any(in_plane .and. lines%component == 1)
       unrestrained(2) = unrestrained(2) .and. .not. any(in_plane .and. lines%component == 2)
-      ! A line held across itself cannot turn.
+      ! A line fixed along its normal cannot rotate.
       unrestrained(3) = unrestrained(3) .and. .not. any(in_plane &
                                                         .and. (lines%component == 1 .eqv. lines%direction == along_y))
     end associate
   end function unrestrained
 
-  !> Lines that hold or move the plate in its own plane.
+  !> Lines that fix or move the plate in its plane.
   pure function lines_in_plane(setup) result(in_plane)
     !> The setup
     type(setup_t), intent(in) :: setup
@@ -133,7 +133,7 @@ contains
 
   !> Batches of this rank's elements, with their sections.
   subroutine build_elements(self, error)
-    !> The model, with its mesh dealt out
+    !> The model, with its mesh distributed
     type(model_t), intent(inout) :: self
     !> Set if an element is ill-shaped
     type(error_t), allocatable, intent(inout) :: error
@@ -214,14 +214,15 @@ contains
     end do
   end function zones_of
 
-  !> How rigs hold this rank's points, and the contact with frames that the plate may lift off: that of the laminate's
-  !> face with a rigid one.
+  !> Supports of this rank's points by rigs, and the contact with unilateral frames: that of the laminate's face with a
+  !> rigid one.
   subroutine build_rigs(self)
     !> The model, with its elements and halo
     type(model_t), intent(inout) :: self
     integer :: i
 
-    ! A rigid frame is as hard as the laminate's own thickness over the area of a cell, and far harder: contact's.
+    ! Stiffness of a rigid frame: the contact multiple of the laminate's through-thickness stiffness over the area of a
+    ! cell.
     self%rig = new_rig_model(self%mesh, self%setup%plate, self%setup%supports, self%distribution, &
                              rigid*self%plies(1)%elasticity%e2/self%thickness &
                              *product(self%setup%plate%length/self%setup%mesh%elements)/self%mesh%multiplicity)

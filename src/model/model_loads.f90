@@ -1,4 +1,4 @@
-!> Nodal sums that a model keeps: what belongs to its points of areas, pressure, patch and lumped mass.
+!> Nodal sums of a model: areas, pressure, patch and lumped mass.
 module model_loads
   use contact_areas, only: new_contact_area
   use inertia_forces, only: add_lumped_mass

@@ -11,7 +11,7 @@ module model_sizes
   private
   public :: model_size_t, size_of_model
 
-  !> Unknowns that one rank takes in a script; a choice, since what is best depends on the machine.
+  !> Unknowns of one rank in a script; a choice, since the best value depends on the machine.
   integer, parameter :: unknowns_a_rank = 25000
   !> Megabytes of the libraries a process: MPI, PETSc and those behind it.
   real(wp), parameter :: megabytes_of_libraries = 55
@@ -21,12 +21,12 @@ module model_sizes
   !> Bytes for each element of a layer where nothing is factored. Measured: 4400 in an elastic plate, 5400 with cohesive
   !> interfaces, 9700 with crack bands too (T700/M21 panel on cells of 1 mm).
   real(wp), parameter :: bytes_explicit = 9700
-  !> What several ranks take together over what one does: MUMPS' buffers and the ghosts.
+  !> Memory of several ranks together over that of one: MUMPS' buffers and ghosts.
   real(wp), parameter :: more_on_ranks = 1.7_wp
 
   !> Size of a model.
   type :: model_size_t
-    !> Unknowns, those that the supports hold included
+    !> Unknowns, with those fixed by supports
     integer :: unknowns = 0
     !> Elements of all layers
     real(wp) :: elements = 0
@@ -41,11 +41,11 @@ module model_sizes
 
 contains
 
-  !> Size of the model that a setup asks for.
+  !> Size of the model of a setup.
   pure function size_of_model(setup, explicit) result(size_found)
     !> The setup; it has passed the deck's checks
     type(setup_t), intent(in) :: setup
-    !> True: central differences move it, and nothing is factored
+    !> True: central differences, without a factor
     logical, intent(in) :: explicit
     !> Its size
     type(model_size_t) :: size_found

@@ -1,5 +1,5 @@
-!> A setup made ready for steps: mesh, supports, loads, and who computes what; and the forces that follow from a motion.
-!> In a run only layers and the places where the impactor presses change, between steps.
+!> A setup prepared for steps: mesh, supports, loads and their distribution; and the forces that follow from a motion.
+!> In a run only layers and the contact area change, between steps.
 module models
   use kinds, only: wp
   use communicators, only: communicator_t
@@ -37,7 +37,7 @@ module models
     type(communicator_t) :: communicator
     !> Mesh of the modelled part, whole on every rank
     type(layered_mesh_t) :: mesh
-    !> Where time and memory go, if somebody asked
+    !> Profile of time and memory, if requested
     type(profile_t) :: profile
     !> This rank's share
     type(distribution_t) :: distribution
@@ -59,21 +59,21 @@ module models
     !> Resultants of the strains that the plies' cooling would give them without stress, and their energy per area,
     !> without damage, (lanes, 7, batches); allocated only if they are modelled
     real(wp), allocatable :: free(:, :, :)
-    !> Held unknowns of every point of the mesh, (5, points of the mesh)
+    !> Fixed unknowns of every point of the mesh, (5, points of the mesh)
     logical, allocatable :: held(:, :)
-    !> Images of the points, where a full plate is to keep its symmetry as it breaks
+    !> Images of the points of a full plate that keeps its symmetry during failure
     type(symmetry_images_t) :: images
     !> Weights whose product with w is the mean deflection of the patch, (local points); ghosts zero
     real(wp), allocatable :: patch(:)
     !> Points that have one
     integer, allocatable :: patch_points(:)
-    !> Nose that the patch follows from step to step; unallocated: the patch stays what it is
+    !> Nose that determines the patch in each step; unallocated: a constant patch
     type(contact_area_t), allocatable :: nose
-    !> What the mean deflection had more when the patch was another, so that it goes on from what it was
+    !> Difference of the mean deflection between successive patches, so that it is continuous
     real(wp) :: patch_offset = 0
     !> Nodal forces of the deck's pressure, (5, local points); ghosts zero. Allocated only with a pressure
     real(wp), allocatable :: pressure(:, :)
-    !> Lines that hold, move or press; empty: none
+    !> Lines that fix, move or load; empty: none
     type(placed_line_t), allocatable :: lines(:)
     !> Nodal I0, I1, I2 of a lumped mass, (3, local points); allocated only if asked for
     real(wp), allocatable :: lumped(:, :)
@@ -103,7 +103,7 @@ module models
     integer, allocatable :: struck_elements(:)
     !> Elements around the struck node on all ranks
     integer :: struck_count = 0
-    !> True: nothing moves u and v (linear, no coupling), so they have no equations
+    !> True: u and v are zero (linear, no coupling) and have no equations
     logical :: membrane_idle = .false.
   contains
     !> Motion of every layer from the unknowns.
@@ -122,7 +122,7 @@ module models
     !> Mean deflection of the patch, and nodal forces of a force on it.
     procedure :: patch_mean
     procedure :: add_contact_force
-    !> Deflection under the impactor, the area that it presses on, and how its force is spread from now on.
+    !> Deflection below the impactor, its contact area, and the new distribution of its force.
     procedure :: contact_deflection
     procedure :: pressed_area
     procedure :: spread_force
@@ -157,7 +157,7 @@ contains
     real(wp), contiguous, intent(inout) :: force(:, :)
     !> Strain energy of this rank's elements
     real(wp), intent(out) :: energy
-    !> Makes the stiffness follow the strains; absent: it is what it is
+    !> Updates the stiffness from the strains; absent: it is constant
     class(section_law_t), intent(inout), optional :: law
     !> Resultants of strains that go without stress, and their energy per area, (lanes, 7, batches); absent: none
     real(wp), contiguous, intent(in), optional :: free(:, :, :)
@@ -189,7 +189,7 @@ contains
     real(wp), contiguous, intent(inout) :: field(:, :)
     !> Strain energy of this rank's elements
     real(wp), intent(out) :: energy
-    !> Makes the stiffness follow the strains; absent: it is what it is
+    !> Updates the stiffness from the strains; absent: it is constant
     class(section_law_t), intent(inout), optional :: law
     !> Resultants of strains that go without stress, and their energy per area, (lanes, 7, batches); absent: none
     real(wp), contiguous, intent(in), optional :: free(:, :, :)
@@ -226,7 +226,7 @@ contains
     end do
   end subroutine line_forces
 
-  !> Adds the nodal forces of the lines that hold the plate before anything loads or moves it.
+  !> Adds the nodal forces of the lines that support the plate before any load or motion.
   pure subroutine add_holding_lines(self, displacement, forces)
     class(model_t), intent(in) :: self
     !> Displacement, (5, points)
@@ -349,7 +349,7 @@ contains
     class(model_t), intent(inout) :: self
     !> Weights, (local points); ghosts zero
     real(wp), intent(in) :: weights(:)
-    !> What the mean deflection had more before
+    !> Difference of the mean deflection from the patch before
     real(wp), intent(in) :: offset
     integer :: point
 

@@ -1,4 +1,4 @@
-!> What the field file holds of the motion of the plate.
+!> Fields of the motion of the plate.
 module motion_fields
   use errors, only: error_t
   use fields_file, only: fields_file_t

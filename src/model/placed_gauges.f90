@@ -99,7 +99,7 @@ contains
     call total%add(dot_product(direction, strain(1:3) + z*strain(4:6)))
   end subroutine add_strain
 
-  !> Where a gauge lies in the modelled part, itself or by its image, and its direction there.
+  !> Place of a gauge in the modelled part, itself or by its image, and its direction there.
   pure subroutine find_place(model, gauge, at, angle)
     type(model_t), intent(in) :: model
     !> The gauge

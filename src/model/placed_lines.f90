@@ -1,8 +1,8 @@
-!> Lines of the deck on the mesh: what of the unknowns moves with a line, and the forces that it puts on them.
+!> Lines of the deck on the mesh: weights of the unknowns in the motion of a line, and its nodal forces.
 !>
-!> A line is the nodes on one line of the mesh, each with its part of the line's length (Simpson's weights, exact for
-!> the element's parabolas). A displacement is prescribed by stiff springs: a line on a lower layer moves with the jumps
-!> of all interfaces above it, so that no single unknown could be held instead.
+!> A line consists of the nodes on one line of the mesh, each with its fraction of the length (Simpson's weights, exact
+!> for the element's parabolas). A displacement is prescribed by stiff springs: the motion of a line on a lower layer
+!> contains the jumps of all interfaces above it, so that no single unknown could be prescribed instead.
 module placed_lines
   use exact_sums, only: exact_sum_t
   use kinds, only: wp
@@ -17,8 +17,9 @@ module placed_lines
   private
   public :: placed_line_t, place_line, node_line, place_of_node
 
-  !> Stiffness of a line's springs together over that of the section. Against the plate, mostly softer than its section,
-  !> the line gives way by 1e-5 at most; what rounding leaves of its force is the smaller the softer it is.
+  !> Total stiffness of a line's springs over that of the section. The plate is mostly more compliant than its section,
+  !> so that the relative error of the displacement is 1e-5 at most; round-off of the force decreases with the
+  !> stiffness.
   real(wp), parameter :: hardness = 1.0e5_wp
 
   !> A line on this rank's points.
@@ -27,7 +28,7 @@ module placed_lines
     type(line_load_t) :: load
     !> Part of the full plate's line that lies in the model
     real(wp) :: share = 1
-    !> Stiffness of its springs together, of the whole line
+    !> Total stiffness of its springs
     real(wp) :: stiffness = 0
     !> Each node's part of the modelled line, all ranks together 1, (nodes of this rank)
     real(wp), allocatable :: weight(:)
@@ -37,18 +38,18 @@ module placed_lines
     integer, allocatable :: first(:)
     !> Points whose unknowns move a node
     integer, allocatable :: point(:)
-    !> What the motion of the node takes of their unknowns, (5, points)
+    !> Weights of their unknowns in the motion of the node, (5, points)
     real(wp), allocatable :: coefficient(:, :)
   contains
     !> Motion of a node of the line.
     procedure :: motion_at
-    !> Force of the whole line, were it all on one node.
+    !> Total force of the line, for a node with weight 1.
     procedure :: force_at
     !> Adds the nodal forces of the line.
     procedure :: add_forces
     !> Moves the nodes of the line in a field.
     procedure :: move_to
-    !> Adds them for a line that is held where it is without load.
+    !> Adds them for a line that is fixed in its position without load.
     procedure :: add_holding_forces
     !> Adds the change of the nodal forces with the load factor.
     procedure :: add_slopes
@@ -253,7 +254,7 @@ contains
     end do
   end function motion_at
 
-  !> Force of the whole line, were it all on one node.
+  !> Total force of the line, for a node with weight 1.
   pure real(wp) function force_at(self, node, displacement, load_factor) result(force)
     !> The line
     class(placed_line_t), intent(in) :: self
@@ -303,7 +304,7 @@ contains
     end do
   end subroutine move_to
 
-  !> Adds the nodal forces of a line that is held where it is without load; none if it is not prescribed.
+  !> Adds the nodal forces of a line that is fixed in its position without load; none if it is not prescribed.
   pure subroutine add_holding_forces(self, displacement, forces)
     !> The line
     class(placed_line_t), intent(in) :: self
@@ -332,7 +333,7 @@ contains
     end do
   end subroutine add_slopes
 
-  !> Adds a node's part of a force of the whole line.
+  !> Adds a node's fraction of the total force of the line.
   pure subroutine spread(self, node, force, forces)
     !> The line
     type(placed_line_t), intent(in) :: self

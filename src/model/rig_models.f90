@@ -1,5 +1,5 @@
-!> How rigs hold this rank's points: which w a frame or a rigid clamp holds, where the plate rests on a frame that it
-!> may lift off, the springs of clamps, and those of the plate's elastic edges.
+!> Supports of this rank's points by rigs: w fixed by a frame or a rigid clamp, contact with unilateral frames, springs
+!> of clamps, and those of the plate's elastic edges.
 module rig_models
   use border_sums, only: border_sum_t
   use communicators, only: communicator_t
@@ -15,13 +15,13 @@ module rig_models
   private
   public :: rig_model_t, new_rig_model, hold_by_rigs
 
-  !> The rigs at this rank's points. Only the first point of a node has any part in them.
+  !> The rigs at this rank's points. They act on the first point of a node only.
   type :: rig_model_t
-    !> True if the plate rests on a frame, or below clamps that press, off which it may lift
+    !> True if the plate rests on a unilateral frame, or below clamps that press
     logical :: unilateral = .false.
     !> True if clamps have springs or press
     logical :: elastic = .false.
-    !> The rig that holds w, or whose frame bears it by pressure; 0: none, (local points); unallocated: no rigs
+    !> The rig that fixes w, or whose frame supports it by pressure; 0: none, (local points); unallocated: no rigs
     integer, allocatable :: held_by(:), frame(:)
     !> Stiffness of clamps along u, v and w, (3, local points)
     real(wp), allocatable :: springs(:, :)
@@ -42,7 +42,7 @@ module rig_models
   contains
     !> Finds how the forces of lines are summed between ranks.
     procedure :: join_ranks
-    !> Adds the forces that hold lines.
+    !> Adds the forces of supported lines.
     procedure :: add_line_forces
   end type rig_model_t
 
@@ -98,14 +98,14 @@ contains
       end do
     end do
     call find_lines(mesh, plate, supports, distribution, rigid, self)
-    ! What a clamp presses on bears the plate; what is held needs no frame to bear it, and no clamp moves it.
+    ! A frame supports the points below a clamp that presses; fixed points need neither frame nor clamp.
     where (self%presses > 0 .and. self%frame == 0) self%frame = self%clamps
     where (self%held_by > 0) self%frame = 0
     where (self%held_by > 0) self%presses = 0
     self%elastic = any(supports%clamp_stiffness > 0 .or. supports%clamp_force > 0)
   end function new_rig_model
 
-  !> Finds what is held on the sides of this rank's cells: w on the edges of circular windows, and elastic edges.
+  !> Finds the supports on the sides of this rank's cells: w on the edges of circular windows, and elastic edges.
   pure subroutine find_lines(mesh, plate, supports, distribution, rigid, self)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
@@ -180,7 +180,7 @@ contains
     self%line_targets = reshape(targets, shape(self%line_points))
   end subroutine join_ranks
 
-  !> Adds the forces that hold lines to internal forces, and what they store to an energy. Collective.
+  !> Adds the forces of supported lines to the internal forces, and their stored energy. Collective.
   subroutine add_line_forces(self, displacement, force, energy)
     !> The rigs
     class(rig_model_t), intent(in) :: self
@@ -205,7 +205,7 @@ contains
     end if
   end subroutine add_line_forces
 
-  !> Adds the forces that hold lines to the columns that they belong to.
+  !> Adds the forces of supported lines to their columns.
   pure subroutine add_to_columns(self, displacement, field, energy)
     !> The rigs
     class(rig_model_t), intent(in) :: self
@@ -243,7 +243,7 @@ contains
     if (.not. plate%in_plane_fixed) springs(1:2) = 0
   end function springs_of
 
-  !> Adds the unknowns that rigs hold to a table.
+  !> Adds the unknowns fixed by rigs to a table.
   pure subroutine hold_by_rigs(mesh, plate, supports, held)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh

@@ -1,4 +1,4 @@
-!> All that a deck asks to be modelled, as plain parameters. What a setup does not have costs nothing.
+!> The setup of a deck as plain parameters. Physics that it does not have costs nothing.
 module setups
   use plate_options, only: kinematics_von_karman
   use mesh_parameters, only: plate_t, mesh_t
@@ -60,7 +60,7 @@ module setups
     procedure :: has_crack_bands
     !> Ramps of lines over their full values at a time.
     procedure :: load_factor_at
-    !> Part that is left of what the plate has beyond its supports and lines at the start.
+    !> Factor of initial deformations that supports and lines do not have.
     procedure :: offset_left
   end type setup_t
 
@@ -88,8 +88,8 @@ contains
     load_factor = max(0.0_wp, time - self%load_start)/self%ramp_time
   end function load_factor_at
 
-  !> Part that is left at a time of what the motion had beyond supports and lines as the run began: smoothly it goes to
-  !> zero until these begin to load. Without time for that it stays.
+  !> Factor at a time of initial deformations that supports and lines do not have: it decreases smoothly to zero until
+  !> these begin to load, and is constant without time for that.
   pure real(wp) function offset_left(self, time) result(left)
     !> The setup
     class(setup_t), intent(in) :: self

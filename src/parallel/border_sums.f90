@@ -1,8 +1,8 @@
-!> Sums at points from contributions of elements that several ranks compute, in the order of the mesh.
+!> Sums at points of contributions from elements of several ranks, in the order of the mesh.
 !>
-!> Floating-point addition is not associative, so a sum at a point on the border between ranks depends on the order of
-!> its terms. Each contribution to such a point therefore has a column of its own behind the points. The owner receives
-!> those of the other ranks and adds all of them in ascending order, as a single rank does that adds element by element.
+!> Floating-point addition is not associative, so that a sum at a point on the border between ranks depends on the order
+!> of its terms. Each contribution to such a point therefore has its own column after the points. The owner receives
+!> those of the other ranks and adds all in ascending order, as a single rank does.
 module border_sums
   use mpi_f08, only: MPI_Comm, MPI_INTEGER, MPI_Alltoall, MPI_Alltoallv
   use border_traffic, only: traffic_t, new_traffic, exchange, offsets

@@ -1,4 +1,4 @@
-!> What ranks send each other across the borders between them: columns of a table, grouped by rank.
+!> Exchange between ranks across their borders: columns of a table, grouped by rank.
 module border_traffic
   use mpi_f08, only: MPI_Comm, MPI_Request, MPI_DOUBLE_PRECISION, MPI_STATUSES_IGNORE, MPI_Irecv, MPI_Isend, MPI_Waitall
   use kinds, only: wp

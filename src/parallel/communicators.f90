@@ -1,5 +1,5 @@
-!> The ranks of a run and what they say to each other. Only this folder knows of MPI; on one rank
-!> every procedure returns at once, so a communicator that was never set up serves serial work.
+!> The ranks of a run and their communication. Only this folder uses MPI; on one rank every procedure returns at once,
+!> so that a communicator that was never set up serves serial work.
 module communicators
   use mpi_f08, only: MPI_COMM_WORLD, MPI_DOUBLE_PRECISION, MPI_INTEGER, MPI_LOGICAL, MPI_CHARACTER, MPI_Init, &
                      MPI_Initialized, MPI_Finalize, MPI_Comm_rank, MPI_Comm_size, MPI_Bcast, MPI_Allgather, &
@@ -19,7 +19,7 @@ module communicators
       broadcast_logical, broadcast_characters
     !> Copies a text of rank 0, whatever its length, to every rank.
     procedure :: broadcast_text
-    !> Strings the parts of all ranks together on every rank, in the order of ranks.
+    !> Concatenates the parts of all ranks on every rank, in the order of ranks.
     generic :: allgather => allgather_reals, allgather_integers
     !> If any rank failed, gives every rank the error of the lowest rank that did.
     procedure :: agree
@@ -43,16 +43,13 @@ contains
     communicator = communicator_from_handle(MPI_COMM_WORLD%mpi_val)
   end subroutine start_mpi
 
-  !> Settles two things with Open MPI. A choice of the user's own is left alone, and other MPI libraries ignore these
-  !> variables.
+  !> Sets two parameters of Open MPI. Values of the user are kept, and other MPI libraries ignore these variables.
   !>
-  !> Its parallel files are kept off what shared file pointers take, which nothing here uses: named semaphores (sm),
-  !> which outlive a killed run and make every later run that opens a file of the same name wait for ever, and files
-  !> of locks, which outlive it too and whose names have no more room than 256 letters (lockedfile). What is left needs
-  !> two files, gone when the file is closed.
+  !> Shared file pointers, which are not used, would need named semaphores (sm) or lock files (lockedfile). Both outlive
+  !> a killed run; the first block later runs that open a file of the same name, the second limit its name to 256
+  !> characters. The remaining method needs two files, removed when the file is closed.
   !>
-  !> A run without mpirun starts no daemon beside it, which is there to start further processes: that took longer than
-  !> the rest of MPI's start.
+  !> A run without mpirun starts no daemon for further processes, which took longer than the rest of MPI's start.
   subroutine set_open_mpi()
     use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char
     interface
@@ -71,7 +68,7 @@ contains
     status = setenv('OMPI_MCA_ess_singleton_isolated'//c_null_char, '1'//c_null_char, 0_c_int)
   end subroutine set_open_mpi
 
-  !> Ends MPI if it was started; nothing may be said between ranks afterwards.
+  !> Ends MPI if it was started; no communication is possible afterwards.
   subroutine finish_mpi()
     logical :: running
 

@@ -48,7 +48,7 @@ contains
     integer, intent(in) :: owned
     !> Global numbers of the ghosts, in the order in which they follow the owned points
     integer, intent(in) :: ghost_numbers(:)
-    !> Raised on all ranks when a ghost belongs to nobody else
+    !> Raised on all ranks when a ghost has no owner
     type(error_t), allocatable, intent(inout) :: error
     integer, allocatable :: counts(:)
     integer :: last(0:communicator%size - 1), owner(size(ghost_numbers)), r

@@ -35,7 +35,7 @@ module partitions
 
 contains
 
-  !> Shares the vertices of a graph out among parts of about equal weight, none of them empty.
+  !> Distributes the vertices of a graph over parts of about equal weight, none of them empty.
   subroutine partition_graph(row_start, neighbours, parts, part_of, error, weights)
     !> Where each vertex' neighbours begin, shape (vertices + 1), from 1
     integer, intent(in) :: row_start(:)

@@ -1,5 +1,5 @@
-!> Where time and memory of a run go, part by part. Parts may contain others; each is charged with what none of those
-!> inside it takes, so that all add up to the whole run.
+!> Profile of time and memory of a run by parts. Parts may contain others, whose time and memory they exclude, so that
+!> all add up to the run.
 module profiles
   use, intrinsic :: iso_c_binding, only: c_int, c_long
   use kinds, only: wp, long
@@ -24,21 +24,21 @@ module profiles
     real(wp) :: megabytes = 0
   end type profile_row_t
 
-  !> What has been found so far.
+  !> The profile so far.
   type :: record_t
     !> The parts in the order of their first beginning
     type(profile_row_t), allocatable :: rows(:)
     !> Parts begun and not ended, the innermost last
     integer :: open(max_depth) = 0, depth = 0
-    !> Clock and largest memory when the innermost part was last charged
+    !> Clock and peak memory at the last update of the innermost part
     real(wp) :: seconds = 0, megabytes = 0
   end type record_t
 
-  !> A profile, or none. Copies share what they find, so that every part of the program can be handed one.
+  !> A profile, or none. Copies share their data, so that every part of the program can have one.
   type :: profile_t
     !> Clock at the program's start
     real(wp) :: begun = 0
-    !> What has been found; null: nobody asked
+    !> The data; null: no profile
     type(record_t), pointer, private :: record => null()
   contains
     !> Begins a part.
@@ -52,7 +52,7 @@ module profiles
   end type profile_t
 
   interface
-    !> C library: what a process has used.
+    !> C library: resources used by a process.
     integer(c_int) function get_usage(who, usage) bind(c, name='getrusage')
       import :: c_int, c_long
       !> 0: this process
@@ -64,7 +64,7 @@ module profiles
 
 contains
 
-  !> A profile from now on. What the processor did before, for the loader of libraries, is its first part.
+  !> Starts a profile. Processor time before it, for loading libraries, is its first part.
   function new_profile(wanted) result(self)
     !> False: only the clock is read
     logical, intent(in) :: wanted
@@ -117,8 +117,8 @@ contains
     self%record%depth = max(1, self%record%depth - 1)
   end subroutine leave
 
-  !> Charges the innermost part with what has gone since the last time. Memory is asked for after a while only, as the
-  !> system takes longer to give it than small parts take.
+  !> Adds time and memory since the last update to the innermost part. Memory is queried at intervals only, as the query
+  !> takes longer than small parts.
   subroutine charge(record)
     !> What has been found
     type(record_t), intent(inout) :: record
@@ -136,10 +136,10 @@ contains
     record%megabytes = megabytes
   end subroutine charge
 
-  !> The parts so far, up to now.
+  !> The parts so far.
   function rows(self)
     class(profile_t), intent(in) :: self
-    !> They, empty if nobody asked
+    !> The parts, empty without a profile
     type(profile_row_t), allocatable :: rows(:)
 
     allocate (rows(0))

@@ -27,7 +27,7 @@ contains
     real(wp), contiguous, intent(inout) :: f(:, :)
     !> Strain energy of these elements
     real(wp), intent(out) :: energy
-    !> Makes the stiffness follow the strains; absent: it is what it is
+    !> Updates the stiffness from the strains; absent: it is constant
     class(section_law_t), intent(inout), optional :: law
     !> Resultants Nxx to Mxy of strains that go without stress, and their energy per area, (lanes, 7, batches)
     real(wp), contiguous, intent(in), optional :: free(:, :, :)

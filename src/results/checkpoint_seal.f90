@@ -1,5 +1,5 @@
-!> The seal at the head of a checkpoint: what the file is, how long, and a checksum of all that follows.
-!> It is written last, so a file with a valid seal is complete; any byte lost or changed later shows.
+!> The seal in the header of a checkpoint: format, length, and checksum of the rest. It is written last, so that a file
+!> with a valid seal is complete, and any later change is detected.
 module checkpoint_seal
   use, intrinsic :: iso_fortran_env, only: int32, int8
   use errors, only: error_t, exit_files, fail
@@ -46,7 +46,7 @@ contains
     if (status /= 0 .or. file%failed) call fail(error, exit_files, "Can't complete the checkpoint "//path//'.')
   end subroutine seal
 
-  !> Makes sure that a file is a checkpoint and whole.
+  !> Checks that a file is a valid checkpoint.
   subroutine verify_seal(path, error)
     !> Path of the file
     character(len=*), intent(in) :: path
@@ -102,7 +102,7 @@ contains
     head(head_length:) = end_of_line
   end function head
 
-  !> Reads the head of a file; what a shorter file lacks is blank.
+  !> Reads the header of a file; blank where the file is shorter.
   subroutine read_head(path, found, status)
     !> Path of the file
     character(len=*), intent(in) :: path

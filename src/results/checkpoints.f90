@@ -1,5 +1,5 @@
-!> NAME_restart.h5: all that evolves, exact to the last bit, for any number of ranks. It is written aside, sealed and
-!> renamed: whenever the run is killed, the file of that name is whole, the one before or the new one.
+!> NAME_restart.h5: the state, bitwise exact, for any number of ranks. It is written to another file, sealed and
+!> renamed: the file of that name is valid at any time, the one before or the new one.
 module checkpoints
   use archives, only: archive_t
   use checkpoint_seal, only: head_length, seal, synchronise_folder, verify_seal
@@ -17,7 +17,7 @@ module checkpoints
   private
   public :: checkpoint_archive_t, newest_checkpoint, retire_checkpoint
 
-  !> What the names of checkpoints end with.
+  !> Suffix of the names of checkpoints.
   character(len=*), parameter, public :: checkpoint_ending = '_restart.h5'
   !> Group of the items in the file.
   character(len=*), parameter :: items = 'state/'
@@ -65,7 +65,7 @@ contains
     if (allocated(self%file%failure)) call self%close(error)
   end subroutine open_for_saving
 
-  !> Opens a checkpoint, after making sure that it is one and whole.
+  !> Opens a checkpoint, after a check of its validity.
   subroutine open_for_loading(self, communicator, path, error)
     !> The checkpoint
     class(checkpoint_archive_t), intent(inout) :: self
@@ -106,7 +106,7 @@ contains
     end if
   end subroutine close
 
-  !> Finds the newest checkpoint of a folder that is whole.
+  !> Finds the newest valid checkpoint of a folder.
   subroutine newest_checkpoint(communicator, folder, path, error)
     !> The ranks
     type(communicator_t), intent(in) :: communicator
@@ -138,7 +138,7 @@ contains
     call communicator%broadcast_text(path)
   end subroutine newest_checkpoint
 
-  !> Gives the checkpoint of an earlier run another name: what a new run leaves must not be taken for its end.
+  !> Renames the checkpoint of an earlier run, which must not be taken for that of the new run.
   subroutine retire_checkpoint(communicator, path, retired, error)
     !> The ranks
     type(communicator_t), intent(in) :: communicator
@@ -181,7 +181,7 @@ contains
     if (status == 0) close (unit, status='delete', iostat=status)
   end subroutine remove_file
 
-  !> Path under which the file is written until it is whole.
+  !> Path of the file until it is complete.
   pure function aside(path)
     !> Path of the file in the end
     character(len=*), intent(in) :: path

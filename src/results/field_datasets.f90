@@ -17,7 +17,7 @@ contains
   subroutine write_field(file, rows, path, columns, global_columns, values, error)
     !> The file
     type(hdf5_file_t), intent(inout) :: file
-    !> Table of the fields; unallocated: they bear no unit
+    !> Table of the fields; unallocated: they have no units
     character(len=*), allocatable, intent(in) :: rows(:)
     !> Path of the field in the file
     character(len=*), intent(in) :: path
@@ -49,7 +49,7 @@ contains
   subroutine explain_dataset(file, rows, path, error)
     !> The file
     type(hdf5_file_t), intent(inout) :: file
-    !> Table of the fields; unallocated: they bear no unit
+    !> Table of the fields; unallocated: they have no units
     character(len=*), allocatable, intent(in) :: rows(:)
     !> Path of the dataset in the file
     character(len=*), intent(in) :: path

@@ -1,10 +1,10 @@
 !> NAME.h5 and NAME.xdmf: fields over the plate at chosen times, for ParaView and for scripts. The file is open only
-!> while a time is written. Every routine is collective; given an error already raised they do nothing, but `finish`
-!> still closes what is open.
+!> while a time is written. Every routine is collective; after an error they do nothing, except that `finish` closes
+!> open files.
 !>
-!> In NAME.h5: `provenance`, `part`, `restarts/N` (provenance of the runs that went on), `meshes/N` (coordinates,
-!> connectivity, cells/...), `times/N` (time, step, mesh, points/..., cells/..., interfaces/...). Fields bear the
-!> attributes `unit` and `meaning` if there is a table of them.
+!> In NAME.h5: `provenance`, `part`, `restarts/N` (provenance of restarts), `meshes/N` (coordinates, connectivity,
+!> cells/...), `times/N` (time, step, mesh, points/..., cells/..., interfaces/...). Fields have the attributes `unit`
+!> and `meaning` if there is a table of them.
 module fields_file
   use communicators, only: communicator_t
   use errors, only: error_t, exit_files, fail
@@ -39,7 +39,7 @@ module fields_file
     character(len=:), allocatable :: part
     !> The HDF5 file
     type(hdf5_file_t) :: file
-    !> Table of the fields, one row each; unallocated: they bear no unit
+    !> Table of the fields, one row each; unallocated: they have no units
     character(len=result_row_length), allocatable :: rows(:)
     !> XDMF text of each time written
     type(line_t), allocatable :: grids(:)
@@ -75,7 +75,7 @@ module fields_file
 
 contains
 
-  !> Takes the table of the fields: from now on each bears its unit and meaning, and a field without a row is refused.
+  !> Sets the table of the fields: each then has its unit and meaning, and a field without a row is refused.
   pure subroutine describe(self, rows)
     !> The fields
     class(fields_file_t), intent(inout) :: self
@@ -137,7 +137,7 @@ contains
     call file%close()
   end subroutine check_deck
 
-  !> Goes on with the file that is there: times after the checkpoint are dropped. Without a file a new one is started.
+  !> Continues an existing file: times after the checkpoint are removed. Without a file a new one is started.
   subroutine resume(self, communicator, base, provenance, part, last_time, error)
     !> The fields
     class(fields_file_t), intent(inout) :: self
@@ -194,7 +194,7 @@ contains
     integer, intent(in) :: connectivity(:, :)
     !> Names of what stays with the elements, such as their layer; may be none
     character(len=*), intent(in) :: names(:)
-    !> What stays with the elements (names by elements)
+    !> Constant fields of the elements (names by elements)
     integer, intent(in) :: values(:, :)
     !> Raised if the mesh can't be written
     type(error_t), allocatable, intent(inout) :: error
@@ -284,7 +284,7 @@ contains
     call report(self, error)
   end subroutine write_cell_field
 
-  !> Writes figures that every rank holds, in columns, such as one an interface.
+  !> Writes values that every rank has, in columns, such as one for each interface.
   subroutine write_figures(self, name, values, error)
     !> The fields
     class(fields_file_t), intent(inout) :: self
@@ -317,7 +317,7 @@ contains
     call self%communicator%agree(error)
   end subroutine finish
 
-  !> Notes what the files are called.
+  !> Stores the names of the files.
   subroutine name_files(self, communicator, base, part)
     !> The fields
     class(fields_file_t), intent(inout) :: self

@@ -52,7 +52,7 @@ contains
     grid = grid//line(2, '</Grid>')
   end subroutine grid_of_time
 
-  !> Adds all that a group holds to a grid.
+  !> Adds all fields of a group to a grid.
   subroutine add_attributes(file, name, group, centre, kind_of_number, grid)
     !> The open file
     type(hdf5_file_t), intent(inout) :: file
@@ -82,7 +82,7 @@ contains
     end do
   end subroutine add_attributes
 
-  !> Writes the whole document aside and gives it its name.
+  !> Writes the document to another file and renames it.
   subroutine write_xdmf(path, part, grids, error)
     !> Path of the document
     character(len=*), intent(in) :: path

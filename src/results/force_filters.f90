@@ -23,9 +23,9 @@ module force_filters
     real(wp) :: frequency = 0
     !> What comes out
     real(wp) :: force = 0
-    !> What goes in, at the end of the last step
+    !> Input at the end of the last step
     real(wp), private :: input = 0
-    !> What each section brings out, and its rate over omega, (2, sections)
+    !> Output of each section, and its rate over omega, (2, sections)
     real(wp), private :: state(2, 2) = 0
   contains
     !> Takes a step.

@@ -1,4 +1,4 @@
-!> Texts that a dataset in a shared HDF5 file bears. Collective: every rank gives the same texts.
+!> Text attributes of a dataset in a shared HDF5 file. Collective: every rank gives the same texts.
 module hdf5_attributes
   use hdf5, only: h5aclose_f, h5acreate_f, h5awrite_f, h5dclose_f, h5dopen_f, h5s_scalar_f, h5sclose_f, h5screate_f, &
     h5t_fortran_s1, h5tclose_f, h5tcopy_f, h5tset_size_f, hid_t, size_t

@@ -1,5 +1,5 @@
-!> Numbers and text in a shared HDF5 file: wholes that every rank holds, and tables whose columns are
-!> spread over the ranks but stored in global order. Every routine is collective.
+!> Numbers and text in a shared HDF5 file: arrays that every rank has, and tables whose columns are distributed over the
+!> ranks but stored in global order. Every routine is collective.
 module hdf5_data
   use hdf5, only: h5dclose_f, h5dget_type_f, h5dopen_f, h5t_fortran_s1, h5t_ieee_f64le, h5t_native_double, &
     h5t_native_integer, h5t_std_i32le, h5tclose_f, h5tcopy_f, h5tget_size_f, h5tset_size_f, hid_t, size_t
@@ -14,7 +14,7 @@ module hdf5_data
 
 contains
 
-  !> Writes reals that every rank holds.
+  !> Writes reals that every rank has.
   subroutine write_reals(file, name, values, extents)
     !> The file
     type(hdf5_file_t), intent(inout) :: file
@@ -47,7 +47,7 @@ contains
     values = buffer(:product(extents))
   end subroutine read_reals
 
-  !> Writes integers that every rank holds.
+  !> Writes integers that every rank has.
   subroutine write_integers(file, name, values, extents)
     !> The file
     type(hdf5_file_t), intent(inout) :: file
@@ -80,7 +80,7 @@ contains
     values = buffer(:product(extents))
   end subroutine read_integers
 
-  !> Writes a text that every rank holds.
+  !> Writes a text that every rank has.
   subroutine write_text(file, name, value)
     !> The file
     type(hdf5_file_t), intent(inout) :: file
@@ -230,7 +230,7 @@ contains
     order = pack(position, position > 0)
   end function ascending_order
 
-  !> Columns that this rank writes of an array every rank holds: all on the first rank.
+  !> Columns that this rank writes of an array that every rank has: all on the first rank.
   pure function shares_of_root(file, extents) result(columns)
     !> The file
     type(hdf5_file_t), intent(in) :: file

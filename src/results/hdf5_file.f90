@@ -1,5 +1,5 @@
-!> An HDF5 file shared by all ranks, on one rank without MPI. Every routine is collective. Trouble is kept inside,
-!> agreed on by all ranks, and once there is some the routines do nothing: whoever owns the file asks at the end.
+!> An HDF5 file shared by all ranks, on one rank without MPI. Every routine is collective. Errors are stored and agreed
+!> on by all ranks; after an error the routines do nothing, and the owner of the file checks at the end.
 module hdf5_file
   use communicators, only: communicator_t
   use hdf5, only: h5eset_auto_f, h5f_acc_rdonly_f, h5f_acc_rdwr_f, h5f_acc_trunc_f, h5f_obj_all_f, h5f_obj_file_f, &
@@ -15,13 +15,13 @@ module hdf5_file
   private
   public :: hdf5_file_t, files_left_open
 
-  !> Bytes held in reserve on the disk while data is written, and given up before the file is closed: there is room then
-  !> for what HDF5 has to write about the data. It crashes or hangs when it can't close a file.
+  !> Bytes reserved on the disk while data are written, and freed before the file is closed, for the metadata of HDF5.
+  !> It crashes or hangs when it can't close a file.
   integer, parameter :: reserved_bytes = 1048576
 
   !> An open file.
   type :: hdf5_file_t
-    !> What could not be done; unallocated while all is well
+    !> The error; unallocated if there is none
     character(len=:), allocatable :: failure
     !> The ranks that share the file
     type(communicator_t) :: communicator
@@ -35,7 +35,7 @@ module hdf5_file
     integer(hid_t) :: undated = -1
     !> The file is open
     logical :: is_open = .false.
-    !> Path of the file that holds the reserve, on the first rank; not allocated if there is none
+    !> Path of the reserve file, on the first rank; not allocated if there is none
     character(len=:), allocatable, private :: reserve
   contains
     procedure :: create
@@ -114,7 +114,7 @@ contains
     self%communicator = communicator
   end subroutine start_over
 
-  !> Writes the reserve beside the file; if there is no room for it there is trouble before HDF5 knows of the file.
+  !> Writes the reserve beside the file; if there is no space for it the error comes before HDF5 opens the file.
   subroutine hold_reserve(self, path)
     !> The file
     class(hdf5_file_t), intent(inout) :: self
@@ -212,8 +212,8 @@ contains
     call self%check_status(status, 'the file could not be closed')
   end subroutine close
 
-  !> Whether the library still holds a file on this rank: it could not close it, and crashes when it tries again at its
-  !> end, which is part of MPI's.
+  !> Whether the library still has a file open on this rank: it could not close it, and crashes when it tries again at
+  !> its end, which is part of MPI's.
   logical function files_left_open()
     use, intrinsic :: iso_c_binding, only: c_int, c_int64_t, c_size_t
     interface
@@ -238,7 +238,7 @@ contains
     class(hdf5_file_t), intent(inout) :: self
     !> Status the library returned on this rank; negative means failed
     integer, intent(in) :: status
-    !> What could not be done, if it failed; equal on all ranks
+    !> The error, if any; equal on all ranks
     character(len=*), intent(in) :: failure
 
     if (allocated(self%failure)) return
@@ -295,7 +295,7 @@ contains
     call self%check_status(status, path//' could not be removed')
   end subroutine remove
 
-  !> Removes a group after there was trouble with it, so that what is left can be closed.
+  !> Removes a group after an error, so that the file can be closed.
   subroutine discard(self, path)
     !> The file
     class(hdf5_file_t), intent(inout) :: self
@@ -307,7 +307,7 @@ contains
     if (self%is_open) call h5ldelete_f(self%id, path, status)
   end subroutine discard
 
-  !> Names of what a group holds, in alphabetical order; none if there is no such group.
+  !> Names of the members of a group, in alphabetical order; none if there is no such group.
   subroutine members(self, path, names)
     !> The file
     class(hdf5_file_t), intent(inout) :: self

@@ -49,7 +49,7 @@ contains
     integer(hid_t), intent(in) :: native_type
     !> Where this rank's columns lie in memory, one after the other
     type(c_ptr), intent(in) :: address
-    !> Extents of the whole array; none: a scalar
+    !> Extents of the array; none: a scalar
     integer, intent(in) :: extents(:)
     !> Columns (along the last extent, from 1, ascending) of this rank
     integer, intent(in) :: columns(:)
@@ -79,7 +79,7 @@ contains
     integer(hid_t), intent(in) :: native_type
     !> Where this rank's columns are to lie in memory, one after the other
     type(c_ptr), intent(in) :: address
-    !> Extents the whole array must have; none: a scalar
+    !> Required extents of the array; none: a scalar
     integer, intent(in) :: extents(:)
     !> Columns (along the last extent, from 1, ascending) of this rank
     integer, intent(in) :: columns(:)
@@ -107,7 +107,7 @@ contains
 
   !> Describes an array in the file with this rank's columns chosen, and those columns in memory.
   subroutine make_spaces(extents, columns, space, memory)
-    !> Extents of the whole array; none: a scalar
+    !> Extents of the array; none: a scalar
     integer, intent(in) :: extents(:)
     !> Columns of this rank (from 1, ascending)
     integer, intent(in) :: columns(:)

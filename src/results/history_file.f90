@@ -27,7 +27,7 @@ module history_file
     type(communicator_t), private :: communicator
     !> Path of the file
     character(len=:), allocatable, private :: path
-    !> Columns that hold integers
+    !> Integer columns
     logical, allocatable, private :: whole(:)
     !> Characters of each column
     integer, allocatable, private :: widths(:)
@@ -56,7 +56,7 @@ contains
     character(len=*), intent(in) :: path
     !> Names of the columns
     character(len=*), intent(in) :: columns(:)
-    !> Columns that hold integers
+    !> Integer columns
     logical, intent(in) :: whole(:)
     !> Raised if the file can't be written
     type(error_t), allocatable, intent(inout) :: error
@@ -74,9 +74,8 @@ contains
     call self%flush(error)
   end subroutine create
 
-  !> Goes on with a history: its first rows are kept, those after the checkpoint dropped. If there are fewer rows, or no
-  !> file, it goes on with what there is: `rows` then shows it. If its row at the checkpoint is another one than it was,
-  !> the history is left as it is.
+  !> Continues a history: rows up to the checkpoint are kept, later ones removed. If there are fewer rows, or no file,
+  !> it continues with these; `rows` has their number. If its row at the checkpoint differs, the history is not changed.
   subroutine resume(self, communicator, path, columns, whole, rows_to_keep, last_row, error)
     !> The history
     class(history_file_t), intent(inout) :: self
@@ -86,7 +85,7 @@ contains
     character(len=*), intent(in) :: path
     !> Names of the columns
     character(len=*), intent(in) :: columns(:)
-    !> Columns that hold integers
+    !> Integer columns
     logical, intent(in) :: whole(:)
     !> Rows written when the checkpoint was
     integer, intent(in) :: rows_to_keep
@@ -108,7 +107,7 @@ contains
     self%whole = whole
     self%widths = widths_of(columns, whole)
     self%rows = 0
-    ! The kept rows are written aside: a kill meanwhile leaves the old history whole.
+    ! The kept rows are written to another file, so that the old history remains valid if the run is killed.
     if (communicator%is_root()) then
       call keep_rows(path, path//'.tmp', header(columns), rows_to_keep, &
                      row(last_row, whole, self%widths), self%rows, error)

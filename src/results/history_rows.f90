@@ -31,7 +31,7 @@ contains
   pure function widths_of(columns, whole) result(widths)
     !> Names of the columns
     character(len=*), intent(in) :: columns(:)
-    !> Columns that hold integers
+    !> Integer columns
     logical, intent(in) :: whole(:)
     !> The widths
     integer :: widths(size(columns))
@@ -43,7 +43,7 @@ contains
   pure function row(values, whole, widths) result(line)
     !> The numbers
     real(wp), intent(in) :: values(:)
-    !> Columns that hold integers
+    !> Integer columns
     logical, intent(in) :: whole(:)
     !> Characters of each column
     integer, intent(in) :: widths(:)

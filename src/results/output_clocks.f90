@@ -1,5 +1,5 @@
-!> Output times: steps land on them exactly. Those that all but coincide are one event, since a step of their
-!> distance would be no step of the plate: fronts would go on growing in it.
+!> Output times: steps end at them exactly. Almost equal times are one event, since a step of their distance would be
+!> too short: fronts would continue to grow in it.
 module output_clocks
   use kinds, only: wp
   use archives, only: archive_t
@@ -44,8 +44,7 @@ contains
     end do
   end function next_event
 
-  !> A time as results show it: what the sums of steps and the products of intervals leave behind twelve digits is
-  !> rounding, and makes 0.00042500000000000003 of 0.000425.
+  !> A time with twelve digits: sums of steps and products of intervals have round-off, as in 0.00042500000000000003.
   pure real(wp) function shown_time(time)
     !> The time, or load factor
     real(wp), intent(in) :: time

@@ -1,4 +1,4 @@
-!> What is written, how often and where in the deck: rows of its table, filling and checks.
+!> Output in the deck: rows of its table, assignment and checks.
 module output_deck
   use deck_problems, only: problems_t
   use deck_remarks, only: report, remark
@@ -43,7 +43,7 @@ module output_deck
 
   !> Most events of a run: more pass the range of default integers.
   real(wp), parameter :: max_events = 1.0e8_wp
-  !> Part of a step below which an interval is remarked on.
+  !> Fraction of a step below which an interval is reported.
   real(wp), parameter :: short = 0.5_wp
 
 contains
@@ -65,7 +65,7 @@ contains
     output%fields = lower_case(joined(words_of(joined(settings%texts_of(group, 'fields'), ','), ','), ','))
   end subroutine fill_output
 
-  !> Intervals far below the step, which cut every step.
+  !> Intervals far below the step, which shorten every step.
   subroutine check_intervals(settings, step, end, problems)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
@@ -90,7 +90,7 @@ contains
     end do
   end subroutine check_intervals
 
-  !> Fields that are asked for but belong to physics that isn't modelled.
+  !> Requested fields of physics that isn't modelled.
   subroutine remark_idle_fields(settings, output, has_interfaces, has_ply_damage, problems)
     !> Keys in effect
     type(settings_t), intent(in) :: settings

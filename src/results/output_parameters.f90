@@ -1,4 +1,4 @@
-!> What is written, how often and where, as the deck says.
+!> Output parameters: content, frequency and folder.
 module output_parameters
   use kinds, only: wp
   implicit none

@@ -1,4 +1,4 @@
-!> The files of a run, by what their names end with.
+!> The files of a run, by the suffix of their names.
 module result_paths
   use errors, only: error_t, exit_files, fail
   use files, only: is_pipe

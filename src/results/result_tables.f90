@@ -1,6 +1,6 @@
-!> Tables of what results hold: the columns of the history and the fields over the plate. A row is a text whose cells
-!> are separated by bars. Each folder brings the rows of what it knows; the header of the history, `implam explain`, the
-!> manual and the attributes in the field file are all made from them.
+!> Tables of results: columns of the history and fields over the plate. A row is a text whose cells are separated by
+!> bars. Each folder defines its rows; they are the source of the header of the history, `implam explain`, the manual
+!> and the attributes in the field file.
 module result_tables
   use text, only: append, line_t, to_text
   implicit none
@@ -12,13 +12,13 @@ module result_tables
   !> Characters of a name, enough for the longest.
   integer, parameter, public :: result_name_length = 24
 
-  !> What the cells of a column of the history hold, and where they are. Type: that of its numbers; logical: 0 or 1.
+  !> Cells of a row of the history, and their positions. Type: that of its numbers; logical: 0 or 1.
   character(len=*), parameter, public :: column_heading = 'name | type | unit | meaning'
   integer, parameter, public :: column_name = 1, column_type = 2, column_unit = 3, column_meaning = 4
 
-  !> What the cells of a field hold, and where they are. Name: in the file, with N for a number; on: points or cells;
+  !> Cells of a row of the fields, and their positions. Name: in the file, with N for a number; on: points or cells;
   !> choice: the value of `fields` in &output that writes it, - if it is always written; needs: the group of the deck
-  !> without which there is no such field.
+  !> that it requires.
   character(len=*), parameter, public :: field_heading = 'name | on | unit | choice | needs | meaning'
   integer, parameter, public :: field_name = 1, field_place = 2, field_unit = 3, field_choice = 4, field_needs = 5, &
                                 field_meaning = 6

@@ -1,5 +1,5 @@
-!> How fast a run goes at present, and the time that it has left at that pace. Steps after damage may cost a multiple of
-!> those before, so that a mean over the whole run would mislead for long.
+!> Present speed of a run, and the remaining time at that speed. Steps after damage may cost a multiple of those before,
+!> so that a mean over the run would be misleading.
 module run_paces
   use kinds, only: wp
   implicit none
@@ -9,13 +9,13 @@ module run_paces
   !> Seconds over which the pace is taken at least, and twice that at most: long beside the scatter of single steps.
   real(wp), parameter :: window = 10
 
-  !> Two marks on the way, of which the older one is what the present is compared with.
+  !> Two marks of progress; the older one is the reference of the present speed.
   type :: run_pace_t
     private
     !> Clock in seconds, and what of the run is done, steps or time: at the older mark, and at the newer
     real(wp) :: older(2) = 0, newer(2) = 0
   contains
-    !> Begins, or goes on after a restart.
+    !> Starts, also after a restart.
     procedure :: start
     !> Notes how far the run is.
     procedure :: note
@@ -25,11 +25,11 @@ module run_paces
 
 contains
 
-  !> Begins, or goes on after a restart.
+  !> Starts, also after a restart.
   pure subroutine start(self, clock, done)
     !> The pace
     class(run_pace_t), intent(inout) :: self
-    !> Clock, s, and what is done
+    !> Clock, s, and completed part
     real(wp), intent(in) :: clock, done
 
     self%older = [clock, done]
@@ -40,7 +40,7 @@ contains
   pure subroutine note(self, clock, done)
     !> The pace
     class(run_pace_t), intent(inout) :: self
-    !> Clock, s, and what is done
+    !> Clock, s, and completed part
     real(wp), intent(in) :: clock, done
 
     if (clock - self%newer(1) < window) return
@@ -48,11 +48,11 @@ contains
     self%newer = [clock, done]
   end subroutine note
 
-  !> Seconds left if the rest goes as fast as the last part did; negative: not known yet.
+  !> Remaining seconds at the present speed; negative: not known yet.
   pure real(wp) function left(self, clock, done, rest)
     !> The pace
     class(run_pace_t), intent(in) :: self
-    !> Clock, s, what is done, and what is not yet
+    !> Clock, s, completed and remaining part
     real(wp), intent(in) :: clock, done, rest
 
     left = -1

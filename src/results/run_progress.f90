@@ -43,7 +43,7 @@ contains
     class(progress_t), intent(inout) :: self
     !> Part of the run done already: 0, or more after a restart
     real(wp), intent(in) :: fraction
-    !> What that is, in the unit that the run is counted in: steps, or time
+    !> The same in the unit of the run: steps, or time
     real(wp), intent(in) :: done
     integer(long) :: rate
 
@@ -81,9 +81,9 @@ contains
     type(log_t), intent(inout) :: log
     !> Part of the run done
     real(wp), intent(in) :: fraction
-    !> What has been done and what is left, in one unit: steps, or time
+    !> Completed and remaining part, in one unit: steps, or time
     real(wp), intent(in) :: done, left
-    !> What else is worth a glance, such as the time in the setup
+    !> Further information, such as the time in the setup
     character(len=*), intent(in) :: text
     character(len=:), allocatable :: line
     integer(long) :: now, rate
@@ -103,7 +103,7 @@ contains
     self%shown_at = now
   end subroutine update
 
-  !> Says that the run is done and how long this process took.
+  !> Reports the end of the run and the time of this process.
   subroutine finish(self, log, text)
     !> The progress
     class(progress_t), intent(in) :: self
@@ -128,7 +128,7 @@ contains
     if (seconds >= 0) left = duration(seconds)
   end function time_left
 
-  !> A time as people say it.
+  !> A time in a suitable unit.
   pure function duration(seconds) result(words)
     !> The time in seconds
     real(wp), intent(in) :: seconds

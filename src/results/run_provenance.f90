@@ -6,7 +6,7 @@ module run_provenance
   private
   public :: build_t, provenance_t, this_run, citation_of
 
-  !> What a program was built from.
+  !> Versions of the program.
   type :: build_t
     !> Version of Implam
     character(len=:), allocatable :: version
@@ -22,9 +22,9 @@ module run_provenance
   type, extends(build_t) :: provenance_t
     !> Text of the deck, as the user wrote it
     character(len=:), allocatable :: deck
-    !> Name of the case, which the deck may have left to the name of its file; empty: not given
+    !> Name of the case, by default that of the deck's file; empty: not given
     character(len=:), allocatable :: case_name
-    !> Units that the deck says it is in; empty: any that are consistent
+    !> Units of the deck; empty: any consistent ones
     character(len=:), allocatable :: units
     !> Values in effect that are from a table which the deck refers to; empty: none
     character(len=:), allocatable :: library
@@ -51,7 +51,7 @@ contains
 
   !> Provenance of the run that is starting.
   function this_run(build, deck, ranks) result(run)
-    !> What this program was built from
+    !> Versions of this program
     type(build_t), intent(in) :: build
     !> Text of the deck
     character(len=*), intent(in) :: deck

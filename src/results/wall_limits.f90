@@ -1,4 +1,4 @@
-!> The wall-clock time that a queue grants a run: it ends with a checkpoint before that is up.
+!> The wall-clock limit of a run, which ends before it with a checkpoint.
 module wall_limits
   use kinds, only: wp
   implicit none
@@ -8,7 +8,7 @@ module wall_limits
   !> Longest steps so far that are kept in reserve: the next one may take twice as long as any before, and the
   !> checkpoint takes its time too.
   real(wp), parameter :: reserve = 3
-  !> Seconds for what is not seen from within: the start of the process and its end.
+  !> Seconds for the start and end of the process.
   real(wp), parameter :: outside = 2
 
   !> A limit, and what its reserve is measured by.

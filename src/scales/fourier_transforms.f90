@@ -84,7 +84,7 @@ contains
 
     points = 4*number
     apart = 2*pi/points
-    ! The bell's width that balances what is cut off on either side, for a grid twice as fine.
+    ! Width of the Gaussian that balances both truncation errors, for a grid twice as fine.
     width = pi*spread_points/(3*real(number, wp)**2*4)
     allocate (grid(0:points - 1), source=(0.0_wp, 0.0_wp))
     narrow = [(exp(-(j*apart)**2/(4*width)), j=1 - spread_points, spread_points)]

@@ -1,8 +1,8 @@
-!> A plate struck in its middle as the sum of its modes, for estimates ahead of a run.
+!> A plate struck at its centre as the sum of its modes, for estimates before a run.
 !>
 !> The modes are Navier's of a simply supported orthotropic Mindlin plate with rotary inertia, the rotations condensed
-!> out. Other supports are estimated: a clamped edge shortens the plate to the length whose first frequency is right,
-!> and free opposite edges have cosines, the plate's rigid motion included.
+!> out. Other supports are estimated: a clamped edge shortens the plate to the length with the right first frequency,
+!> and free opposite edges have cosines, with the rigid-body motion.
 module modal_plates
   use kinds, only: wp
   use mathematical_constants, only: pi
@@ -105,7 +105,7 @@ contains
     end do
   end function modes_along
 
-  !> Length of the simply supported (or free) plate that stands for one with other supports, over its length.
+  !> Length of the equivalent simply supported (or free) plate over that of one with other supports.
   pure real(wp) function length_factor(edges) result(factor)
     !> Supports at both ends
     integer, intent(in) :: edges(2)

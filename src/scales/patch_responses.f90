@@ -1,11 +1,11 @@
-!> How the struck patch gives way under a force that changes from step to step, the modes of the plate moved by the
-!> average acceleration.
+!> Deflection of the struck patch under a variable force, with the modes of the plate integrated by the average
+!> acceleration.
 !>
-!> A force on the patch shows after n steps by as much whenever it acted. So modes need not be moved one by one: their
-!> responses add up to one, with which the forces are folded. Forces are known only up to the present step, so they are
-!> taken in blocks that double (Hairer, Lubich and Schlichte, Fast numerical solution of nonlinear Volterra convolution
-!> equations, SIAM J. Sci. Stat. Comput. 6, 1985): the work grows with the steps times the square of their logarithm,
-!> and not with the steps times the modes.
+!> The response to a force depends only on the number of steps since it acted. The responses of all modes are therefore
+!> summed to one, with which the forces are convolved. Forces are known only up to the present step, so that they are
+!> taken in blocks of doubling size (Hairer, Lubich and Schlichte, Fast numerical solution of nonlinear Volterra
+!> convolution equations, SIAM J. Sci. Stat. Comput. 6, 1985): the work grows with the steps times the square of their
+!> logarithm, and not with the steps times the modes.
 module patch_responses
   use fourier_transforms, only: fourier, unit_turns, sums_of_sines
   use kinds, only: wp
@@ -25,7 +25,7 @@ module patch_responses
     complex(wp), allocatable :: value(:)
   end type spectrum_t
 
-  !> The response of the patch, and what it has in store.
+  !> The response of the patch, and stored convolutions.
   type :: patch_response_t
     !> The plate's modes
     type(modal_plate_t) :: plate

@@ -141,7 +141,7 @@ contains
     end do
   end function free_span
 
-  !> Supports of its edges: a frame bears it simply.
+  !> Supports of its edges: a frame is a simple support.
   pure function free_edges(setup) result(edges)
     !> The setup
     type(setup_t), intent(in) :: setup
@@ -162,9 +162,9 @@ contains
     if (.not. side > 0) side = min(sum(setup%laminate%thickness), minval(setup%plate%length))
   end function loaded_side
 
-  !> Side of the square in the plate's middle plane that carries the contact force. It is as large as the circle of
-  !> contact by Hertz, and the force spreads at 45 degrees from the struck face down to the middle plane. What is
-  !> smaller than the thickness isn't the plate's: the indentation law stands for it.
+  !> Side of the square in the mid-plane that carries the contact force. Its area is that of Hertz's contact circle,
+  !> spread at 45 degrees from the struck face to the mid-plane. Deformation below the scale of the thickness is part of
+  !> the indentation law.
   pure real(wp) function contact_side(setup, indentation) result(side)
     !> The setup
     type(setup_t), intent(in) :: setup

@@ -54,7 +54,7 @@ module unit_systems
     [1.0e7_wp, 10.0_wp, 1.0e-3_wp, 2.0e-5_wp, 1.0e-4_wp, 1.0e-6_wp, 0.05_wp, 5.0_wp, 1.0e-8_wp, 1.0e5_wp]
   real(wp), parameter :: largest(quantities) = &
     [1.5e12_wp, 2.5e4_wp, 20.0_wp, 0.5_wp, 1.0_wp, 1.0e5_wp, 1.0e3_wp, 1.0e5_wp, 1.0e2_wp, 2.0e10_wp]
-  !> What most have, by which one of several units that fit is chosen.
+  !> Usual values, by which one of several fitting units is chosen.
   real(wp), parameter :: usual(quantities) = &
     [7.0e10_wp, 1.6e3_wp, 0.2_wp, 2.0e-3_wp, 1.0e-2_wp, 0.3_wp, 3.0_wp, 6.0e2_wp, 1.0e-3_wp, 5.0e8_wp]
 

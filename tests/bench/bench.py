@@ -304,11 +304,11 @@ def growth(program, arguments):
 
 
 def growth_force(rows):
-    """Force at which G/G_c first reaches 1, from the last row before growth; NaN if nothing grows."""
+    """Force at which G/G_c first reaches 1, from the last row before growth; NaN without growth or without a front."""
     # G is short of its critical value by a little there, and goes with the force squared.
     for row, later in itertools.pairwise(rows):
         if later['delaminated_area'] > 1.001*rows[0]['delaminated_area']:
-            return row['force']/row['release_ratio']**0.5
+            return row['force']/row['release_ratio']**0.5 if row['release_ratio'] > 0 else float('nan')
     return float('nan')
 
 

@@ -6,8 +6,10 @@ usage: check_manual.py IMPLAM [--write]
 The table of a page must be what `implam explain --markdown GROUP` prints, and every ```fortran block of a page must
 be a deck that `implam check` passes, once the groups it leaves out are filled in from tests/decks/good/impact.nml.
 The same holds for the tables of `history` and `fields`, and the page of the energy ledger must define each of its
-entries. With --write the tables are replaced.
+entries. The page of the summary must name each of its members and show what the program prints, the page of the command
+line each exit code. No table stands on two pages. With --write the tables are replaced.
 """
+import json
 import os
 import re
 import subprocess
@@ -110,6 +112,58 @@ def check_ledger(program, wrong):
         wrong.append(f"{path}: it defines {sorted(defined)}, and the history has {sorted(entries)}")
 
 
+def members_of(value):
+    """Names of the members of a summary, of whatever depth."""
+    if isinstance(value, dict):
+        return {*value, *(name for inner in value.values() for name in members_of(inner))}
+    return {name for inner in value for name in members_of(inner)} if isinstance(value, list) else set()
+
+
+def check_summary(program, wrong):
+    """Note in `wrong` which members of a summary its page doesn't name, and lines that a run doesn't print."""
+    path = os.path.join(MANUAL, "summary.md")
+    with open(path, encoding="utf-8") as page:
+        text = page.read()
+    deck = os.path.join(HERE, "..", "..", "input", "small", "damage.nml")
+    with tempfile.TemporaryDirectory() as folder:
+        printed = ask(program, deck, "--output", folder)[1]
+        with open(os.path.join(folder, "damage_summary.json"), encoding="utf-8") as file:
+            members = members_of(json.load(file))
+    named = set(re.findall(r"`(\w+)`", text)) | {"code", "kind", "message", "at", "energy_..."}
+    ledger = {name for name in members if name.startswith("energy_")}
+    missing = sorted(members - ledger - named)
+    if missing:
+        wrong.append(f"{path}: it doesn't name {', '.join(missing)}")
+    # Round-off differs between machines.
+    shown = re.search(r"^```text\n(.*?)^```", text, re.DOTALL | re.MULTILINE)[1]
+    for line in shown.splitlines():
+        if "not accounted for" not in line and line.rstrip() not in [one.rstrip() for one in printed.splitlines()]:
+            wrong.append(f"{path}: the program doesn't print: {line}")
+
+
+def check_exit_codes(program, wrong):
+    """Note in `wrong` which exit codes the page of the command line doesn't have, or has otherwise."""
+    path = os.path.join(MANUAL, "command_line.md")
+    with open(path, encoding="utf-8") as page:
+        listed = re.findall(r"^\| (\d+) \| [^|]+ \|$", page.read(), re.MULTILINE)
+    codes = re.findall(r"^ +(\d+) +\S", ask(program, "help")[1].partition("xit codes")[2], re.MULTILINE)
+    if not codes or codes != listed:
+        wrong.append(f"{path}: it has the exit codes {', '.join(listed)}, and the program {', '.join(codes)}")
+
+
+def check_once(topics, wrong):
+    """Note in `wrong` tables of groups or results that stand on another page than their own."""
+    doc = os.path.join(HERE, "..", "..", "doc")
+    for folder, _, names in os.walk(doc):
+        for name in names:
+            path = os.path.join(folder, name)
+            if not name.endswith(".md") or (folder.endswith("manual") and name[:-3] in topics):
+                continue
+            with open(path, encoding="utf-8") as page:
+                if re.search(r"^\| (?:key \| type|name \| (?:type|on)) \|", page.read(), re.MULTILINE):
+                    wrong.append(f"{path}: a table of keys, columns or fields stands on its own page only")
+
+
 def main():
     program = os.path.abspath(sys.argv[1])
     overview = ask(program, "explain")[1]
@@ -120,6 +174,9 @@ def main():
         if text is not None and topic not in RESULTS:
             check_examples(program, topic, text, wrong)
     check_ledger(program, wrong)
+    check_summary(program, wrong)
+    check_exit_codes(program, wrong)
+    check_once((*groups, *RESULTS), wrong)
     check_materials(program, wrong)
     print("\n".join(wrong) or f"{len(groups) + len(RESULTS)} pages agree with the program, so does that of the ledger")
     return 1 if wrong else 0

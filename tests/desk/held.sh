@@ -1,5 +1,5 @@
 #!/bin/bash
-# Runs a program that is held as soon as it has written a checkpoint, until it is told to stop (USR1): a job is then
+# Runs a program that is suspended as soon as it has written a checkpoint, until a signal stops it (USR1): a job is then
 # stopped half-way on a machine of any speed, if the run takes seconds from there. Usage: held.sh CHECKPOINT PROGRAM WORD...
 checkpoint=$1
 shift
@@ -7,11 +7,11 @@ state() { stat --format='%i %y' "$checkpoint" 2>&1; }
 before=$(state)
 "$@" &
 run=$!
-told=
-trap 'told=yes; kill -USR1 $run; kill -CONT $run' USR1
+signalled=
+trap 'signalled=yes; kill -USR1 $run; kill -CONT $run' USR1
 while kill -0 $run; do
-  # Told between the question and the hold: the next round lets it go.
-  if [[ $told ]]; then
+  # The signal may come between the check and the suspension: the next pass resumes the program.
+  if [[ $signalled ]]; then
     kill -CONT $run
   elif [[ $(state) != "$before" ]]; then
     kill -STOP $run

@@ -1,5 +1,8 @@
 #!/usr/bin/env python3
-"""Holds all places that state the version against CMakeLists.txt. Usage: check_version.py [ROOT]"""
+"""Holds all places that state the version against CMakeLists.txt, and deprecated keys that are due to go.
+
+Usage: check_version.py [ROOT]
+"""
 
 import re
 import sys
@@ -15,6 +18,19 @@ PLACES = {
     "doc/limits.md": r"What version (\S+) does not model",
 }
 
+DEPRECATED = "src/case/deprecated_keys.f90"
+# Rows of it: group, key, value, replacement, first version that warns.
+ROW = re.compile(r"'(\w+) *\| *(\w+) *\| *[^|']+\| *[^|']+\| *(\d+)\.(\d+)\.\d+ *'")
+COMMENT = re.compile(r"^ *!.*$", re.MULTILINE)
+
+
+def overdue(text, version):
+    """Sentences on deprecated keys that the version must refuse: one minor version has warned."""
+    major, minor = (int(number) for number in version.split(".")[:2])
+    for group, key, since_major, since_minor in ROW.findall(COMMENT.sub("", text)):
+        if (major, minor) > (int(since_major), int(since_minor)):
+            yield f"{DEPRECATED}: &{group} {key} has warned since {since_major}.{since_minor}; remove its row"
+
 
 def breaches(root):
     """Sentences on versions that differ."""
@@ -26,6 +42,7 @@ def breaches(root):
             yield f"{name} states no version"
         elif found.group(1) != declared:
             yield f"{name} is of version {found.group(1)}, CMakeLists.txt of {declared}"
+    yield from overdue((root / DEPRECATED).read_text(encoding="utf-8"), declared)
 
 
 def main(arguments):

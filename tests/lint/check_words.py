@@ -1,27 +1,24 @@
 #!/usr/bin/env python3
-"""Finds invented and everyday words where the field has a term. Usage: check_words.py ROOT [--list FILE] [--write]
+"""Finds invented and everyday words where the field has a term. Usage: check_words.py ROOT
 
-Looks at names (split at underscores), comments, strings and pages under src, tests, cmake, doc and postproc. WORDS are
-refused everywhere, NAMES only as parts of names in code. Public names of decks and results stay. Prints one line a
-breach, as file:line: word: what to say instead, and ends with code 1 if there is any.
-
---list names a file with lines "number path": breaches that a file may still have. The number may only become smaller;
---write lowers it to what the file has and drops files without a breach.
+Looks at names (split at underscores), comments, strings and pages of all sources, tests, decks, pages and scripts.
+WORDS are refused everywhere, NAMES only as parts of names in code. Public names of decks and results stay. Prints one
+line a breach, as file:line: word: what to say instead, and ends with code 1 if there is any.
 """
 
-import argparse
 import re
 import sys
-from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
 
-FOLDERS = ("src", "tests", "cmake", "doc", "postproc")
-SUFFIXES = (".f90", ".pf", ".c", ".in", ".py", ".toml", ".nml", ".md", ".txt", ".cmake", ".j2")
+FOLDERS = ("src", "tests", "cmake", "doc", "postproc", "input", "packaging", ".ci")
+# Texts in the root.
+FILES = ("README.md", "CHANGELOG.md", "CITATION.cff", "CMakeLists.txt", "CMakePresets.json", "setup.sh")
+SUFFIXES = (".f90", ".pf", ".c", ".in", ".py", ".toml", ".nml", ".md", ".txt", ".cmake", ".j2", ".sh", ".def", ".ipynb",
+            "")  # fmt: skip
 CODE = (".f90", ".pf", ".py")
-# Folders that hold no text of ours, and this checker with its test and list.
-SKIPPED = re.compile(r"(?:^|/)(?:build|__pycache__|\.venv|[^/]+\.egg-info)/|^tests/lint/(?:test_)?check_words\.|"
-                     r"^tests/lint/words_to_do\.txt$")  # fmt: skip
+# Folders without text of the project, and this checker with its test.
+SKIPPED = re.compile(r"(?:^|/)(?:build|__pycache__|\.venv|[^/]+\.egg-info)/|^tests/lint/(?:test_)?check_words\.")
 
 # Words and phrases, as regular expressions, and what to say instead.
 WORDS = {
@@ -71,7 +68,8 @@ NAMES = {
 }
 # Names of decks, results and libraries that stay, as they stand in the text.
 PUBLIC = (
-    r"least_squares|at_(?:least|most)|(?:os|pty)\.fork|broken_strip",
+    r"least_squares|at_(?:least|most)|most_common|(?:os|pty)\.fork|broken_strip",
+    r"[\"`\[]scenes?[\"`\]]",
     r"(?:key_|%|&time |`|\|\s*|')settle\b",
     r"settle\s*=",
     r"^.*\bsettle => .*$",
@@ -130,6 +128,7 @@ def check_text(text, path):
 
 def texts(root):
     """Paths of the texts of a project, from its root."""
+    yield from (name for name in FILES if (root / name).is_file())
     for folder in FOLDERS:
         for path in sorted((root / folder).rglob("*")):
             name = path.relative_to(root).as_posix()
@@ -145,38 +144,15 @@ def check_project(root):
     return found
 
 
-def read_list(path):
-    """Breaches that files may still have."""
-    rows = [line.split(maxsplit=1) for line in path.read_text(encoding="utf-8").splitlines() if line[:1] != "#"]
-    return {name: int(number) for number, name in rows}
-
-
-def write_list(path, allowed, counts):
-    """Lowers the numbers of a list; it gains neither breaches nor files."""
-    head = [line for line in path.read_text(encoding="utf-8").splitlines() if line[:1] == "#"]
-    rows = [f"{min(number, counts[name])} {name}" for name, number in sorted(allowed.items()) if counts[name]]
-    path.write_text("\n".join(head + rows) + "\n", encoding="utf-8")
-
-
 def main(arguments):
     """Prints breaches."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("root", type=Path)
-    parser.add_argument("--list", type=Path, help="breaches that files may still have")
-    parser.add_argument("--write", action="store_true", help="lower the numbers of the list")
-    parser.add_argument("--all", action="store_true", help="print what the list allows, too")
-    given = parser.parse_args(arguments)
-    breaches = check_project(given.root)
-    counts = Counter(breach.path for breach in breaches)
-    allowed = read_list(given.list) if given.list else {}
-    if given.write:
-        write_list(given.list, allowed, counts)
-    shown = [breach for breach in breaches if given.all or counts[breach.path] > allowed.get(breach.path, 0)]
-    for breach in shown:
+    if len(arguments) != 1:
+        sys.exit("Usage: check_words.py ROOT")
+    breaches = check_project(Path(arguments[0]))
+    for breach in breaches:
         print(breach)
-    left = sum(counts[name] for name in allowed)
-    print(f"{len(shown)} breaches shown; files of the list have {left}, they may have {sum(allowed.values())}")
-    return 1 if any(counts[name] > allowed.get(name, 0) for name in counts) else 0
+    print(f"{len(breaches)} breaches")
+    return 1 if breaches else 0
 
 
 if __name__ == "__main__":

@@ -24,7 +24,7 @@ def found(text, name):
 
 
 class CheckWords(unittest.TestCase):
-    """Words, names, public names and the list."""
+    """Words, names and public names."""
 
     def test_words_are_found_in_comments_strings_and_names(self):
         """Words stand alone or between underscores; parts of names are refused in code alone."""
@@ -51,31 +51,26 @@ class CheckWords(unittest.TestCase):
         """A breach says what to write instead."""
         self.assertEqual(str(check_words.check_text("a tup", "page.md")[0]), "page.md:1: tup: impactor")
 
-    def run_on(self, text, allowed, *options):
-        """Run the checker on a project of one page; return its exit code, what it prints, and the list after it."""
+    def run_on(self, files):
+        """Run the checker on a project of some files; return its exit code and what it prints."""
         with tempfile.TemporaryDirectory() as folder:
-            root = Path(folder)
-            (root / "doc").mkdir()
-            (root / "doc/page.md").write_text(text, encoding="utf-8")
-            (root / "list").write_text(allowed, encoding="utf-8")
+            for name, text in files.items():
+                (Path(folder) / name).parent.mkdir(parents=True, exist_ok=True)
+                (Path(folder) / name).write_text(text, encoding="utf-8")
             with contextlib.redirect_stdout(io.StringIO()) as printed:
-                code = check_words.main([str(root), "--list", str(root / "list"), *options])
-            return code, printed.getvalue(), (root / "list").read_text(encoding="utf-8")
+                code = check_words.main([folder])
+            return code, printed.getvalue()
 
-    def test_the_list_allows_no_more_than_it_says(self):
-        """As many breaches as listed pass; one more fails."""
-        self.assertEqual(self.run_on("haste\nhaste\n", "# files\n2 doc/page.md\n")[0], 0)
-        code, printed, _ = self.run_on("haste\nhaste\n", "# files\n1 doc/page.md\n")
-        self.assertEqual(code, 1)
-        self.assertIn("doc/page.md:2: haste: lag of damage", printed)
-        self.assertEqual(self.run_on("haste\n", "# files\n")[0], 1)
+    def test_a_breach_fails(self):
+        """One word in a page, a deck or a script is enough."""
+        self.assertEqual(self.run_on({"doc/page.md": "Lag of damage.\n", "setup.sh": "true\n"}), (0, "0 breaches\n"))
+        for name in ("doc/page.md", "input/small/deck.nml", "README.md", "setup.sh", ".ci/run", "packaging/a.def"):
+            code, printed = self.run_on({name: "one\nhaste\n"})
+            self.assertEqual((code, printed.split("\n")[0]), (1, f"{name}:2: haste: lag of damage"))
 
-    def test_numbers_of_the_list_only_become_smaller(self):
-        """Writing the list lowers a number, keeps one that is passed, and drops files without breaches."""
-        self.assertEqual(self.run_on("haste\n", "# files\n3 doc/page.md\n4 doc/gone.md\n", "--write")[2],
-                         "# files\n1 doc/page.md\n")  # fmt: skip
-        kept = "# files\n1 doc/page.md\n"
-        self.assertEqual(self.run_on("haste\nhaste\n", kept, "--write")[2], kept)
+    def test_older_names_of_keys_pass(self):
+        """A quoted older name that is still read is public."""
+        self.assertEqual(found('if "scenes" in content:\n', "a.py"), [])
 
 
 if __name__ == "__main__":

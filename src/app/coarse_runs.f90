@@ -1,6 +1,6 @@
-!> A companion of a run: the same setup with half the elements along each side and twice the step, about an eighth of
-!> the work. What the two differ by shows how far the run may be off.
-module companion_runs
+!> A coarse run: the same setup with half the elements along each side and twice the step, about an eighth of
+!> the work. The difference gives an estimate of the error.
+module coarse_runs
   use communicators, only: communicator_t
   use deck_contents, only: deck_t
   use errors, only: error_t
@@ -15,30 +15,30 @@ module companion_runs
   use time_stepping, only: time_stepper_t
   implicit none
   private
-  public :: companion_t, run_companion
+  public :: coarse_run_t, run_coarse_model
 
   integer, parameter :: coarser = 2
 
-  !> What a companion has come to.
-  type :: companion_t
-    !> True: it has come to its end; false: a mesh so coarse can't be made, no step converged, or a queue's signal came
+  !> Results of a coarse run.
+  type :: coarse_run_t
+    !> True: it is complete; false: the mesh is too coarse, no step converged, or a queue's signal came
     logical :: done = .false.
-    !> What it remembers
+    !> Its record
     type(run_record_t) :: record
     !> Velocity of the impactor and delaminated area at the end
     real(wp) :: velocity = 0, area = 0
-  end type companion_t
+  end type coarse_run_t
 
 contains
 
-  !> Runs the companion. Collective.
-  subroutine run_companion(deck, communicator, companion)
+  !> Runs the coarse run. Collective.
+  subroutine run_coarse_model(deck, communicator, coarse_run)
     !> The deck of the run
     type(deck_t), intent(in) :: deck
     !> The ranks
     type(communicator_t), intent(in) :: communicator
-    !> What it has come to
-    type(companion_t), intent(out) :: companion
+    !> Its results
+    type(coarse_run_t), intent(out) :: coarse_run
     type(deck_t) :: coarse
     type(model_t) :: model
     type(interface_figures_t), allocatable :: figures(:)
@@ -50,23 +50,23 @@ contains
     call create_model(coarse%setup_t, communicator, model, error)
     if (.not. allocated(error)) call stepper%start(model, coarse%stepping, coarse%linear_solver, .false., error)
     if (allocated(error)) return
-    companion%record = new_run_record(model)
+    coarse_run%record = new_run_record(model)
     checks = steps_between_checks(coarse%stepping, model%mesh%elements())
-    do while (stepper%now%time < end_of_run(coarse%stepping, companion%record%contact_end))
-      call stepper%advance(model, end_of_run(coarse%stepping, companion%record%contact_end), error)
+    do while (stepper%now%time < end_of_run(coarse%stepping, coarse_run%record%contact_end))
+      call stepper%advance(model, end_of_run(coarse%stepping, coarse_run%record%contact_end), error)
       if (allocated(error)) exit
-      call companion%record%observe(model, stepper%now, steps_between_stages(coarse%stepping))
+      call coarse_run%record%observe(model, stepper%now, steps_between_stages(coarse%stepping))
       if (modulo(stepper%now%step, checks) > 0) cycle
       if (communicator%any(stop_signal() /= 0)) exit
     end do
-    companion%done = .not. (stepper%now%time < end_of_run(coarse%stepping, companion%record%contact_end))
-    companion%velocity = stepper%now%impactor%velocity
+    coarse_run%done = .not. (stepper%now%time < end_of_run(coarse%stepping, coarse_run%record%contact_end))
+    coarse_run%velocity = stepper%now%impactor%velocity
     figures = figures_of(model, stepper%now%interfaces)
-    companion%area = sum(figures%area)
+    coarse_run%area = sum(figures%area)
     call stepper%operator%release()
-  end subroutine run_companion
+  end subroutine run_coarse_model
 
-  !> The deck of a companion.
+  !> The deck of a coarse run.
   pure function coarser_deck(deck) result(coarse)
     !> The deck of the run
     type(deck_t), intent(in) :: deck
@@ -83,4 +83,4 @@ contains
     coarse%stepping%central%longest = coarser*deck%stepping%central%longest
     coarse%stepping%adapt%tolerance = coarser**3*deck%stepping%adapt%tolerance
   end function coarser_deck
-end module companion_runs
+end module coarse_runs

@@ -1,32 +1,33 @@
-!> What a step and a mesh are worth for a setup, by pilot calculations: the largest step and the largest elements that
-!> keep peak and history of the force within an error.
-module setup_pilots
+!> Errors of step and mesh for a setup, by preliminary elastic impacts: the largest step and elements for a permitted
+!> error of peak force and history.
+module setup_elastic_impacts
   use kinds, only: wp
   use mathematical_constants, only: pi
   use modal_plates, only: modal_plate_t, reduced
-  use pilot_impacts, only: pilot_t, run_pilot, difference, bound_of_difference, difference_at_peak, &
-                           figures_of
+  use elastic_impacts, only: elastic_impact_t, run_elastic_impact, difference, bound_of_difference, &
+                             difference_at_peak, figures_of
   use setup_scales, only: setup_scales_t, plate_modes, contact_side
   use setups, only: setup_t
   implicit none
   private
-  public :: setup_pilot_t, expected_scales_t, start_pilot, contact_end, largest_step, largest_cell, expected_scales_of
+  public :: setup_elastic_impact_t, expected_scales_t, start_elastic_impact, contact_end, largest_step, largest_cell, &
+            expected_scales_of
 
-  !> A setup made ready for pilot calculations.
-  type :: setup_pilot_t
+  !> A setup prepared for preliminary elastic impacts.
+  type :: setup_elastic_impact_t
     !> The setup
     type(setup_t) :: setup
     !> Its scales
     type(setup_scales_t) :: scales
     !> The plate with all modes that any step considered follows
     type(modal_plate_t) :: plate
-  end type setup_pilot_t
+  end type setup_elastic_impact_t
 
-  !> What a run with the mesh and step of the deck is to show.
+  !> Expected results of a run with the mesh and step of the deck.
   type :: expected_scales_t
     !> Scales of the setup
     type(setup_scales_t) :: scales
-    !> True: there is an impact to look at, and the rest holds
+    !> True: there is an impact, and the other components are valid
     logical :: of_impact = .false.
     !> Largest force, indentation and deflection
     real(wp) :: force = 0, indentation = 0, deflection = 0
@@ -42,21 +43,22 @@ module setup_pilots
     !> not
     !> known
     real(wp) :: figure_error(5) = -1
-    !> Side of the area that carries the contact force, and what a larger patch changes of peak and history
+    !> Side of the area that carries the contact force, and effect of a larger patch on peak and history
     real(wp) :: contact_side = 0, patch_error(2) = -1
   end type expected_scales_t
 
-  !> Modes are listed up to this part of the inverse of a step; beyond, a step follows none and they act by stiffness.
+  !> Modes are listed up to this fraction of the inverse of a step; higher ones are not resolved and act by their
+  !> stiffness.
   real(wp), parameter :: followed = 5
   !> Modes with ten periods in the rise of first contact follow the force without delay. A finer step that followed
   !> more of them found errors other by less than 1 % in the decks of `input/`, and the same forces.
   real(wp), parameter :: excited = 60
-  !> Steps of the first pilot in one contact time. Those of the finest are this over the root of the error allowed: the
-  !> method is of second order, and a step of a tenth of the contact time is about 1 % off.
+  !> Steps of the first elastic impact in one contact time. Those of the finest are this over the root of the permitted
+  !> error: the method is of second order, and the error of a step of a tenth of the contact time is about 1 %.
   real(wp), parameter :: first_steps = 2, fine_steps = 4.5_wp
   !> Steps in one contact time up to which modes are kept at hand.
   real(wp), parameter :: max_fine = 128
-  !> Most steps of a pilot: they take a tenth of a second, and a run of as many hours.
+  !> Most steps of an elastic impact: they take a tenth of a second, and a run of as many hours.
   integer, parameter :: max_steps = 262144
   !> Steps that a contact takes at least.
   integer, parameter :: min_steps = 24
@@ -66,33 +68,33 @@ module setup_pilots
   real(wp), parameter :: wave_elements = 4.5_wp, wave_power = 1/3.6_wp
   !> The fewest elements in a wave that this holds for.
   real(wp), parameter :: fewest_elements = 3.1_wp
-  !> Relative rise of a mode's frequency on elements of side e, (kappa e)**4 times this, kappa its wave number. Settled
-  !> by `tests/bench/elastic_models.py`.
+  !> Relative error of a mode's frequency on elements of side e is (kappa e)**4 times this, kappa its wave number.
+  !> Calibrated by `tests/bench/elastic_models.py`.
   real(wp), parameter :: dispersion = 6.0e-4_wp
-  !> Half periods of the impactor on the plate's spring that the first pilot may last: pilots wait for twice the time of
-  !> contact, and contacts that end and come again have lasted up to 1.4 half periods.
+  !> Longest first elastic impact in half periods of the impactor on the plate's static stiffness: twice the contact
+  !> time, and repeated contacts have lasted up to 1.4 half periods.
   real(wp), parameter :: waited = 4.5_wp
 
 contains
 
   !> Makes a setup ready.
-  pure function start_pilot(setup, scales) result(pilot)
+  pure function start_elastic_impact(setup, scales) result(elastic)
     !> The setup, with an impactor that has a velocity
     type(setup_t), intent(in) :: setup
     !> Its scales
     type(setup_scales_t), intent(in) :: scales
-    !> The pilot
-    type(setup_pilot_t) :: pilot
+    !> The elastic impact
+    type(setup_elastic_impact_t) :: elastic
 
-    pilot%setup = setup
-    pilot%scales = scales
-    pilot%plate = plate_modes(setup, followed*max_fine/scales%contact_time)
-  end function start_pilot
+    elastic%setup = setup
+    elastic%scales = scales
+    elastic%plate = plate_modes(setup, followed*max_fine/scales%contact_time)
+  end function start_elastic_impact
 
-  !> A pilot calculation with some step; `complete` is false where it would take too long.
+  !> A preliminary elastic impact with some step; `complete` is false where it would take too long.
   pure function run_of(self, step, end, cell) result(run)
-    !> The pilot
-    type(setup_pilot_t), intent(in) :: self
+    !> The elastic impact
+    type(setup_elastic_impact_t), intent(in) :: self
     !> Step
     real(wp), intent(in) :: step
     !> End; 0: that of the contact
@@ -100,7 +102,7 @@ contains
     !> Side of the elements; 0: infinitely fine
     real(wp), intent(in) :: cell
     !> What was found
-    type(pilot_t) :: run
+    type(elastic_impact_t) :: run
     type(modal_plate_t) :: plate
     integer :: steps
 
@@ -108,19 +110,19 @@ contains
     if (cell > 0) call disperse(plate, cell)
     steps = max_steps
     if (end > 0) steps = min(steps, max(1, nint(end/step)))
-    run = run_pilot(plate, self%setup%impactor, self%setup%indentation, step, steps, end > 0)
+    run = run_elastic_impact(plate, self%setup%impactor, self%setup%indentation, step, steps, end > 0)
     if (end > 0) run%complete = steps >= nint(end/step)
   end function run_of
 
-  !> The contact from touch to end by a first, coarse pilot; looked at no longer than the run lasts. Where a heavy
-  !> impactor rests on the plate for longer than such steps can resolve, they are longer.
+  !> The contact from touch to end by a first, coarse elastic impact, no longer than the run. Its steps are longer where
+  !> a heavy impactor remains on the plate for a long time.
   pure function contact_end(self, end) result(run)
-    !> The pilot
-    type(setup_pilot_t), intent(in) :: self
+    !> The elastic impact
+    type(setup_elastic_impact_t), intent(in) :: self
     !> End of the run; 0: not known
     real(wp), intent(in) :: end
     !> What was found
-    type(pilot_t) :: run
+    type(elastic_impact_t) :: run
     real(wp) :: horizon
 
     horizon = end
@@ -128,7 +130,7 @@ contains
     run = run_of(self, max(self%scales%contact_time/first_steps, horizon/max_steps), end, 0.0_wp)
   end function contact_end
 
-  !> What a run is to show with a step and elements of some side. The method is of second order in the step.
+  !> Expected results with given step and elements. The method is of second order in the step.
   pure function expected_scales_of(setup, scales, step, end, edge) result(expected)
     !> The setup, with an impactor that has a velocity
     type(setup_t), intent(in) :: setup
@@ -140,23 +142,23 @@ contains
     real(wp), intent(in) :: edge
     !> Forces, times and errors
     type(expected_scales_t) :: expected
-    type(setup_pilot_t) :: pilot
-    type(pilot_t) :: coarse, fine, meshed
+    type(setup_elastic_impact_t) :: elastic
+    type(elastic_impact_t) :: coarse, fine, meshed
 
     expected%of_impact = .true.
     expected%edge = edge
-    pilot%setup = setup
-    pilot%scales = scales
-    pilot%plate = plate_modes(setup, max(followed/step, min(2*followed/step, excited/scales%contact_time)))
-    coarse = run_of(pilot, step, end, 0.0_wp)
+    elastic%setup = setup
+    elastic%scales = scales
+    elastic%plate = plate_modes(setup, max(followed/step, min(2*followed/step, excited/scales%contact_time)))
+    coarse = run_of(elastic, step, end, 0.0_wp)
     if (nint(end/(step/2)) <= max_steps) then
-      fine = run_of(pilot, step/2, end, 0.0_wp)
+      fine = run_of(elastic, step/2, end, 0.0_wp)
       expected%step_error = difference(coarse, fine, 2)*4/3
     else
       fine = coarse
     end if
     if (coarse%complete) then
-      meshed = run_of(pilot, step, end, edge)
+      meshed = run_of(elastic, step, end, edge)
       expected%mesh_error = difference(meshed, coarse, 1)
       if (expected%step_error(1) >= 0) expected%figure_error = errors_of_figures(scales, edge, coarse, fine, meshed)
     end if
@@ -167,21 +169,21 @@ contains
     expected%last_contact = fine%last_contact
     expected%contact_side = contact_side(setup, fine%indentation)
     if (.not. setup%mesh%patch > expected%contact_side) return
-    pilot%setup%mesh%patch = expected%contact_side
-    pilot%plate = plate_modes(pilot%setup, followed/step)
-    expected%patch_error = difference(run_of(pilot, step, end, 0.0_wp), coarse, 1)
+    elastic%setup%mesh%patch = expected%contact_side
+    elastic%plate = plate_modes(elastic%setup, followed/step)
+    expected%patch_error = difference(run_of(elastic, step, end, 0.0_wp), coarse, 1)
   end function expected_scales_of
 
-  !> Errors by step and mesh together of what a summary reports. That of the largest force is at least what the forces
-  !> beside it are off, and, where the force of first contact is the largest, what its waves miss in the elements around
-  !> the patch.
+  !> Errors by step and mesh together of the results of a summary. That of the largest force is at least the error of
+  !> the forces around it, and, where the force of first contact is the largest, the error of its waves in the elements
+  !> around the patch.
   pure function errors_of_figures(scales, edge, coarse, fine, meshed) result(errors)
     !> Scales of the setup
     type(setup_scales_t), intent(in) :: scales
     !> Side of the elements near the struck point
     real(wp), intent(in) :: edge
-    !> Pilots with the step of the run, with half of it, and with the mesh
-    type(pilot_t), intent(in) :: coarse, fine, meshed
+    !> Elastic impacts with the step of the run, with half of it, and with the mesh
+    type(elastic_impact_t), intent(in) :: coarse, fine, meshed
     !> In the order of `figures_of`
     real(wp) :: errors(5)
     integer :: beside, at
@@ -195,7 +197,7 @@ contains
       errors(1) = max(errors(1), fine%peak*error_with(scales, edge))
   end function errors_of_figures
 
-  !> Side of the elements around the patch with which the waves of first contact miss a part of its force.
+  !> Side of the elements around the patch for a given relative error of the force of first contact.
   pure real(wp) function edge_for(scales, error) result(edge)
     !> Scales of the setup
     type(setup_scales_t), intent(in) :: scales
@@ -205,7 +207,7 @@ contains
     edge = scales%wave_length/wave_elements*(200*error)**wave_power
   end function edge_for
 
-  !> The part of the force of first contact that its waves miss with such elements: `edge_for`, inverted.
+  !> Relative error of the force of first contact with such elements: the inverse of `edge_for`.
   pure real(wp) function error_with(scales, edge) result(error)
     !> Scales of the setup
     type(setup_scales_t), intent(in) :: scales
@@ -217,8 +219,8 @@ contains
 
   !> The largest step whose errors stay within bounds.
   pure subroutine largest_step(self, end, bounds, step, error)
-    !> The pilot
-    type(setup_pilot_t), intent(in) :: self
+    !> The elastic impact
+    type(setup_elastic_impact_t), intent(in) :: self
     !> Time looked at
     real(wp), intent(in) :: end
     !> Relative errors of peak and history allowed
@@ -227,11 +229,11 @@ contains
     real(wp), intent(out) :: step
     !> Its errors
     real(wp), intent(out) :: error(2)
-    type(pilot_t) :: finest, coarse
+    type(elastic_impact_t) :: finest, coarse
     real(wp) :: longer
     integer :: finer, steps, ratio
 
-    ! Coarse pilots could agree on what both miss, so each is held against the finest that can be had.
+    ! Coarse elastic impacts may have equal errors, so each is compared with the finest possible one.
     finer = 1
     do while (2*2**finer*min_steps <= max_steps)
       if (2**finer*min_steps*self%scales%contact_time >= fine_steps/sqrt(bounds(1))*end) exit
@@ -262,27 +264,27 @@ contains
 
   !> The largest elements whose errors stay within bounds.
   pure function largest_cell(self, step, end, bounds, follows) result(cell)
-    !> The pilot
-    type(setup_pilot_t), intent(in) :: self
+    !> The elastic impact
+    type(setup_elastic_impact_t), intent(in) :: self
     !> Step
     real(wp), intent(in) :: step
     !> Time looked at
     real(wp), intent(in) :: end
     !> Relative errors of peak and history allowed
     real(wp), intent(in) :: bounds(2)
-    !> True: the step follows the impact within these bounds; a longer one says nothing of the elements needed
+    !> True: the step resolves the impact within these bounds; a longer one gives no information on the elements
     logical, intent(in) :: follows
     !> Side of the elements
     real(wp) :: cell
-    type(pilot_t) :: exact
+    type(elastic_impact_t) :: exact
     real(wp), parameter :: finer = 0.85_wp
     real(wp) :: longer
 
     longer = 1
     if (follows) longer = max(1.0_wp, first_steps*step/self%scales%contact_time)
     exact = run_of(self, step, end, 0.0_wp)
-    ! Modes give what waves do on the mesh, not what the first of them do in the elements around the patch. Steps longer
-    ! than the rise pass over these; the shortest waves that they follow are longer by the root.
+    ! Modes give the error of waves on the mesh, not of the first waves in the elements around the patch. Steps longer
+    ! than the rise do not resolve these; the shortest resolved waves are longer by the root.
     cell = min(minval(self%setup%plate%length)/4, &
                edge_for(self%scales, bounds(1))*sqrt(longer))
     do while (cell > self%scales%wave_length/20)
@@ -303,4 +305,4 @@ contains
     rise = 1 + dispersion*maxval(plate%wave_number*cell, 1)**4
     plate%frequency = plate%frequency*rise
   end subroutine disperse
-end module setup_pilots
+end module setup_elastic_impacts

@@ -1,6 +1,6 @@
-!> A pilot calculation: the impactor against the modes of the plate, step by step as the run will take them. In
-!> milliseconds it gives force, duration and contacts to expect, and what a step or mesh is worth.
-module pilot_impacts
+!> A preliminary elastic impact: the impactor coupled to the modes of the plate, with the steps of the run. In
+!> milliseconds it gives force, duration and number of contacts, and the errors of step and mesh.
+module elastic_impacts
   use impact_parameters, only: impactor_parameters_t, indentation_law_t
   use kinds, only: wp
   use modal_plates, only: modal_plate_t
@@ -9,10 +9,10 @@ module pilot_impacts
                                  commit_indentation
   implicit none
   private
-  public :: pilot_t, run_pilot, difference, bound_of_difference, difference_at_peak, figures_of
+  public :: elastic_impact_t, run_elastic_impact, difference, bound_of_difference, difference_at_peak, figures_of
 
-  !> What a pilot calculation found.
-  type :: pilot_t
+  !> Results of a preliminary elastic impact.
+  type :: elastic_impact_t
     !> Step
     real(wp) :: step = 0
     !> Force at the end of each step
@@ -29,21 +29,21 @@ module pilot_impacts
     integer :: contacts = 0
     !> The contact was over before the steps were
     logical :: complete = .false.
-  end type pilot_t
+  end type elastic_impact_t
 
-  !> Part of the largest force that counts as contact.
+  !> Fraction of the largest force that counts as contact.
   real(wp), parameter :: contact_part = 0.01_wp
   !> A contact that ended is taken to be the last if none follows for as long as it took up to then.
   real(wp), parameter :: waiting = 2
-  !> Part of the largest force from which on that of a contact is like it.
+  !> Fraction of the largest force above which a contact is compared with it.
   real(wp), parameter :: like_peaks = 0.9_wp
   !> Halvings and Newton steps for the force; Newton needs five.
   integer, parameter :: max_iterations = 60
 
 contains
 
-  !> Runs a pilot calculation by the average acceleration, which is generalised-alpha without damping.
-  pure function run_pilot(plate, impactor, law, step, max_steps, to_the_end) result(pilot)
+  !> Runs a preliminary elastic impact by the average acceleration, which is generalised-alpha without damping.
+  pure function run_elastic_impact(plate, impactor, law, step, max_steps, to_the_end) result(elastic)
     !> Modes of the plate
     type(modal_plate_t), intent(in) :: plate
     !> The impactor
@@ -57,7 +57,7 @@ contains
     !> True: all steps are taken; false: the calculation ends once the contact is over
     logical, intent(in) :: to_the_end
     !> What was found
-    type(pilot_t) :: pilot
+    type(elastic_impact_t) :: elastic
     type(indentation_t) :: contact
     type(patch_response_t) :: patch
     real(wp), allocatable :: force(:)
@@ -68,7 +68,7 @@ contains
     allocate (force(max_steps), source=0.0_wp)
     rigid = step**2/(4*impactor%mass)
     ball = [0.0_wp, impactor%velocity, impactor%gravity]
-    pilot%step = step
+    elastic%step = step
     now = 0
     active = 0
     do i = 1, max_steps
@@ -83,20 +83,20 @@ contains
       deflection = free(2) + patch%immediate*now
       call commit_indentation(law, contact, ball(1) - deflection)
       force(i) = now
-      pilot%deflection = max(pilot%deflection, abs(deflection))
-      if (now > pilot%peak) pilot%peak_time = i*step
-      pilot%peak = max(pilot%peak, now)
-      if (now > 0 .and. .not. before > 0) pilot%contacts = pilot%contacts + 1
-      if (now > 0) pilot%duration = pilot%duration + step
-      if (now > contact_part*pilot%peak) active = i
+      elastic%deflection = max(elastic%deflection, abs(deflection))
+      if (now > elastic%peak) elastic%peak_time = i*step
+      elastic%peak = max(elastic%peak, now)
+      if (now > 0 .and. .not. before > 0) elastic%contacts = elastic%contacts + 1
+      if (now > 0) elastic%duration = elastic%duration + step
+      if (now > contact_part*elastic%peak) active = i
       if (i > waiting*active .and. active > 0 .and. .not. to_the_end) exit
     end do
-    pilot%complete = i <= max_steps
-    pilot%force = force(:min(i, max_steps))
-    pilot%indentation = contact%alpha_max
-    pilot%last_contact = active*step
-    pilot%velocity = ball(2)
-  end function run_pilot
+    elastic%complete = i <= max_steps
+    elastic%force = force(:min(i, max_steps))
+    elastic%indentation = contact%alpha_max
+    elastic%last_contact = active*step
+    elastic%velocity = ball(2)
+  end function run_elastic_impact
 
   !> The one root of F = F(alpha_free - compliance F), by Newton's method within an interval.
   pure subroutine find_force(law, contact, free, compliance, force)
@@ -136,24 +136,23 @@ contains
     force = next
   end subroutine find_force
 
-  !> What a summary of a run reports, in its order: largest force, its time, time in contact, largest deflection,
-  !> velocity
-  !> of the impactor at the end.
-  pure function figures_of(pilot) result(figures)
-    !> The pilot
-    type(pilot_t), intent(in) :: pilot
+  !> Results in the order of the summary: largest force, its time, time in contact, largest deflection, velocity of the
+  !> impactor at the end.
+  pure function figures_of(elastic) result(figures)
+    !> The elastic impact
+    type(elastic_impact_t), intent(in) :: elastic
     !> The figures
     real(wp) :: figures(5)
 
-    figures = [pilot%peak, pilot%peak_time, pilot%duration, pilot%deflection, pilot%velocity]
+    figures = [elastic%peak, elastic%peak_time, elastic%duration, elastic%deflection, elastic%velocity]
   end function figures_of
 
-  !> What two pilots differ by: largest force, and the whole history in the mean of squares, relative to the finer one.
+  !> Difference of two elastic impacts: largest force, and root mean square of the history, relative to the finer one.
   pure function difference(coarse, fine, ratio) result(relative)
-    !> The pilot with the longer steps
-    type(pilot_t), intent(in) :: coarse
+    !> The elastic impact with the longer steps
+    type(elastic_impact_t), intent(in) :: coarse
     !> The other one
-    type(pilot_t), intent(in) :: fine
+    type(elastic_impact_t), intent(in) :: fine
     !> Steps of the finer one in one of the coarser
     integer, intent(in) :: ratio
     !> Of the peak, of the history
@@ -173,10 +172,10 @@ contains
   !> bodies touch again and again, which contact is how far off is a matter of chance, so that the error of the largest
   !> force is no bound. Ripples of one long contact are many, and their largest is not.
   pure function bound_of_difference(coarse, fine, ratio) result(relative)
-    !> The pilot with the longer steps
-    type(pilot_t), intent(in) :: coarse
+    !> The elastic impact with the longer steps
+    type(elastic_impact_t), intent(in) :: coarse
     !> The other one
-    type(pilot_t), intent(in) :: fine
+    type(elastic_impact_t), intent(in) :: fine
     !> Steps of the finer one in one of the coarser
     integer, intent(in) :: ratio
     !> Of the peaks, of the history
@@ -199,13 +198,13 @@ contains
     end do
   end function bound_of_difference
 
-  !> What two pilots differ by around the largest force of the finer one, in the mean of squares, as a force. In a long
-  !> contact the errors of ripples at that very instant may be nil by chance; those beside it count.
+  !> Root mean square difference of two elastic impacts around the largest force of the finer one, as a force. In a long
+  !> contact the error at the instant of the peak may vanish by chance; those around it count.
   pure real(wp) function difference_at_peak(coarse, fine, ratio, beside) result(force)
-    !> The pilot with the longer steps
-    type(pilot_t), intent(in) :: coarse
+    !> The elastic impact with the longer steps
+    type(elastic_impact_t), intent(in) :: coarse
     !> The other one
-    type(pilot_t), intent(in) :: fine
+    type(elastic_impact_t), intent(in) :: fine
     !> Steps of the finer one in one of the coarser
     integer, intent(in) :: ratio
     !> Steps of the coarser one looked at before the largest force and after it
@@ -218,4 +217,4 @@ contains
     last = min(number, at + beside)
     force = norm2(coarse%force(first:last) - fine%force(ratio*first:ratio*last:ratio))/sqrt(real(last - first + 1, wp))
   end function difference_at_peak
-end module pilot_impacts
+end module elastic_impacts
