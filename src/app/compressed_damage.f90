@@ -60,7 +60,7 @@ contains
       interfaces(i) = delaminated(model, now, along, i)
     end do
     do i = 1, size(plies)
-      plies(i) = broken(model, now, along, i)
+      plies(i) = fibres_failed(model, now, along, i)
     end do
     damage%interfaces = figures_of(model, along, interfaces)
     damage%plies = figures_of(model, along, plies)
@@ -119,7 +119,7 @@ contains
   end function delaminated
 
   !> Places where the fibres of a ply have failed.
-  function broken(model, now, along, ply) result(collected)
+  function fibres_failed(model, now, along, ply) result(collected)
     type(model_t), intent(in) :: model
     !> The state
     type(state_t), intent(in) :: now
@@ -137,7 +137,7 @@ contains
         call add_cell(collected, model, along, mesh%place_of(mesh%element_cell(model%distribution%elements(i))))
       end do
     end associate
-  end function broken
+  end function fibres_failed
 
   !> Row of cells across the load in whose middle a node lies; 0: it lies between two rows.
   pure integer function row_of(lines, along) result(row)

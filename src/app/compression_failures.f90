@@ -7,10 +7,13 @@ module compression_failures
   private
   public :: compression_failure_t, failure_of
 
-  !> Letters of the code: delamination that has grown to the edges, lateral failure of fibres; at an end, through the
-  !> damage, elsewhere in the gauge length; in the middle, various places.
-  character, parameter :: delamination = 'D', lateral = 'L', at_end = 'A', through_damage = 'D', in_gauge = 'G', &
-                          middle = 'M', various = 'V'
+  !> Letters of the code.
+  character(len=*), parameter :: letters = 'DLAGMV'
+  !> Delamination that has grown to the edges, lateral failure of fibres, and both.
+  character(len=*), parameter :: delamination = letters(1:1), lateral = letters(2:2), both = 'M(DL)'
+  !> At an end, through the damage, elsewhere in the gauge length; in the middle, various places.
+  character(len=*), parameter :: at_end = letters(3:3), through_damage = letters(1:1), in_gauge = letters(4:4), &
+                                 middle = letters(5:5), various = letters(6:6)
 
   !> The failure.
   type :: compression_failure_t
@@ -35,17 +38,17 @@ contains
     failure%interfaces = went_across(before%interfaces, after%interfaces)
     failure%plies = went_across(before%plies, after%plies)
     failure%code = ''
-    associate (grown => any(failure%interfaces), broken => any(failure%plies))
-      if (grown .and. broken) then
-        failure%code = 'M('//delamination//lateral//')'
+    associate (grown => any(failure%interfaces), torn => any(failure%plies))
+      if (grown .and. torn) then
+        failure%code = both
       else if (grown) then
         failure%code = delamination
-      else if (broken) then
+      else if (torn) then
         failure%code = lateral
       end if
-      if (broken) failure%code = failure%code//place_of(before, length, thickness, &
-                                                       mean_place(before%plies, after%plies, failure%plies))
-      if (grown .and. .not. broken) failure%code = failure%code//place_of(before, length, thickness, &
+      if (torn) failure%code = failure%code//place_of(before, length, thickness, &
+                                                     mean_place(before%plies, after%plies, failure%plies))
+      if (grown .and. .not. torn) failure%code = failure%code//place_of(before, length, thickness, &
         mean_place(before%interfaces, after%interfaces, failure%interfaces))
     end associate
   end function failure_of
@@ -73,22 +76,22 @@ contains
 
   !> Second and third letter of the code. An end reaches one thickness into the length between the supports, the middle
   !> is its middle third.
-  pure function place_of(before, length, thickness, place) result(letters)
+  pure function place_of(before, length, thickness, place) result(place_code)
     !> Damage at the start
     type(compressed_damage_t), intent(in) :: before
     !> Length between the supports, thickness, and mean distance of the failure from the middle
     real(wp), intent(in) :: length, thickness, place
     !> Area and location
-    character(len=2) :: letters
+    character(len=2) :: place_code
 
     if (place > length/2 - thickness) then
-      letters(1:1) = at_end
+      place_code(1:1) = at_end
     else if (place <= max(0.0_wp, maxval(before%interfaces(figure_reach, :)), &
                           maxval(before%plies(figure_reach, :)))) then
-      letters(1:1) = through_damage
+      place_code(1:1) = through_damage
     else
-      letters(1:1) = in_gauge
+      place_code(1:1) = in_gauge
     end if
-    letters(2:2) = merge(middle, various, place <= length/6)
+    place_code(2:2) = merge(middle, various, place <= length/6)
   end function place_of
 end module compression_failures

@@ -93,8 +93,9 @@ contains
 
     !> One interface or ply.
     subroutine put_place(name, number, before, after, across)
-      !> What it is, and its number
+      !> What it is
       character(len=*), intent(in) :: name
+      !> Its number
       integer, intent(in) :: number
       !> Figures before the load, and at the end
       real(wp), intent(in) :: before(:), after(:)
@@ -134,7 +135,7 @@ contains
     text = failure%code//' by ASTM D7137'
     if (any(failure%interfaces)) text = text//', delaminated across the width below plies'// &
       numbers_of(pack(below_plies, failure%interfaces))
-    if (any(failure%plies)) text = text//', fibres broken across the width in plies'// &
+    if (any(failure%plies)) text = text//', fibres failed across the width in plies'// &
       numbers_of(pack([(i, i=1, size(failure%plies))], failure%plies))
   end function collapse_text
 

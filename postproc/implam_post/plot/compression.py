@@ -1,4 +1,4 @@
-"""Pictures of plates whose ends are pressed together: stress against shortening, and strains of gauges against stress."""
+"""Pictures of plates whose ends are pressed together: stress against shortening, strains of gauges against stress."""
 
 from collections.abc import Mapping, Sequence
 
@@ -41,12 +41,13 @@ def _draw_stress(axes: Axes, histories: Mapping[str, History], look: Look) -> No
                                                   ("far-field stress", "stress", STRESS)))
     for place, (name, history) in enumerate(histories.items()):
         style, top = STYLES[place % len(STYLES)], int(np.argmax(history[STRESS]))
-        axes.plot(along.factor * history["shortening"], up.factor * history[STRESS], label=name, **style)
+        axes.plot(along.factor * history["shortening"], up.factor * history[STRESS], label=name or None, **style)
         axes.plot(along.factor * history["shortening"][top], up.factor * history[STRESS][top], "o",
                   color=style["color"])
     axes.set(xlabel=along.label, ylabel=up.label)
     axes.grid(alpha=0.3)
-    axes.legend()
+    if any(histories):
+        axes.legend()
 
 
 def _draw_gauges(axes: Axes, histories: Mapping[str, History], look: Look) -> None:

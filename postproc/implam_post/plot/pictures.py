@@ -11,6 +11,7 @@ from implam_post.io.errors import FileError
 from implam_post.io.fields import Fields
 from implam_post.io.history import ENERGY_NAMES, UNACCOUNTED, History
 from implam_post.io.quantities import growth_rows
+from implam_post.plot.compression import compression_figure, is_pressed
 from implam_post.plot.curves import AXES, in_contact
 from implam_post.plot.front import front_figure
 from implam_post.plot.look import STYLES, Look, settle
@@ -45,6 +46,15 @@ def plot_response(histories: Sequence[History], path: Path, look: Look = _PLAIN,
         _draw(axes, histories, column, look, measured)
     _draw_loop(last, histories, look)
     return _save(figure, path, look)
+
+
+def plot_compression(histories: Sequence[History], path: Path, look: Look = _PLAIN) -> Path | None:
+    """Draw stress and gauges of those histories whose plates are pressed together; None if there are none."""
+    pressed = [history for history in histories if is_pressed(history)]
+    if not pressed:
+        return None
+    names = _names([history.name for history in pressed])
+    return _save(compression_figure(dict(zip(names, pressed, strict=True)), look), path, look)
 
 
 def plot_energies(history: History, path: Path, look: Look = _PLAIN) -> Path:

@@ -8,6 +8,7 @@ from typing import Any
 
 from jinja2 import UndefinedError
 
+from implam_post.io.compression import strength_of
 from implam_post.io.damage_resistance import DIRECTIONS, extent, kinds_of_damage
 from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, run
 from implam_post.io.files import write_text
@@ -15,6 +16,7 @@ from implam_post.io.history import ENERGY_NAMES, UNACCOUNTED
 from implam_post.io.run import SUMMARY, Run, material_of, open_run
 from implam_post.io.run_figures import Measured, corner_of, resistance
 from implam_post.plot.look import Look
+from implam_post.report.compression import compression_rows
 from implam_post.report.page import image, render, rounded
 from implam_post.report.pictures import history_pictures, layup_figure, map_pictures, plan_figure
 from implam_post.report.scatter_report import write_page
@@ -54,8 +56,8 @@ def shown(look: Look, dimension: str, value: object) -> str:
     return look.shown(dimension, value, 4)
 
 
-def report(run: Run) -> str:
-    """Return the page of a run."""
+def report(run: Run, undamaged: float | None = None) -> str:
+    """Return the page of a run; `undamaged` is the strength of the undamaged plate, if that is known."""
     summary, look = run.summary, Look(run.system)
     found = resistance(run)
     mark = tuple(found[name].value for name in ("threshold_at", "threshold_force")) if "threshold_at" in found else None
@@ -70,7 +72,8 @@ def report(run: Run) -> str:
         reached=_reached(summary, look), has_units=bool(look.system),
         has_fields=run.fields is not None, figures=_figures(summary, look),
         resistance=_resistance(run, found, look) if "energy_absorbed" in summary and run.columns is not None else None,
-        interfaces=_interfaces(summary, look), plate=_plate(summary, look), plan=image(plan_figure(summary, look)),
+        compression=compression_rows(run, look, undamaged), interfaces=_interfaces(summary, look),
+        plate=_plate(summary, look), plan=image(plan_figure(summary, look)),
         layup=image(layup_figure(summary)), plies_head=_plies_head(summary), plies=_plies(summary, look),
         curves=[(text, image(figure)) for text, figure in curves],
         maps=[(text, image(figure)) for text, figure in maps],
@@ -212,7 +215,7 @@ def summaries_at(path: Path) -> list[Path]:
     return found
 
 
-def write_report(path: Path, output: Path | None) -> Path:
+def write_report(path: Path, output: Path | None, undamaged: float | None = None) -> Path:
     """Write the page of a summary, or that of a sweep, and return its path."""
     if path.is_dir():
         return write_page(path, output)
@@ -221,7 +224,7 @@ def write_report(path: Path, output: Path | None) -> Path:
     run_shown = open_run(path)
     written = (output or path.parent) / f"{run_shown.name}_report.html"
     try:
-        text = report(run_shown)
+        text = report(run_shown, undamaged)
     except KeyError as error:
         raise FileError(f"the summary {path} lacks {error}: another version of implam wrote it.") from None
     except (TypeError, ValueError, IndexError, AttributeError, UndefinedError) as error:
@@ -232,9 +235,10 @@ def write_report(path: Path, output: Path | None) -> Path:
 
 def _command(options: argparse.Namespace) -> int:
     """Write a page for each run."""
+    undamaged = None if options.undamaged is None else strength_of(options.undamaged)
     for given in options.results:
         for path in summaries_at(given):
-            print(write_report(path, options.output))
+            print(write_report(path, options.output, undamaged))
     return EXIT_DONE
 
 
@@ -247,6 +251,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("results", nargs="+", type=Path, metavar="RESULT",
                         help="NAME_summary.json, a folder with such files, or the folder of a sweep")
     parser.add_argument("--output", type=Path, metavar="DIR", help="folder of the pages (default: beside each summary)")
+    parser.add_argument("--undamaged", type=Path, metavar="SUMMARY", help="NAME_summary.json of the undamaged plate's "
+                        "compression: the page then has the share of its strength that is left")
     return run(_command, parser, arguments)
 
 
