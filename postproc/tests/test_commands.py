@@ -31,9 +31,9 @@ class CommandTest(unittest.TestCase):
         self.write_history(1.0)
 
     def write_history(self, factor: float, last: float | None = None) -> None:
-        """Write every tenth row of the answer, forces multiplied by `factor`, the last force replaced."""
-        answer = semi_analytic(deck(SUN_CHEN))
-        columns = {name: values[::10].copy() for name, values in answer.columns.items()}
+        """Write every tenth row of the analytical solution, forces multiplied by `factor`, the last force replaced."""
+        solution = semi_analytic(deck(SUN_CHEN))
+        columns = {name: values[::10].copy() for name, values in solution.columns.items()}
         columns["force"] *= factor
         if last is not None:
             columns["force"][-1] = last
@@ -55,14 +55,14 @@ class CommandTest(unittest.TestCase):
         return code, text.getvalue()
 
     def test_check_finds_history_and_plots(self) -> None:
-        """A history like the answer passes a narrow tolerance; the plot lies beside it."""
+        """A history like the semi-analytical solution passes a narrow tolerance; the plot lies beside it."""
         code, text = self.run_quietly(check_impact.main, self.deck, "--tolerance", "0.005")
         self.assertEqual(code, 0, text)
         self.assertIn("second peak force", text)
         self.assertGreater((self.folder / "sun_chen_check.png").stat().st_size, 10000)
 
     def test_other_kinds_of_files(self) -> None:
-        """What is neither fields nor a history is told by what would be, whatever its bytes are."""
+        """What is neither fields nor a history is reported by what would be, whatever its bytes are."""
         picture = self.folder / "case.png"
         picture.write_bytes(b"\x89PNG\r\n\x1a\n\xff\xfe")
         for command, path, sentence in ((plot.main, picture, "neither the fields NAME.h5 nor the history"),
@@ -76,7 +76,7 @@ class CommandTest(unittest.TestCase):
             self.assertIn(sentence, text)
 
     def test_faulty_expectations(self) -> None:
-        """An entry without or with other keys is told by their names, not by those of the program's insides."""
+        """An entry without or with other keys is reported by their names, not by those of the program's insides."""
         path = self.folder / "case.toml"
         for content, sentence in (('[[expect]]\nvalue = 1.0\nabsolute = 0.1\n', "lacks quantity"),
                                   ('[[expect]]\nquantity = "peak_force"\nvlaue = 1.0\n', "has no vlaue"),
@@ -88,7 +88,7 @@ class CommandTest(unittest.TestCase):
             self.assertNotIn("__init__", str(caught.exception))
 
     def test_check_fails_beyond_the_tolerance_only(self) -> None:
-        """Two percent too much force is told, and fails if a tolerance is given."""
+        """Two percent too much force is reported, and fails if a tolerance is given."""
         self.write_history(1.02)
         self.assertEqual(self.run_quietly(check_impact.main, self.deck, "--no-plot")[0], 0)
         self.assertEqual(self.run_quietly(check_impact.main, self.deck, "--no-plot", "--tolerance", "0.03")[0], 0)
@@ -102,7 +102,7 @@ class CommandTest(unittest.TestCase):
         self.assertEqual(self.run_quietly(check_impact.main, self.deck, "--no-plot", "--tolerance", "9")[0], 1)
 
     def test_check_without_a_history(self) -> None:
-        """The answer alone is printed."""
+        """The semi-analytical solution alone is printed."""
         self.history.unlink()
         code, text = self.run_quietly(check_impact.main, self.deck, "--no-plot")
         self.assertEqual(code, 0)
@@ -179,7 +179,7 @@ class CommandTest(unittest.TestCase):
             table.write_text(hit + '[[curve]]\nfile="other.csv"\n')
             self.assertEqual(self.run_quietly(compare.main, self.history, table, "--plot", picture)[0], 4, columns)
 
-    def test_broken_histories(self) -> None:
+    def test_invalid_histories(self) -> None:
         """A cut row, a word and times that run backwards are errors of the file."""
         expectation = '[[expect]]\nquantity="peak_force"\nvalue=1\nabsolute=1'
         for text in ("time,force\n0,0\n1", "time,force\n0,x\n", "time,force\n1,0\n0,0\n", "time,force\n", "force\n1\n"):

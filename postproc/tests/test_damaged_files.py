@@ -60,16 +60,16 @@ class DamagedFilesTest(unittest.TestCase):
                         self.assertEqual(len(str(error).splitlines()), 1, error)
                         commands = (plot.main,)
                     for command in commands if number % 8 == 0 else ():
-                        code, told = run_quietly(command, path)
-                        self.assertIn(code, (0, 1, 2, 4), told)
-                        self.assertNotIn("Traceback", told)
+                        code, printed = run_quietly(command, path)
+                        self.assertIn(code, (0, 1, 2, 4), printed)
+                        self.assertNotIn("Traceback", printed)
                     try:
                         results.read_panel(path)
                     except ImplamError as error:
                         self.assertEqual(len(str(error).splitlines()), 1, error)
 
     def test_arrays_of_other_sizes_and_kinds(self) -> None:
-        """What is no number, has another length, points outside, or is no plate is told, whatever it is."""
+        """What is no number, has another length, points outside, or is no plate is reported, whatever it is."""
         faults = {"meshes/00000001/connectivity": -1, "meshes/00000001/cells/first_ply": 0,
                   "meshes/00000001/coordinates": np.nan, "times/00000002/cells/delaminated_above": np.inf,
                   "times/00000002/time": np.nan, "times/00000001/mesh": 7}
@@ -90,7 +90,7 @@ class DamagedFilesTest(unittest.TestCase):
                     read_fields(path)
 
     def test_cells_that_are_no_plate(self) -> None:
-        """A point that has moved leaves cells without plies, and a ply too few a hole: panels tell it."""
+        """A point that has moved leaves cells without plies, and a ply too few a hole: panels report it."""
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "case.h5"
             for name, place, value in (("coordinates", (0, 0), 0.5), ("cells/last_ply", 0, 1)):
@@ -102,14 +102,14 @@ class DamagedFilesTest(unittest.TestCase):
                     results.read_panel(path)
 
     def test_histories(self) -> None:
-        """A row that is cut or spoilt is told by its line, in words of a user's."""
+        """A row that is cut or spoilt is reported by its line, in words of a user's."""
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "case_history.csv"
-            for rows, told in (("0,1\n1,\n", "a cell in line 4 that is no number"),
+            for rows, expected in (("0,1\n1,\n", "a cell in line 4 that is no number"),
                                ("0,1\n1,2\n\n2\n", "1 cells under 2 names in line 6"),
                                ("", "has no rows")):
                 path.write_text(f"# a comment\ntime, force\n{rows}", encoding="utf-8")
-                with self.subTest(rows), self.assertRaisesRegex(FileError, told):
+                with self.subTest(rows), self.assertRaisesRegex(FileError, expected):
                     read_columns(path)
 
 

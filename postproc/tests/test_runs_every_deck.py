@@ -46,7 +46,7 @@ class EveryDeckTest(unittest.TestCase):
     """A deck at a time."""
 
     def test_every_deck(self) -> None:
-        """Pictures, one picture of all, movie, page and scene; a command that has nothing to draw says so."""
+        """Pictures, one picture of all, movie, page and ParaView state; a command that has nothing to draw says so."""
         self.assertGreater(len(DECKS), 40 if ALL else 5)
         for source in DECKS:
             # What begins from another run's end is run by compression.py.
@@ -72,10 +72,10 @@ class EveryDeckTest(unittest.TestCase):
                                           (plot.main, [history], True), (movie.main, [fields], layered),
                                           (report.main, [fields.with_name(f"{fields.stem}_summary.json")], True),
                                           (paraview.main, [fields], True)):
-            code, told = run_quietly(command, *arguments)
-            self.assertEqual(code, 0 if needs else 4, f"{command.__module__} {arguments}: {told}")
+            code, printed = run_quietly(command, *arguments)
+            self.assertEqual(code, 0 if needs else 4, f"{command.__module__} {arguments}: {printed}")
             if not needs:
-                self.assertIn("no interface", told)
+                self.assertIn("no interface", printed)
 
 
 if __name__ == "__main__":

@@ -41,10 +41,10 @@ class ManualTest(unittest.TestCase):
         with (self.folder / "energies" / "table.csv").open(newline="") as file:
             rows = list(csv.DictReader(file))
         self.assertEqual(len(rows), len(cells) - 2)
-        for row, told in zip(rows, cells[2:], strict=True):
-            self.assertEqual(row["laminate.angles"], told[0])
-            for name, value in list(zip(cells[0], told, strict=True))[1:]:
-                self.assertAlmostEqual(float(row[name]) / float(value), 1, delta=TOLERANCE, msg=f"{told} {name}")
+        for row, expected in zip(rows, cells[2:], strict=True):
+            self.assertEqual(row["laminate.angles"], expected[0])
+            for name, value in list(zip(cells[0], expected, strict=True))[1:]:
+                self.assertAlmostEqual(float(row[name]) / float(value), 1, delta=TOLERANCE, msg=f"{expected} {name}")
         described = set(re.findall(r"`(\w+)`", text[text.index("## The table"):]))
         self.assertEqual(set(COLUMNS) - described, set())
 
@@ -63,10 +63,10 @@ class ManualTest(unittest.TestCase):
         text = self.write_example("studies.md", "karas.nml", "steps.toml", ROOT / "input" / "verify")
         code, said = run_quietly(study.main, self.folder / "steps.toml", "--program", implam())
         self.assertEqual(code, 0, said)
-        told, found = (_rows(re.search(r"^\| impactor\.integrator.*?\n\n", page, re.DOTALL | re.MULTILINE)[0])
+        expected, found = (_rows(re.search(r"^\| impactor\.integrator.*?\n\n", page, re.DOTALL | re.MULTILINE)[0])
                        for page in (text, said))
-        self.assertEqual(len(told), 6)
-        for row, mine in zip(told, found, strict=True):
+        self.assertEqual(len(expected), 6)
+        for row, mine in zip(expected, found, strict=True):
             for name, value in row.items():
                 if name.endswith("%"):
                     self.assertAlmostEqual(float(mine[name]), float(value), delta=0.02, msg=f"{row} {name}")

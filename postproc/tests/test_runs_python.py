@@ -55,10 +55,10 @@ class PythonInterfaceTest(unittest.TestCase):
         self.assertEqual([units[name] for name in ("time", "force", "deflection", "delaminated_area", "stress", "step",
                                                    "impactor_velocity", "energy_below_2", "extent_x_below_2")],
                          ["s", "N", "m", "m2", "Pa", "", "m/s", "J", "m"])
-        told = json.loads((self.folder / "0" / "damage_summary.json").read_text(encoding="utf-8"))
-        self.assertEqual(self.slow.summary, told)
+        expected = json.loads((self.folder / "0" / "damage_summary.json").read_text(encoding="utf-8"))
+        self.assertEqual(self.slow.summary, expected)
         self.assertEqual((self.slow.ending, self.slow.warnings),
-                         ("done", [warning["text"] for warning in told["warnings"]]))
+                         ("done", [warning["text"] for warning in expected["warnings"]]))
 
     def test_units_are_those_of_the_program(self) -> None:
         """Each column has the dimension that the program's own table of columns gives it."""
@@ -97,7 +97,7 @@ class PythonInterfaceTest(unittest.TestCase):
         self.assertEqual(float(np.nanmax(np.abs(same["difference"]))), 0)
 
     def test_faults(self) -> None:
-        """A faulty deck, an unknown key, the deck's own folder and missing results are each told in a sentence."""
+        """A faulty deck, an unknown key, the deck's own folder and missing results are each reported in a sentence."""
         with self.assertRaisesRegex(implam.RunError, "the run ended with 2: .*velocty") as caught:
             implam.run_deck(SMALL / "damage.nml", {"impactor%velocty": 3}, self.folder / "x", str(program())).wait(60)
         self.assertEqual(caught.exception.exit_code, 2)

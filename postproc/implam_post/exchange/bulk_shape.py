@@ -87,9 +87,9 @@ def _other_elements(bulk: BulkData) -> str:
 
 def _refuse_cuts(bulk: BulkData, places: Mapping[int, np.ndarray], size: float) -> None:
     """Refuse grids at the same place: elements that don't share a grid don't hold together."""
-    seen: dict[tuple[int, int], int] = {}
+    first_at: dict[tuple[int, int], int] = {}
     for number, place in sorted(places.items()):
-        first = seen.setdefault(tuple(np.round(place[:2] / (1e-5 * size)).astype(int)), number)
+        first = first_at.setdefault(tuple(np.round(place[:2] / (1e-5 * size)).astype(int)), number)
         if first != number:
             raise bulk.missing(f"the grids {first} and {number} are at the same place: the panel is cut there.")
 

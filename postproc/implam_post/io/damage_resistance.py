@@ -18,7 +18,7 @@ CORNER = 6e3
 # A fall counts from this part of the force on, and if plies and interfaces took at least this part of what the fall
 # releases with the impactor fixed, F w/2. On panels of 6.5, 10 and 25 J falls by vibration have up to .04 of it, those
 # in which plies and interfaces break from .18 on.
-_LEAST_FALL, _LEAST_SHARE = 0.02, 0.1
+_MIN_FORCE_DROP, _MIN_ENERGY_RATIO = 0.02, 0.1
 # Delay of the low pass, in radians at its corner.
 _DELAY = 2.6
 # Steps of the filter in a period of its corner, and the fewest rows of the history in one.
@@ -81,8 +81,8 @@ def threshold(history: History, corner: float) -> Threshold | None:
         after = place + 1 + int(ahead[0]) if len(ahead) else last
         lowest = place + int(np.argmin(force[place:after + 1]))
         fall = force[place] - force[lowest]
-        if fall >= _LEAST_FALL * force[place] > 0 and (
-                taken[lowest] - taken[place] >= _LEAST_SHARE * fall * displaced[place] / 2):
+        if fall >= _MIN_FORCE_DROP * force[place] > 0 and (
+                taken[lowest] - taken[place] >= _MIN_ENERGY_RATIO * fall * displaced[place] / 2):
             at = float(even[place])
             return Threshold(float(force[place]), at, energy_transferred(history, at - delay), corner)
         place = after

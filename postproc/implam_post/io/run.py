@@ -149,7 +149,7 @@ class Run:
 
         return figures(self)
 
-    def forget_fields(self) -> None:
+    def close_fields(self) -> None:
         """Free the memory of the fields; they are read again when they are needed."""
         self.__dict__.pop("fields", None)
 

@@ -103,9 +103,9 @@ def _numbers(summary: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
         yield f"area_{below}", float(entry["area"])
         yield f"energy_{below}", float(entry["energy"])
         for event in _EVENTS:
-            seen = entry[event] or {}
-            if "force" in seen or not seen:
-                yield f"{event}_force_{below}", float(seen.get("force", math.nan))
+            found = entry[event] or {}
+            if "force" in found or not found:
+                yield f"{event}_force_{below}", float(found.get("force", math.nan))
         for axis in ("x", "y"):
             yield f"{axis}_extent_{below}", float(entry[axis][1] - entry[axis][0])
 

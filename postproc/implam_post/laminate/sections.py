@@ -7,7 +7,7 @@ import numpy as np
 
 # Ratio of shear moduli beyond which the solver takes the shear stiffness of equilibrium by itself
 # (src/laminate/shear_corrections.f90).
-_MOST_CONTRAST = 10
+_MAX_CONTRAST = 10
 
 
 @dataclass(frozen=True)
@@ -81,7 +81,7 @@ def shear_contrast(plies: Sequence[Ply]) -> float:
 
 def natural_shear_correction(plies: Sequence[Ply]) -> str:
     """Return the shear correction that the solver takes if the deck gives none."""
-    return "energy" if shear_contrast(plies) > _MOST_CONTRAST else "5/6"
+    return "energy" if shear_contrast(plies) > _MAX_CONTRAST else "5/6"
 
 
 def section_of(plies: Sequence[Ply], shear_correction: str = "5/6") -> Section:

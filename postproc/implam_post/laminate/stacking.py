@@ -4,7 +4,7 @@ import re
 
 from implam_post.io.errors import DeckError
 
-MOST_PLIES = 1000
+MAX_PLIES = 1000
 _ANGLE = re.compile(r"\s*(?P<signs>\+-|-\+|±|\+|-)?\s*(?P<angle>\d+\.?\d*|\.\d+)")
 _COUNT = re.compile(r"\s*(\d{1,4})(?!\d)")
 _CLOSING = {"[": "]", "(": ")"}
@@ -32,12 +32,12 @@ class _Reader:
         return DeckError(f"stacking '{self.text}' can't be read from character {self.at + 1} on.")
 
     def plies(self) -> tuple[list[float], bool]:
-        """Read items parted by slashes; return their angles, and whether the last is the middle one of a mirror."""
+        """Read items separated by slashes; return their angles, and whether the last is the middle one of a mirror."""
         angles: list[float] = []
         while True:
             item, barred = self._item()
             angles += item
-            if len(angles) > MOST_PLIES:
+            if len(angles) > MAX_PLIES:
                 raise self.error()
             if barred or not self._take("/"):
                 return angles, barred
@@ -63,7 +63,7 @@ class _Reader:
                 angles = self._count() * angles
             else:
                 return angles, barred
-            if len(angles) > MOST_PLIES:
+            if len(angles) > MAX_PLIES:
                 raise self.error()
 
     def _angle(self) -> list[float]:
@@ -79,7 +79,7 @@ class _Reader:
     def _count(self) -> int:
         """Read a count."""
         match = _COUNT.match(self.text, self.at)
-        if match is None or not 1 <= int(match[1]) <= MOST_PLIES:
+        if match is None or not 1 <= int(match[1]) <= MAX_PLIES:
             raise self.error()
         self.at = match.end()
         return int(match[1])

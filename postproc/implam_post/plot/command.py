@@ -8,19 +8,19 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, ImplamError, run
-from implam_post.plot.look import FORMATS, Look, add_options, look_of
+from implam_post.plot.style import FORMATS, PictureStyle, add_options, style_of
 
 
 def _command(options: argparse.Namespace) -> int:
     """Draw and say what was drawn."""
     import matplotlib
 
-    look = look_of(options, options.results)
-    with matplotlib.rc_context({"font.size": look.letters}):
-        return _draw_all(options, look)
+    style = style_of(options, options.results)
+    with matplotlib.rc_context({"font.size": style.letters}):
+        return _draw_all(options, style)
 
 
-def _draw_all(options: argparse.Namespace, look: Look) -> int:
+def _draw_all(options: argparse.Namespace, style: PictureStyle) -> int:
     """Draw what the command line requires."""
     from implam_post.io.fields import read_fields
     from implam_post.io.history import read_history
@@ -36,16 +36,16 @@ def _draw_all(options: argparse.Namespace, look: Look) -> int:
     for path in results:
         fields, history = read_fields(path), options.history or path.with_name(f"{path.stem}_history.csv")
         if options.save:
-            print(plot_overview(fields, read_history(history), options.save, look))
+            print(plot_overview(fields, read_history(history), options.save, style))
             return EXIT_DONE
-        drawn = plot_fields(fields, (options.output or path.parent) / path.stem, options.times, look)
+        drawn = plot_fields(fields, (options.output or path.parent) / path.stem, options.times, style)
         print(*drawn or [f"{path} holds neither interfaces nor failures of plies."], sep="\n")
         if history not in histories and (options.history or history.exists()):
             histories.append(history)
-    return _plot_histories(histories, options, look) if histories else EXIT_DONE
+    return _plot_histories(histories, options, style) if histories else EXIT_DONE
 
 
-def _plot_histories(paths: Sequence[Path], options: argparse.Namespace, look: Look) -> int:
+def _plot_histories(paths: Sequence[Path], options: argparse.Namespace, style: PictureStyle) -> int:
     """Draw the responses over each other and the energies of each history."""
     from implam_post.io.history import read_history
     from implam_post.plot.pictures import RESPONSES, plot_compression, plot_energies, plot_response
@@ -55,13 +55,13 @@ def _plot_histories(paths: Sequence[Path], options: argparse.Namespace, look: Lo
     measured = read_history(options.measured) if options.measured else None
     if measured is not None and not set(measured.columns) & set(RESPONSES):
         raise FileError(f"{options.measured} has none of the columns {', '.join(RESPONSES)} beside time.")
-    response = folders[0] / f"{paths[0].stem}_response.{look.kind}"
-    print(plot_response(histories, response, look, measured))
-    pressed = plot_compression(histories, folders[0] / f"{paths[0].stem}_compression.{look.kind}", look)
-    if pressed is not None:
-        print(pressed)
+    response = folders[0] / f"{paths[0].stem}_response.{style.kind}"
+    print(plot_response(histories, response, style, measured))
+    compressed = plot_compression(histories, folders[0] / f"{paths[0].stem}_compression.{style.kind}", style)
+    if compressed is not None:
+        print(compressed)
     for history, path, folder in zip(histories, paths, folders, strict=True):
-        print(plot_energies(history, folder / f"{path.stem}_energies.{look.kind}", look))
+        print(plot_energies(history, folder / f"{path.stem}_energies.{style.kind}", style))
     return EXIT_DONE
 
 

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from implam_post.io.errors import FileError
 from implam_post.io.history import History, read_columns
-from implam_post.plot.look import Look
+from implam_post.plot.style import PictureStyle
 
 # What columns are called on an axis, and their dimensions.
 AXES = {"time": ("time", "time"), "force": ("contact force", "force"), "indentation": ("indentation", "length"),
@@ -18,15 +18,15 @@ AXES = {"time": ("time", "time"), "force": ("contact force", "force"), "indentat
         "delaminated_area": ("delaminated area", "area"), "projected_area": ("projected area", "area")}
 
 
-def plot_curves(history: History, files: Sequence[Path], path: Path, look: Look) -> Path:
+def plot_curves(history: History, files: Sequence[Path], path: Path, style: PictureStyle) -> Path:
     """Draw a history as lines over the curves of some files as dots, a panel each."""
     curves = [read_columns(file) for file in files]
-    with matplotlib.rc_context({"font.size": look.letters}):
+    with matplotlib.rc_context({"font.size": style.letters}):
         figure = Figure(figsize=(8, 4.5 * len(curves)), layout="constrained")
         for axes, curve in zip(figure.subplots(len(curves), squeeze=False)[:, 0], curves, strict=True):
             along, up = _columns(curve)
             shown = history if along == "time" else in_contact(history)
-            horizontal, vertical = (look.axis(*AXES[name], [*curve[name], *shown[name]]) for name in (along, up))
+            horizontal, vertical = (style.axis(*AXES[name], [*curve[name], *shown[name]]) for name in (along, up))
             axes.plot(horizontal.factor * shown[along], vertical.factor * shown[up], label="Implam")
             axes.plot(horizontal.factor * curve[along], vertical.factor * curve[up], "k.", markersize=4,
                       label=f"measured ({Path(curve.name).stem})")
@@ -35,7 +35,7 @@ def plot_curves(history: History, files: Sequence[Path], path: Path, look: Look)
             axes.legend()
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
-            figure.savefig(path, dpi=look.dots_per_inch)
+            figure.savefig(path, dpi=style.dots_per_inch)
         except (OSError, ValueError) as error:
             raise FileError(f"{path} cannot be written ({error}).") from None
     return path

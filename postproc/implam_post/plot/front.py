@@ -12,14 +12,14 @@ from matplotlib.ticker import MultipleLocator
 
 from implam_post.io.contours import outline
 from implam_post.io.fields import IMAGES, Fields, Snapshot, struck_point
-from implam_post.plot.look import Look
 from implam_post.plot.plan_frame import frame, reach_of
+from implam_post.plot.style import PictureStyle
 
-_MOST_TIMES = 8
-_PLAIN = Look()
+_MAX_TIMES = 8
+_PLAIN = PictureStyle()
 
 
-def front_figure(fields: Fields, times: Sequence[float] | None = None, look: Look = _PLAIN) -> Figure:
+def front_figure(fields: Fields, times: Sequence[float] | None = None, style: PictureStyle = _PLAIN) -> Figure:
     """Draw each interface at the given times, or at some of those at which its front is loaded.
 
     On the left G/G_c against the angle around the struck point, a line for each time; on the right in plan, at that of
@@ -30,14 +30,14 @@ def front_figure(fields: Fields, times: Sequence[float] | None = None, look: Loo
     for (left, right), below_ply in zip(figure.subplots(len(interfaces), 2, squeeze=False), interfaces, strict=True):
         snapshots = _chosen(fields, below_ply, times)
         left.set_title(f"below ply {below_ply}", fontsize="medium")
-        _draw_around(left, fields, below_ply, snapshots, look)
+        _draw_around(left, fields, below_ply, snapshots, style)
         if snapshots:
             draw_front(right, fields, below_ply, max(snapshots, key=lambda one: np.max(one.release(below_ply)[1])),
-                       look)
+                       style)
     return figure
 
 
-def draw_front(axes: Axes, fields: Fields, below_ply: int, snapshot: Snapshot, look: Look = _PLAIN) -> None:
+def draw_front(axes: Axes, fields: Fields, below_ply: int, snapshot: Snapshot, style: PictureStyle = _PLAIN) -> None:
     """Draw the outline in plan at one time, and the cells ahead of it coloured by G/G_c."""
     cells, ratio = snapshot.release(below_ply)
     cells, ratio = fields.full_plate(cells), np.tile(ratio, len(IMAGES[fields.part]))
@@ -46,12 +46,13 @@ def draw_front(axes: Axes, fields: Fields, below_ply: int, snapshot: Snapshot, l
     axes.add_collection(shown)
     delaminated = fields.delaminated(fields.place(snapshot.time), below_ply)
     axes.add_collection(LineCollection(outline(delaminated), colors="black", linewidths=0.8))
-    axes.set_title(f"time {look.shown('time', snapshot.time)}", fontsize="medium")
-    frame(axes, fields, reach_of(np.concatenate([cells, delaminated]), fields), look)
+    axes.set_title(f"time {style.shown('time', snapshot.time)}", fontsize="medium")
+    frame(axes, fields, reach_of(np.concatenate([cells, delaminated]), fields), style)
     axes.figure.colorbar(shown, ax=axes, location="bottom", shrink=0.8, label="$G/G_c$ ahead of the front")
 
 
-def _draw_around(axes: Axes, fields: Fields, below_ply: int, snapshots: Sequence[Snapshot], look: Look) -> None:
+def _draw_around(axes: Axes, fields: Fields, below_ply: int, snapshots: Sequence[Snapshot],
+                 style: PictureStyle) -> None:
     """Draw G/G_c against the angle from x to the cells ahead of the front; one quarter stands for all."""
     colours = colormaps["viridis_r"](np.linspace(0, 1, max(len(snapshots), 2)))
     for snapshot, colour in zip(snapshots, colours, strict=False):
@@ -59,7 +60,7 @@ def _draw_around(axes: Axes, fields: Fields, below_ply: int, snapshots: Sequence
         x, y = (np.mean(cells, axis=1) - struck_point(fields)).T
         angle = np.degrees(np.arctan2(y, x))
         order = np.argsort(angle)
-        axes.plot(angle[order], ratio[order], ".-", color=colour, linewidth=1, label=look.shown("time", snapshot.time))
+        axes.plot(angle[order], ratio[order], ".-", color=colour, linewidth=1, label=style.shown("time", snapshot.time))
     axes.axhline(1, color="black", linestyle="--", linewidth=1)
     axes.set(xlabel="angle from x around the struck point (degrees)", ylabel="$G/G_c$",
              xlim=(0, 90) if fields.quarter else (-180, 180))
@@ -77,7 +78,7 @@ def _chosen(fields: Fields, below_ply: int, times: Sequence[float] | None) -> li
 
     if times is None:
         all_loaded = loaded(fields.snapshots)
-        places = np.linspace(0, len(all_loaded) - 1, min(len(all_loaded), _MOST_TIMES)).astype(int)
+        places = np.linspace(0, len(all_loaded) - 1, min(len(all_loaded), _MAX_TIMES)).astype(int)
         return [all_loaded[place] for place in places]
     nearest = sorted({fields.place(time) for time in times})
     return loaded([fields.snapshots[place] for place in nearest])

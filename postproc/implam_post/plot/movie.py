@@ -14,23 +14,23 @@ from PIL import Image
 from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, run
 from implam_post.io.fields import Fields, read_fields
 from implam_post.io.history import History, read_history
-from implam_post.plot.compression import STRESS, is_pressed
-from implam_post.plot.look import Look, add_options, look_of
+from implam_post.plot.compression import STRESS, is_compressed
 from implam_post.plot.plan_frame import fill, frame, reach_of
+from implam_post.plot.style import PictureStyle, add_options, style_of
 
-# What is drawn against time: without and with lines that press ends of the plate together.
+# What is drawn against time: without and with lines that compress the plate.
 _LOADS = (("force", "contact force", "force"), (STRESS, "far-field stress", "stress"))
 
 
-def frames(fields: Fields, history: History | None, look: Look) -> list[Image.Image]:
+def frames(fields: Fields, history: History | None, style: PictureStyle) -> list[Image.Image]:
     """Return a picture for each time written, all of one scale."""
-    return [_picture(fields, history, look, place) for place in range(len(fields.snapshots))]
+    return [_picture(fields, history, style, place) for place in range(len(fields.snapshots))]
 
 
-def _picture(fields: Fields, history: History | None, look: Look, moment: int) -> Image.Image:
+def _picture(fields: Fields, history: History | None, style: PictureStyle, moment: int) -> Image.Image:
     """Draw what has delaminated at a time, an interface a colour, the nearest to the struck face on top."""
     time = fields.snapshots[moment].time
-    figure = Figure(figsize=(6, 6 if history is None else 8), layout="constrained", dpi=look.dots_per_inch)
+    figure = Figure(figsize=(6, 6 if history is None else 8), layout="constrained", dpi=style.dots_per_inch)
     canvas = FigureCanvasAgg(figure)
     plan, *below = np.ravel(figure.subplots(1 if history is None else 2, squeeze=False,
                                             height_ratios=[1] if history is None else [3, 1]))
@@ -39,13 +39,13 @@ def _picture(fields: Fields, history: History | None, look: Look, moment: int) -
         fill(plan, fields.delaminated(moment, interfaces[place]), facecolor=f"C{place % 10}", linewidth=0)
     plan.legend(handles=[Patch(color=f"C{place % 10}", label=f"below ply {below_ply}")
                          for place, below_ply in enumerate(interfaces)], loc="upper right", fontsize="small")
-    plan.set_title(f"time {look.shown('time', time)}")
+    plan.set_title(f"time {style.shown('time', time)}")
     last = len(fields.snapshots) - 1
-    frame(plan, fields, reach_of(np.concatenate([fields.delaminated(last, ply) for ply in interfaces]), fields), look)
+    frame(plan, fields, reach_of(np.concatenate([fields.delaminated(last, ply) for ply in interfaces]), fields), style)
     if history is not None:
-        clock = look.axis("time", "time", history.time)
-        column, label, dimension = _LOADS[is_pressed(history)]
-        load = look.axis(label, dimension, history[column])
+        clock = style.axis("time", "time", history.time)
+        column, label, dimension = _LOADS[is_compressed(history)]
+        load = style.axis(label, dimension, history[column])
         below[0].plot(clock.factor * history.time, load.factor * history[column], linewidth=1)
         below[0].plot(clock.factor * time, load.factor * history.at(column, min(time, history.time[-1])), "o")
         below[0].set(xlabel=clock.label, ylabel=load.label)
@@ -55,13 +55,13 @@ def _picture(fields: Fields, history: History | None, look: Look, moment: int) -
 
 def _command(options: argparse.Namespace) -> int:
     """Draw the movie and say where it is."""
-    look = look_of(options, [options.fields])
+    style = style_of(options, [options.fields])
     fields = read_fields(options.fields)
     if not fields.snapshots[-1].mesh.interfaces:
         raise FileError(f"{options.fields} has no interface that may delaminate.")
     history = options.fields.with_name(f"{options.fields.stem}_history.csv")
-    with matplotlib.rc_context({"font.size": look.letters}):
-        pictures = frames(fields, read_history(history) if history.exists() else None, look)
+    with matplotlib.rc_context({"font.size": style.letters}):
+        pictures = frames(fields, read_history(history) if history.exists() else None, style)
     path = options.save or options.fields.with_suffix(".gif")
     try:
         pictures[0].save(path, save_all=True, append_images=pictures[1:], duration=1000 / options.rate, loop=0)

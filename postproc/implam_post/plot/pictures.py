@@ -11,10 +11,9 @@ from implam_post.io.errors import FileError
 from implam_post.io.fields import Fields
 from implam_post.io.history import ENERGY_NAMES, UNACCOUNTED, History
 from implam_post.io.quantities import growth_rows
-from implam_post.plot.compression import compression_figure, is_pressed
+from implam_post.plot.compression import compression_figure, is_compressed
 from implam_post.plot.curves import AXES, in_contact
 from implam_post.plot.front import front_figure
-from implam_post.plot.look import STYLES, Look, settle
 from implam_post.plot.plan import (
     delamination_figure,
     draw_cracks,
@@ -23,10 +22,11 @@ from implam_post.plot.plan import (
     projected_figure,
 )
 from implam_post.plot.plan_frame import caption, reach_of
+from implam_post.plot.style import STYLES, PictureStyle, lay_out
 
 RESPONSES = {"force": ("contact force", "force"), "indentation": ("indentation", "length"),
               "deflection": ("deflection of struck point", "length")}
-_PLAIN = Look()
+_PLAIN = PictureStyle()
 
 
 def plot_forces(histories: Sequence[History], path: Path) -> Path:
@@ -36,35 +36,35 @@ def plot_forces(histories: Sequence[History], path: Path) -> Path:
     return _save(figure, path)
 
 
-def plot_response(histories: Sequence[History], path: Path, look: Look = _PLAIN,
+def plot_response(histories: Sequence[History], path: Path, style: PictureStyle = _PLAIN,
                   measured: History | None = None) -> Path:
     """Draw force, indentation, deflection, all with what was measured, and force against displacement."""
     figure = Figure(figsize=(8, 13), layout="constrained")
     *panels, last = figure.subplots(len(RESPONSES) + 1)
     for axes, column in zip(panels, RESPONSES, strict=True):
         axes.sharex(panels[0])
-        _draw(axes, histories, column, look, measured)
-    _draw_loop(last, histories, look)
-    return _save(figure, path, look)
+        _draw(axes, histories, column, style, measured)
+    _draw_loop(last, histories, style)
+    return _save(figure, path, style)
 
 
-def plot_compression(histories: Sequence[History], path: Path, look: Look = _PLAIN) -> Path | None:
-    """Draw stress and gauges of those histories whose plates are pressed together; None if there are none."""
-    pressed = [history for history in histories if is_pressed(history)]
-    if not pressed:
+def plot_compression(histories: Sequence[History], path: Path, style: PictureStyle = _PLAIN) -> Path | None:
+    """Draw stress and gauges of the compressions among some histories; None if there are none."""
+    compressed = [history for history in histories if is_compressed(history)]
+    if not compressed:
         return None
-    names = _names([history.name for history in pressed])
-    return _save(compression_figure(dict(zip(names, pressed, strict=True)), look), path, look)
+    names = _names([history.name for history in compressed])
+    return _save(compression_figure(dict(zip(names, compressed, strict=True)), style), path, style)
 
 
-def plot_energies(history: History, path: Path, look: Look = _PLAIN) -> Path:
+def plot_energies(history: History, path: Path, style: PictureStyle = _PLAIN) -> Path:
     """Draw the energies of a history stacked, those below zero downwards, and the total at the start."""
     figure = Figure(figsize=(8, 5), layout="constrained")
-    _stack(figure.subplots(), history, look)
-    return _save(figure, path, look)
+    _stack(figure.subplots(), history, style)
+    return _save(figure, path, style)
 
 
-def plot_overview(fields: Fields, history: History, path: Path, look: Look = _PLAIN) -> Path:
+def plot_overview(fields: Fields, history: History, path: Path, style: PictureStyle = _PLAIN) -> Path:
     """Draw each interface in plan, with the cracks beside it, the force and the energies in one picture."""
     interfaces = fields.snapshots[-1].mesh.interfaces
     if not interfaces:
@@ -74,38 +74,40 @@ def plot_overview(fields: Fields, history: History, path: Path, look: Look = _PL
     last = len(fields.snapshots) - 1
     reach = np.max([reach_of(fields.delaminated(last, ply), fields) for ply in interfaces], axis=0)
     for axes, below_ply in zip(left.subplots(len(interfaces), squeeze=False)[:, 0], interfaces, strict=True):
-        draw_delamination(axes, fields, below_ply, look, reach)
+        draw_delamination(axes, fields, below_ply, style, reach)
         if fields.snapshots[-1].failures:
             draw_cracks(axes, fields, below_ply)
     force, energies = right.subplots(2)
-    _draw(force, [history], "force", look)
-    _stack(energies, history, look)
-    figure.supxlabel(caption(fields, look), fontsize="small")
-    return _save(figure, path, look)
+    _draw(force, [history], "force", style)
+    _stack(energies, history, style)
+    figure.supxlabel(caption(fields, style), fontsize="small")
+    return _save(figure, path, style)
 
 
-def plot_fields(fields: Fields, base: Path, times: Sequence[float] | None = None, look: Look = _PLAIN) -> list[Path]:
+def plot_fields(fields: Fields, base: Path, times: Sequence[float] | None = None,
+                style: PictureStyle = _PLAIN) -> list[Path]:
     """Draw what the fields hold of interfaces, of their fronts (at some times) and of plies, a picture each."""
     figures = {}
     if fields.snapshots[-1].mesh.interfaces:
-        figures["delamination"] = delamination_figure(fields, look)
-        figures["projected"] = projected_figure(fields, look)
+        figures["delamination"] = delamination_figure(fields, style)
+        figures["projected"] = projected_figure(fields, style)
     if any(np.any(snapshot.release_ratio > 0) for snapshot in fields.snapshots):
-        figures["front"] = front_figure(fields, times, look)
+        figures["front"] = front_figure(fields, times, style)
     if fields.snapshots[-1].failures:
-        figures["matrix"] = failures_figure(fields, ("matrix cracking", "matrix crushing"), look)
-        figures["fibres"] = failures_figure(fields, ("fibre failure",), look)
-    return [_save(figure, base.with_name(f"{base.name}_{name}.{look.kind}"), look) for name, figure in figures.items()]
+        figures["matrix"] = failures_figure(fields, ("matrix cracking", "matrix crushing"), style)
+        figures["fibres"] = failures_figure(fields, ("fibre failure",), style)
+    return [_save(figure, base.with_name(f"{base.name}_{name}.{style.kind}"), style)
+            for name, figure in figures.items()]
 
 
-def _stack(axes: Axes, history: History, look: Look) -> None:
+def _stack(axes: Axes, history: History, style: PictureStyle) -> None:
     """Draw the energies stacked."""
     balance = {column: history[column] for column in ENERGY_NAMES if column in history.columns}
     shown = {column: values for column, values in balance.items() if np.any(values)}
     colours = [f"C{list(ENERGY_NAMES).index(column)}" for column in shown]
     start = sum(values[0] for values in balance.values())
-    time = look.axis("time", "time", history.time)
-    energy = look.axis("energy", "energy", [start, *(np.max(np.abs(values)) for values in shown.values())])
+    time = style.axis("time", "time", history.time)
+    energy = style.axis("energy", "energy", [start, *(np.max(np.abs(values)) for values in shown.values())])
     if shown:
         labels = [ENERGY_NAMES[column] for column in shown]
         for parts, names in ((np.maximum, labels), (np.minimum, ())):
@@ -126,22 +128,23 @@ def response_of(history: History, column: str) -> np.ndarray:
     return history[column]
 
 
-def _draw(axes: Axes, histories: Sequence[History], column: str, look: Look = _PLAIN,
+def _draw(axes: Axes, histories: Sequence[History], column: str, style: PictureStyle = _PLAIN,
           measured: History | None = None) -> None:
     """Draw a column of several histories, each in a style of its own, and what was measured as dots."""
     words, dimension = RESPONSES[column]
     drawn = [*histories, *([measured] if measured is not None and column in measured.columns else [])]
-    time = look.axis("time", "time", np.concatenate([history.time for history in drawn]))
-    value = look.axis(words, dimension, np.concatenate([response_of(history, column) for history in drawn]))
+    time = style.axis("time", "time", np.concatenate([history.time for history in drawn]))
+    value = style.axis(words, dimension, np.concatenate([response_of(history, column) for history in drawn]))
     names = _names([history.name for history in histories])
     for position, history in enumerate(histories):
-        style = STYLES[position % len(STYLES)]
+        line_style = STYLES[position % len(STYLES)]
         axes.plot(time.factor * history.time, value.factor * response_of(history, column), label=names[position],
-                  **style)
+                  **line_style)
         grown = growth_rows(history)
         if column == "force" and len(grown):
             axes.plot(time.factor * history.time[grown], value.factor * history[column][grown], "o", markersize=3,
-                      color=style["color"], label="delamination grows" + (f" ({names[position]})" if position else ""))
+                      color=line_style["color"],
+                      label="delamination grows" + (f" ({names[position]})" if position else ""))
     if drawn[-1] is measured:
         axes.plot(time.factor * measured.time, value.factor * measured[column], "k.", markersize=4,
                   label=f"measured ({Path(measured.name).stem})")
@@ -151,12 +154,12 @@ def _draw(axes: Axes, histories: Sequence[History], column: str, look: Look = _P
     axes.legend()
 
 
-def _draw_loop(axes: Axes, histories: Sequence[History], look: Look) -> None:
+def _draw_loop(axes: Axes, histories: Sequence[History], style: PictureStyle) -> None:
     """Draw the force against the displacement of the impactor, or of the struck point where no history has that."""
     along = "impactor_displacement" if all(
         np.any(history.columns.get("impactor_displacement", 0)) for history in histories) else "deflection"
     shown = [in_contact(history) for history in histories]
-    horizontal, force = (look.axis(*AXES[column], np.concatenate([history[column] for history in shown]))
+    horizontal, force = (style.axis(*AXES[column], np.concatenate([history[column] for history in shown]))
                      for column in (along, "force"))
     for position, (history, name) in enumerate(zip(shown, _names([one.name for one in histories]), strict=True)):
         axes.plot(horizontal.factor * history[along], force.factor * history["force"], label=name,
@@ -173,12 +176,12 @@ def _names(paths: Sequence[str]) -> list[str]:
             for stem, path in zip(stems, paths, strict=True)]
 
 
-def _save(figure: Figure, path: Path, look: Look = _PLAIN) -> Path:
+def _save(figure: Figure, path: Path, style: PictureStyle = _PLAIN) -> Path:
     """Write the figure, making the folder if it isn't there, and return the path."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        settle(figure)
-        figure.savefig(path, dpi=look.dots_per_inch)
+        lay_out(figure)
+        figure.savefig(path, dpi=style.dots_per_inch)
     except (OSError, ValueError) as error:
         raise FileError(f"{path} cannot be written ({error}).") from None
     return path

@@ -15,19 +15,19 @@ from matplotlib.ticker import FuncFormatter, MaxNLocator
 from implam_post.io.errors import ImplamError
 from implam_post.io.fields import MODES, Fields, deck_in, outline
 from implam_post.laminate.decks import plies_of
-from implam_post.plot.look import Look
 from implam_post.plot.plan_frame import caption, clock_of, fill, frame, height_of, locate, reach_of
+from implam_post.plot.style import PictureStyle
 
 _COLOURS = {"fibre failure": "C3", "matrix cracking": "C0", "matrix crushing": "C1"}
 _COLUMNS = 5
-_PLAIN = Look()
+_PLAIN = PictureStyle()
 # Inches beside a map, above and below it (title, axis, bar), of the words below all, and of a legend.
 _BESIDE, _WORDS, _CAPTION, _BAR = 0.9, 2.0, 0.6, 0.6
 # Digits of areas, as many as the summary prints.
 _DIGITS = 4
 
 
-def delamination_figure(fields: Fields, look: Look = _PLAIN) -> Figure:
+def delamination_figure(fields: Fields, style: PictureStyle = _PLAIN) -> Figure:
     """Draw each interface of the full plate on one scale of lengths, coloured by the time it delaminated."""
     interfaces = fields.snapshots[-1].mesh.interfaces
     columns = 1 if len(interfaces) < 4 else 3
@@ -38,64 +38,65 @@ def delamination_figure(fields: Fields, look: Look = _PLAIN) -> Figure:
     figure = Figure(figsize=(width * columns, height * rows + _CAPTION), layout="constrained")
     grid = figure.subplots(rows, columns, squeeze=False).ravel()
     for axes, below_ply in zip(grid, interfaces, strict=False):
-        draw_delamination(axes, fields, below_ply, look, reach)
+        draw_delamination(axes, fields, below_ply, style, reach)
     locate(grid[0], fields)
     for axes in grid[len(interfaces):]:
         axes.set_visible(False)
-    figure.supxlabel(caption(fields, look), fontsize="small")
+    figure.supxlabel(caption(fields, style), fontsize="small")
     return figure
 
 
-def draw_delamination(axes: Axes, fields: Fields, below_ply: int, look: Look = _PLAIN,
+def draw_delamination(axes: Axes, fields: Fields, below_ply: int, style: PictureStyle = _PLAIN,
                       reach: Sequence[float] | None = None) -> None:
     """Draw the delamination below a ply: when it came to which place, and its outline at every time written.
 
     What had delaminated before the run is the starter, in grey. `reach` is what the picture has to hold.
     """
     regions = [fields.delaminated(place, below_ply) for place in range(len(fields.snapshots))]
-    draw_times(axes, fields, regions, fields.starter(below_ply), look)
-    axes.set_title(title_of(fields, below_ply, look), fontsize="medium")
-    frame(axes, fields, reach_of(regions[-1], fields) if reach is None else reach, look)
+    draw_times(axes, fields, regions, fields.starter(below_ply), style)
+    axes.set_title(title_of(fields, below_ply, style), fontsize="medium")
+    frame(axes, fields, reach_of(regions[-1], fields) if reach is None else reach, style)
 
 
-def title_of(fields: Fields, below_ply: int, look: Look = _PLAIN) -> str:
+def title_of(fields: Fields, below_ply: int, style: PictureStyle = _PLAIN) -> str:
     """Return what an interface has come to at the last time, with the figures of the summary."""
     figures = fields.interface(len(fields.snapshots) - 1, below_ply)
     kind = "dissipated area" if figures.is_cohesive else "delaminated area"
-    along, across = (look.shown("length", length) for length in figures.extents)
+    along, across = (style.shown("length", length) for length in figures.extents)
     grown = f"{'failed' if figures.is_cohesive else 'delaminated'} over {along} by {across}" if any(
         figures.extents) else "no point has failed"
-    return f"below ply {below_ply}: {kind} {look.shown('area', figures.area, _DIGITS)}\n{grown}"
+    return f"below ply {below_ply}: {kind} {style.shown('area', figures.area, _DIGITS)}\n{grown}"
 
 
-def projected_figure(fields: Fields, look: Look = _PLAIN) -> Figure:
-    """Draw all interfaces seen through the plate as a C-scan does, coloured as `look.projected` says.
+def projected_figure(fields: Fields, style: PictureStyle = _PLAIN) -> Figure:
+    """Draw all interfaces seen through the plate as a C-scan does, coloured as `style.projected` says.
 
     By depth a place has the colour of the delaminated interface nearest to the struck face, by time of when the first
     one delaminated.
     """
     interfaces, last = fields.snapshots[-1].mesh.interfaces, len(fields.snapshots) - 1
-    seen = fields.projected(last)
-    figure = Figure(figsize=(7, height_of(7 - _BESIDE, reach_of(seen, fields)) + _WORDS + _CAPTION),
+    final = fields.projected(last)
+    figure = Figure(figsize=(7, height_of(7 - _BESIDE, reach_of(final, fields)) + _WORDS + _CAPTION),
                     layout="constrained")
     axes = figure.subplots()
-    if look.projected == "time":
-        draw_times(axes, fields, [fields.projected(place) for place in range(last)] + [seen], np.empty((0, 4, 2)), look)
+    if style.projected == "time":
+        earlier = [fields.projected(place) for place in range(last)]
+        draw_times(axes, fields, [*earlier, final], np.empty((0, 4, 2)), style)
     else:
         # Between points the largest share of all is not the larger of two linear ones: grey is left of it.
-        fill(axes, seen, facecolor="lightgrey", linewidth=0)
+        fill(axes, final, facecolor="lightgrey", linewidth=0)
         draw_depths(axes, fields.projected_depths(last))
-    if look.projected == "depth" and len(interfaces) > 1:
+    if style.projected == "depth" and len(interfaces) > 1:
         scale = ScalarMappable(BoundaryNorm(np.arange(len(interfaces) + 1) - 0.5, 256), "turbo")
         bar = figure.colorbar(scale, ax=axes, ticks=range(len(interfaces)), location="bottom",
                               label="delaminated interface nearest to the struck face, below ply")
         bar.set_ticklabels([str(below_ply) for below_ply in interfaces])
-    fill(axes, seen, facecolor="none", edgecolor="black", linewidth=0.8)
-    axes.set_title(f"all interfaces: projected area {look.shown('area', fields.projected_area(last), _DIGITS)}",
+    fill(axes, final, facecolor="none", edgecolor="black", linewidth=0.8)
+    axes.set_title(f"all interfaces: projected area {style.shown('area', fields.projected_area(last), _DIGITS)}",
                    fontsize="medium")
-    frame(axes, fields, reach_of(seen, fields), look)
+    frame(axes, fields, reach_of(final, fields), style)
     locate(axes, fields)
-    figure.supxlabel(caption(fields, look), fontsize="small")
+    figure.supxlabel(caption(fields, style), fontsize="small")
     return figure
 
 
@@ -106,7 +107,8 @@ def draw_depths(axes: Axes, regions: Sequence[np.ndarray], cmap: str = "turbo") 
         fill(axes, regions[place], facecolor=colormaps[cmap](norm(place)), linewidth=0)
 
 
-def draw_times(axes: Axes, fields: Fields, regions: Sequence[np.ndarray], starter: np.ndarray, look: Look) -> None:
+def draw_times(axes: Axes, fields: Fields, regions: Sequence[np.ndarray], starter: np.ndarray,
+               style: PictureStyle) -> None:
     """Draw regions that grow, by the time at which each is reached, the starter in grey, with a bar."""
     times = [snapshot.time for snapshot in fields.snapshots]
     scale = ScalarMappable(Normalize(0, times[-1] if times[-1] > 0 else 1), "viridis_r")
@@ -117,7 +119,7 @@ def draw_times(axes: Axes, fields: Fields, regions: Sequence[np.ndarray], starte
     if patch is not None:
         axes.legend(handles=[patch], loc="upper right", fontsize="small")
     if several and any(map(len, regions)):
-        clock = clock_of(fields, look)
+        clock = clock_of(fields, style)
         bar = axes.figure.colorbar(scale, ax=axes, location="bottom", ticks=MaxNLocator(5), shrink=0.8,
                                    label=f"{clock.label}, first written with delamination there")
         bar.formatter = FuncFormatter(lambda value, _: f"{clock.factor * value:.3g}")
@@ -131,14 +133,14 @@ def _last(fields: Fields, below_ply: int) -> np.ndarray:
 def draw_cracks(axes: Axes, fields: Fields, below_ply: int) -> None:
     """Draw over a delamination where the matrix cracked in the ply on the back and in the one above it."""
     last = fields.snapshots[-1]
-    for ply, style in ((last.mesh.plies[-1], "-"), (below_ply, ":")):
+    for ply, line_style in ((last.mesh.plies[-1], "-"), (below_ply, ":")):
         edges = outline(fields.full_plate(last.failed_cells(ply, MODES["matrix cracking"])))
         if len(edges):
-            axes.add_collection(LineCollection(edges, colors="C3", linestyles=style, label=f"cracks of ply {ply}"))
+            axes.add_collection(LineCollection(edges, colors="C3", linestyles=line_style, label=f"cracks of ply {ply}"))
             axes.legend(loc="upper right", fontsize="small")
 
 
-def failures_figure(fields: Fields, modes: Sequence[str] = tuple(MODES), look: Look = _PLAIN) -> Figure:
+def failures_figure(fields: Fields, modes: Sequence[str] = tuple(MODES), style: PictureStyle = _PLAIN) -> Figure:
     """Draw failures of each ply of the full plate at the last time, all on one scale; cracks run along the fibres."""
     last = fields.snapshots[-1]
     plies = sorted(last.failures)
@@ -150,7 +152,7 @@ def failures_figure(fields: Fields, modes: Sequence[str] = tuple(MODES), look: L
     grid = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=True).ravel()
     angles = _angles(fields)
     for axes, ply in zip(grid, plies, strict=False):
-        draw_failures(axes, fields, ply, modes, angles.get(ply), look)
+        draw_failures(axes, fields, ply, modes, angles.get(ply), style)
         axes.label_outer()
     for axes in grid[len(plies):]:
         axes.set_visible(False)
@@ -158,12 +160,12 @@ def failures_figure(fields: Fields, modes: Sequence[str] = tuple(MODES), look: L
                   ncols=len(modes))
     if plies:
         locate(grid[0], fields)
-    figure.suptitle(caption(fields, look, outlined=False), fontsize="small")
+    figure.suptitle(caption(fields, style, outlined=False), fontsize="small")
     return figure
 
 
 def draw_failures(axes: Axes, fields: Fields, ply: int, modes: Sequence[str], angle: float | None,
-                  look: Look = _PLAIN) -> None:
+                  style: PictureStyle = _PLAIN) -> None:
     """Draw where a ply failed, a mode over the others where several meet; cracks as lines along known fibres."""
     for name in reversed(modes):
         cells = fields.full_plate(fields.snapshots[-1].failed_cells(ply, MODES[name]))
@@ -172,7 +174,7 @@ def draw_failures(axes: Axes, fields: Fields, ply: int, modes: Sequence[str], an
         else:
             axes.add_collection(PolyCollection(cells, facecolors=_COLOURS[name], linewidths=0))
     axes.set_title(f"ply {ply}" + ("" if angle is None else f", {angle:g}°"), fontsize="medium")
-    frame(axes, fields, _reach(fields), look)
+    frame(axes, fields, _reach(fields), style)
 
 
 def along_fibres(cells: np.ndarray, angle: float) -> np.ndarray:

@@ -13,17 +13,17 @@ from implam_post.io.deck import Deck
 from implam_post.io.errors import ImplamError
 from implam_post.io.fields import Fields, deck_in, struck_point
 from implam_post.io.units import Axis
-from implam_post.plot.look import Look
+from implam_post.plot.style import PictureStyle
 
-_PLAIN = Look()
+_PLAIN = PictureStyle()
 # Room beside what a map shows, as a part of that; the plate in its corner fits into it.
 _MARGIN = 0.15
 
 
-def fill(axes: Axes, cells: np.ndarray, **style: object) -> PathPatch | None:
+def fill(axes: Axes, cells: np.ndarray, **drawn: object) -> PathPatch | None:
     """Draw cells as one region with an outline; nothing without cells."""
     path = outlines(cells)
-    return None if path is None else axes.add_patch(PathPatch(path, **style))
+    return None if path is None else axes.add_patch(PathPatch(path, **drawn))
 
 
 def outlines(cells: np.ndarray) -> Outline | None:
@@ -50,20 +50,20 @@ def outlines(cells: np.ndarray) -> Outline | None:
     return Outline(np.array(corners), codes)
 
 
-def clock_of(fields: Fields, look: Look) -> Axis:
+def clock_of(fields: Fields, style: PictureStyle) -> Axis:
     """Return how times are shown; load steps have a load factor instead."""
     deck = deck_in(fields.path)
     if deck is not None and deck.has("static"):
         return Axis(1.0, "load factor")
-    return look.axis("time", "time", [fields.snapshots[-1].time])
+    return style.axis("time", "time", [fields.snapshots[-1].time])
 
 
-def caption(fields: Fields, look: Look = _PLAIN, outlined: bool = True) -> str:
+def caption(fields: Fields, style: PictureStyle = _PLAIN, outlined: bool = True) -> str:
     """Return what holds for all maps of a picture: state, what outlines enclose, and from where the plate is seen.
 
     z points from the struck face to the back, so that with x to the right and y up it points at whoever looks.
     """
-    clock = clock_of(fields, look)
+    clock = clock_of(fields, style)
     name, _, unit = clock.label.partition(" [")
     state = f"{name} {clock.factor * fields.snapshots[-1].time:.4g} {unit.rstrip(']')}".strip().replace(
         "(the deck's units)", "").strip()
@@ -116,14 +116,14 @@ def height_of(width: float, reach: Sequence[float]) -> float:
     return width * min(across / along, 2.0) if along > 0 else width
 
 
-def frame(axes: Axes, fields: Fields, reach: Sequence[float], look: Look = _PLAIN) -> None:
+def frame(axes: Axes, fields: Fields, reach: Sequence[float], style: PictureStyle = _PLAIN) -> None:
     """Show a rectangle around the struck point with room around what is there, equal scales both ways, with units."""
     largest, middle = max(reach), struck_point(fields)
     half = (0.5 + _MARGIN) * np.maximum(reach, largest / 3) if largest > 0 else np.ones(2)
     low, high = middle - half, middle + half
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
     for name, side in (("x", axes.xaxis), ("y", axes.yaxis)):
-        length = look.axis(name, "length", [largest])
+        length = style.axis(name, "length", [largest])
         side.set_label_text(length.label)
         side.set_major_formatter(FuncFormatter(lambda value, _, factor=length.factor: f"{factor * value:.4g}"))
         side.set_major_locator(MaxNLocator(5))

@@ -19,7 +19,7 @@ from implam_post.reference.navier import Plate, centre_shape, odd_pairs, patch_s
 
 # Half waves along a side of the patch with inertia, and those that only add their static compliance.
 _DYNAMIC_HALF_WAVES, _STATIC_HALF_WAVES = 2, 20
-_STEPS_A_CONTACT, _FEWEST_STEPS, _MOST_STEPS = 1000, 2000, 40000
+_STEPS_A_CONTACT, _MIN_STEPS, _MAX_STEPS = 1000, 2000, 40000
 _MODES_AT_ONCE = 8192
 
 
@@ -38,7 +38,7 @@ class ImpactCase:
         speed = abs(self.impactor.velocity) or np.finfo(float).tiny**0.25
         deepest = (1.25 * self.impactor.mass * speed**2 / self.law.stiffness)**0.4
         contact = 2.943 * deepest / speed
-        return float(np.clip(contact / _STEPS_A_CONTACT, self.end / _MOST_STEPS, self.end / _FEWEST_STEPS))
+        return float(np.clip(contact / _STEPS_A_CONTACT, self.end / _MAX_STEPS, self.end / _MIN_STEPS))
 
     def default_modes(self) -> list[int]:
         """Return how many odd half-wave numbers along x and y have inertia by default."""

@@ -21,7 +21,7 @@ from implam_post.regress.expectations import Expectation, Expectations, parse_ex
 _FIGURES = ("peak_force", "max_deflection", "rebound_velocity", "absorbed_energy", "first_growth_force")
 _TIMES = ("peak_force_time", "contact_duration")
 _COLUMNS = ("delaminated_area", "fibre_failures", "matrix_cracks", "matrix_crushings")
-RELATIVE, OF_A_STEP, LEAST_ERROR = 1e-3, 0.1, 1e-6
+RELATIVE, OF_A_STEP, MIN_ERROR = 1e-3, 0.1, 1e-6
 _HEADER = re.compile(r"\s*\[\[\s*(expect|variant|variant\s*\.\s*expect)\s*\]\]")
 _NUMBER = r"(\s*{key}\s*=\s*)([-+\w.]+)(.*)"
 
@@ -64,7 +64,7 @@ def accept_new(path: Path, history: History, version: str) -> list[str]:
     if pushed:
         error = QUANTITIES["energy_error"](history)
         largest = 10.0**math.ceil(math.log10(10 * error)) if error > 0 else 0.0
-        entries.append(_entry("energy_error", 0.0, {"absolute": max(largest, LEAST_ERROR)}))
+        entries.append(_entry("energy_error", 0.0, {"absolute": max(largest, MIN_ERROR)}))
     if not entries:
         raise FileError("the run has no figure to expect.")
     text = "\n".join(_written(entry) for entry in entries)

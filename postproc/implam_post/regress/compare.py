@@ -10,7 +10,7 @@ from implam_post.io.deck import read_deck
 from implam_post.io.errors import EXIT_DONE, EXIT_USAGE, CommandParser, FileError, run
 from implam_post.io.history import History, read_history
 from implam_post.io.quantities import AGAINST_QUANTITIES, COLUMN_QUANTITIES, QUANTITIES
-from implam_post.plot.look import add_options, look_of
+from implam_post.plot.style import add_options, style_of
 from implam_post.reference.semi_analytic import semi_analytic
 from implam_post.regress.expectations import FORMAT, Expectation, read_expectations
 
@@ -77,7 +77,7 @@ def _command(options: argparse.Namespace) -> int:
     if options.plot:
         # matplotlib takes a while to load.
         from implam_post.plot.curves import plot_curves
-        print(plot_curves(history, expectations.curves, options.plot, look_of(options, [options.history])))
+        print(plot_curves(history, expectations.curves, options.plot, style_of(options, [options.history])))
     return EXIT_DONE if all(comparison.passed for comparison in comparisons) else EXIT_USAGE
 
 

@@ -15,7 +15,7 @@ from implam_post.io.files import write_text
 from implam_post.io.history import ENERGY_NAMES, UNACCOUNTED
 from implam_post.io.run import SUMMARY, Run, material_of, open_run
 from implam_post.io.run_figures import Measured, corner_of, resistance
-from implam_post.plot.look import Look
+from implam_post.plot.style import PictureStyle
 from implam_post.report.compression import compression_rows
 from implam_post.report.page import image, render, rounded
 from implam_post.report.pictures import history_pictures, layup_figure, map_pictures, plan_figure
@@ -49,32 +49,32 @@ _UNKNOWN = {"energy_absorbed": "contact has not ended"}
 _PROVENANCE = ("version", "commit", "compiler", "petsc_version", "ranks", "started")
 
 
-def shown(look: Look, dimension: str, value: object) -> str:
+def shown(style: PictureStyle, dimension: str, value: object) -> str:
     """Return a figure to four digits, as the summary in the log has them, with its unit where that is known."""
     if value is None or not dimension:
         return rounded(value)
-    return look.shown(dimension, value, 4)
+    return style.shown(dimension, value, 4)
 
 
 def report(run: Run, undamaged: float | None = None) -> str:
     """Return the page of a run; `undamaged` is the strength of the undamaged plate, if that is known."""
-    summary, look = run.summary, Look(run.system)
+    summary, style = run.summary, PictureStyle(run.system)
     found = resistance(run)
     mark = tuple(found[name].value for name in ("threshold_at", "threshold_force")) if "threshold_at" in found else None
     mark = None if mark is None or math.isnan(mark[0]) else mark
     energies = {name: summary[key] for key, name in (ENERGY_NAMES | {"energy_error": UNACCOUNTED}).items()
                 if key in summary}
-    axis = look.axis("energy", "energy", [*energies.values()])
-    curves = [] if run.columns is None else history_pictures(run.columns, look, mark)
-    maps = [] if run.fields is None else map_pictures(run.fields, look)
+    axis = style.axis("energy", "energy", [*energies.values()])
+    curves = [] if run.columns is None else history_pictures(run.columns, style, mark)
+    maps = [] if run.fields is None else map_pictures(run.fields, style)
     return render(
         "run.html", title=summary["title"] or summary["case"], summary=summary, base=run.name,
-        reached=_reached(summary, look), has_units=bool(look.system),
-        has_fields=run.fields is not None, figures=_figures(summary, look),
-        resistance=_resistance(run, found, look) if "energy_absorbed" in summary and run.columns is not None else None,
-        compression=compression_rows(run, look, undamaged), interfaces=_interfaces(summary, look),
-        plate=_plate(summary, look), plan=image(plan_figure(summary, look)),
-        layup=image(layup_figure(summary)), plies_head=_plies_head(summary), plies=_plies(summary, look),
+        reached=_reached(summary, style), has_units=bool(style.system),
+        has_fields=run.fields is not None, figures=_figures(summary, style),
+        resistance=_resistance(run, found, style) if "energy_absorbed" in summary and run.columns is not None else None,
+        compression=compression_rows(run, style, undamaged), interfaces=_interfaces(summary, style),
+        plate=_plate(summary, style), plan=image(plan_figure(summary, style)),
+        layup=image(layup_figure(summary)), plies_head=_plies_head(summary), plies=_plies(summary, style),
         curves=[(text, image(figure)) for text, figure in curves],
         maps=[(text, image(figure)) for text, figure in maps],
         balance=[(name, axis.factor * value) for name, value in energies.items()], energy_label=axis.label,
@@ -82,49 +82,49 @@ def report(run: Run, undamaged: float | None = None) -> str:
                     *((key.replace("_", " "), value) for key, value in summary["costs"].items())])
 
 
-def _resistance(results: Run, found: Mapping[str, Measured], look: Look) -> str:
+def _resistance(results: Run, found: Mapping[str, Measured], style: PictureStyle) -> str:
     """Return threshold, energies, size and type of the damage."""
     summary = results.summary
 
     def row(name: str, key: str, missing: str = "-", at: str = "") -> tuple[str, str, str]:
         if key not in found or math.isnan(found[key].value):
             return name, missing, ""
-        return name, shown(look, found[key].dimension, found[key].value), at
+        return name, shown(style, found[key].dimension, found[key].value), at
 
     corner = corner_of(results)
-    behind = f", behind a low pass of {_frequency(look, corner)}" if corner else ""
+    behind = f", behind a low pass of {_frequency(style, corner)}" if corner else ""
     unknown = "the force never drops by damage" if corner else "not known without units"
     reached = "threshold_at" in found and not math.isnan(found["threshold_at"].value)
-    when = f"at {shown(look, 'time', found['threshold_at'].value)}" if reached else ""
+    when = f"at {shown(style, 'time', found['threshold_at'].value)}" if reached else ""
     rows = [row(f"threshold: force where its curve first drops by damage{behind}", "threshold_force", unknown, when),
-            ("peak force", shown(look, "force", summary["peak_force"]),
-             f"at {shown(look, 'time', summary['peak_force_at'])}"),
+            ("peak force", shown(style, "force", summary["peak_force"]),
+             f"at {shown(style, 'time', summary['peak_force_at'])}"),
             row("energy to the threshold", "energy_to_threshold"), row("energy to the peak force", "energy_to_peak"),
             ("absorbed energy", "contact has not ended" if summary["energy_absorbed"] is None
-             else shown(look, "energy", summary["energy_absorbed"]), "")]
-    rows += [(name, shown(look, "length", summary[key]), remark) for name, key, remark in _DENT if key in summary]
+             else shown(style, "energy", summary["energy_absorbed"]), "")]
+    rows += [(name, shown(style, "length", summary[key]), remark) for name, key, remark in _DENT if key in summary]
     if results.fields is not None and "damage_diameter" in found:
-        rows += _sizes(results, look)
+        rows += _sizes(results, style)
     kinds = kinds_of_damage(summary)
     return rows + [("type of damage" if place == 0 else "", kind, "") for place, kind in enumerate(kinds or ["none"])]
 
 
-def _frequency(look: Look, corner: float) -> str:
+def _frequency(style: PictureStyle, corner: float) -> str:
     """Return a frequency with its unit."""
-    return f"{corner / look.seconds / 1e3:.4g} kHz" if look.system else rounded(corner)
+    return f"{corner / style.seconds / 1e3:.4g} kHz" if style.system else rounded(corner)
 
 
-def _sizes(results: Run, look: Look) -> list[tuple[str, str, str]]:
+def _sizes(results: Run, style: PictureStyle) -> list[tuple[str, str, str]]:
     """Return the rows of the size of the projected damage."""
     size = extent(results.fields)
     if size is None:
         return [("projected damage", "none", "")]
-    rows = [("largest diameter of the projected damage", shown(look, "length", size.diameter),
+    rows = [("largest diameter of the projected damage", shown(style, "length", size.diameter),
              f"along {size.direction:.0f}°"),
-            ("its length along 0°, x", shown(look, "length", size.length), ""),
-            ("its width along 90°, y", shown(look, "length", size.width), "")]
+            ("its length along 0°, x", shown(style, "length", size.length), ""),
+            ("its width along 90°, y", shown(style, "length", size.width), "")]
     return rows + [(f"between its outermost points through the struck point, along {angle}°",
-                    shown(look, "length", size.through[angle]) if size.through[angle] else "none there", "")
+                    shown(style, "length", size.through[angle]) if size.through[angle] else "none there", "")
                    for angle in DIRECTIONS]
 
 
@@ -133,57 +133,57 @@ def _time(summary: Mapping[str, Any]) -> str:
     return "time" if "time_reached" in summary else ""
 
 
-def _reached(summary: Mapping[str, Any], look: Look) -> str:
+def _reached(summary: Mapping[str, Any], style: PictureStyle) -> str:
     """Return how far the run came."""
     if "time_reached" in summary:
-        return f"time {shown(look, 'time', summary['time_reached'])}"
+        return f"time {shown(style, 'time', summary['time_reached'])}"
     return f"load factor {rounded(summary['load_factor_reached'])}"
 
 
-def _figures(summary: Mapping[str, Any], look: Look) -> list[tuple[str, ...]]:
+def _figures(summary: Mapping[str, Any], style: PictureStyle) -> list[tuple[str, ...]]:
     """Return the rows of the table at the top."""
     rows = []
     for name, key, dimension, at in _FIGURES:
         if key in summary and not (key == "work_external" and not summary[key]):
-            value = _UNKNOWN.get(key, "-") if summary[key] is None else shown(look, dimension, summary[key])
-            when = f"{_WHEN.get(key, 'at')} {shown(look, _time(summary), summary[at])}" if at in summary else ""
+            value = _UNKNOWN.get(key, "-") if summary[key] is None else shown(style, dimension, summary[key])
+            when = f"{_WHEN.get(key, 'at')} {shown(style, _time(summary), summary[at])}" if at in summary else ""
             rows.append((name, value, when))
     if summary.get("in_contact"):
         rows.append(("contact at the end", "yes", ""))
     return rows
 
 
-def _range(look: Look, ends: Sequence[float]) -> str:
+def _range(style: PictureStyle, ends: Sequence[float]) -> str:
     """Return least and greatest coordinate in one unit."""
     if not any(ends):
         return "none"
-    axis = look.axis("", "length", ends)
-    unit = shown(look, "length", max(ends, key=abs)).partition(" ")[2]
+    axis = style.axis("", "length", ends)
+    unit = shown(style, "length", max(ends, key=abs)).partition(" ")[2]
     return " to ".join(rounded(axis.factor * end) for end in ends) + f" {unit}".rstrip()
 
 
-def _event(event: Mapping[str, float] | None, look: Look, time: str) -> str:
+def _event(event: Mapping[str, float] | None, style: PictureStyle, time: str) -> str:
     """Return when something was first seen, and under what force."""
     if event is None:
         return "none"
-    force = f"{shown(look, 'force', event['force'])} " if "force" in event else ""
-    return f"{force}at {shown(look, time, event['at'])}"
+    force = f"{shown(style, 'force', event['force'])} " if "force" in event else ""
+    return f"{force}at {shown(style, time, event['at'])}"
 
 
-def _interfaces(summary: Mapping[str, Any], look: Look) -> list[tuple[object, ...]]:
+def _interfaces(summary: Mapping[str, Any], style: PictureStyle) -> list[tuple[object, ...]]:
     """Return the rows of the interfaces."""
     time = _time(summary)
-    return [(entry["ply_above"], "cohesive" if entry["is_cohesive"] else "front", shown(look, "area", entry["area"]),
-             _range(look, entry["x"]), _range(look, entry["y"]), shown(look, "energy", entry["energy"]),
-             _event(entry["onset"], look, time), _event(entry["first_growth"], look, time),
-             shown(look, "force", entry["threshold_force"]), "yes" if entry["border_reached"] else "no")
+    return [(entry["ply_above"], "cohesive" if entry["is_cohesive"] else "front", shown(style, "area", entry["area"]),
+             _range(style, entry["x"]), _range(style, entry["y"]), shown(style, "energy", entry["energy"]),
+             _event(entry["onset"], style, time), _event(entry["first_growth"], style, time),
+             shown(style, "force", entry["threshold_force"]), "yes" if entry["border_reached"] else "no")
             for entry in summary.get("interfaces", [])]
 
 
-def _plate(summary: Mapping[str, Any], look: Look) -> str:
+def _plate(summary: Mapping[str, Any], style: PictureStyle) -> str:
     """Return the size of the plate."""
-    along, across = (shown(look, "length", length) for length in summary["plate_size"])
-    thickness = shown(look, "length", sum(ply["thickness"] for ply in summary["plies"]))
+    along, across = (shown(style, "length", length) for length in summary["plate_size"])
+    thickness = shown(style, "length", sum(ply["thickness"] for ply in summary["plies"]))
     return f"{along} by {across}, {thickness} thick, {len(summary['plies'])} plies."
 
 
@@ -199,10 +199,10 @@ def _plies_head(summary: Mapping[str, Any]) -> tuple[str, ...]:
     return ("ply", "material", "angle, degrees", "thickness", *areas)
 
 
-def _plies(summary: Mapping[str, Any], look: Look) -> list[tuple[object, ...]]:
+def _plies(summary: Mapping[str, Any], style: PictureStyle) -> list[tuple[object, ...]]:
     """Return the rows of lay-up and failures of the plies."""
-    return [(ply["ply"], material_of(ply), ply["angle"], shown(look, "length", ply["thickness"]),
-             *(shown(look, "area", ply[key]) for key in _failure_areas(summary))) for ply in summary["plies"]]
+    return [(ply["ply"], material_of(ply), ply["angle"], shown(style, "length", ply["thickness"]),
+             *(shown(style, "area", ply[key]) for key in _failure_areas(summary))) for ply in summary["plies"]]
 
 
 def summaries_at(path: Path) -> list[Path]:

@@ -4,32 +4,32 @@ from collections.abc import Sequence
 
 from implam_post.io.compression import kinetic_share, went_across
 from implam_post.io.run import Run
-from implam_post.plot.compression import is_pressed
-from implam_post.plot.look import Look
+from implam_post.plot.compression import is_compressed
+from implam_post.plot.style import PictureStyle
 
 # Rows: label, member, dimension.
 _ROWS = (("shortening at it", "shortening_at_strength", "length"),
          ("effective modulus", "effective_modulus", "stress"))
 
 
-def compression_rows(run: Run, look: Look, undamaged: float | None = None) -> list[tuple[str, str, str]]:
+def compression_rows(run: Run, style: PictureStyle, undamaged: float | None = None) -> list[tuple[str, str, str]]:
     """Return the rows of the section; `undamaged` is the strength of the undamaged plate, if that is known."""
     summary = run.summary
     if "residual_strength" not in summary:
         return []
     remark = "" if summary["has_failed"] else "the plate has not failed: it bears at least this"
-    rows = [("residual strength", look.shown("stress", summary["residual_strength"], 4), remark)]
+    rows = [("residual strength", style.shown("stress", summary["residual_strength"], 4), remark)]
     if undamaged:
         rows.append(("share of the undamaged plate's", f"{summary['residual_strength'] / undamaged:.3f}",
-                     f"of {look.shown('stress', undamaged, 4)}"))
+                     f"of {style.shown('stress', undamaged, 4)}"))
     for label, key, dimension in _ROWS:
         value = summary.get(key)
-        rows.append((label, "-" if value is None else look.shown(dimension, value, 4), ""))
+        rows.append((label, "-" if value is None else style.shown(dimension, value, 4), ""))
     if "percent_bending" in summary:
         strain = summary["buckling_strain"]
         rows += [("percent bending at the strength", f"{summary['percent_bending']:.3g} %", "gauges back to back"),
                  ("nominal strain of first buckling", "none" if strain is None else f"{1e6 * strain:.4g}e-6", "")]
-    if run.columns is not None and is_pressed(run.columns):
+    if run.columns is not None and is_compressed(run.columns):
         rows.append(("largest kinetic energy over the work", f"{100 * kinetic_share(run.columns):.2g} %",
                      "from a tenth of the strength to the strength"))
     return rows + _collapse(run)

@@ -7,7 +7,7 @@ from pathlib import Path
 from jinja2 import Environment, PackageLoader
 from matplotlib.figure import Figure
 
-from implam_post.plot.look import settle
+from implam_post.plot.style import lay_out
 
 
 def rounded(value: object) -> str:
@@ -30,7 +30,7 @@ def render(template: str, **content: object) -> str:
 def image(figure: Figure) -> str:
     """Return a figure as a PNG in base64."""
     stream = io.BytesIO()
-    settle(figure)
+    lay_out(figure)
     figure.savefig(stream, format="png", dpi=100)
     return base64.b64encode(stream.getvalue()).decode("ascii")
 

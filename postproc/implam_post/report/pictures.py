@@ -15,11 +15,11 @@ from implam_post.io.fields import Fields
 from implam_post.io.history import ENERGY_NAMES, UNACCOUNTED, History
 from implam_post.io.quantities import growth_rows
 from implam_post.io.run import material_of
-from implam_post.plot.compression import compression_figure, is_pressed
+from implam_post.plot.compression import compression_figure, is_compressed
 from implam_post.plot.curves import AXES, in_contact
-from implam_post.plot.look import Look
 from implam_post.plot.plan import delamination_figure, failures_figure, projected_figure
 from implam_post.plot.plan_frame import draw_plate
+from implam_post.plot.style import PictureStyle
 
 _SPACE = 0.12  # free part of the picture beside the plies
 
@@ -58,7 +58,7 @@ def _fibre(axes: Any, angle: float, height: float, depth: float) -> None:
               height + np.array([-1, 1]) * length * np.sin(turned), color="black", linewidth=1)
 
 
-def plan_figure(summary: Mapping[str, Any], look: Look) -> Figure:
+def plan_figure(summary: Mapping[str, Any], style: PictureStyle) -> Figure:
     """Draw the plate in plan with the rectangle around what has failed of each interface, all to scale."""
     along, across = summary["plate_size"]
     figure = Figure(figsize=(7, min(max(4.4 * across / along, 1.5), 8) + 0.8), layout="constrained")
@@ -77,14 +77,14 @@ def plan_figure(summary: Mapping[str, Any], look: Look) -> Figure:
     axes.plot(*(at if len(at) == 2 else (0, 0)), "+", color="red", label="struck point", linestyle="none")
     axes.set(xlim=(-0.53 * along, 0.53 * along), ylim=(-0.53 * across, 0.53 * across), aspect="equal")
     for name, side in (("x, along 0°", axes.xaxis), ("y", axes.yaxis)):
-        length = look.axis(name, "length", [along / 2])
+        length = style.axis(name, "length", [along / 2])
         side.set_label_text(length.label)
         side.set_major_formatter(FuncFormatter(lambda value, _, factor=length.factor: f"{factor * value:.4g}"))
     figure.legend(fontsize="small", title="extents of what failed" if interfaces else None, loc="outside right center")
     return figure
 
 
-def history_pictures(history: History, look: Look,
+def history_pictures(history: History, style: PictureStyle,
                      threshold: tuple[float, float] | None = None) -> Iterator[tuple[str, Figure]]:
     """Give the curves of a history: force, force against displacements, deflection, areas and energies.
 
@@ -92,29 +92,29 @@ def history_pictures(history: History, look: Look,
     """
     if np.any(history["force"]):
         shown = in_contact(history)
-        yield "contact force against time", _curve(history, "time", "force", look, threshold)
+        yield "contact force against time", _curve(history, "time", "force", style, threshold)
         if np.any(history.columns.get("impactor_displacement", 0)):
             yield "contact force against displacement of the impactor", _curve(shown, "impactor_displacement", "force",
-                                                                               look)
-        yield "contact force against deflection", _curve(shown, "deflection", "force", look)
-    if is_pressed(history):
-        yield "stress of the compression, and strains of gauges", compression_figure({"": history}, look)
-    yield "deflection against time", _curve(history, "time", "deflection", look)
+                                                                               style)
+        yield "contact force against deflection", _curve(shown, "deflection", "force", style)
+    if is_compressed(history):
+        yield "stress of the compression, and strains of gauges", compression_figure({"": history}, style)
+    yield "deflection against time", _curve(history, "time", "deflection", style)
     areas = {name: name.replace("area_below_", "below ply ") for name in history.columns
              if name.startswith("area_below_")}
     if areas:
-        yield "delaminated area against time", _curves(history, areas, "delaminated area", "area", look)
+        yield "delaminated area against time", _curves(history, areas, "delaminated area", "area", style)
     energies = {column: name for column, name in (ENERGY_NAMES | {"energy_error": UNACCOUNTED}).items()
                 if column in history.columns and np.any(history[column])}
-    yield "energies against time", _curves(history, energies, "energy", "energy", look)
+    yield "energies against time", _curves(history, energies, "energy", "energy", style)
 
 
-def _curve(history: History, against: str, column: str, look: Look,
+def _curve(history: History, against: str, column: str, style: PictureStyle,
            mark: tuple[float, float] | None = None) -> Figure:
     """Draw one column; steps in which delaminations grew are marked on the force, and a threshold if there is one."""
     figure = Figure(figsize=(7, 3.4), layout="constrained")
     axes = figure.subplots()
-    along, up = (look.axis(*AXES[name], history[name]) for name in (against, column))
+    along, up = (style.axis(*AXES[name], history[name]) for name in (against, column))
     axes.plot(along.factor * history[against], up.factor * history[column])
     grown = growth_rows(history)
     if column == "force" and len(grown):
@@ -129,12 +129,12 @@ def _curve(history: History, against: str, column: str, look: Look,
     return figure
 
 
-def _curves(history: History, columns: Mapping[str, str], label: str, dimension: str, look: Look) -> Figure:
+def _curves(history: History, columns: Mapping[str, str], label: str, dimension: str, style: PictureStyle) -> Figure:
     """Draw several columns, each with its name, against time."""
     figure = Figure(figsize=(7, 3.4), layout="constrained")
     axes = figure.subplots()
-    along = look.axis("time", "time", history.time)
-    up = look.axis(label, dimension, np.concatenate([[0.0], *(history[column] for column in columns)]))
+    along = style.axis("time", "time", history.time)
+    up = style.axis(label, dimension, np.concatenate([[0.0], *(history[column] for column in columns)]))
     for column, name in columns.items():
         axes.plot(along.factor * history.time, up.factor * history[column], label=name,
                   color="black" if name == UNACCOUNTED else None)
@@ -145,11 +145,11 @@ def _curves(history: History, columns: Mapping[str, str], label: str, dimension:
     return figure
 
 
-def map_pictures(fields: Fields, look: Look) -> Iterator[tuple[str, Figure]]:
+def map_pictures(fields: Fields, style: PictureStyle) -> Iterator[tuple[str, Figure]]:
     """Give what the fields hold of interfaces and plies, in plan."""
     last = fields.snapshots[-1]
     if last.mesh.interfaces:
-        yield "delamination of each interface", delamination_figure(fields, look)
-        yield "all interfaces seen through the plate", projected_figure(fields, look)
+        yield "delamination of each interface", delamination_figure(fields, style)
+        yield "all interfaces seen through the plate", projected_figure(fields, style)
     if last.failures and any(np.any(failed) for failed in last.failures.values()):
-        yield "failures of each ply", failures_figure(fields, look=look)
+        yield "failures of each ply", failures_figure(fields, style=style)

@@ -8,7 +8,7 @@ from typing import Any
 
 from implam_post.io.errors import FileError
 from implam_post.io.files import read_text, write_text
-from implam_post.plot.look import Look
+from implam_post.plot.style import PictureStyle
 from implam_post.report.page import image_of, render
 from implam_post.sweep.scatter_plots import BAND, SHARE
 from implam_post.sweep.scatter_results import STATISTICS
@@ -33,28 +33,28 @@ def write_page(folder: Path, output: Path | None) -> Path:
 
 def _page(content: Mapping[str, Any], folder: Path) -> str:
     """Return the page."""
-    look, statistics = Look(content["system"]), content["statistics"]
+    style, statistics = PictureStyle(content["system"]), content["statistics"]
     runs = ", ".join(f"{group['ended']} of {group['runs']} runs{_of(group['name'])} in {group['seconds']:.4g} s of the "
                      "processor" for group in content["groups"])
     pictures = [(text, image_of(folder / name)) for name, text in (
         (BAND, "Force history"), (SHARE, "Share of the runs in which a place has delaminated"))
         if (folder / name).exists()]
     differences = [] if not content.get("differences") else [
-        (group["name"], _differences(_rows_of(content["differences"], group), statistics, look))
+        (group["name"], _differences(_rows_of(content["differences"], group), statistics, style))
         for group in content["groups"][1:]]
     return render("sweep.html", title=content["title"] or "Runs with random inputs", runs=runs, notes=content["notes"],
                   variants=content["variants"], head=HEAD, paired=PAIRED, first=content["groups"][0]["name"],
-                  groups=[_group(group, content, look) for group in content["groups"]], differences=differences,
+                  groups=[_group(group, content, style) for group in content["groups"]], differences=differences,
                   pictures=pictures, inputs=_inputs(content["inputs"]), sweep=content["sweep"])
 
 
-def _group(group: Mapping[str, Any], content: Mapping[str, Any], look: Look) -> dict[str, object]:
+def _group(group: Mapping[str, Any], content: Mapping[str, Any], style: PictureStyle) -> dict[str, object]:
     """Return the tables of a group: the figures shown, all of them, and what was measured."""
     rows = _rows_of(content["statistics"], group)
     measured = [(row["figure"], row["measured"], row["aim"], row["mean"], row["error_of_mean"],
                  "within" if row["within"] else "beyond") for row in _rows_of(content.get("measured", []), group)]
-    return {"of": _of(group["name"]), "shown": _spreads(rows, look, SHOWN), "measured": measured,
-            "all": _spreads(rows, look, [row["figure"] for row in rows])}
+    return {"of": _of(group["name"]), "shown": _spreads(rows, style, SHOWN), "measured": measured,
+            "all": _spreads(rows, style, [row["figure"] for row in rows])}
 
 
 def _rows_of(rows: Iterable[Mapping[str, Any]], group: Mapping[str, Any]) -> list[Mapping[str, Any]]:
@@ -72,19 +72,19 @@ def _number(value: float | None) -> float:
     return math.nan if value is None else value
 
 
-def _spreads(rows: Iterable[Mapping[str, Any]], look: Look, names: Iterable[str]) -> list[tuple[str, ...]]:
+def _spreads(rows: Iterable[Mapping[str, Any]], style: PictureStyle, names: Iterable[str]) -> list[tuple[str, ...]]:
     """Return the rows of means."""
     keys = ("mean", "deviation", "low_5", "high_95")
     found = {row["figure"]: Spread(row["runs"], *(_number(row[key]) for key in keys)) for row in rows}
-    return [*spread_rows(found, {row["figure"]: row["dimension"] for row in rows}, look, list(names))]
+    return [*spread_rows(found, {row["figure"]: row["dimension"] for row in rows}, style, list(names))]
 
 
-def _differences(rows: Iterable[Mapping[str, Any]], statistics: Iterable[Mapping[str, Any]], look: Look
+def _differences(rows: Iterable[Mapping[str, Any]], statistics: Iterable[Mapping[str, Any]], style: PictureStyle
                  ) -> list[tuple[str, ...]]:
     """Return the rows of differences."""
     found = {row["figure"]: Difference(row["pairs"], *(_number(row[key]) for key in (
         "first", "difference", "error_of_mean"))) for row in rows}
-    return [*difference_rows(found, {row["figure"]: row["dimension"] for row in statistics}, look, SHOWN)]
+    return [*difference_rows(found, {row["figure"]: row["dimension"] for row in statistics}, style, SHOWN)]
 
 
 def _inputs(rows: Iterable[Mapping[str, Any]]) -> list[tuple[str, ...]]:

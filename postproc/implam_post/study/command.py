@@ -9,10 +9,10 @@ from pathlib import Path
 from implam_post.io.errors import EXIT_USAGE, CommandParser, FileError, count, run
 from implam_post.io.files import try_lock, write_text
 from implam_post.io.program import EXIT_STOPPED, PROGRAM_HELP, find_program
-from implam_post.plot.look import FORMATS
+from implam_post.plot.style import FORMATS
 from implam_post.study.plan import ERRORS, FORMAT, Study, read_study
-from implam_post.sweep.case_run import forget
-from implam_post.sweep.command import check_decks, tell_ends
+from implam_post.sweep.case_run import remove_results
+from implam_post.sweep.command import check_decks, print_outcomes
 from implam_post.sweep.runs import Sweep, run_cases
 
 _TABLE_EVERY = 10.0  # seconds between tables written on the way
@@ -62,14 +62,14 @@ def _work(sweep: Sweep, study: Study, options: argparse.Namespace) -> int:
     """Write and check the decks, run what hasn't ended, and write what there is."""
     sweep.write_decks()
     for case in study.cases if options.retry else ():
-        forget(sweep.folder(case))
+        remove_results(sweep.folder(case))
     runs, tables, finished = sweep.open_cases(), _Tables(sweep, study, options.format), True
     if not options.table:
         check_decks(sweep, list({case.deck: case for case in reversed(runs)}.values()), options.jobs)
         print(f"{len(study.trials)} trials of {len(study.problems)} problems, {len(runs)} runs to do", flush=True)
         finished = run_cases(sweep, runs, options.jobs, tables.write_now_and_then)
     tables.write()
-    code = tell_ends(sweep)
+    code = print_outcomes(sweep)
     return code if finished or code == EXIT_USAGE else EXIT_STOPPED
 
 

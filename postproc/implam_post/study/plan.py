@@ -53,7 +53,7 @@ ERRORS = ("peak_force", "peak_force_time", "contact_duration", "max_deflection",
           "delaminated_area")
 _TABLES = ("problems", "grid", "list", "derived", "reference")
 _WAYS = ("final", "max", "min", "max_abs")
-_MOST_REPEATS = 100
+_MAX_REPEATS = 100
 
 
 @dataclass(frozen=True)
@@ -123,8 +123,8 @@ def _check_words(words: Mapping[str, object], figures: object) -> None:
     if words["error"] not in ERRORS:
         raise DeckError(f"error is one of {', '.join(ERRORS)}.")
     repeats = words["repeats"]
-    if not isinstance(repeats, int) or isinstance(repeats, bool) or not 1 <= repeats <= _MOST_REPEATS:
-        raise DeckError(f"repeats is an integer from 1 to {_MOST_REPEATS}.")
+    if not isinstance(repeats, int) or isinstance(repeats, bool) or not 1 <= repeats <= _MAX_REPEATS:
+        raise DeckError(f"repeats is an integer from 1 to {_MAX_REPEATS}.")
     if not isinstance(figures, dict) or not all(way in _WAYS for way in figures.values()):
         raise DeckError(f"[figures] says of columns of the history one of {', '.join(_WAYS)}.")
 

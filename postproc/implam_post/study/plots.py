@@ -12,7 +12,7 @@ from implam_post.io.files import replaced
 from implam_post.study.plan import Study
 from implam_post.study.table import LEAST, Mean, Row
 
-_MOST_PROBLEMS, _COLUMNS, _MOST_NAMED = 12, 4, 24
+_MAX_PROBLEMS, _COLUMNS, _MAX_NAMED = 12, 4, 24
 _MARKS = "osD^v<>ph*XP"
 _NARROWEST = 5.0  # last over first value of an axis, so that 1, 2 and 5 mark it
 _WIDE = 1e3  # from here on powers of ten are marks enough
@@ -26,7 +26,7 @@ def plot_study(rows: list[Row], means: list[Mean], study: Study, path: Path) -> 
     """Draw a panel for each problem, and one of the means over all of them; nothing if no trial has an error yet."""
     panels = [(problem.name, [(row.trial.method, abs(row.errors.get(study.error, math.nan)), row.time, row.on_front)
                               for row in rows if row.trial.problem is problem])
-              for problem in study.problems[:_MOST_PROBLEMS]]
+              for problem in study.problems[:_MAX_PROBLEMS]]
     if len(study.problems) > 1 and means:
         panels.append(("all problems, geometric means",
                        [(mean.method, mean.errors[study.error], mean.time, mean.on_front) for mean in means]))
@@ -75,7 +75,7 @@ def _draw(axes: Axes, points: list[tuple[dict[str, object], float, float, bool]]
         x, y, names = zip(*curve, strict=True)
         axes.plot(x, y, "-", marker=_MARKS[place % len(_MARKS)], color=f"C{place % 10}", markersize=4, linewidth=0.8,
                   alpha=0.8, label=label)
-        if len(points) <= _MOST_NAMED:
+        if len(points) <= _MAX_NAMED:
             for time, up, name in zip(x, y, names, strict=True):
                 if name and math.isfinite(up):
                     axes.annotate(name, (time, up), textcoords="offset points", xytext=(3, 3), fontsize=5)

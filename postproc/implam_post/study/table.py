@@ -83,7 +83,7 @@ def _size(row: Row, error: str) -> float:
 
 
 def front(points: Iterable[tuple[float, float]]) -> list[bool]:
-    """Return for each point whether no other is at least as good in both numbers and better in one; NaN never is."""
+    """Return for each point whether no other is at least as good in both numbers and lower in one; NaN never is."""
     points = list(points)
     known_points = [all(map(math.isfinite, point)) for point in points]
     return [known and not any(other_known and other[0] <= point[0] and other[1] <= point[1] and other != point

@@ -77,8 +77,8 @@ def _is_lost(folder: Path) -> bool:
     return sum(1 for _ in itertools.islice(lines, 2)) < 2
 
 
-def forget(folder: Path) -> None:
-    """Take record and checkpoint of a case that has failed away, so that it is run afrom_deck; not while it runs."""
+def remove_results(folder: Path) -> None:
+    """Remove record and checkpoint of a failed case, so that it starts again; a case that is running keeps them."""
     record = read_record(folder)
     if record is None or record.exit_code == EXIT_DONE:
         return
@@ -102,7 +102,7 @@ def case_command(folder: Path, program: Sequence[str]) -> list[str]:
 
 
 class _Stop:
-    """Tells whether the run is to stop: by a signal, or because the sweep that started it is gone."""
+    """Say whether the run is to stop: by a signal, or because the sweep that started it is gone."""
 
     def __init__(self, lifeline: int | None) -> None:
         """Catch the signals; `lifeline` is a pipe that closes when the sweep ends."""
@@ -137,7 +137,7 @@ def run_case(folder: Path, deck: Path, program: Sequence[str], stop: _Stop) -> i
             write_text(folder / _RECORD, json.dumps(asdict(record)) + "\n")
             if checkpoint is None or record.exit_code != EXIT_FILES or not _is_useless(checkpoint, folder):
                 break
-            checkpoint.unlink(missing_ok=True)  # the run starts afrom_deck
+            checkpoint.unlink(missing_ok=True)  # the run starts again
         return record.exit_code
     finally:
         os.close(lock)

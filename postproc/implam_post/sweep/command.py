@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 from implam_post.io.errors import EXIT_DONE, EXIT_USAGE, CommandParser, DeckError, FileError, count, run
 from implam_post.io.files import try_lock, write_text
 from implam_post.io.program import EXIT_STOPPED, PROGRAM_HELP, check_deck, find_program, processors
-from implam_post.sweep.case_run import case_command, forget
+from implam_post.sweep.case_run import case_command, remove_results
 from implam_post.sweep.plan import FORMAT, Case, is_random, only, read_plan
 from implam_post.sweep.runs import NOT_RUN, STOPPED, Sweep, run_cases
 
@@ -90,30 +90,30 @@ def _gather(sweep: Sweep, tables: _Tables) -> int:
     plots = [] if sweep.plan.scatter else plot_table(table, output)
     print(output / "table.csv", output / "table.h5", *plots, sep="\n")
     if is_random(sweep.plan):
-        _tell_scatter(sweep, table.system)
+        _print_scatter(sweep, table.system)
     for note in table.notes:
         print(f"note: {note}")
-    return tell_ends(sweep)
+    return print_outcomes(sweep)
 
 
-def _tell_scatter(sweep: Sweep, system: str) -> None:
+def _print_scatter(sweep: Sweep, system: str) -> None:
     """Write and print what runs with random inputs come to."""
-    from implam_post.plot.look import Look
+    from implam_post.plot.style import PictureStyle
     from implam_post.sweep.scatter_plots import plot_scatter
     from implam_post.sweep.scatter_results import curves_of, groups_of, write_statistics
     from implam_post.sweep.scatter_text import statistics_text, variants_table
-    groups, look = groups_of(sweep), Look(system)
-    files = write_statistics(sweep, groups, system, variants_table(groups, look) if len(groups) > 1 else ())
-    pictures = plot_scatter(groups, curves_of(sweep.plan.measured), look, sweep.plan.output)
+    groups, style = groups_of(sweep), PictureStyle(system)
+    files = write_statistics(sweep, groups, system, variants_table(groups, style) if len(groups) > 1 else ())
+    pictures = plot_scatter(groups, curves_of(sweep.plan.measured), style, sweep.plan.output)
     print(*files, *pictures, sep="\n")
-    text = statistics_text(sweep.plan, groups, look)
+    text = statistics_text(sweep.plan, groups, style)
     write_text(sweep.plan.output / "statistics.txt", f"{text.strip()}\n")
     print(text)
     for note in (note for group in groups for note in group.notes):
         print(f"note: {note}")
 
 
-def tell_ends(sweep: Sweep) -> int:
+def print_outcomes(sweep: Sweep) -> int:
     """List what failed and what is left, and return the exit code."""
     total = len(sweep.plan.cases)
     ends = [(case, sweep.failure(case)) for case in sweep.plan.cases]
@@ -132,7 +132,7 @@ def _work(sweep: Sweep, options: argparse.Namespace) -> int:
     """Write and check the decks, then do with them what is required."""
     sweep.write_decks()
     for case in sweep.plan.cases if options.retry else ():
-        forget(sweep.folder(case))
+        remove_results(sweep.folder(case))
     cases, tables = sweep.open_cases(), _Tables(sweep)
     if options.table:
         return _gather(sweep, tables)

@@ -59,7 +59,7 @@ The file of a sweep:
 Several tables together are combined: each row of [grid] with each of [list] with each of [samples]. `deck` may be swept
 too. Text that reads as values of a deck stands there as it is; any other is put in quotes.
 """
-MOST_CASES = 100_000
+MAX_CASES = 100_000
 COLUMNS = ("case", "impact_energy", "peak_force", "peak_force_time", "contact_duration", "max_deflection",
            "rebound_velocity", "absorbed_energy", "delaminated_area", "first_growth_force", "first_growth_time",
            "exit_code", "cpu_time", "version", "folder")
@@ -153,8 +153,8 @@ def _cases(maker: "CaseMaker", tables: dict[str, dict[str, object]], variants: S
     runs = maker.scatter.number if maker.scatter else 1
     swept = any(tables[name] for name in ("grid", "list", "samples"))
     rows = list(combinations(tables)) if swept or not (maker.scatter or variants) else [{}]
-    if (count := max(len(variants), 1) * len(rows) * runs) > MOST_CASES:
-        raise DeckError(f"the sweep has {count} cases; {MOST_CASES} are the most.")
+    if (count := max(len(variants), 1) * len(rows) * runs) > MAX_CASES:
+        raise DeckError(f"the sweep has {count} cases; {MAX_CASES} are the most.")
     chosen = itertools.product(variants or [None], rows, range(runs))
     return [maker.make(number, row, variant, run) for number, (variant, row, run) in enumerate(chosen, start=1)]
 
@@ -208,7 +208,7 @@ def flat_table(table: object, name: str) -> dict[str, object]:
 
 def check_names(tables: dict[str, dict[str, object]]) -> None:
     """Refuse names that are neither keys nor plain names, and those given twice."""
-    seen: dict[str, str] = {}
+    table_of: dict[str, str] = {}
     for table, entries in tables.items():
         for name in entries:
             if table == "samples" and name in _SAMPLES:
@@ -220,10 +220,10 @@ def check_names(tables: dict[str, dict[str, object]]) -> None:
             if name in (*COLUMNS, VARIANT):
                 raise DeckError(f"[{table}] '{name}' is the name of another column of the table.")
             same = str(path).lower() if path else name
-            if same in seen:
-                raise DeckError(f"'{name}' stands in both [{seen[same]}] and [{table}]." if seen[same] != table
+            if same in table_of:
+                raise DeckError(f"'{name}' stands in both [{table_of[same]}] and [{table}]." if table_of[same] != table
                                 else f"'{name}' stands in [{table}] twice.")
-            seen[same] = table
+            table_of[same] = table
 
 
 def combinations(tables: dict[str, dict[str, object]]) -> Iterator[dict[str, object]]:
@@ -239,11 +239,11 @@ def combinations(tables: dict[str, dict[str, object]]) -> Iterator[dict[str, obj
                         ", ".join(f"{name} with {length}" for name, length in lengths.items()) + ".")
     if not grid and not side_by_side and not samples:
         raise DeckError("nothing is swept: [grid], [list], [samples], [scatter] or [variants] is needed.")
-    rows = [list(itertools.islice(zip(*table.values(), strict=True), MOST_CASES)) if table else [()]
+    rows = [list(itertools.islice(zip(*table.values(), strict=True), MAX_CASES)) if table else [()]
             for table in (side_by_side, samples)]
     count = math.prod(len(values) for values in grid.values()) * len(rows[0]) * len(rows[1])
-    if count > MOST_CASES:
-        raise DeckError(f"the sweep has {count} cases; {MOST_CASES} are the most.")
+    if count > MAX_CASES:
+        raise DeckError(f"the sweep has {count} cases; {MAX_CASES} are the most.")
     names = [*grid, *side_by_side, *samples]
     for parts in itertools.product(itertools.product(*grid.values()), *rows):
         yield dict(zip(names, itertools.chain(*parts), strict=True))
@@ -256,8 +256,8 @@ def _samples(table: Mapping[str, object]) -> dict[str, list[float]]:
         return {}
     number, seed, method = (table.get(name, default) for name, default in _SAMPLES.items())
     are_integers = all(isinstance(value, int) and not isinstance(value, bool) for value in (number, seed))
-    if not are_integers or not 1 <= number <= MOST_CASES or method not in METHODS or not quantities:
-        raise DeckError(f"[samples] needs a number from 1 to {MOST_CASES}, an integer seed, a method out of "
+    if not are_integers or not 1 <= number <= MAX_CASES or method not in METHODS or not quantities:
+        raise DeckError(f"[samples] needs a number from 1 to {MAX_CASES}, an integer seed, a method out of "
                         f"{', '.join(METHODS)}, and a quantity at least.")
     return {name: draw(name, value, number, seed, method) for name, value in quantities.items()}
 
@@ -293,7 +293,7 @@ class CaseMaker:
         for target, formula in self._derived.items():
             if not isinstance(formula, str):
                 raise DeckError(f"[derived] {target} needs a formula, as text.")
-            values[target] = evaluate(formula, lambda word, text=text: self._look_up(word, values, text, name))
+            values[target] = evaluate(formula, lambda word, text=text: self._resolve(word, values, text, name))
             if path := key_path(target):
                 text = set_keys(text, {path: deck_value(values[target])}, name)
         return Case(number, *self._scattered(values, text, name, run))
@@ -322,7 +322,7 @@ class CaseMaker:
             self._texts[base] = read_text(self._folder / base, "the deck")
         return self._texts[base]
 
-    def _look_up(self, word: str, values: dict[str, object], text: str, name: str) -> object:
+    def _resolve(self, word: str, values: dict[str, object], text: str, name: str) -> object:
         """Return what a word of a formula stands for: a free name, or a key as the case's deck has it."""
         path: KeyPath | None = key_path(word)
         if path is not None:

@@ -11,7 +11,7 @@ from implam_post.io.files import replaced
 from implam_post.io.units import axis_of
 from implam_post.sweep.table import FIGURES, Table
 
-_MOST_SERIES, _MOST_COLUMNS, _LONGEST = 10, 6, 40
+_MAX_SERIES, _MAX_COLUMNS, _LONGEST = 10, 6, 40
 _SCATTERED = ("peak_force", "max_deflection", "absorbed_energy", "delaminated_area", "first_growth_force")
 # What free names and keys of the deck are measured in, and keys alone.
 _WORDS = {"energy": "energy", "velocity": "velocity", "mass": "mass"}
@@ -46,7 +46,7 @@ def series(table: Table) -> dict[str, np.ndarray]:
     for row in np.flatnonzero(finite):
         label = ", ".join(f"{name}={_short(table.columns[name][row])}" for name in kept)
         groups.setdefault(label, []).append(int(row))
-    if len(groups) > _MOST_SERIES or all(len(rows) < 2 for rows in groups.values()):
+    if len(groups) > _MAX_SERIES or all(len(rows) < 2 for rows in groups.values()):
         groups = {"": [int(row) for row in np.flatnonzero(finite)]}
     return {label: np.array(rows)[np.argsort(energy[rows], kind="stable")] for label, rows in groups.items()}
 
@@ -54,10 +54,10 @@ def series(table: Table) -> dict[str, np.ndarray]:
 def _changes_energy(table: Table, swept: list[str], name: str, energy: np.ndarray) -> bool:
     """Return whether two rows with the same swept values but of this name differ in energy."""
     others = [other for other in swept if other != name]
-    seen: dict[tuple, float] = {}
+    energy_of: dict[tuple, float] = {}
     for row in np.flatnonzero(np.isfinite(energy)):
         same = tuple(table.columns[other][row] for other in others)
-        if abs(seen.setdefault(same, energy[row]) - energy[row]) > 1e-9 * abs(energy[row]):
+        if abs(energy_of.setdefault(same, energy[row]) - energy[row]) > 1e-9 * abs(energy[row]):
             return True
     return False
 
@@ -85,7 +85,7 @@ def _against_energy(table: Table, name: str) -> Drawing | None:
 def _scatter(table: Table) -> Drawing | None:
     """Draw figures, row by row, against what is swept, column by column; nothing if there is nothing to see."""
     figures = [name for name in _SCATTERED if np.any(np.isfinite(table.numbers(name)))]
-    swept = _varied(table)[:_MOST_COLUMNS]
+    swept = _varied(table)[:_MAX_COLUMNS]
     if not figures or not swept:
         return None
     drawing = Drawing(figsize=(2.8 * len(swept) + 1, 2.2 * len(figures) + 0.6), layout="constrained")

@@ -12,7 +12,7 @@ from implam_post.io.errors import DeckError
 from implam_post.io.units import SYSTEMS
 from implam_post.sweep.samples import METHODS, draw
 
-MOST_RUNS = 10_000
+MAX_RUNS = 10_000
 THICKNESS, PLACE = "thickness", "place"
 
 
@@ -150,8 +150,8 @@ def read_scatter(table: Mapping[str, object] | None) -> Scatter | None:
         raise DeckError("scatter is a table: [scatter].")
     number, seed, method = table.get("number"), table.get("seed", 1), table.get("method", "random")
     are_integers = all(isinstance(value, int) and not isinstance(value, bool) for value in (number, seed))
-    if not are_integers or not 1 <= number <= MOST_RUNS or method not in METHODS:
-        raise DeckError(f"[scatter] needs a number of runs from 1 to {MOST_RUNS}, an integer seed, and a method out of "
+    if not are_integers or not 1 <= number <= MAX_RUNS or method not in METHODS:
+        raise DeckError(f"[scatter] needs a number of runs from 1 to {MAX_RUNS}, an integer seed, and a method out of "
                         f"{', '.join(METHODS)}.")
     kinds, variations, keys = {kind.name for kind in KINDS}, {}, {}
     known = {f"{group}.{key}".lower() for kind in KINDS if kind.name not in (THICKNESS, PLACE)

@@ -11,8 +11,8 @@ from matplotlib.figure import Figure
 from implam_post.io.contours import outline
 from implam_post.io.files import replaced
 from implam_post.io.history import History
-from implam_post.plot.look import Look, settle
 from implam_post.plot.plan_frame import frame, height_of, locate, reach_of
+from implam_post.plot.style import PictureStyle, lay_out
 from implam_post.sweep.scatter_results import Group
 
 BAND, SHARE = "force_band.png", "delaminated_share.png"
@@ -21,25 +21,25 @@ _LEVELS = (0.05, 0.5, 0.95)
 _WIDTH, _WORDS, _CAPTION, _BESIDE, _COLUMNS = 5.6, 2.0, 0.6, 0.9, 3
 
 
-def plot_scatter(groups: Sequence[Group], curves: Sequence[History], look: Look, folder: Path) -> list[Path]:
+def plot_scatter(groups: Sequence[Group], curves: Sequence[History], style: PictureStyle, folder: Path) -> list[Path]:
     """Draw what there is, and return the paths of the pictures."""
     drawn = []
     banded = [group for group in groups if group.band() is not None]
     if banded:
-        drawn.append(_save(band_figure(banded, curves, look), folder / BAND))
+        drawn.append(_save(band_figure(banded, curves, style), folder / BAND))
     mapped = [group for group in groups if group.plate is not None]
     if mapped:
-        drawn.append(_save(share_figure(mapped, look), folder / SHARE))
+        drawn.append(_save(share_figure(mapped, style), folder / SHARE))
     return drawn
 
 
-def band_figure(groups: Sequence[Group], curves: Sequence[History], look: Look) -> Figure:
+def band_figure(groups: Sequence[Group], curves: Sequence[History], style: PictureStyle) -> Figure:
     """Draw the mean force of each group with the band between the 5 and 95 % points, and its runs as thin lines."""
     figure = Figure(figsize=(8, 4.8), layout="constrained")
     axes = figure.subplots()
     bands = [group.band() for group in groups]
-    time = look.axis("time", "time", np.concatenate([band["time"] for band in bands]))
-    force = look.axis("contact force", "force", np.concatenate([band["high"] for band in bands]))
+    time = style.axis("time", "time", np.concatenate([band["time"] for band in bands]))
+    force = style.axis("contact force", "force", np.concatenate([band["high"] for band in bands]))
     for place, (group, band) in enumerate(zip(groups, bands, strict=True)):
         colour, name = f"C{place % 10}", f"{group.name}: " if group.name else ""
         for run in group.ended if len(groups) == 1 else ():
@@ -60,7 +60,7 @@ def band_figure(groups: Sequence[Group], curves: Sequence[History], look: Look) 
     return figure
 
 
-def share_figure(groups: Sequence[Group], look: Look) -> Figure:
+def share_figure(groups: Sequence[Group], style: PictureStyle) -> Figure:
     """Draw for each group in which share of its runs a place has delaminated, all interfaces seen through the plate."""
     regions = [[run.region for run in group.ended if run.region is not None] for group in groups]
     like = groups[0].plate
@@ -71,7 +71,7 @@ def share_figure(groups: Sequence[Group], look: Look) -> Figure:
                     layout="constrained")
     grid = figure.subplots(rows, columns, squeeze=False).ravel()
     for axes, group, cells in zip(grid, groups, regions, strict=False):
-        frame(axes, like, reach, look)
+        frame(axes, like, reach, style)
         image = _draw_share(axes, cells)
         axes.set_title(f"{group.name}: {len(cells)} runs" if group.name else f"{len(cells)} runs", fontsize="medium")
         bar = figure.colorbar(image, ax=axes, location="bottom", shrink=0.8,
@@ -118,7 +118,7 @@ def inside(cells: np.ndarray, x: np.ndarray, y: np.ndarray) -> np.ndarray:
 
 def _save(figure: Figure, path: Path) -> Path:
     """Replace a picture."""
-    settle(figure)
+    lay_out(figure)
     with replaced(path) as draft:
         figure.savefig(draft, dpi=150)
     return path

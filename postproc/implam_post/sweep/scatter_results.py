@@ -140,7 +140,7 @@ def _run(sweep: Sweep, case: Case, group: Group) -> EndedRun:
         region = fields.projected(len(fields.snapshots) - 1)
         group.plate = group.plate or fields
     found = dict(results.figures)
-    results.forget_fields()
+    results.close_fields()
     return EndedRun(case, results, found, record.cpu_time if record else math.nan, region)
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
-from implam_post.plot.look import Look
+from implam_post.plot.style import PictureStyle
 from implam_post.sweep.plan import Plan
 from implam_post.sweep.scatter_results import ComparedMean, Group, against_measured, pairs_of
 from implam_post.sweep.scatter_statistics import Difference, Spread, spreads
@@ -19,25 +19,25 @@ PAIRED = ("", "first", "difference", "scatter of it", "", "pairs")
 MEASURED = ("", "measured", "aim", "mean", "standard error", "off by", "")
 
 
-def statistics_text(plan: Plan, groups: Sequence[Group], look: Look) -> str:
+def statistics_text(plan: Plan, groups: Sequence[Group], style: PictureStyle) -> str:
     """Return what is printed at the end of a sweep."""
     parts = []
     for group in groups:
         seconds = sum(run.seconds for run in group.ended)
         parts += [f"\n{group.name or 'Statistics'}: {len(group.ended)} of {len(group.runs)} runs, {seconds:.4g} s of "
-                  "the processor", *_lines(HEAD, spread_rows(spreads(group.numbers), group.dimensions, look, SHOWN))]
+                  "the processor", *_lines(HEAD, spread_rows(spreads(group.numbers), group.dimensions, style, SHOWN))]
         if plan.measured is not None and (rows := against_measured(group, plan.measured)):
             parts += ["", *_lines(MEASURED, measured_rows(rows))]
     if len(groups) > 1:
         parts += ["\nMeans ± standard errors; * differs from the first by more than the scatter of the difference",
-                  markdown(variants_table(groups, look))]
+                  markdown(variants_table(groups, style))]
     for group, found in pairs_of(groups):
         parts += [f"\n{group.name} against {groups[0].name}, runs with the same inputs",
-                  *_lines(PAIRED, difference_rows(found, group.dimensions, look, SHOWN))]
+                  *_lines(PAIRED, difference_rows(found, group.dimensions, style, SHOWN))]
     return "\n".join(parts)
 
 
-def variants_table(groups: Sequence[Group], look: Look) -> list[tuple[str, ...]]:
+def variants_table(groups: Sequence[Group], style: PictureStyle) -> list[tuple[str, ...]]:
     """Return names, and below them a row for each variant: means and standard errors of the figures compared.
 
     A star stands where the difference from the first variant is larger than the scatter of its mean.
@@ -45,7 +45,7 @@ def variants_table(groups: Sequence[Group], look: Look) -> list[tuple[str, ...]]
     paired = {id(group): found for group, found in pairs_of(groups)}
     found_of = [(group, spreads(group.numbers)) for group in groups]
     names = [name for name in COMPARED if any(name in found and found[name].number for _, found in found_of)]
-    axes = {name: look.axis(words_of(name), _dimension(groups, name), [
+    axes = {name: style.axis(words_of(name), _dimension(groups, name), [
         found[name].mean for _, found in found_of if name in found]) for name in names}
     rows = [("", "runs", *(axes[name].label.replace(" [", ", ").rstrip("]") for name in names))]
     for group, found in found_of:
@@ -71,25 +71,25 @@ def markdown(rows: Sequence[Sequence[str]]) -> str:
     return "\n".join(f"| {' | '.join(row)} |" for row in [rows[0], ["---"] * len(rows[0]), *rows[1:]])
 
 
-def spread_rows(found: Mapping[str, Spread], dimensions: Mapping[str, str], look: Look,
+def spread_rows(found: Mapping[str, Spread], dimensions: Mapping[str, str], style: PictureStyle,
                 names: Sequence[str]) -> Iterator[tuple[str, ...]]:
     """Give a row for each figure: mean, its standard error, deviation, 5 and 95 % points, number of runs."""
     for name in names:
         if name in found and found[name].number:
             one = found[name]
-            shown = _sayer(look, dimensions.get(name, ""), one.mean, one.high)
+            shown = _sayer(style, dimensions.get(name, ""), one.mean, one.high)
             deviation = f"{shown(one.deviation, 3)}{_percent(one.deviation, one.mean)}"
             yield (words_of(name), shown(one.mean), shown(one.error, 2), deviation, shown(one.low), shown(one.high),
                    str(one.number))
 
 
-def difference_rows(found: Mapping[str, Difference], dimensions: Mapping[str, str], look: Look,
+def difference_rows(found: Mapping[str, Difference], dimensions: Mapping[str, str], style: PictureStyle,
                     names: Sequence[str]) -> Iterator[tuple[str, ...]]:
     """Give a row for each figure: mean of the first, difference, the scatter of it, and whether it is larger."""
     for name in names:
         if name in found and found[name].number:
             one = found[name]
-            shown = _sayer(look, dimensions.get(name, ""), one.first, one.mean)
+            shown = _sayer(style, dimensions.get(name, ""), one.first, one.mean)
             verdict = "differs" if one.differs else "equal" if one.number > 1 else "not known from one pair"
             yield (words_of(name), shown(one.first), f"{shown(one.mean, 3)}{_percent(one.mean, one.first)}",
                    shown(one.least, 2), verdict, str(one.number))
@@ -110,10 +110,10 @@ def words_of(name: str) -> str:
     return name.replace("_", " ")
 
 
-def _sayer(look: Look, dimension: str, *values: float) -> Callable[..., str]:
+def _sayer(style: PictureStyle, dimension: str, *values: float) -> Callable[..., str]:
     """Return what writes values in the unit that suits the largest of some of them."""
-    axis = look.axis("", dimension, values)
-    unit = axis.label.strip(" []") if look.system and dimension else ""
+    axis = style.axis("", dimension, values)
+    unit = axis.label.strip(" []") if style.system and dimension else ""
     return lambda value, digits=4: "-" if value != value else f"{_rounded(axis.factor * value, digits)} {unit}".strip()
 
 

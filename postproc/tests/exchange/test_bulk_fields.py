@@ -20,8 +20,8 @@ class BlanksTest(ImportTest):
 
     def text_of_deck(self, text: str) -> str:
         """Return the deck of a file."""
-        code, told = self.run_command(text)
-        self.assertEqual(code, 0, told)
+        code, printed = self.run_command(text)
+        self.assertEqual(code, 0, printed)
         return (self.folder / "panel.nml").read_text()
 
     def test_names_anywhere_in_their_field(self) -> None:
@@ -46,9 +46,9 @@ class BlanksTest(ImportTest):
         """A card whose name lies beyond its field is refused by that name, with its line."""
         for line, name in (("     CQUAD4       1", "CQUAD4"), ("\tGRID\t7", "GRID"), ("        MAT8    3", "MAT8")):
             text = Bulk(head="$\n").text() + line + "\n"
-            code, told = self.run_command(text)
-            self.assertEqual((code, told.count("\n")), (2, 1), told)
-            self.assertIn(f"panel.bdf:{len(text.splitlines())}: {name}: it begins in column", told)
+            code, printed = self.run_command(text)
+            self.assertEqual((code, printed.count("\n")), (2, 1), printed)
+            self.assertIn(f"panel.bdf:{len(text.splitlines())}: {name}: it begins in column", printed)
 
     def test_byte_order_marks(self) -> None:
         """They are no part of the first card, nor of a deck."""
@@ -67,9 +67,9 @@ class MassTest(ImportTest):
 
     def density(self, text: str) -> float:
         """Return the density of the first ply."""
-        code, told = self.run_command(text)
-        self.assertEqual(code, 0, told)
-        self.told = told
+        code, printed = self.run_command(text)
+        self.assertEqual(code, 0, printed)
+        self.printed = printed
         return plies_of(read_deck(Path(self.folder / "panel.nml")))[0].material.density
 
     def test_factor(self) -> None:
@@ -77,8 +77,8 @@ class MassTest(ImportTest):
         for write in (small, large, free):
             bulk = Bulk(write=write, more=[("PARAM", "WTMASS", 2.59e-3), ("PARAM", "POST", -1)])
             self.assertAlmostEqual(self.density(bulk.text()), 1580 * 2.59e-3, delta=1e-9)
-            self.assertIn("WTMASS   0.00259, line", self.told)
-            self.assertIn("PARAM    1, line", self.told)
+            self.assertIn("WTMASS   0.00259, line", self.printed)
+            self.assertIn("PARAM    1, line", self.printed)
         self.assertAlmostEqual(self.density(HEAD.replace("BEGIN", "PARAM,WTMASS,2.59-3\nBEGIN") + Bulk().text()),
                                1580 * 2.59e-3, delta=1e-9)
         self.assertEqual(self.density(Bulk().text()), 1580)
@@ -105,8 +105,8 @@ class TemperatureTest(ImportTest):
 
     def imported(self, bulk: Bulk) -> str:
         """Return the text of the deck."""
-        code, self.told = self.run_command(bulk.text())
-        self.assertEqual(code, 0, self.told)
+        code, self.printed = self.run_command(bulk.text())
+        self.assertEqual(code, 0, self.printed)
         return (self.folder / "panel.nml").read_text()
 
     def cured(self, reference: float | None = 180.0, laminate: float | None = None, **more: object) -> Bulk:
@@ -122,7 +122,7 @@ class TemperatureTest(ImportTest):
         self.assertIn("alpha1=-3e-7 alpha2=2.8e-5", text)
         self.assertIn("alpha1=2.3e-5 alpha2=2.3e-5", text)
         self.assertIn("\n&thermal   delta_T=-160 /\n", text)
-        self.assertIn("set 5 isn't taken", self.told)
+        self.assertIn("set 5 isn't taken", self.printed)
         self.assertIn("delta_T=-110 /", self.imported(self.cured(130.0, head=HEAD, more=temperature)))
         self.assertIn("delta_T=-100 /", self.imported(self.cured(180.0, 120.0, head=HEAD, more=temperature)))
         self.assertIn("delta_T=20 /", self.imported(self.cured(None, head=HEAD, more=temperature)))
@@ -132,7 +132,7 @@ class TemperatureTest(ImportTest):
         """Without a temperature the deck has a comment, and says of TREF where it is."""
         text = self.imported(self.cured())
         self.assertIn("! Free of stress at TREF = 180: &thermal  delta_T=", text)
-        self.assertIn("TREF stands in a comment of the deck", self.told)
+        self.assertIn("TREF stands in a comment of the deck", self.printed)
         self.assertIn("! alpha1 and alpha2 count with &thermal", self.imported(self.cured(None)))
         self.assertNotIn("thermal", self.imported(Bulk()))
         text = self.imported(self.cured(head=HEAD.replace("4", "1"), more=[("TEMPD", 4, 20.0)]))
@@ -146,7 +146,7 @@ class TemperatureTest(ImportTest):
         self.refused(self.cured(head=HEAD.replace("BEGIN", "TEMP = 5\nBEGIN")), "the temperatures [4, 5]")
         text = self.imported(self.cured(head=HEAD, more=[("TEMPD", 4, 20.0), ("TEMP", 4, 1, 50.0)]))
         self.assertNotIn("\n&thermal", text)
-        self.assertIn("single grids or elements have other temperatures", self.told)
+        self.assertIn("single grids or elements have other temperatures", self.printed)
 
 
 class InPlaneTest(ImportTest):

@@ -1,4 +1,4 @@
-"""Tests of implam-to-nastran and implam-to-abaqus: damage, grids that come apart, cards, and the way back."""
+"""Tests of implam-to-nastran and implam-to-abaqus: damage, separated grids, cards, and the way back."""
 
 import contextlib
 import importlib.util
@@ -96,7 +96,7 @@ class DegradationTest(unittest.TestCase):
 class PanelTest(ExportTest):
     """What is read from results and decks."""
 
-    def test_whole_plate(self) -> None:
+    def test_full_plate(self) -> None:
         """The quarter is mirrored: cells by their state at the last time and at the first."""
         panel = self.panel()
         np.testing.assert_array_equal(panel.x, [-6, -3, -1, 0, 1, 3, 6])
@@ -172,7 +172,7 @@ class MeshTest(ExportTest):
         """Return the mesh of the last time."""
         return shell_mesh(self.panel(), with_middles)
 
-    def test_grids_come_apart_inside_only(self) -> None:
+    def test_grids_separate_inside_only(self) -> None:
         """Two grids at each place whose cells are all apart; at the edge of the delamination one joins all plies."""
         mesh = self.mesh()
         places = Counter(map(tuple, mesh.coordinates))
@@ -220,7 +220,7 @@ class NastranTest(ExportTest):
     """Cards and the way back."""
 
     def test_numbers(self) -> None:
-        """Fields hold all digits that fit, and tell whether they do."""
+        """Fields hold all digits that fit, and the command says whether they do."""
         for number, eight, sixteen in ((139e9, "1.39+11", "139000000000.0"), (0.125e-3, "0.000125", "0.000125"),
                                        (1e-7, "1.-7", "1.-7"), (-1 / 3, "-3.333-1", "-3.33333333333-1"),
                                        (0.0, "0.0", "0.0"), (-45.0, "-45.0", "-45.0")):

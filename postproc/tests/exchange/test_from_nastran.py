@@ -1,4 +1,4 @@
-"""Tests of implam-from-nastran: what cards become, what is told about them, and what is refused."""
+"""Tests of implam-from-nastran: what cards become, what is reported about them, and what is refused."""
 
 import contextlib
 import importlib.util
@@ -33,26 +33,26 @@ class ImportTest(unittest.TestCase):
         """Return exit code and text of the command on a file."""
         path = self.folder / "panel.bdf"
         path.write_text(text)
-        told = io.StringIO()
-        with contextlib.redirect_stdout(told), contextlib.redirect_stderr(told):
+        printed = io.StringIO()
+        with contextlib.redirect_stdout(printed), contextlib.redirect_stderr(printed):
             try:
                 code = from_nastran.main([str(path), "-o", str(self.folder / "panel.nml"), *options])
             except SystemExit as end:
                 code = end.code
-        return code, told.getvalue()
+        return code, printed.getvalue()
 
     def deck(self, bulk: Bulk, *options: str) -> Deck:
         """Return the deck of a panel."""
-        code, told = self.run_command(bulk.text(), *options)
-        self.assertEqual(code, 0, told)
+        code, printed = self.run_command(bulk.text(), *options)
+        self.assertEqual(code, 0, printed)
         return read_deck(self.folder / "panel.nml")
 
     def refused(self, bulk: Bulk, *words: str, options: tuple[str, ...] = ()) -> None:
         """Fail unless the panel is refused in one sentence with these words and exit code 2."""
-        code, told = self.run_command(bulk.text(), *options)
-        self.assertEqual((code, told.count("\n")), (2, 1), told)
+        code, printed = self.run_command(bulk.text(), *options)
+        self.assertEqual((code, printed.count("\n")), (2, 1), printed)
         for word in words:
-            self.assertIn(word, told)
+            self.assertIn(word, printed)
 
 
 class CardsTest(ImportTest):
@@ -156,14 +156,14 @@ class CardsTest(ImportTest):
         self.refused(bulk, "in the panel's plane, which isn't the support of a entire edge")
         self.assertEqual(self.deck(Bulk(edges=("", "", "", ""))).edges(), 4 * ["free"])
 
-    def test_softer_supports_are_told(self) -> None:
-        """A deflection held alone is a simple support, a rotation across alone with it a clamp; both are told."""
-        code, told = self.run_command(Bulk(edges=("123", "1235", "1235", "1235")).text())
-        self.assertEqual(code, 0, told)
+    def test_softer_supports_are_reported(self) -> None:
+        """A deflection held alone is a simple support, a rotation across alone with it a clamp; both are reported."""
+        code, printed = self.run_command(Bulk(edges=("123", "1235", "1235", "1235")).text())
+        self.assertEqual(code, 0, printed)
         self.assertEqual(read_deck(self.folder / "panel.nml").edges(), ["simple", "clamped", "simple", "simple"])
-        self.assertIn("edge x-min: simple; in the file the rotation along the edge is free", told)
-        self.assertIn("edge x-max: clamped; in the file the rotation along the edge is free", told)
-        self.assertNotIn("edge y-min", told)
+        self.assertIn("edge x-min: simple; in the file the rotation along the edge is free", printed)
+        self.assertIn("edge x-max: clamped; in the file the rotation along the edge is free", printed)
+        self.assertNotIn("edge y-min", printed)
 
     def test_rotation_about_the_normal_does_not_count(self) -> None:
         """All grids may hold it, by PS or by a card with THRU."""
@@ -217,7 +217,7 @@ class ImpactTest(ImportTest):
 
 
 class ReportTest(ImportTest):
-    """What the command tells of the cards."""
+    """What the command reports of the cards."""
 
     def test_cards_with_their_lines(self) -> None:
         """Taken, taken in part and not taken."""
@@ -227,17 +227,17 @@ class ReportTest(ImportTest):
         bulk.materials = [(*MATERIALS[0][:9], 1e-6, 3e-5, 20.0, *MATERIALS[0][12:]), MATERIALS[1]]
         text = bulk.text() + "ENDDATA\nGRID,999,,0.,0.,0.\n"
         lines = text.splitlines()
-        code, told = self.run_command(text)
-        self.assertEqual(code, 0, told)
+        code, printed = self.run_command(text)
+        self.assertEqual(code, 0, printed)
 
         def first(name: str) -> int:
             return next(number for number, line in enumerate(lines, 1) if line.startswith(name))
 
-        self.assertIn("lines 1-4: executive and case control", told)
-        self.assertRegex(told, rf"GRID     20, lines {first('GRID')}-{first('GRID') + 19}\n")
+        self.assertIn("lines 1-4: executive and case control", printed)
+        self.assertRegex(printed, rf"GRID     20, lines {first('GRID')}-{first('GRID') + 19}\n")
         for name, text in (("MAT8", "TREF isn't taken, as it differs"), ("PCOMP", "NSM is spread over the plies")):
-            self.assertIn(f"{name}, line {first(name)}: {text}", told)
-        untaken = told[told.index("not taken:"):]
+            self.assertIn(f"{name}, line {first(name)}: {text}", printed)
+        untaken = printed[printed.index("not taken:"):]
         self.assertRegex(untaken, r"PARAM    2, lines 5-7\n")
         self.assertRegex(untaken, r"EIGRL    1, line 8\n")
         self.assertRegex(untaken, rf"PLOAD4   5, lines {first('PLOAD4')}-{first('PLOAD4') + 4}\n")
@@ -255,14 +255,14 @@ class ReportTest(ImportTest):
         materials = [(*MATERIALS[0][:6], None, *MATERIALS[0][7:8], None, *MATERIALS[0][9:], None, None, 1.0),
                      (*MATERIALS[1][:3], 26.2e9, *MATERIALS[1][4:])]
         bulk = Bulk(laminate=[laminate], materials=materials)
-        code, told = self.run_command(bulk.text())
-        self.assertEqual(code, 0, told)
+        code, printed = self.run_command(bulk.text())
+        self.assertEqual(code, 0, printed)
         for text in ("Z0 isn't taken", "G1Z is blank", "no RHO", "XT isn't taken", "G isn't taken"):
-            self.assertIn(text, told)
+            self.assertIn(text, printed)
         carbon = plies_of(read_deck(self.folder / "panel.nml"))[0].material
         self.assertEqual((carbon.g13, carbon.strengths), (4.5e9, ()))
 
-    def test_default_offset_is_not_told(self) -> None:
+    def test_default_offset_is_not_reported(self) -> None:
         """Z0 of half the thickness is where a laminate lies."""
         bulk = Bulk(laminate=[(*LAMINATE[0][:2], -0.5e-3, *LAMINATE[0][3:])])
         self.assertNotIn("Z0", self.run_command(bulk.text())[1])
@@ -270,15 +270,15 @@ class ReportTest(ImportTest):
     def test_a_deck_is_not_replaced_unasked(self) -> None:
         """Only -o may name a deck that is there."""
         (self.folder / "panel.bdf").write_text(Bulk().text())
-        told = io.StringIO()
-        with contextlib.redirect_stdout(told), contextlib.redirect_stderr(told):
+        printed = io.StringIO()
+        with contextlib.redirect_stdout(printed), contextlib.redirect_stderr(printed):
             self.assertEqual(from_nastran.main([str(self.folder / "panel.bdf")]), 0)
             self.assertEqual(from_nastran.main([str(self.folder / "panel.bdf")]), 4)
             self.assertEqual(from_nastran.main([str(self.folder / "none.bdf")]), 4)
 
 
 class WithoutPyNastranTest(unittest.TestCase):
-    """What a user without pyNastran is told."""
+    """What a user without pyNastran is reported."""
 
     def test_it_is_named(self) -> None:
         """One sentence, exit code 1."""
@@ -286,11 +286,11 @@ class WithoutPyNastranTest(unittest.TestCase):
                 "sys.modules", {"pyNastran.bdf.bdf_interface.bdf_card": None, "pyNastran": None}):
             path = Path(folder) / "panel.bdf"
             path.write_text(Bulk().text())
-            told = io.StringIO()
-            with contextlib.redirect_stderr(told):
+            printed = io.StringIO()
+            with contextlib.redirect_stderr(printed):
                 self.assertEqual(from_nastran.main([str(path)]), 1)
-        self.assertEqual(told.getvalue().count("\n"), 1)
-        self.assertIn("pip install 'implam-post[nastran]'", told.getvalue())
+        self.assertEqual(printed.getvalue().count("\n"), 1)
+        self.assertIn("pip install 'implam-post[nastran]'", printed.getvalue())
 
 
 class ShellTest(ImportTest):
@@ -320,41 +320,41 @@ class RefusedTest(ImportTest):
     def test_shapes(self) -> None:
         """Not a rectangle, not flat, not along the axes, cut, without elements or grids."""
         without = re.sub(r"CQUAD4 +12 .*\n", "", Bulk().text())
-        code, told = self.run_command(without)
-        self.assertEqual((code, told.count("\n")), (2, 1), told)
-        self.assertIn("don't make up a rectangle", told)
+        code, printed = self.run_command(without)
+        self.assertEqual((code, printed.count("\n")), (2, 1), printed)
+        self.assertIn("don't make up a rectangle", printed)
         self.refused(Bulk(place=lambda x, y: (x + 0.3 * y, y, 0.0), write=large), "don't make up a rectangle")
         self.refused(Bulk(place=lambda x, y: (0.8 * x - 0.6 * y, 0.6 * x + 0.8 * y, 0.0), write=large),
                      "don't make up a rectangle")
         self.refused(Bulk(place=lambda x, y: (x, y, x * y), write=large), "its normal isn't that of the element")
         self.refused(Bulk(place=lambda x, y: (x, 0.8 * y, 0.6 * y), write=large), "isn't parallel to a plane")
         self.assertIn("there is no CQUAD4", self.run_command(re.sub(r"CQUAD4.*\n", "", Bulk().text()))[1])
-        told = self.run_command(Bulk().text().replace("CQUAD4", "CQUADR"))[1]
-        self.assertIn("CQUADR, lines", told)
-        self.assertIn("mesh the panel with CQUAD4 or CQUAD8 alone", told)
+        printed = self.run_command(Bulk().text().replace("CQUAD4", "CQUADR"))[1]
+        self.assertIn("CQUADR, lines", printed)
+        self.assertIn("mesh the panel with CQUAD4 or CQUAD8 alone", printed)
         self.assertIn("=(3): replicated cards", self.run_command("GRID,1\n=(3)\n")[1])
         self.assertIn("grid 3 isn't there", self.run_command(re.sub(r"GRID +3 .*\n", "", Bulk().text()))[1])
         bulk = Bulk(more=[("GRID", 99, None, 0.1, 0.1, 0.0)])
         cut = bulk.text().replace(small("CQUAD4", 11, 1, 41, 43, 61, 59)[0], small("CQUAD4", 11, 1, 99, 43, 61, 59)[0])
-        code, told = self.run_command(cut)
-        self.assertEqual(code, 2, told)
-        self.assertIn("the grids 41 and 99 are at the same place", told)
+        code, printed = self.run_command(cut)
+        self.assertEqual(code, 2, printed)
+        self.assertIn("the grids 41 and 99 are at the same place", printed)
 
     def test_laminates(self) -> None:
         """Two properties, a missing one, options of the laminate that aren't taken, materials that aren't there."""
         other = ("PCOMP", 2, *LAMINATE[0][2:11], 30.0, *LAMINATE[0][12:])
         two = Bulk(laminate=[*LAMINATE, other]).text().replace(small("CQUAD4", 3, 1)[0], small("CQUAD4", 3, 2)[0])
-        code, told = self.run_command(two)
-        self.assertEqual((code, told.count("\n")), (2, 1), told)
-        self.assertIn("it isn't the lay-up of PCOMP 1", told)
+        code, printed = self.run_command(two)
+        self.assertEqual((code, printed.count("\n")), (2, 1), printed)
+        self.assertIn("it isn't the lay-up of PCOMP 1", printed)
         same = two.replace("30.", "45.")
         self.assertEqual(self.run_command(same)[0], 0)
         weak = small("MAT8", 3, *MATERIALS[0][2:12], 1e9, *MATERIALS[0][13:])
         other = ("PCOMP", 2, *LAMINATE[0][2:9], 3, *LAMINATE[0][10:13], 3, *LAMINATE[0][14:])
         weaker = Bulk(laminate=[*LAMINATE, other]).text().replace(small("CQUAD4", 3, 1)[0], small("CQUAD4", 3, 2)[0])
-        code, told = self.run_command(weaker + "\n".join(weak))
-        self.assertEqual(code, 2, told)
-        self.assertIn("it isn't the lay-up of PCOMP 1", told)
+        code, printed = self.run_command(weaker + "\n".join(weak))
+        self.assertEqual(code, 2, printed)
+        self.assertIn("it isn't the lay-up of PCOMP 1", printed)
         self.refused(Bulk(laminate=[]), "property 1")
         self.refused(Bulk(laminate=[(*LAMINATE[0][:8], "SMEAR", *LAMINATE[0][9:])]), "LAM = SMEAR")
         self.refused(Bulk(laminate=[*LAMINATE, *LAMINATE]), "number 1 is taken")
@@ -379,9 +379,9 @@ class RefusedTest(ImportTest):
         """Material axes that differ and systems that aren't there."""
         turned = Bulk().text().replace(small("CQUAD4", 3, 1, 5, 7, 25, 23, None)[0],
                                        small("CQUAD4", 3, 1, 5, 7, 25, 23, 10.0)[0])
-        code, told = self.run_command(turned)
-        self.assertEqual((code, told.count("\n")), (2, 1), told)
-        self.assertIn("material axis is 10 degrees", told)
+        code, printed = self.run_command(turned)
+        self.assertEqual((code, printed.count("\n")), (2, 1), printed)
+        self.assertIn("material axis is 10 degrees", printed)
         self.refused(Bulk(theta=3), "coordinate system 3")
 
     def test_supports(self) -> None:
@@ -398,10 +398,10 @@ class RefusedTest(ImportTest):
         """They have to be held against what their edges are; their rotation is a remark only."""
         inner = Bulk().on_edge(0)[1:-1]
         bulk = Bulk(edges=("", "34", "35", "35"), more=[("SPC1", 1, "34", *inner)])
-        code, told = self.run_command(bulk.text())
-        self.assertEqual(code, 0, told)
+        code, printed = self.run_command(bulk.text())
+        self.assertEqual(code, 0, printed)
         self.assertEqual(read_deck(self.folder / "panel.nml").edges(), 4 * ["simple"])
-        self.assertIn("edge x-min and y-min: the corner grid 1 turns freely", told)
+        self.assertIn("edge x-min and y-min: the corner grid 1 turns freely", printed)
         self.refused(Bulk(edges=("", "34", "", ""), more=[("SPC1", 1, "34", *inner)]),
                      "the corner grid 1 doesn't hold component 3")
 

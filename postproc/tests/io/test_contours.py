@@ -43,7 +43,7 @@ class ContoursTest(unittest.TestCase):
         free = np.all(edges.reshape(-1, 2) > 1e-9, axis=1)
         self.assertLess(np.ptp(distance[free]), 0.008)
 
-    def test_little_damage_has_little_area(self) -> None:
+    def test_slight_damage_has_small_area(self) -> None:
         """A thousandth everywhere is a thousandth of the plate, not the plate."""
         corners = elements()
         shares = np.full((len(corners), 9), 1e-3)

@@ -59,7 +59,7 @@ class ThresholdTest(unittest.TestCase):
             self.assertIsNone(threshold(found, CORNER))
 
     def test_coarse_rows(self) -> None:
-        """Rows too far apart for the low pass tell nothing."""
+        """Rows too far apart for the low pass give no threshold."""
         found = history(0.3, 10.0)
         self.assertIsNotNone(threshold(found, CORNER))
         coarse = History({name: values[::60] for name, values in found.columns.items()})

@@ -43,7 +43,7 @@ class DeckTest(unittest.TestCase):
         self.assertEqual(found.groups["material"][0]["e1"], [2])
         self.assertNotIn("nu12", recorded_deck({"deck": text}, Path("a.nml")).groups["material"][0])
 
-    def test_what_has_no_answer_is_refused(self) -> None:
+    def test_invalid_decks_are_refused(self) -> None:
         """Every deck outside the method ends with a sentence about the reason."""
         ten = "angles=0,90,0,90,0,0,90,0,90,0"
         changes = {

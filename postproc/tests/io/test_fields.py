@@ -93,7 +93,7 @@ class FieldsTest(unittest.TestCase):
             code = plot.main([str(argument) for argument in arguments])
         return code, text.getvalue()
 
-    def test_delamination_of_the_whole_plate(self) -> None:
+    def test_delamination_of_the_full_plate(self) -> None:
         """A quarter counts four times, mirrored, at each time with what has delaminated by then."""
         fields = read_fields(self.path)
         self.assertEqual(fields.snapshots[0].mesh.interfaces, [2])
@@ -130,7 +130,7 @@ class FieldsTest(unittest.TestCase):
             file["meshes/00000001/cells/starter_above"] = starter
         self.assertAlmostEqual(area(read_fields(self.path).starter(2)), 1)
 
-    def test_whole_plate_is_not_mirrored(self) -> None:
+    def test_full_plate_is_not_mirrored(self) -> None:
         """A run of the full plate is shown as it is."""
         write_fields(self.path, part="whole")
         self.assertAlmostEqual(area(read_fields(self.path).delaminated(2, 2)), 6)
@@ -173,7 +173,7 @@ class FieldsTest(unittest.TestCase):
         self.assertEqual(in_plan.get_title(), "time 0.5")
 
     def test_times_asked_for(self) -> None:
-        """A time that the fields don't reach is told."""
+        """A time that the fields don't reach is reported."""
         self.assertEqual(self.plot(self.path, "--times", "0.5", "1.5")[0], 0)
         code, text = self.plot(self.path, "--times", "2")
         self.assertEqual((code, text.count("outside the fields")), (1, 1), text)
@@ -200,7 +200,7 @@ class FieldsTest(unittest.TestCase):
         self.assertEqual(self.plot(history, "--save", picture)[0], 1)
 
     def test_without_damage(self) -> None:
-        """A run without interfaces and failures is told, not drawn."""
+        """A run without interfaces and failures is reported, not drawn."""
         with h5py.File(self.path, "a") as file:
             for group in file["times"].values():
                 del group["cells"]
@@ -211,7 +211,7 @@ class FieldsTest(unittest.TestCase):
         self.assertEqual(self.plot(self.path, "--history", self.write_history(), "--save", self.folder / "a.png")[0], 4)
 
     def test_what_is_no_file_of_fields(self) -> None:
-        """Missing, foreign and empty files are told in one sentence."""
+        """Missing, foreign and empty files are reported in one sentence."""
         foreign = self.folder / "foreign.h5"
         with h5py.File(foreign, "w") as file:
             file["x"] = 1

@@ -19,7 +19,7 @@ class NamelistTest(unittest.TestCase):
                                           "other": ["x"], "on": [True], "off": [False]}])
         self.assertEqual(groups["two"], [{"edges": ["free", "simple", "simple", "simple"]}, {"c": [1.0]}])
 
-    def test_faults_are_told_with_their_line(self) -> None:
+    def test_faults_are_reported_with_their_line(self) -> None:
         """Each fault ends with one sentence that names the line."""
         faults = {"\n&a b=1": 2, "&a\nb= c=1 /": 2, "&a b='x\n' /": 1, "&a b=1\nb=2 /": 2, "&a b=xyz /": 1,
                   "&a\n\n b(3)=1 /": 3, "a=1": 1, "&a 1 /": 1, "&a b=3* /": 1, "&a b=1 &c d=1 /": 1}

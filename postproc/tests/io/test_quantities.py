@@ -74,8 +74,8 @@ class QuantitiesTest(unittest.TestCase):
         self.assertAlmostEqual(QUANTITIES["absorbed_energy"](history), 10 - np.interp(end, history.time, columns[
             "energy_impactor"]), delta=1e-14)
         untouched = History(columns | {"force": np.zeros(8)})
-        lasting = History(columns | {"force": np.full(8, 8.0)})
-        for one in (untouched, lasting):
+        constant = History(columns | {"force": np.full(8, 8.0)})
+        for one in (untouched, constant):
             for name in ("contact_duration", "absorbed_energy"):
                 self.assertTrue(np.isnan(QUANTITIES[name](one)), name)
 
@@ -107,7 +107,7 @@ class QuantitiesTest(unittest.TestCase):
 
     def test_nan_stays_nan(self) -> None:
         """One NaN among the forces spoils every number made from them."""
-        broken = pulses(0, 2, 4, np.nan, 0, 0)
+        with_nan = pulses(0, 2, 4, np.nan, 0, 0)
         for name in ("peak_force", "peak_force_time", "contact_begin", "contact_release", "second_peak_force"):
-            self.assertTrue(np.isnan(QUANTITIES[name](broken)), name)
-        self.assertTrue(np.isnan(rms_force_difference(broken, pulses(0, 2, 4, 2, 0, 0))))
+            self.assertTrue(np.isnan(QUANTITIES[name](with_nan)), name)
+        self.assertTrue(np.isnan(rms_force_difference(with_nan, pulses(0, 2, 4, 2, 0, 0))))

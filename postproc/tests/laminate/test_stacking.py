@@ -42,9 +42,9 @@ class StackingTest(unittest.TestCase):
     def test_deck(self) -> None:
         """Stacking with one thickness gives the section of the list, energy the velocity."""
         listed = deck(SUN_CHEN)
-        told = deck(SUN_CHEN, ("angles=0,90,0,90,0,0,90,0,90,0", "stacking='[0/90/0/90/0]s'"),
+        shorthand = deck(SUN_CHEN, ("angles=0,90,0,90,0,0,90,0,90,0", "stacking='[0/90/0/90/0]s'"),
                     ("thicknesses=10*0.269e-3", "ply_thickness=0.269e-3"), ("velocity=3", "energy=38.4165e-3"))
-        self.assertEqual(plies_of(told), plies_of(listed))
-        self.assertAlmostEqual(impactor_of(told).velocity, 3, delta=1e-12)
+        self.assertEqual(plies_of(shorthand), plies_of(listed))
+        self.assertAlmostEqual(impactor_of(shorthand).velocity, 3, delta=1e-12)
         with self.assertRaisesRegex(DeckError, "angles and thicknesses"):
             plies_of(deck(SUN_CHEN, ("angles=", "ply_thickness=1e-3 angles=")))

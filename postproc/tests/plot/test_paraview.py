@@ -33,7 +33,7 @@ class ParaviewTest(unittest.TestCase):
         (self.folder / "case_history.csv").write_text("time,impactor_displacement\n0,0\n1,1e-3\n2,0\n")
 
     def write(self) -> set[str]:
-        """Run the command; return the names of the files it tells."""
+        """Run the command; return the names of the files it prints."""
         text = io.StringIO()
         with contextlib.redirect_stdout(text):
             self.assertEqual(paraview.main([str(self.path)]), 0)

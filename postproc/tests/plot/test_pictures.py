@@ -16,8 +16,8 @@ from PIL import Image
 from implam_post.io.fields import Fields, Mesh, Snapshot, area, read_fields
 from implam_post.io.history import ENERGIES, History
 from implam_post.plot import command, movie, pictures
-from implam_post.plot.look import Look, settle
 from implam_post.plot.plan import along_fibres, delamination_figure, failures_figure, projected_figure
+from implam_post.plot.style import PictureStyle, lay_out
 from implam_post.sweep.scatter_plots import share_figure
 from implam_post.sweep.scatter_results import EndedRun, Group
 from tests.io.test_fields import write_fields
@@ -67,7 +67,7 @@ class PicturesTest(unittest.TestCase):
     def test_axes_have_units_and_runs_their_styles(self) -> None:
         """2 kN at 1 ms are drawn as 2 and 1; two runs differ without colours; the gap isn't drawn as indentation."""
         axes = Figure().subplots()
-        pictures._draw(axes, [history("a"), history("b", 0.5)], "force", Look("SI"))
+        pictures._draw(axes, [history("a"), history("b", 0.5)], "force", PictureStyle("SI"))
         self.assertEqual((axes.get_xlabel(), axes.get_ylabel()), ("time [ms]", "contact force [kN]"))
         lines = axes.get_lines()
         self.assertAlmostEqual(np.max(lines[0].get_ydata()), 2.0, delta=1e-9)
@@ -84,7 +84,7 @@ class PicturesTest(unittest.TestCase):
         drawn = []
         for of, system in ((si, "SI"), (other, "mm-t-s")):
             axes = Figure().subplots()
-            pictures._draw(axes, [of], "deflection", Look(system))
+            pictures._draw(axes, [of], "deflection", PictureStyle(system))
             drawn.append((axes.get_ylabel(), axes.get_lines()[0].get_ydata()))
         self.assertEqual(drawn[0][0], drawn[1][0])
         np.testing.assert_allclose(drawn[0][1], drawn[1][1], rtol=1e-12)
@@ -92,7 +92,7 @@ class PicturesTest(unittest.TestCase):
     def test_projected_interfaces(self) -> None:
         """What has delaminated is one region; its area stands in the title."""
         fields = read_fields(self.path)
-        axes = projected_figure(fields, Look("SI")).axes[0]
+        axes = projected_figure(fields, PictureStyle("SI")).axes[0]
         cells = fields.delaminated(2, 2)
         regions = [part.get_path() for part in axes.patches if isinstance(part, PathPatch)]
         self.assertEqual([np.count_nonzero(path.codes == path.MOVETO) for path in regions], [1, 1, 1])
@@ -100,7 +100,7 @@ class PicturesTest(unittest.TestCase):
         self.assertEqual(axes.get_xlabel(), "x [mm]")
 
     def test_cracks_run_along_fibres(self) -> None:
-        """The lines of a ply have its angle, which the deck in the file tells, and stay in their cells."""
+        """The lines of a ply have its angle, given by the deck in the file, and stay in their cells."""
         square = np.array([[[0, 0], [2, 0], [2, 1], [0, 1]]], dtype=float)
         for angle in (0, 30, 90, -45):
             line = along_fibres(square, angle)[0]
@@ -108,7 +108,7 @@ class PicturesTest(unittest.TestCase):
             self.assertAlmostEqual(run[0] * np.sin(np.radians(angle)), run[1] * np.cos(np.radians(angle)))
             self.assertTrue(np.all(line >= -1e-12) and np.all(line <= [2 + 1e-12, 1 + 1e-12]), line)
             self.assertGreater(np.hypot(*run), 0.99)
-        figure = failures_figure(read_fields(self.path), ("matrix cracking",), Look("SI"))
+        figure = failures_figure(read_fields(self.path), ("matrix cracking",), PictureStyle("SI"))
         third = figure.axes[2]
         self.assertEqual(third.get_title(), "ply 3, 90°")
         lines = [segment for part in third.collections if isinstance(part, LineCollection)
@@ -117,13 +117,13 @@ class PicturesTest(unittest.TestCase):
         self.assertTrue(all(abs(segment[0, 0] - segment[1, 0]) < 1e-9 for segment in lines))
 
     def test_struck_aside(self) -> None:
-        """The picture is about the struck point, which the deck tells, and holds all that came apart."""
+        """The picture is centred at the struck point of the deck and holds the delaminated area."""
         with h5py.File(self.path, "a") as file:
             del file["provenance/deck"]
             file["provenance/deck"] = np.bytes_(DECK.replace("radius=1e-2", "radius=1e-2 at=2, 1"))
         fields = read_fields(self.path)
         cells = fields.delaminated(2, 2)
-        for figure in (projected_figure(fields, Look("SI")), delamination_figure(fields, Look("SI"))):
+        for figure in (projected_figure(fields, PictureStyle("SI")), delamination_figure(fields, PictureStyle("SI"))):
             axes = figure.axes[0]
             low, high = np.transpose([axes.get_xlim(), axes.get_ylim()])
             self.assertTrue(np.all(cells > low) and np.all(cells < high), (low, high))
@@ -137,7 +137,7 @@ class PicturesTest(unittest.TestCase):
         with Image.open(self.folder / "case.gif") as film:
             self.assertEqual(film.n_frames, 3)
         blue = [np.count_nonzero(np.all(np.asarray(picture) == [31, 119, 180], axis=2))
-                for picture in movie.frames(read_fields(self.path), None, Look("SI", 50))]
+                for picture in movie.frames(read_fields(self.path), None, PictureStyle("SI", 50))]
         self.assertTrue(blue[0] < blue[1] < blue[2], blue)
 
     def test_measured_curve_and_kinds_of_files(self) -> None:
@@ -162,8 +162,8 @@ class PicturesTest(unittest.TestCase):
             corners = np.array([[0, 0], [length, 0], [length, width], [0, width]]) - np.array([length, width]) / 2
             mesh = Mesh(np.stack([corners, corners / 2]), *2 * [np.array([2, 3])], np.zeros(2, dtype=bool))
             snapshot = Snapshot(1.0, mesh, np.ones((2, 9)), {}, np.zeros(2))
-            figure = projected_figure(Fields("none.h5", "whole", [snapshot]), Look("mm-t-s"))
-            settle(figure)
+            figure = projected_figure(Fields("none.h5", "whole", [snapshot]), PictureStyle("mm-t-s"))
+            lay_out(figure)
             beyond = figure.axes[0].title.get_window_extent().y1 - figure.bbox.height
             self.assertLess(beyond, 0, (length, width))
 
@@ -175,8 +175,8 @@ class PicturesTest(unittest.TestCase):
             plate = Fields("none.h5", "whole", [Snapshot(1.0, mesh, np.ones((1, 9)), {}, np.zeros(1))])
             runs = [EndedRun(None, None, {}, 0.0, region) for region in (corners[None], corners[None] / 2)]
             figure = share_figure([Group(f"variant {place}", runs, plate=plate) for place in range(groups)],
-                                  Look("mm-t-s"))
-            settle(figure)
+                                  PictureStyle("mm-t-s"))
+            lay_out(figure)
             shares = figure.axes[0].images[0].get_array()
             self.assertEqual(set(np.unique(shares)), {0, 0.5, 1})
             self.assertAlmostEqual(np.sum(shares == 1) / np.sum(shares > 0), 0.25, delta=0.02)

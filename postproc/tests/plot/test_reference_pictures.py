@@ -15,8 +15,8 @@ from PIL import Image
 from implam_post.io.fields import read_fields
 from implam_post.plot import command as plot
 from implam_post.plot import movie
-from implam_post.plot.look import Look
 from implam_post.plot.plan import delamination_figure, projected_figure
+from implam_post.plot.style import PictureStyle
 from tests.io.test_fields import write_fields
 from tests.plot.test_pictures import DECK, history
 
@@ -71,7 +71,7 @@ class ReferencePicturesTest(unittest.TestCase):
     def test_pictures_are_those_kept(self) -> None:
         """Each of them, and the projected one by time."""
         drawn = self.draw()
-        by_time = projected_figure(read_fields(self.folder / "case.h5"), Look("SI", projected="time"))
+        by_time = projected_figure(read_fields(self.folder / "case.h5"), PictureStyle("SI", projected="time"))
         drawn["projected_by_time"] = self.folder / "by_time.png"
         by_time.savefig(drawn["projected_by_time"], dpi=50)
         if os.environ.get("IMPLAM_KEEP_PICTURES"):
@@ -83,16 +83,16 @@ class ReferencePicturesTest(unittest.TestCase):
                 self.assertLess(difference(path, KEPT / f"{name}.png"), TOLERANCE)
 
     def test_a_fault_shows(self) -> None:
-        """Cells that came apart later, and larger letters, are beyond the tolerance."""
+        """Cells that delaminated later, and larger letters, are beyond the tolerance."""
         with h5py.File(self.folder / "case.h5", "a") as file:
             file["times/00000002/cells/delaminated_above"][...] = file["times/00000001/cells/delaminated_above"][()]
         fields = read_fields(self.folder / "case.h5")
-        faulty = {"projected_by_time": projected_figure(fields, Look("SI", projected="time")),
-                  "delamination": delamination_figure(fields, Look("SI"))}
+        faulty = {"projected_by_time": projected_figure(fields, PictureStyle("SI", projected="time")),
+                  "delamination": delamination_figure(fields, PictureStyle("SI"))}
         with matplotlib.rc_context({"font.size": 14}):
             self.write()
             fields = read_fields(self.folder / "case.h5")
-            faulty["projected"] = projected_figure(fields, Look("SI"))
+            faulty["projected"] = projected_figure(fields, PictureStyle("SI"))
         for name, figure in faulty.items():
             figure.savefig(self.folder / f"{name}.png", dpi=50)
             with self.subTest(name):

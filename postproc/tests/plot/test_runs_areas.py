@@ -49,9 +49,9 @@ class AreasTest(unittest.TestCase):
         expected.append(f"all interfaces: projected area {1e6 * summary['projected_area']:.4g} mm²")
         for title in expected:
             self.assertIn(title, titles)
-        code, told = run_quietly(report.main, path)
-        self.assertEqual(code, 0, told)
-        page = Path(told.strip()).read_text(encoding="utf-8")
+        code, printed = run_quietly(report.main, path)
+        self.assertEqual(code, 0, printed)
+        page = Path(printed.strip()).read_text(encoding="utf-8")
         for area in (summary["delaminated_area"], summary["projected_area"],
                      *(entry["area"] for entry in summary["interfaces"])):
             self.assertIn(f">{1e6 * area:.4g} mm²<", page)
@@ -67,8 +67,8 @@ class AreasTest(unittest.TestCase):
             found.extend(axes.get_title().splitlines()[0] for axes in figure.axes if axes.get_title())
 
         with mock.patch.object(Figure, "savefig", note):
-            code, told = run_quietly(plot.main, fields, *UNITS)
-        self.assertEqual(code, 0, told)
+            code, printed = run_quietly(plot.main, fields, *UNITS)
+        self.assertEqual(code, 0, printed)
         return found
 
 

@@ -42,7 +42,7 @@ class NavierTest(unittest.TestCase):
             self.assertAlmostEqual(frequencies(plate, m, n)[0] / np.sqrt(shear), expected, delta=6e-6)
 
     def test_compliance_is_the_sum_over_the_modes(self) -> None:
-        """The three modes of a pair together give its static answer."""
+        """The three modes of a pair together give its static solution."""
         plate = square([0, 90, 0], 10)
         m, n = np.array([1, 3, 21]), np.array([1, 5, 7])
         frequency, deflection = plate.modes(m, n)

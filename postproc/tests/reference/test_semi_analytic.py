@@ -81,7 +81,7 @@ class SunChenTest(unittest.TestCase):
 
 
 class ClosedFormTest(unittest.TestCase):
-    """Parts of the method where the answer is known."""
+    """Parts of the method with known solutions."""
 
     def test_rigid_plate(self) -> None:
         """On a plate that doesn't move: Hertz' peak and contact time, rebound at the speed of approach."""
@@ -103,7 +103,7 @@ class ClosedFormTest(unittest.TestCase):
         self.assertAlmostEqual(impulse, momentum, delta=1e-12)
 
     def test_one_pair_of_half_waves(self) -> None:
-        """The kernel's answer to a steadily growing force is that of three oscillators."""
+        """The kernel's response to a steadily growing force is that of three oscillators."""
         case = impact_case(deck(KARAS))
         plate = case.plate
         step, count = 2e-6, 200

@@ -1,4 +1,4 @@
-"""Tests of regression runs with the real program: what passes, what fails, what is accepted and what CI is told."""
+"""Tests of regression runs with the real program: what passes, what fails, what is accepted and what CI is reported."""
 
 import shutil
 import tempfile
@@ -61,7 +61,7 @@ class RegressTest(unittest.TestCase):
         self.expect.write_text(EXPECT.format(**{"slow": SLOW, "fast": FAST, **values}))
 
     def test_pass_and_fail(self) -> None:
-        """What is expected passes, a value changed by one percent fails; JUnit tells which."""
+        """What is expected passes, a value changed by one percent fails; JUnit names it."""
         self.write()
         code, text = self.regress("--junit", self.folder / "junit.xml")
         self.assertEqual(code, 1, text)
@@ -90,9 +90,9 @@ class RegressTest(unittest.TestCase):
         shutil.copy(SMALL / "damage.nml", self.decks / "other.nml")
         code, text = self.regress("--junit", self.folder / "junit.xml")
         self.assertEqual(code, 1, text)
-        for told in ("slow +the run ended with 3: ", "fast +the run ended with 2: .*mass = -1",
+        for expected in ("slow +the run ended with 3: ", "fast +the run ended with 2: .*mass = -1",
                      "other +nothing is expected"):
-            self.assertRegex(text, told)
+            self.assertRegex(text, expected)
         suite = ElementTree.parse(self.folder / "junit.xml").getroot().find("testsuite")
         self.assertEqual([suite.get(name) for name in ("tests", "failures", "errors")], ["3", "0", "3"])
         self.assertEqual(len(suite.findall("testcase/error")), 3)
@@ -140,14 +140,15 @@ class RegressTest(unittest.TestCase):
                                  for key, value in entry.items()) + "}"
         variants = '[[variant]]\nname = "slow"\n[[variant]]\nname = "fast"\nset = ["impactor%velocity=3"]\n'
         both = '[[expect]]\nquantity = "peak_force"\nvalue = 800\nrelative = 1e-3\n' + variants
-        for text, told in ((both, r"differs between the variants"), (f"expect = [{inline}]", r"a line for each key")):
+        for text, expected in ((both, r"differs between the variants"),
+                               (f"expect = [{inline}]", r"a line for each key")):
             self.expect.write_text(text)
             code, said = self.regress("--accept")
             self.assertEqual((code, self.expect.read_text()), (1, text), said)
-            self.assertRegex(said, f"nothing is accepted: .*{told}")
+            self.assertRegex(said, f"nothing is accepted: .*{expected}")
 
     def test_compare_takes_the_same_file(self) -> None:
-        """A history of a variant by its name; without it the file's variants are told."""
+        """A history of a variant by its name; without it the file's variants are reported."""
         self.write()
         self.regress()
         history = self.runs / "ply_damage" / "slow" / "ply_damage_history.csv"
@@ -172,7 +173,7 @@ class RegressTest(unittest.TestCase):
 
 
 class HelpTest(unittest.TestCase):
-    """Both commands tell the format they share."""
+    """Both commands name the format they share."""
 
     def test_help(self) -> None:
         """The help names every key of an entry."""

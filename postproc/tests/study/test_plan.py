@@ -57,8 +57,8 @@ class StudyPlanTest(unittest.TestCase):
         self.assertEqual(len({case.key for case in study.cases}), 18)
         self.assertEqual(study.trials[0].runs[0].deck, study.trials[0].runs[1].deck)
 
-    def test_references_of_scenes(self) -> None:
-        """An answer, a history beside the file, or the run that [reference] tells; problems of one deck have names."""
+    def test_references_of_problems(self) -> None:
+        """Given figures, a history beside the file, or the run of [reference]; problems of one deck have names."""
         (self.folder / "measured.csv").write_text("time,force\n0,0\n1,1\n")
         study = self.read('deck = "karas.nml"\n[problems]\n"impactor.velocity" = [1.0, 2.0, 3.0]\n'
                           f'reference = ["{SEMI_ANALYTIC}", "measured.csv", ""]\n'
@@ -78,9 +78,9 @@ class StudyPlanTest(unittest.TestCase):
             self.assertEqual(len(set(first)), len(first), path)
 
     def test_faults(self) -> None:
-        """What can't be meant is told with the name of the file."""
+        """What can't be meant is reported with the name of the file."""
         grid = '[grid]\n"time.step" = [1e-6]\n'
-        for text, told in (
+        for text, expected in (
                 ('deck = "karas.nml"\n' + grid, "a reference is missing"),
                 ('deck = "karas.nml"\n' + grid + "[reference]\npart = 2\n", "'part' is neither a key"),
                 ('deck = "karas.nml"\n[problems]\nreference = "none.csv"\n' + grid, "there is no history"),
@@ -93,5 +93,5 @@ class StudyPlanTest(unittest.TestCase):
                 ('deck = "karas.nml"\n[grid]\ninterval = [1]\n' + REFERENCE.replace("part", '"time.step"'),
                  "no formula of"),
                 ('deck = "karas.nml"\n[reference]\n"time.step" = 1e-7\n', "nothing is swept")):
-            with self.subTest(told), self.assertRaisesRegex(DeckError, f"study.toml: .*{told}"):
+            with self.subTest(expected), self.assertRaisesRegex(DeckError, f"study.toml: .*{expected}"):
                 self.read(text)

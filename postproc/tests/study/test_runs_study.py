@@ -96,23 +96,23 @@ class StudyTest(unittest.TestCase):
         self.assertEqual((run_quietly(study.main, *arguments)[0], self.runs()), (0, 9))
 
     def test_semi_analytic_and_measured(self) -> None:
-        """Karas' answer is 1343.24 N at 33.19 us; against a history of 1000 N the same run is a third off."""
+        """Karas' solution is 1343.24 N at 33.19 us; against a history of 1000 N the same run is a third off."""
         (self.folder / "measured.csv").write_text("time,force\n0,0\n30e-6,1000\n60e-6,0\n")
         code, text = run_quietly(study.main, *self.arguments("""
             deck = "karas.nml"
             [problems]
-            problem = ["answer", "measured"]
+            problem = ["analytical", "measured"]
             reference = ["semi-analytic", "measured.csv"]
             "time.end" = "120e-6"
             [grid]
             "time.step" = [1e-6]
             """))
         self.assertEqual(code, 0, text)
-        answer, measured = self.table()
+        analytical, measured = self.table()
         self.assertEqual(self.runs(), 1)  # both problems are one deck
-        peak = float(answer["peak_force"])
-        self.assertAlmostEqual(peak / (1 + float(answer["peak_force_error"])), 1343.24, delta=0.3)
-        self.assertAlmostEqual(float(answer["peak_force_time"]) / (1 + float(answer["peak_force_time_error"])),
+        peak = float(analytical["peak_force"])
+        self.assertAlmostEqual(peak / (1 + float(analytical["peak_force_error"])), 1343.24, delta=0.3)
+        self.assertAlmostEqual(float(analytical["peak_force_time"]) / (1 + float(analytical["peak_force_time_error"])),
                                33.19e-6, delta=0.1e-6)
         self.assertAlmostEqual(float(measured["peak_force_error"]), peak / 1000 - 1, delta=1e-6)
         self.assertEqual(measured["rebound_velocity_error"], "")

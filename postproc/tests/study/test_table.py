@@ -13,7 +13,7 @@ class FrontTest(unittest.TestCase):
     """Points that no other beats."""
 
     def test_front(self) -> None:
-        """Better in one number is enough; equals stay both; NaN never is."""
+        """A lower value in one number is enough; equals stay both; NaN never is."""
         points = [(1, 5), (2, 2), (2, 3), (5, 1), (5, 1), (6, 6), (math.nan, 0.1), (0.1, math.nan)]
         self.assertEqual(front(points), [True, True, False, True, True, False, False, False])
         self.assertEqual(front([]), [])

@@ -9,7 +9,7 @@ from implam_post.sweep.expressions import evaluate
 NAMES = {"energy": 2.0, "m": 1, "impactor.mass": 0.5, "material[2].E1": 4e9, "word": "a", "on": True}
 
 
-def look_up(name: str) -> object:
+def resolve(name: str) -> object:
     """Return what a name stands for."""
     if name not in NAMES:
         raise DeckError(f"'{name}' is unknown.")
@@ -24,7 +24,7 @@ class ExpressionsTest(unittest.TestCase):
         for formula, value in (("sqrt(2*energy/impactor.mass)", math.sqrt(8)), ("-m**2 + 2*3", 5.0),
                                ("material[2].E1/1e9", 4.0), (" [0, 45*m, -45] ", [0, 45, -45]), ("round(2.4)", 2),
                                ("min(pi, 4) - pi", 0.0), ("(1, 2)", [1, 2]), ("radians(180)/pi", 1.0)):
-            found = evaluate(formula, look_up)
+            found = evaluate(formula, resolve)
             self.assertEqual(found, value)
             self.assertIs(type(found), type(value), formula)
 
@@ -37,4 +37,4 @@ class ExpressionsTest(unittest.TestCase):
                         "10**10**10", "9.**9.**9.", "exp(1e9)", "1e999", "None", "", "1 +", "[[1]]", "1j", "max()",
                         "(" * 500 + ")" * 500, "-" * 999 + "1", "+".join(["1"] * 600), "m % 2", "\0"):
             with self.subTest(formula), self.assertRaisesRegex(DeckError, "^the formula "):
-                evaluate(formula, look_up)
+                evaluate(formula, resolve)

@@ -79,7 +79,7 @@ class PlanTest(unittest.TestCase):
         self.assertEqual([case.deck_name for case in plan.cases], ["karas.nml", "sun_chen.nml"])
         self.assertIn("! Karas", plan.cases[0].deck)
 
-    def test_keys_tell_decks_apart(self) -> None:
+    def test_keys_distinguish_decks(self) -> None:
         """A case keeps its folder when others come before it."""
         short, long = (self.plan(f'[grid]\n"impactor.velocity" = {values}') for values in ("[2]", "[1, 2, 2]"))
         self.assertEqual([case.key for case in long.cases[1:]], 2 * [short.cases[0].key])
@@ -100,8 +100,8 @@ class PlanTest(unittest.TestCase):
                   "the most": f"[grid]\na={list(range(400))}\nb={list(range(400))}",
                   "single number": grid + '[derived]\nmesh.patch = "energy*mesh.elements"', "units": "units = 'feet'",
                   "is a table": "grid = 3", "text, and units": "output = 3"}
-        for told, text in faults.items():
-            with self.subTest(told), self.assertRaisesRegex(DeckError, f"^{self.folder}/sweep.toml: .*{told}"):
+        for expected, text in faults.items():
+            with self.subTest(expected), self.assertRaisesRegex(DeckError, f"^{self.folder}/sweep.toml: .*{expected}"):
                 self.plan(text)
         with self.assertRaisesRegex(DeckError, "deck, the deck"):
             self.plan(patch.join(["[grid]\n", ""]), deck="")

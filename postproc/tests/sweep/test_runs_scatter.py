@@ -60,7 +60,7 @@ class ScatterTest(unittest.TestCase):
             return list(csv.DictReader(file))
 
     def test_statistics_pairs_and_page(self) -> None:
-        """Means are those of the summaries; equal variants are equal run by run, a brittle interface is told."""
+        """Means are those of the summaries; equal variants are equal run by run, a brittle interface is reported."""
         text = self.sweep()
         summaries = [json.loads((self.output / row["folder"] / "damage_summary.json").read_text())
                      for row in self.rows("table.csv")]

@@ -77,8 +77,8 @@ class SweepTest(unittest.TestCase):
             self.assertTrue(float(row.pop("cpu_time") or "nan") > 0 or row["exit_code"] == "", row)
         return rows
 
-    def test_checks_are_told(self) -> None:
-        """Warnings of the check are told once for all decks, and nothing else that it prints."""
+    def test_checks_are_reported(self) -> None:
+        """Warnings of the check are reported once for all decks, and nothing else that it prints."""
         code, text = run_quietly(sweep.main, *self.arguments("""
             deck = "ply_damage.nml"
             [grid]
@@ -86,9 +86,9 @@ class SweepTest(unittest.TestCase):
             "output.history_every" = [1e-7]
             """, "--array"))
         self.assertEqual(code, 0, text)
-        told = [line for line in text.splitlines() if line.startswith("warning, ")]
-        self.assertEqual(len(told), 1, text)
-        self.assertTrue(told[0].startswith("warning, 2 of 2 decks: "), text)
+        warnings = [line for line in text.splitlines() if line.startswith("warning, ")]
+        self.assertEqual(len(warnings), 1, text)
+        self.assertTrue(warnings[0].startswith("warning, 2 of 2 decks: "), text)
 
     def test_lost_histories(self) -> None:
         """A case whose history is emptied, lacks its rows or is gone runs again, from the start; others do not."""
@@ -156,13 +156,13 @@ class SweepTest(unittest.TestCase):
             rows = self.table()
             self.assertEqual([(row["exit_code"], row["peak_force"] == "") for row in rows], [("3", True), ("0", False)])
 
-    def test_faults_are_told_before_anything_runs(self) -> None:
+    def test_faults_are_reported_before_anything_runs(self) -> None:
         """A value out of range and a key misspelt: the program's own sentences, and not a single run."""
-        for key, told in (("impactor.mass", "mass = -1"), ("delamination.G_cc", "no such key")):
+        for key, expected in (("impactor.mass", "mass = -1"), ("delamination.G_cc", "no such key")):
             code, text = run_quietly(sweep.main, *self.arguments(
                 f'deck = "delamination.nml"\n[grid]\n"{key}" = [-1, 0.2]'))
             self.assertEqual(code, 2, text)
-            self.assertRegex(text, f"case 1: {key}=-1\n.*{told}.*\n(.*\n)*.*decks are faulty; nothing was run\\.")
+            self.assertRegex(text, f"case 1: {key}=-1\n.*{expected}.*\n(.*\n)*.*decks are faulty; nothing was run\\.")
         self.assertEqual((self.called("run"), self.called("check")), (0, 4))
         self.assertEqual([path for path in self.output.rglob("*") if path.suffix not in (".nml", "")], [])
 

@@ -176,7 +176,7 @@ class ScatterPlanTest(unittest.TestCase):
 
     def test_faults(self) -> None:
         """A sentence for what means nothing."""
-        for text, told in (("[scatter]\n", "number of runs"), ("[scatter]\nnumber = 0\n", "number of runs"),
+        for text, expected in (("[scatter]\n", "number of runs"), ("[scatter]\nnumber = 0\n", "number of runs"),
                            ("[scatter]\nnumber = 2\nstrength = 0.1\n", "'strength' is none of"),
                            ("[scatter]\nnumber = 2\nstrengths = 1\n", "from 0 to below 1"),
                            ("[scatter]\nnumber = 2\nmethod = 'x'\n", "method"),
@@ -187,14 +187,14 @@ class ScatterPlanTest(unittest.TestCase):
                            ("[variants.a]\ndrop = ['support[3]']\n", "2 groups &support"),
                            ("[variants.a]\ndrop = ['support']\n", "write support"),
                            ("scatter = 1\n", "table")):
-            with self.subTest(text), self.assertRaisesRegex(DeckError, told):
+            with self.subTest(text), self.assertRaisesRegex(DeckError, expected):
                 self.plan(text)
 
 
 class StatisticsTest(unittest.TestCase):
     """Means, scatter and differences."""
 
-    def test_least_difference(self) -> None:
+    def test_smallest_difference(self) -> None:
         """The bound is that of Student's distribution, both ways 5 %."""
         for pairs, bound in ((2, 12.7062), (3, 4.30265), (11, 2.22814), (101, 1.98397)):
             self.assertAlmostEqual(Difference(pairs, 1.0, 1.0, 1.0).least, bound, delta=1e-4 * bound)
@@ -209,12 +209,12 @@ class StatisticsTest(unittest.TestCase):
         self.assertEqual(spread_of([]).number, 0)
 
     def test_differences(self) -> None:
-        """Pairs tell a small difference that the scatter of the runs hides, and none where there is none."""
+        """Pairs show a small difference that the scatter of the runs hides, and none where there is none."""
         stream = np.random.default_rng(1)
         first = stream.normal(10, 2, 20)
-        told = difference_of(first, first + stream.normal(0.5, 0.2, 20))
-        self.assertTrue(told.differs)
-        self.assertAlmostEqual(told.mean, 0.5, delta=0.15)
+        difference = difference_of(first, first + stream.normal(0.5, 0.2, 20))
+        self.assertTrue(difference.differs)
+        self.assertAlmostEqual(difference.mean, 0.5, delta=0.15)
         alone = difference_of(first, stream.normal(10.5, 2, 20))
         self.assertFalse(alone.differs)
         self.assertFalse(difference_of([1], [2]).differs)

@@ -14,12 +14,12 @@ if TYPE_CHECKING:
 
 FORMATS = ("png", "pdf", "svg")
 # Styles of runs drawn over each other, that differ without colours too.
-STYLES = [{"color": f"C{place}", "linestyle": style} for place, style in
+STYLES = [{"color": f"C{place}", "linestyle": line_style} for place, line_style in
           enumerate(("-", "--", "-.", ":", (0, (5, 1)), (0, (3, 1, 1, 1, 1, 1)), (0, (1, 1)), (0, (8, 3))))]
 
 
 @dataclass(frozen=True)
-class Look:
+class PictureStyle:
     """What holds for all pictures of a command; `system` is that of the results, empty if it isn't known."""
 
     system: str = ""
@@ -52,8 +52,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--font-size", type=float, default=10.0, help="size of letters in points (default: 10)")
 
 
-def look_of(options: argparse.Namespace, results: Iterable[Path]) -> Look:
-    """Return the look that the options request; the system of units is that of the first deck that has one."""
+def style_of(options: argparse.Namespace, results: Iterable[Path]) -> PictureStyle:
+    """Return the style that the options request; the system of units is that of the first deck that has one."""
     from implam_post.io.deck import system_of_deck
     from implam_post.io.fields import deck_in
 
@@ -61,11 +61,11 @@ def look_of(options: argparse.Namespace, results: Iterable[Path]) -> Look:
     if not (10 <= dots <= 2400 and 3 <= options.font_size <= 60):
         raise ImplamError("--dpi takes 10 to 2400, --font-size 3 to 60.")
     system = options.units or next((name for path in results if (name := system_of_deck(deck_in(path)))), "")
-    return Look(system, dots, options.font_size, getattr(options, "format", "png"),
+    return PictureStyle(system, dots, options.font_size, getattr(options, "format", "png"),
                 getattr(options, "projected", "depth"))
 
 
-def settle(figure: "Figure") -> None:
+def lay_out(figure: "Figure") -> None:
     """Lay a figure out before it is drawn: ticks follow from the sizes of axes, and these from the widths of ticks.
 
     Drawn at once, titles and labels are cut off where axes keep equal scales.
