@@ -129,7 +129,7 @@ contains
 
     failure = failure_of(record%before, figures%compressed, figures%length, figures%thickness)
     if (len(failure%code) == 0) then
-      text = 'no interface has delaminated across the width, no ply broken'
+      text = 'no interface has delaminated across the width, no fibres have failed across it'
       return
     end if
     text = failure%code//' by ASTM D7137'

@@ -70,7 +70,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = CommandParser("implam-plot", description="Plot force, indentation, deflection and energies of histories, "
                            "several drawn over each other, stress and gauges of compressions, and of NAME.h5 the "
                            "delamination of each interface and all seen through the plate, the energy release "
-                           "rate along its front and the failures of each ply over the full plate, with the history beside it.")
+                           "rate along its front and the failures of each ply over the full plate, with the history "
+                           "beside it.")
     parser.add_argument("results", nargs="+", type=Path, metavar="RESULT",
                         help="histories (.csv) and fields (.h5) written by implam")
     parser.add_argument("--output", type=Path, metavar="DIR", help="folder of the plots (default: beside each result)")

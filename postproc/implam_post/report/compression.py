@@ -40,7 +40,7 @@ def _collapse(run: Run) -> list[tuple[str, str, str]]:
     if not run.summary["has_failed"] or "collapse" not in run.summary:
         return []
     across = went_across(run.summary)
-    return [("failure code of ASTM D7137", run.summary["failure_code"] or "not told", ""),
+    return [("failure code of ASTM D7137", run.summary["failure_code"] or "not known", ""),
             ("interfaces delaminated across the width", _listed(across.interfaces), "below these plies"),
             ("plies whose fibres broke across the width", _listed(across.plies), "")]
 
