@@ -15,9 +15,9 @@ module compression_records
   !> force has dropped by about 30 % (ASTM D7137).
   real(wp), parameter :: failure_ratio = 0.7_wp
   !> Part of its largest compression that a gauge has to lose under a rising load for the plate to have buckled (strain
-  !> reversal, J. Singer, J. Arbocz, T. Weller, Buckling Experiments 1, 1998); less than that may be vibration. Measured:
-  !> in load steps (framed_panel.nml) any part up to .3 gives the same strain. After 25 J (t700_m21_cai_25J.nml, cells of
-  !> 3 mm), where gauges vibrate, .02 to .05 give the same strain, .01 and 0 give 1 and 22 % less, and .1 gives none.
+  !> reversal, J. Singer, J. Arbocz, T. Weller, Buckling Experiments 1, 1998); less than that may be vibration. On
+  !> elastic panels in load steps any part up to .3 gives the same strain; after an impact, where gauges vibrate, .02 to
+  !> .05 do, .01 and 0 give 1 and 22 % less, and .1 gives none (doc/studies/residual_strength.md).
   real(wp), parameter :: reversed = 0.03_wp
 
   !> The record.
