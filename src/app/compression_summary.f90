@@ -1,13 +1,18 @@
 !> Results of a compression in the summary.
 module compression_summary
+  use compressed_damage, only: figure_area, figure_mean, figure_width
+  use compression_failures, only: compression_failure_t, failure_of
   use compression_records, only: compression_record_t
   use gauges, only: gauge_t
   use json_text, only: json_t
+  use kinds, only: wp
   use placed_gauges, only: back_to_back
-  use text, only: rounded_text
+  use run_figures, only: run_figures_t
+  use run_records, only: run_record_t
+  use text, only: rounded_text, to_text
   implicit none
   private
-  public :: put_compression, compression_text
+  public :: put_compression, put_collapse, compression_text, collapse_text
 
 contains
 
@@ -51,4 +56,100 @@ contains
     if (record%buckling > 0) text = text//', buckled at a strain of '//rounded_text(record%buckling)
     if (.not. record%failed) text = text//'; the plate has not failed, so it is borne at least'
   end function compression_text
+  !> Where it has failed, for the file.
+  subroutine put_collapse(json, record, figures, below_plies)
+    !> The summary
+    type(json_t), intent(inout) :: json
+    !> What the run remembers
+    type(run_record_t), intent(in) :: record
+    !> Figures of the state reached
+    type(run_figures_t), intent(in) :: figures
+    !> Ply above each interface
+    integer, intent(in) :: below_plies(:)
+    type(compression_failure_t) :: failure
+    integer :: i
+
+    failure = failure_of(record%before, figures%compressed, figures%length, figures%thickness)
+    if (record%compression%failed .and. len(failure%code) > 0) then
+      call json%put('failure_code', failure%code)
+    else
+      call json%put_null('failure_code')
+    end if
+    call json%open_object('collapse')
+    call json%open_list('interfaces')
+    do i = 1, size(below_plies)
+      call put_place('ply_above', below_plies(i), record%before%interfaces(:, i), figures%compressed%interfaces(:, i), &
+                     failure%interfaces(i))
+    end do
+    call json%close()
+    call json%open_list('fibres')
+    do i = 1, size(figures%compressed%plies, 2)
+      call put_place('ply', i, record%before%plies(:, i), figures%compressed%plies(:, i), failure%plies(i))
+    end do
+    call json%close()
+    call json%close()
+
+  contains
+
+    !> One interface or ply.
+    subroutine put_place(name, number, before, after, across)
+      !> What it is
+      character(len=*), intent(in) :: name
+      !> Its number
+      integer, intent(in) :: number
+      !> Figures before the load, and at the end
+      real(wp), intent(in) :: before(:), after(:)
+      !> True: it went across in between
+      logical, intent(in) :: across
+
+      call json%open_object('')
+      call json%put(name, number)
+      call json%put('area_before', before(figure_area))
+      call json%put('area', after(figure_area))
+      call json%put('mean_distance', after(figure_mean))
+      call json%put('width_before', before(figure_width))
+      call json%put('width', after(figure_width))
+      call json%put('went_across', across)
+      call json%close()
+    end subroutine put_place
+  end subroutine put_collapse
+
+  !> The same for the log.
+  pure function collapse_text(record, figures, below_plies) result(text)
+    !> What the run remembers
+    type(run_record_t), intent(in) :: record
+    !> Figures of the state reached
+    type(run_figures_t), intent(in) :: figures
+    !> Ply above each interface
+    integer, intent(in) :: below_plies(:)
+    !> Code, interfaces and plies
+    character(len=:), allocatable :: text
+    type(compression_failure_t) :: failure
+    integer :: i
+
+    failure = failure_of(record%before, figures%compressed, figures%length, figures%thickness)
+    if (len(failure%code) == 0) then
+      text = 'no interface has delaminated across the width, no fibres have failed across it'
+      return
+    end if
+    text = failure%code//' by ASTM D7137'
+    if (any(failure%interfaces)) text = text//', delaminated across the width below plies'// &
+      numbers_of(pack(below_plies, failure%interfaces))
+    if (any(failure%plies)) text = text//', fibres failed across the width in plies'// &
+      numbers_of(pack([(i, i=1, size(failure%plies))], failure%plies))
+  end function collapse_text
+
+  !> Numbers, each after a blank.
+  pure function numbers_of(numbers) result(text)
+    !> They
+    integer, intent(in) :: numbers(:)
+    !> Such as 2 4 6
+    character(len=:), allocatable :: text
+    integer :: i
+
+    text = ''
+    do i = 1, size(numbers)
+      text = text//' '//to_text(numbers(i))
+    end do
+  end function numbers_of
 end module compression_summary

@@ -1,11 +1,13 @@
 !> Results for the summary that are computed at the end of a run, besides its record.
 module run_figures
+  use compressed_damage, only: compressed_damage_t, between_supports, damage_of
   use delamination_parameters, only: toughnesses
   use dent_depths, only: dent_depth
   use errors, only: error_t, exit_done, exit_stopped
   use failed_plies_areas, only: failed_areas
   use interface_figures, only: figures_of, interface_figures_t
   use kinds, only: wp
+  use line_columns, only: pressed_axis
   use models, only: model_t
   use ply_damage_parameters, only: failure_modes
   use states, only: state_t
@@ -40,6 +42,10 @@ module run_figures
     real(wp), allocatable :: threshold(:)
     !> The same of a single interface with a starter under the loaded patch; 0: there are none, or several
     real(wp) :: starter_threshold = 0
+    !> Damage along and across the load of lines that press ends of the plate together; unallocated parts: none do
+    type(compressed_damage_t) :: compressed
+    !> Length between the supports along that load, and thickness of the plate
+    real(wp) :: length = 0, thickness = 0
   end type run_figures_t
 
 contains
@@ -52,13 +58,19 @@ contains
     !> Its figures
     type(run_figures_t), intent(out) :: figures
     real(wp) :: bending, toughness(2)
-    integer :: zone, zones
+    integer :: zone, zones, along
 
     figures%interfaces = figures_of(model, now%interfaces)
     figures%projected_area = now%interfaces%projected_area(model)
     figures%dent = [dent_depth(model, now%motion%displacement), 0.0_wp] + now%indentation%dent
     figures%failures = now%plies%counts(model)
     figures%failed_area = failed_areas(model, now%plies)
+    along = pressed_axis(model)
+    if (along > 0) then
+      figures%compressed = damage_of(model, now, along)
+      figures%length = between_supports(model, along)
+      figures%thickness = model%thickness
+    end if
     zones = size(figures%interfaces)
     bending = effective_bending_stiffness(model%section%stiffness)
     allocate (figures%threshold(zones))

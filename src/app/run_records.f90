@@ -1,11 +1,12 @@
 !> Record of a run for its summary: extremes, contacts, onsets and warnings.
 module run_records
   use archives, only: archive_t
+  use compressed_damage, only: compressed_damage_t, damage_of
   use compression_records, only: compression_record_t
   use force_filters, only: force_filter_t
   use interface_figures, only: stage_damaged, stage_grown, stage_intact, stages_of
   use kinds, only: wp
-  use line_columns, only: end_values, line_values
+  use line_columns, only: end_values, line_values, pressed_axis
   use models, only: model_t
   use output_clocks, only: shown_time
   use placed_gauges, only: back_to_back, gauge_strains, percent_bending
@@ -45,6 +46,8 @@ module run_records
     real(wp), allocatable :: onset(:, :), growth(:, :)
     !> Ends of a plate under compression by lines
     type(compression_record_t) :: compression
+    !> What was damaged before they were pressed
+    type(compressed_damage_t) :: before
     !> Largest kinetic energy in motions whose inertia is scaled, and largest energy of the run
     real(wp) :: scaled_energy = 0, energy = 0
     !> Warnings given: their kinds, and the zones that they concern or 0
@@ -133,6 +136,7 @@ contains
     if (size(model%lines) == 0) return
     ends = end_values(model, line_values(model, now))
     if (size(ends) == 0) return
+    if (.not. allocated(self%before%plies)) self%before = damage_of(model, now, pressed_axis(model))
     strains = gauge_strains(model, now%motion%displacement)
     bending = 0
     if (all(back_to_back(model%setup%gauges) > 0)) bending = percent_bending(strains(back_to_back(model%setup%gauges)))
@@ -240,6 +244,7 @@ contains
     call archive%item('record/force', self%force)
     call archive%item('record/stage', self%stage)
     call self%compression%visit(archive)
+    call self%before%visit('record/before', archive)
     call archive%item('record/onset', self%onset)
     call archive%item('record/growth', self%growth)
     call archive%item('record/scaled_energy', self%scaled_energy)

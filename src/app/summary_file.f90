@@ -1,6 +1,6 @@
 !> NAME_summary.json: the summary in full precision. doc/manual/summary.md describes it.
 module summary_file
-  use compression_summary, only: put_compression
+  use compression_summary, only: put_collapse, put_compression
   use summary_provenance, only: put_provenance
   use deck_contents, only: deck_t
   use delamination_parameters, only: law_cohesive
@@ -66,7 +66,10 @@ contains
     if (deck%has_impactor .and. .not. deck%has_static) call put_impact(json, stepper%now, record, figures)
     call json%put('largest_deflection', record%deflection)
     call json%put('largest_deflection_at', shown_time(record%deflection_time))
-    if (record%compression%strength > 0) call put_compression(json, record%compression, deck%gauges)
+    if (record%compression%strength > 0) then
+      call put_compression(json, record%compression, deck%gauges)
+      call put_collapse(json, record, figures, deck%delaminations%below_ply)
+    end if
     if (deck%has_impactor .and. deck%has_static) then
       call json%put('peak_force', record%peak_force)
       call json%put('peak_force_at', shown_time(record%peak_time))

@@ -1,6 +1,6 @@
 !> The summary in the log: rounded, in the deck's units.
 module summary_lines
-  use compression_summary, only: compression_text
+  use compression_summary, only: collapse_text, compression_text
   use deck_contents, only: deck_t
   use energy_ledgers, only: ledger_t
   use impactors, only: impactor_energy, new_impactor
@@ -49,8 +49,11 @@ contains
     end if
     call add_figure(lines, 'largest deflection', rounded_text(record%deflection)//' at '// &
               moment(deck, record%deflection_time)//within(errors%deflection, record%deflection))
-    if (record%compression%strength > 0) &
+    if (record%compression%strength > 0) then
       call add_figure(lines, 'residual strength', compression_text(record%compression))
+      if (record%compression%failed) &
+        call add_figure(lines, 'failure', collapse_text(record, figures, deck%delaminations%below_ply))
+    end if
     if (struck) call add_impact_energy(lines, deck, now)
     if (struck .and. .not. now%force > 0) call add_dent(lines, figures)
     call add_energies(lines, now%ledger)

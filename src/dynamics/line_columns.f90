@@ -9,7 +9,7 @@ module line_columns
   use states, only: state_t
   implicit none
   private
-  public :: line_values, end_values, has_ends
+  public :: line_values, end_values, has_ends, pressed_axis
 
   !> Columns that a deck with lines has, the latter two once a line: N is its number in the deck.
   character(len=result_row_length), parameter, public :: line_column_rows(*) = [character(len=result_row_length) :: &
@@ -78,6 +78,16 @@ contains
     end if
   end function on_ends
 
+  !> Axis along which lines move ends of the plate; 0: none do.
+  pure integer function pressed_axis(model) result(along)
+    type(model_t), intent(in) :: model
+    logical :: on(size(model%lines))
+
+    along = 0
+    on = on_ends(model%setup%plate, model%lines%load)
+    if (any(on)) along = model%lines(findloc(on, .true., dim=1))%load%component
+  end function pressed_axis
+
   !> Stress far from the damage and shortening, from the values of the lines.
   pure function end_values(model, values) result(ends)
     type(model_t), intent(in) :: model
@@ -93,7 +103,7 @@ contains
     associate (plate => model%setup%plate, lines => model%lines%load)
       on = on_ends(plate, lines)
       if (.not. any(on)) return
-      along = lines(findloc(on, .true., dim=1))%component
+      along = pressed_axis(model)
       sides = merge(sign(1.0_wp, lines%at), 0.0_wp, on)
       halved = is_halved(plate%symmetry)
       ends = [-sum([(sides(i)*values(2*i), i=1, size(on))])/(count(on)*plate%length(3 - along)*model%thickness), &

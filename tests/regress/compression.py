@@ -92,6 +92,14 @@ def check_chain(implam, folder, _):
     summary = json.loads((folder / f"{COMPRESSION}_summary.json").read_text(encoding="utf-8"))
     require(summary["has_failed"] and summary["residual_strength"] >= rows["far_field_stress"][strongest] > 100e6,
             "It does not fail, or not at its largest stress.")
+    collapse = summary["collapse"]
+    print(f"failure {summary['failure_code']}")
+    require(summary["failure_code"] == "M(DL)DM", "It does not fail through the damage in the middle.")
+    for entry, place in zip(collapse["interfaces"], summary["interfaces"], strict=True):
+        require(entry["went_across"] and entry["width_before"] < 1 and 0 < entry["area_before"] < entry["area"]
+                and place["ply_above"] == entry["ply_above"], "Interfaces do not grow across.")
+    require(any(entry["went_across"] for entry in collapse["fibres"])
+            and not any(entry["area_before"] for entry in collapse["fibres"]), "No ply breaks across.")
     # Half of the plies run along x: with E1, E2 and nu21 small, (E1 + E2)/2 within a few per cent undamaged and flat.
     print(f"strength {summary['residual_strength']:.4g}, modulus {summary['effective_modulus']:.4g}")
     require(0.85 < summary["effective_modulus"] / ((130e9 + 7.7e9) / 2) < 1, "The modulus is not that of the plies.")

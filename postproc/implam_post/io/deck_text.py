@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from implam_post.io.errors import DeckError
@@ -106,6 +106,14 @@ def drop_group(text: str, group: str, number: int | None, name: str = "deck") ->
     for place in reversed([places[(number or 1) - 1]] if number != 0 else places):
         text = text[:place.start] + text[place.end.end:]
     return text
+
+
+def copy_groups(source: str, text: str, groups: Sequence[str], name: str = "deck") -> str:
+    """Return a deck whose groups of some names are those of another one."""
+    for place in reversed([place for place in _places(text, name) if place.name in groups]):
+        text = text[:place.start] + text[place.end.end:]
+    copied = [source[place.start:place.end.end] for place in _places(source, name) if place.name in groups]
+    return "\n".join([text.rstrip(), *copied]) + "\n"
 
 
 def number_of(text: str, path: KeyPath, name: str = "deck") -> float:

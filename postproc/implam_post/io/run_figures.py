@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 # Members of a summary that are no figures of the run.
 _NO_FIGURES = ("costs", "profile", "provenance", "estimated_errors", "exit", "warnings", "plies", "interfaces",
-               "plate_size")
+               "plate_size", "collapse", "failure_code")
 _OF_ENDED_CONTACT = ("contact_duration", "contact_until")
 _EVENTS = ("onset", "first_growth")
 

@@ -48,7 +48,7 @@ def _draw_all(options: argparse.Namespace, style: PictureStyle) -> int:
 def _plot_histories(paths: Sequence[Path], options: argparse.Namespace, style: PictureStyle) -> int:
     """Draw the responses over each other and the energies of each history."""
     from implam_post.io.history import read_history
-    from implam_post.plot.pictures import RESPONSES, plot_energies, plot_response
+    from implam_post.plot.pictures import RESPONSES, plot_compression, plot_energies, plot_response
 
     histories = [read_history(path) for path in paths]
     folders = [options.output or path.parent for path in paths]
@@ -57,6 +57,9 @@ def _plot_histories(paths: Sequence[Path], options: argparse.Namespace, style: P
         raise FileError(f"{options.measured} has none of the columns {', '.join(RESPONSES)} beside time.")
     response = folders[0] / f"{paths[0].stem}_response.{style.kind}"
     print(plot_response(histories, response, style, measured))
+    compressed = plot_compression(histories, folders[0] / f"{paths[0].stem}_compression.{style.kind}", style)
+    if compressed is not None:
+        print(compressed)
     for history, path, folder in zip(histories, paths, folders, strict=True):
         print(plot_energies(history, folder / f"{path.stem}_energies.{style.kind}", style))
     return EXIT_DONE
@@ -65,9 +68,10 @@ def _plot_histories(paths: Sequence[Path], options: argparse.Namespace, style: P
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command."""
     parser = CommandParser("implam-plot", description="Plot force, indentation, deflection and energies of histories, "
-                           "several drawn over each other, and of NAME.h5 the delamination of each interface and all "
-                           "seen through the plate, the energy release rate along its front and the failures of each "
-                           "ply over the full plate, with the history beside it.")
+                           "several drawn over each other, stress and gauges of compressions, and of NAME.h5 the "
+                           "delamination of each interface and all seen through the plate, the energy release "
+                           "rate along its front and the failures of each ply over the full plate, with the history "
+                           "beside it.")
     parser.add_argument("results", nargs="+", type=Path, metavar="RESULT",
                         help="histories (.csv) and fields (.h5) written by implam")
     parser.add_argument("--output", type=Path, metavar="DIR", help="folder of the plots (default: beside each result)")

@@ -1,4 +1,4 @@
-"""A movie of a run (`implam-movie NAME.h5`): interfaces that delaminate in plan, with the force beside it."""
+"""A movie of a run (`implam-movie NAME.h5`): interfaces that delaminate in plan, with force or stress below."""
 
 import argparse
 from collections.abc import Sequence
@@ -14,8 +14,12 @@ from PIL import Image
 from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, run
 from implam_post.io.fields import Fields, read_fields
 from implam_post.io.history import History, read_history
+from implam_post.plot.compression import STRESS, is_compressed
 from implam_post.plot.plan_frame import fill, frame, reach_of
 from implam_post.plot.style import PictureStyle, add_options, style_of
+
+# What is drawn against time: without and with lines that compress the plate.
+_LOADS = (("force", "contact force", "force"), (STRESS, "far-field stress", "stress"))
 
 
 def frames(fields: Fields, history: History | None, style: PictureStyle) -> list[Image.Image]:
@@ -40,10 +44,11 @@ def _picture(fields: Fields, history: History | None, style: PictureStyle, momen
     frame(plan, fields, reach_of(np.concatenate([fields.delaminated(last, ply) for ply in interfaces]), fields), style)
     if history is not None:
         clock = style.axis("time", "time", history.time)
-        force = style.axis("contact force", "force", history["force"])
-        below[0].plot(clock.factor * history.time, force.factor * history["force"], linewidth=1)
-        below[0].plot(clock.factor * time, force.factor * history.at("force", min(time, history.time[-1])), "o")
-        below[0].set(xlabel=clock.label, ylabel=force.label)
+        column, label, dimension = _LOADS[is_compressed(history)]
+        load = style.axis(label, dimension, history[column])
+        below[0].plot(clock.factor * history.time, load.factor * history[column], linewidth=1)
+        below[0].plot(clock.factor * time, load.factor * history.at(column, min(time, history.time[-1])), "o")
+        below[0].set(xlabel=clock.label, ylabel=load.label)
     canvas.draw()
     return Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3].copy())
 
@@ -69,7 +74,8 @@ def _command(options: argparse.Namespace) -> int:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command."""
     parser = CommandParser("implam-movie", description="Draw how the interfaces of NAME.h5 delaminate, a picture for "
-                           "each time written (`fields_every` of &output), with the force of the history beside it.")
+                           "each time written (`fields_every` of &output), with the force of the history below, or "
+                           "with the stress of a compression.")
     parser.add_argument("fields", type=Path, metavar="NAME.h5")
     parser.add_argument("--save", type=Path, metavar="FILE", help="file, .gif, .webp or .png (default: NAME.gif)")
     parser.add_argument("--rate", type=float, default=5.0, help="pictures per second (default: 5)")

@@ -11,6 +11,7 @@ from implam_post.io.errors import FileError
 from implam_post.io.fields import Fields
 from implam_post.io.history import ENERGY_NAMES, UNACCOUNTED, History
 from implam_post.io.quantities import growth_rows
+from implam_post.plot.compression import compression_figure, is_compressed
 from implam_post.plot.curves import AXES, in_contact
 from implam_post.plot.front import front_figure
 from implam_post.plot.plan import (
@@ -45,6 +46,15 @@ def plot_response(histories: Sequence[History], path: Path, style: PictureStyle 
         _draw(axes, histories, column, style, measured)
     _draw_loop(last, histories, style)
     return _save(figure, path, style)
+
+
+def plot_compression(histories: Sequence[History], path: Path, style: PictureStyle = _PLAIN) -> Path | None:
+    """Draw stress and gauges of the compressions among some histories; None if there are none."""
+    compressed = [history for history in histories if is_compressed(history)]
+    if not compressed:
+        return None
+    names = _names([history.name for history in compressed])
+    return _save(compression_figure(dict(zip(names, compressed, strict=True)), style), path, style)
 
 
 def plot_energies(history: History, path: Path, style: PictureStyle = _PLAIN) -> Path:

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from implam_post.io.compression import strength_of
 from implam_post.io.damage_resistance import DIRECTIONS, extent, kinds_of_damage
 from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, run
 from implam_post.io.files import write_text
@@ -14,6 +15,7 @@ from implam_post.io.run import SUMMARY, Run, material_of, open_run
 from implam_post.io.run_figures import Measured, corner_of, resistance
 from implam_post.io.summary_shape import missing_member
 from implam_post.plot.style import PictureStyle
+from implam_post.report.compression import compression_rows
 from implam_post.report.page import image, render, rounded
 from implam_post.report.pictures import history_pictures, layup_figure, map_pictures, plan_figure
 from implam_post.report.scatter_report import write_page
@@ -53,8 +55,8 @@ def shown(style: PictureStyle, dimension: str, value: object) -> str:
     return style.shown(dimension, value, 4)
 
 
-def report(run: Run) -> str:
-    """Return the page of a run."""
+def report(run: Run, undamaged: float | None = None) -> str:
+    """Return the page of a run; `undamaged` is the strength of the undamaged plate, if that is known."""
     summary, style = run.summary, PictureStyle(run.system)
     found = resistance(run)
     mark = tuple(found[name].value for name in ("threshold_at", "threshold_force")) if "threshold_at" in found else None
@@ -69,7 +71,8 @@ def report(run: Run) -> str:
         reached=_reached(summary, style), has_units=bool(style.system),
         has_fields=run.fields is not None, figures=_figures(summary, style),
         resistance=_resistance(run, found, style) if "energy_absorbed" in summary and run.columns is not None else None,
-        interfaces=_interfaces(summary, style), plate=_plate(summary, style), plan=image(plan_figure(summary, style)),
+        compression=compression_rows(run, style, undamaged), interfaces=_interfaces(summary, style),
+        plate=_plate(summary, style), plan=image(plan_figure(summary, style)),
         layup=image(layup_figure(summary)), plies_head=_plies_head(summary), plies=_plies(summary, style),
         curves=[(text, image(figure)) for text, figure in curves],
         maps=[(text, image(figure)) for text, figure in maps],
@@ -211,7 +214,7 @@ def summaries_at(path: Path) -> list[Path]:
     return found
 
 
-def write_report(path: Path, output: Path | None) -> Path:
+def write_report(path: Path, output: Path | None, undamaged: float | None = None) -> Path:
     """Write the page of a summary, or that of a sweep, and return its path."""
     if path.is_dir():
         return write_page(path, output)
@@ -221,15 +224,16 @@ def write_report(path: Path, output: Path | None) -> Path:
     written = (output or path.parent) / f"{run_shown.name}_report.html"
     if missing := missing_member(run_shown.summary):
         raise FileError(f"the summary {path} lacks {missing!r}: another version of implam wrote it.")
-    write_text(written, report(run_shown))
+    write_text(written, report(run_shown, undamaged))
     return written
 
 
 def _command(options: argparse.Namespace) -> int:
     """Write a page for each run."""
+    undamaged = None if options.undamaged is None else strength_of(options.undamaged)
     for given in options.results:
         for path in summaries_at(given):
-            print(write_report(path, options.output))
+            print(write_report(path, options.output, undamaged))
     return EXIT_DONE
 
 
@@ -242,6 +246,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("results", nargs="+", type=Path, metavar="RESULT",
                         help="NAME_summary.json, a folder with such files, or the folder of a sweep")
     parser.add_argument("--output", type=Path, metavar="DIR", help="folder of the pages (default: beside each summary)")
+    parser.add_argument("--undamaged", type=Path, metavar="SUMMARY", help="NAME_summary.json of the undamaged plate's "
+                        "compression: the page then has the share of its strength that is left")
     return run(_command, parser, arguments)
 
 

@@ -15,6 +15,7 @@ from implam_post.io.fields import Fields
 from implam_post.io.history import ENERGY_NAMES, UNACCOUNTED, History
 from implam_post.io.quantities import growth_rows
 from implam_post.io.run import material_of
+from implam_post.plot.compression import compression_figure, is_compressed
 from implam_post.plot.curves import AXES, in_contact
 from implam_post.plot.plan import delamination_figure, failures_figure, projected_figure
 from implam_post.plot.plan_frame import draw_plate
@@ -96,6 +97,8 @@ def history_pictures(history: History, style: PictureStyle,
             yield "contact force against displacement of the impactor", _curve(shown, "impactor_displacement", "force",
                                                                                style)
         yield "contact force against deflection", _curve(shown, "deflection", "force", style)
+    if is_compressed(history):
+        yield "stress of the compression, and strains of gauges", compression_figure({"": history}, style)
     yield "deflection against time", _curve(history, "time", "deflection", style)
     areas = {name: name.replace("area_below_", "below ply ") for name in history.columns
              if name.startswith("area_below_")}

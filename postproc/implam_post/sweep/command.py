@@ -135,16 +135,55 @@ def _work(sweep: Sweep, options: argparse.Namespace) -> int:
         remove_results(sweep.folder(case))
     cases, tables = sweep.open_cases(), _Tables(sweep)
     if options.table:
-        return _gather(sweep, tables)
+        return max(_gather(sweep, tables), _work_on_second(sweep, options, tables))
     check_decks(sweep, cases, options.jobs)
     if options.array:
-        return _write_array(sweep, cases)
+        # In a queue the second runs follow once the first ones have ended.
+        is_first = bool(cases) or sweep.plan.then is None
+        return _write_array(sweep, cases) if is_first else _work_on_second(sweep, options, tables)
     for note in sweep.plan.notes:
         print(f"note: {note}")
     print(f"{len(sweep.plan.cases)} cases, {len(cases)} decks to run", flush=True)
     finished = run_cases(sweep, cases, options.jobs, tables.write_now_and_then)
     code = _gather(sweep, tables)
+    if not finished:
+        return EXIT_STOPPED
+    return max(code, _work_on_second(sweep, options, tables))
+
+
+def _work_on_second(sweep: Sweep, options: argparse.Namespace, tables: _Tables) -> int:
+    """Run the second deck of each case, or list it for a queue, and write the table with the figures of both runs."""
+    from implam_post.sweep.chain import following
+    second = following(sweep)
+    if second is None:
+        return EXIT_DONE
+    second.write_decks()
+    for case in second.plan.cases if options.retry else ():
+        remove_results(second.folder(case))
+    cases = second.open_cases()
+    if options.table:
+        return _gather_second(sweep, second, tables)
+    check_decks(second, cases, options.jobs)
+    if options.array:
+        return _write_array(second, cases)
+    print(f"{len(second.plan.cases)} runs that begin from them, {len(cases)} decks to run", flush=True)
+    finished = run_cases(second, cases, options.jobs, lambda: None)
+    code = _gather_second(sweep, second, tables)
     return code if finished else EXIT_STOPPED
+
+
+def _gather_second(sweep: Sweep, second: Sweep, tables: _Tables) -> int:
+    """Write the table of both runs and the picture of the strengths, list what failed, and return the exit code."""
+    from implam_post.sweep.chain import add_figures
+    from implam_post.sweep.chain_plots import plot_strength
+    from implam_post.sweep.table import write_csv, write_hdf5
+    table, output = tables.write(), sweep.plan.output
+    add_figures(table, sweep, second)
+    write_csv(table, output / "table.csv")
+    write_hdf5(table, output / "table.h5")
+    drawn = plot_strength(table, output / "strength.png")
+    print(output / "table.csv", output / "table.h5", *[] if drawn is None else [drawn], sep="\n")
+    return print_outcomes(second)
 
 
 def _command(options: argparse.Namespace) -> int:

@@ -24,6 +24,7 @@ The file of a sweep:
 
     deck = "peanut.nml"                       # the deck all cases start from, beside this file
     output = "results"                        # folder of the cases and the table; default: the name of this file
+    then = "compression.nml"                  # a second deck for each case, which begins from the case's end
     units = "SI"                              # of the plots: SI, mm-t-s, mm-kg-ms, mm-mN-kg-s; default: the deck's
 
     [grid]                                    # every combination, the last key changes fastest
@@ -62,7 +63,8 @@ too. Text that reads as values of a deck stands there as it is; any other is put
 MAX_CASES = 100_000
 COLUMNS = ("case", "impact_energy", "peak_force", "peak_force_time", "contact_duration", "max_deflection",
            "rebound_velocity", "absorbed_energy", "delaminated_area", "first_growth_force", "first_growth_time",
-           "exit_code", "cpu_time", "version", "folder")
+           "exit_code", "cpu_time", "version", "folder", "dent_depth", "projected_area", "residual_strength",
+           "shortening_at_strength", "failure_code")
 _TABLES = ("grid", "list", "samples", "derived")
 VARIANT = "variant"
 _SAMPLES = {"number": None, "seed": 1, "method": "random"}
@@ -106,7 +108,8 @@ class Plan:
     """All cases of a sweep, the text of its file, the names of what is set and derived, and where results go.
 
     `random` names what is drawn at random of what is set. `scatter` is the table [scatter], `measured` a curve beside
-    which histories are drawn, and `notes` say what does not scatter.
+    which histories are drawn, and `notes` say what does not scatter. `then` is the deck of second runs, which begin
+    from the ends of the cases.
     """
 
     path: Path
@@ -119,6 +122,7 @@ class Plan:
     random: frozenset[str] = field(default=frozenset(), kw_only=True)
     scatter: Scatter | None = field(default=None, kw_only=True)
     measured: Path | None = field(default=None, kw_only=True)
+    then: Path | None = field(default=None, kw_only=True)
     notes: tuple[str, ...] = field(default=(), kw_only=True)
 
 
@@ -129,13 +133,14 @@ def read_plan(path: Path, output: Path | None = None, program: Sequence[str] | N
         content = tomllib.loads(text)
         tables = {name: flat_table(content.pop(name, {}), name) for name in _TABLES}
         scatter, variants = read_scatter(content.pop("scatter", None)), read_variants(content.pop("variants", {}))
-        words = {"deck": "", "output": path.stem, "units": "", "measured": ""}
-        base, folder, units, measured = (content.pop(name, default) for name, default in words.items())
+        words = {"deck": "", "output": path.stem, "units": "", "measured": "", "then": ""}
+        base, folder, units, measured, then = (content.pop(name, default) for name, default in words.items())
         if content:
             raise DeckError(f"'{next(iter(content))}' is none of {', '.join(words)}, {', '.join(_TABLES)}, scatter, "
                             "variants.")
-        if not all(isinstance(word, str) for word in (base, folder, units, measured)) or units not in ("", *SYSTEMS):
-            raise DeckError(f"deck, output and measured are text, and units one of {', '.join(SYSTEMS)}.")
+        given = (base, folder, units, measured, then)
+        if not all(isinstance(word, str) for word in given) or units not in ("", *SYSTEMS):
+            raise DeckError(f"deck, output, measured and then are text, and units one of {', '.join(SYSTEMS)}.")
         check_names(tables)
         cases = CaseMaker(path.parent, base, tables["derived"], scatter, cache(asking(program)))
         made = _cases(cases, tables, variants)
@@ -145,7 +150,8 @@ def read_plan(path: Path, output: Path | None = None, program: Sequence[str] | N
     names = list(dict.fromkeys(name for case in made for name in case.values))
     drawn = frozenset(name for name in names if name in tables["samples"]) | cases.drawn
     return Plan(path, text, names, list(tables["derived"]), made, output or path.parent / folder, units, random=drawn,
-                scatter=scatter, measured=path.parent / measured if measured else None, notes=tuple(cases.notes))
+                scatter=scatter, measured=path.parent / measured if measured else None,
+                then=path.parent / then if then else None, notes=tuple(cases.notes))
 
 
 def _cases(maker: "CaseMaker", tables: dict[str, dict[str, object]], variants: Sequence["Variant"]) -> list[Case]:

@@ -1,0 +1,47 @@
+"""Figures of a plate whose ends are pressed together, as after an impact, from its summary and its history."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from implam_post.io.errors import FileError
+from implam_post.io.history import History
+from implam_post.io.run import read_summary
+
+STRENGTH = "residual_strength"
+# Part of the strength from which on the motion has to be slow: below it the work is too small to hold anything against.
+_FROM = 0.1
+
+
+class Across(NamedTuple):
+    """What went across the width: plies above interfaces that delaminated, plies whose fibres broke."""
+
+    interfaces: list[int]
+    plies: list[int]
+
+
+def kinetic_share(history: History) -> float:
+    """Return the largest kinetic energy over the work done, from a tenth of the strength to the strength."""
+    stress = history["far_field_stress"]
+    top = int(np.argmax(stress))
+    low = np.flatnonzero(stress[:top + 1] < _FROM * stress[top])
+    rows = slice(int(low[-1]) + 1 if len(low) else 0, top + 1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return float(np.max(np.abs(history["energy_kinetic"][rows] / history["work_external"][rows])))
+
+
+def strength_of(path: Path) -> float:
+    """Return the strength that the summary of another run has."""
+    summary = read_summary(path)
+    if STRENGTH not in summary:
+        raise FileError(f"{path} has no {STRENGTH}: no lines press ends of that plate together.")
+    return float(summary[STRENGTH])
+
+
+def went_across(summary: Mapping[str, Any]) -> Across:
+    """Return what went across the width under the load."""
+    collapse = summary.get("collapse", {})
+    return Across([entry["ply_above"] for entry in collapse.get("interfaces", []) if entry["went_across"]],
+                  [entry["ply"] for entry in collapse.get("fibres", []) if entry["went_across"]])

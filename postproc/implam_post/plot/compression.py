@@ -1,0 +1,67 @@
+"""Pictures of compressed plates: stress against shortening, strains of gauges against stress."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from implam_post.io.history import History
+from implam_post.plot.style import STYLES, PictureStyle
+
+STRESS = "far_field_stress"
+_GAUGE = "gauge_strain_"
+
+
+def is_compressed(history: History) -> bool:
+    """Return whether the run compresses a plate."""
+    return bool(np.any(history.columns.get(STRESS, 0)))
+
+
+def compression_figure(histories: Mapping[str, History], style: PictureStyle) -> Figure:
+    """Draw the stress of some runs, by name, against the shortening, and below it the strains of their gauges."""
+    gauges = any(_gauges(history) for history in histories.values())
+    figure = Figure(figsize=(7, 8 if gauges else 4.2), layout="constrained")
+    panels = np.ravel(figure.subplots(1 + gauges, squeeze=False))
+    _draw_stress(panels[0], histories, style)
+    if gauges:
+        _draw_gauges(panels[1], histories, style)
+    return figure
+
+
+def _gauges(history: History) -> Sequence[str]:
+    """Return the columns of gauges."""
+    return [name for name in history.columns if name.startswith(_GAUGE)]
+
+
+def _draw_stress(axes: Axes, histories: Mapping[str, History], style: PictureStyle) -> None:
+    """Draw stress against shortening, with a dot at the strength."""
+    along, up = (style.axis(label, dimension, np.concatenate([one[column] for one in histories.values()]))
+                 for label, dimension, column in (("shortening", "length", "shortening"),
+                                                  ("far-field stress", "stress", STRESS)))
+    for place, (name, history) in enumerate(histories.items()):
+        line, top = STYLES[place % len(STYLES)], int(np.argmax(history[STRESS]))
+        axes.plot(along.factor * history["shortening"], up.factor * history[STRESS], label=name or None, **line)
+        axes.plot(along.factor * history["shortening"][top], up.factor * history[STRESS][top], "o",
+                  color=line["color"])
+    axes.set(xlabel=along.label, ylabel=up.label)
+    axes.grid(alpha=0.3)
+    if any(histories):
+        axes.legend()
+
+
+def _draw_gauges(axes: Axes, histories: Mapping[str, History], style: PictureStyle) -> None:
+    """Draw strains of gauges against the stress up to the strength: those back to back part where the plate buckles."""
+    up = style.axis("far-field stress", "stress", np.concatenate([one[STRESS] for one in histories.values()]))
+    for place, (name, history) in enumerate(histories.items()):
+        rows = slice(0, int(np.argmax(history[STRESS])) + 1)
+        for gauge in _gauges(history):
+            number = gauge.removeprefix(_GAUGE)
+            label = f"gauge {number}" if len(histories) == 1 else f"{name}, gauge {number}"
+            line = dict(STYLES[place % len(STYLES)])
+            if len(histories) == 1:
+                line["color"] = f"C{(int(number) - 1) % 10}"
+            axes.plot(up.factor * history[STRESS][rows], 1e6 * history[gauge][rows], label=label, **line)
+    axes.set(xlabel=up.label, ylabel="strain of gauges [1e-6]")
+    axes.grid(alpha=0.3)
+    axes.legend(fontsize="small")

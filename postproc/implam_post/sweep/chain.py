@@ -1,0 +1,87 @@
+"""The second deck of a sweep, `then`: a run for each case that begins from the end of the case's first run."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+from implam_post.io.deck_text import copy_groups, deck_value, key_path, set_keys
+from implam_post.io.errors import EXIT_DONE, DeckError, ImplamError
+from implam_post.io.files import read_text
+from implam_post.io.program import checkpoint_in
+from implam_post.io.run import open_run
+from implam_post.sweep.case_run import read_record
+from implam_post.sweep.plan import Case
+from implam_post.sweep.runs import Sweep
+from implam_post.sweep.table import Table
+
+# Groups that both decks have alike, as the damage depends on them: the second run has those of the first.
+SHARED = ("material", "laminate", "ply_damage", "delamination", "thermal")
+# Groups whose swept keys are set in the second deck too, since both runs have one mesh and one plate.
+_SET_TOO = ("mesh", "plate")
+_OWN_KEYS = ("lines_x", "lines_y", "symmetry")
+# Figures of both runs by the name of their column: of which run (0 or 1), dimension, label.
+FIGURES = {
+    "dent_depth": (0, "length", "depth of the dent"),
+    "projected_area": (0, "area", "projected delaminated area"),
+    "residual_strength": (1, "stress", "residual strength"),
+    "shortening_at_strength": (1, "length", "shortening at the strength"),
+    "failure_code": (1, "", "failure code"),
+}
+
+
+def following(sweep: Sweep) -> Sweep | None:
+    """Return the sweep of the second runs, one for each first run with a result; None without a second deck."""
+    plan = sweep.plan
+    if plan.then is None:
+        return None
+    text = read_text(plan.then, "the deck")
+    cases = [_second(case, sweep.folder(case), plan.then, text) for case in plan.cases if _has_ended(sweep, case)]
+    return Sweep(replace(plan, cases=cases, then=None, scatter=None, random=frozenset(), notes=()), sweep.program)
+
+
+def _has_ended(sweep: Sweep, case: Case) -> bool:
+    """Return whether the first run of a case has left its end."""
+    record = read_record(sweep.folder(case))
+    return record is not None and record.exit_code == EXIT_DONE and checkpoint_in(sweep.folder(case)) is not None
+
+
+def _second(case: Case, folder: Path, then: Path, text: str) -> Case:
+    """Return the second run of a case."""
+    name = then.name
+    text = copy_groups(case.deck, text, SHARED, name)
+    paths = {path: value for key, value in case.values.items() if (path := key_path(key))}
+    settings = {path: deck_value(value) for path, value in paths.items()
+                if path.group in _SET_TOO and path.key.lower() not in _OWN_KEYS}
+    begun = key_path("initial_state.from")
+    if begun is None:
+        raise DeckError(f"{name}: no &initial_state.")
+    settings[begun] = deck_value(str(checkpoint_in(folder).absolute()))
+    return Case(case.number, case.values, name, set_keys(text, settings, name), case.repeat)
+
+
+def add_figures(table: Table, first: Sweep, second: Sweep) -> None:
+    """Add the columns of both runs to the table of the first; cells without a value are NaN or empty."""
+    by_number = {case.number: case for case in second.plan.cases}
+    rows = []
+    for case in first.plan.cases:
+        follower = by_number.get(case.number)
+        rows.append((_summary(first, case), {} if follower is None else _summary(second, follower)))
+    for name, (which, dimension, _) in FIGURES.items():
+        missing: object = math.nan if dimension else ""
+        table.columns[name] = [_cell(row[which].get(name), missing) for row in rows]
+
+
+def _cell(value: object, missing: object) -> object:
+    """Return the value of a cell."""
+    return missing if value is None else value
+
+
+def _summary(sweep: Sweep, case: Case) -> Mapping[str, object]:
+    """Return the summary of a run that has a result; empty if there is none."""
+    if sweep.failure(case):
+        return {}
+    try:
+        return open_run(sweep.folder(case)).summary
+    except ImplamError:
+        return {}

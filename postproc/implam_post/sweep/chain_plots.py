@@ -1,0 +1,69 @@
+"""Pictures of a sweep with a second deck: the strength that is left against impact energy, dent and area."""
+
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from implam_post.io.files import replaced
+from implam_post.io.units import axis_of
+from implam_post.sweep.chain import FIGURES
+from implam_post.sweep.plots import series
+from implam_post.sweep.table import FIGURES as TABLE_FIGURES
+from implam_post.sweep.table import Table
+
+STRENGTH = "residual_strength"
+_AGAINST = ("impact_energy", "dent_depth", "projected_area")
+# Energies that differ by less are those of one impact with other random inputs.
+_DIGITS = 6
+
+
+def plot_strength(table: Table, path: Path) -> Path | None:
+    """Draw the strength against energy, dent and area, each run a point; None if no run has a strength.
+
+    Runs of one energy and one series are joined by their mean with the standard deviation of a single run.
+    """
+    strength = table.numbers(STRENGTH)
+    if strength is None or not np.any(np.isfinite(strength)):
+        return None
+    drawing = Figure(figsize=(12, 4.2), layout="constrained")
+    up = axis_of(FIGURES[STRENGTH][2], "stress", strength, table.system)
+    for axes, name in zip(drawing.subplots(1, len(_AGAINST), sharey=True), _AGAINST, strict=True):
+        values = table.numbers(name)
+        if name in FIGURES:
+            _, dimension, label = FIGURES[name]
+        else:
+            dimension, label = TABLE_FIGURES[name].dimension, TABLE_FIGURES[name].label
+        along = axis_of(label, dimension, values, table.system)
+        for place, (title, rows) in enumerate(series(table).items()):
+            _draw(axes, along.factor * values[rows], up.factor * strength[rows],
+                  groups(table.numbers("impact_energy")[rows]), f"C{place % 10}", title)
+        axes.set_xlabel(along.label)
+        axes.grid(alpha=0.3)
+        axes.set_ylim(bottom=0)
+    axes = drawing.axes[0]
+    axes.set_ylabel(up.label)
+    if axes.get_legend_handles_labels()[0]:
+        axes.legend(fontsize="small")
+    with replaced(path) as draft:
+        drawing.savefig(draft, dpi=150)
+    return path
+
+
+def groups(energies: np.ndarray) -> list[np.ndarray]:
+    """Return the places of each energy, in ascending order of the energies."""
+    rounded = np.array([float(f"{energy:.{_DIGITS}g}") for energy in energies])
+    return [np.flatnonzero(rounded == energy) for energy in np.unique(rounded)]
+
+
+def _draw(axes: Axes, x: np.ndarray, y: np.ndarray, together: list[np.ndarray], colour: str, title: str) -> None:
+    """Draw the points of a series, and means with standard deviations where several runs have one energy."""
+    axes.plot(x, y, "o", color=colour, markersize=4, alpha=0.6)
+    means = [(np.mean(x[kept]), np.mean(y[kept]), np.std(y[kept], ddof=1) if len(kept) > 1 else 0.0)
+             for rows in together if len(kept := rows[np.isfinite(x[rows]) & np.isfinite(y[rows])])]
+    if not means:
+        return
+    along, up, scatter = np.array(means).T
+    axes.errorbar(along, up, yerr=scatter if np.any(scatter > 0) else None, color=colour, capsize=3, linewidth=1.2,
+                  label=title or None)

@@ -1,0 +1,45 @@
+"""Tests of the figures of plates whose ends are pressed together."""
+
+import json
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+from implam_post.io.compression import kinetic_share, strength_of, went_across
+from implam_post.io.errors import FileError
+from implam_post.io.history import History
+
+
+class CompressionTest(unittest.TestCase):
+    """Shares and figures."""
+
+    def test_kinetic_share_between_a_tenth_and_the_strength(self) -> None:
+        """Neither what rings at the start nor the collapse counts."""
+        history = History({"time": np.arange(6.0), "far_field_stress": np.array([1.0, 9, 20, 60, 100, 30]),
+                           "work_external": np.array([1.0, 2, 10, 50, 200, 220]),
+                           "energy_kinetic": np.array([5.0, 1, 0.2, 0.5, 1.8, 100])})
+        self.assertAlmostEqual(kinetic_share(history), 0.02)
+
+    def test_strength_of_another_run(self) -> None:
+        """A summary without a strength is refused."""
+        summary = {"case": "a", "exit": {}, "plies": [], "provenance": {}}
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "a_summary.json"
+            path.write_text(json.dumps(summary), encoding="utf-8")
+            self.assertRaisesRegex(FileError, "no residual_strength", strength_of, path)
+            path.write_text(json.dumps(summary | {"residual_strength": 3.5e8}), encoding="utf-8")
+            self.assertEqual(strength_of(path), 3.5e8)
+
+    def test_went_across(self) -> None:
+        """Only what went across is listed."""
+        summary = {"collapse": {"interfaces": [{"ply_above": 2, "went_across": False},
+                                               {"ply_above": 4, "went_across": True}],
+                                "fibres": [{"ply": 1, "went_across": True}]}}
+        self.assertEqual(went_across(summary), ([4], [1]))
+        self.assertEqual(went_across({}), ([], []))
+
+
+if __name__ == "__main__":
+    unittest.main()

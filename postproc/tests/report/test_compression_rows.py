@@ -1,0 +1,46 @@
+"""Tests of the section of a page on the strength in compression."""
+
+import unittest
+from types import SimpleNamespace
+
+import numpy as np
+
+from implam_post.io.history import History
+from implam_post.plot.style import PictureStyle
+from implam_post.report.compression import compression_rows
+
+_SUMMARY = {"residual_strength": 2e8, "shortening_at_strength": 7e-4, "effective_modulus": None, "has_failed": True,
+            "failure_code": "LDM", "percent_bending": -4.0, "buckling_strain": 3.9e-3,
+            "collapse": {"interfaces": [], "fibres": [{"ply": 3, "went_across": True}]}}
+_HISTORY = History({"time": np.arange(3.0), "far_field_stress": np.array([0.0, 1e8, 2e8]),
+                    "energy_kinetic": np.array([0.0, 0.1, 0.2]), "work_external": np.array([0.0, 10.0, 40.0])})
+
+
+class CompressionRowsTest(unittest.TestCase):
+    """Rows of a run."""
+
+    def _rows(self, summary: dict[str, object], undamaged: float | None = None) -> dict[str, str]:
+        """Return the rows by their labels."""
+        run = SimpleNamespace(summary=summary, columns=_HISTORY)
+        return {label: value for label, value, _ in compression_rows(run, PictureStyle("SI"), undamaged)}
+
+    def test_rows(self) -> None:
+        """Strength, its share, and what failed."""
+        rows = self._rows(_SUMMARY, 4e8)
+        self.assertEqual(rows["share of the undamaged plate's"], "0.500")
+        self.assertEqual(rows["failure code of ASTM D7137"], "LDM")
+        self.assertEqual(rows["plies whose fibres broke across the width"], "3")
+        self.assertEqual(rows["interfaces delaminated across the width"], "none")
+        self.assertEqual(rows["largest kinetic energy over the work"], "1 %")
+        self.assertEqual(rows["effective modulus"], "-")
+
+    def test_without_compression_or_failure(self) -> None:
+        """There is no section without lines, and no failure of a plate that bears the load."""
+        self.assertEqual(self._rows({}), {})
+        rows = self._rows(_SUMMARY | {"has_failed": False, "failure_code": None})
+        self.assertNotIn("failure code of ASTM D7137", rows)
+        self.assertNotIn("share of the undamaged plate's", rows)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,260 @@
+!> What a plate whose ends are pressed together has of damage: of each interface where it has delaminated, of each ply
+!> where fibres have failed. Held against the same at the start it shows where the plate has failed.
+module compressed_damage
+  use archives, only: archive_t
+  use delamination_parameters, only: law_cohesive
+  use exact_sums, only: exact_sum_t
+  use kinds, only: wp
+  use mesh_parameters, only: symmetry_point
+  use models, only: model_t
+  use ply_damage_parameters, only: fibre_failure
+  use rank_totals, only: totals_of
+  use states, only: state_t
+  use support_parameters, only: window_rectangle
+  implicit none
+  private
+  public :: compressed_damage_t, damage_of, between_supports
+
+  !> Figures of an interface or a ply, of the full plate: area; mean and greatest distance from the middle along the
+  !> load; share of the width between the supports over which it has failed at some place along the load.
+  integer, parameter, public :: figure_area = 1, figure_mean = 2, figure_reach = 3, figure_width = 4
+  integer, parameter :: number_of_figures = 4
+
+  !> Damage at one time, the same on every rank.
+  type :: compressed_damage_t
+    !> (figures, interfaces) where interfaces have delaminated, and (figures, plies) where fibres have failed
+    real(wp), allocatable :: interfaces(:, :), plies(:, :)
+  contains
+    !> Saves or loads.
+    procedure :: visit
+  end type compressed_damage_t
+
+  !> Sums and maxima over the failed places of one interface or ply on this rank.
+  type :: collected_t
+    !> Areas, and areas times their distances
+    type(exact_sum_t) :: area, moment
+    !> Greatest distance; negative: nothing has failed
+    real(wp) :: reach = -1
+    !> 1 for each row of cells along the load in which something has failed, else 0
+    real(wp), allocatable :: rows(:)
+  contains
+    !> Adds a failed place.
+    procedure :: add
+  end type collected_t
+
+contains
+
+  !> Damage of a state. Collective.
+  function damage_of(model, now, along) result(damage)
+    type(model_t), intent(in) :: model
+    !> The state
+    type(state_t), intent(in) :: now
+    !> Axis of the load
+    integer, intent(in) :: along
+    !> The damage
+    type(compressed_damage_t) :: damage
+    type(collected_t) :: interfaces(size(model%mesh%zones)), plies(size(model%plies))
+    integer :: i
+
+    do i = 1, size(interfaces)
+      interfaces(i) = delaminated(model, now, along, i)
+    end do
+    do i = 1, size(plies)
+      plies(i) = fibres_failed(model, now, along, i)
+    end do
+    damage%interfaces = figures_of(model, along, interfaces)
+    damage%plies = figures_of(model, along, plies)
+  end function damage_of
+
+  !> Length between the supports of the plate along an axis: that of the window of its frame, or of the plate.
+  pure real(wp) function between_supports(model, axis) result(length)
+    type(model_t), intent(in) :: model
+    !> The axis
+    integer, intent(in) :: axis
+    integer :: i
+
+    length = model%setup%plate%length(axis)
+    do i = 1, size(model%setup%supports)
+      associate (support => model%setup%supports(i))
+        if (support%shape == window_rectangle) length = min(length, support%window(axis))
+      end associate
+    end do
+  end function between_supports
+
+  !> Places where an interface has delaminated: nodes where a cohesive law has failed, cells that fronts released.
+  function delaminated(model, now, along, zone) result(collected)
+    type(model_t), intent(in) :: model
+    !> The state
+    type(state_t), intent(in) :: now
+    !> Axis of the load, and interface
+    integer, intent(in) :: along, zone
+    !> What is on this rank
+    type(collected_t) :: collected
+    integer :: i, column, row
+
+    allocate (collected%rows(model%mesh%cells(3 - along)), source=0.0_wp)
+    associate (mesh => model%mesh, cohesive => now%interfaces%cohesive)
+      if (model%setup%delaminations(zone)%law == law_cohesive) then
+        if (.not. allocated(cohesive%cohesive)) return
+        do i = 1, model%distribution%owned
+          if (model%zone(i) /= zone .or. .not. cohesive%cohesive(i)) cycle
+          if (cohesive%points(i)%damage < 1) cycle
+          associate (node => mesh%point_node(model%distribution%points(i)))
+            call collected%add(model%contact_area(i), abs(mesh%node_coordinates(along, node)), &
+                               row_of(mesh%lines_of(node), along))
+          end associate
+        end do
+        return
+      end if
+      ! Every rank knows all cells of a front; the first one adds them.
+      if (.not. model%communicator%is_root()) return
+      associate (region => now%interfaces%faces%regions(zone))
+        do row = region%rows(1), region%rows(2)
+          do column = region%columns(1), region%columns(2)
+            if (region%is_delaminated(column, row)) call add_cell(collected, model, along, [column, row])
+          end do
+        end do
+      end associate
+    end associate
+  end function delaminated
+
+  !> Places where the fibres of a ply have failed.
+  function fibres_failed(model, now, along, ply) result(collected)
+    type(model_t), intent(in) :: model
+    !> The state
+    type(state_t), intent(in) :: now
+    !> Axis of the load, and ply
+    integer, intent(in) :: along, ply
+    !> What is on this rank
+    type(collected_t) :: collected
+    integer :: i
+
+    allocate (collected%rows(model%mesh%cells(3 - along)), source=0.0_wp)
+    if (.not. model%setup%has_ply_damage) return
+    associate (failed => now%plies%failed(ply), mesh => model%mesh)
+      do i = 1, model%elements%elements
+        if (.not. failed(fibre_failure, i)) cycle
+        call add_cell(collected, model, along, mesh%place_of(mesh%element_cell(model%distribution%elements(i))))
+      end do
+    end associate
+  end function fibres_failed
+
+  !> Row of cells across the load in whose middle a node lies; 0: it lies between two rows.
+  pure integer function row_of(lines, along) result(row)
+    !> Lines of nodes that meet in the node, from 0
+    integer, intent(in) :: lines(2)
+    !> Axis of the load
+    integer, intent(in) :: along
+
+    row = 0
+    if (modulo(lines(3 - along), 2) == 1) row = (lines(3 - along) + 1)/2
+  end function row_of
+
+  !> Adds a failed cell.
+  pure subroutine add_cell(collected, model, along, place)
+    !> What is added to
+    type(collected_t), intent(inout) :: collected
+    type(model_t), intent(in) :: model
+    !> Axis of the load
+    integer, intent(in) :: along
+    !> Column and row of the cell
+    integer, intent(in) :: place(2)
+    real(wp) :: middle(2)
+
+    associate (x => model%mesh%x_edges, y => model%mesh%y_edges)
+      middle = [x(place(1)) + x(place(1) + 1), y(place(2)) + y(place(2) + 1)]/2
+    end associate
+    call collected%add(model%mesh%cell_area(place), abs(middle(along)), place(3 - along))
+  end subroutine add_cell
+
+  !> Adds a failed place.
+  pure subroutine add(self, area, distance, row)
+    !> What is added to
+    class(collected_t), intent(inout) :: self
+    !> Area, and distance from the middle along the load
+    real(wp), intent(in) :: area, distance
+    !> Row of cells along the load; 0: none
+    integer, intent(in) :: row
+
+    call self%area%add(area)
+    call self%moment%add(area*distance)
+    self%reach = max(self%reach, distance)
+    if (row > 0) self%rows(row) = 1
+  end subroutine add
+
+  !> Figures of what all ranks have collected. Collective.
+  function figures_of(model, along, collected) result(figures)
+    type(model_t), intent(in) :: model
+    !> Axis of the load
+    integer, intent(in) :: along
+    !> What this rank has of each interface or ply
+    type(collected_t), intent(in) :: collected(:)
+    !> (figures, interfaces or plies)
+    real(wp) :: figures(number_of_figures, size(collected))
+    real(wp) :: sums(2*size(collected)), reach(size(collected))
+    real(wp), allocatable :: rows(:)
+    integer :: i
+
+    sums = totals_of(model%communicator, [collected%area, collected%moment])
+    reach = collected%reach
+    call model%communicator%maximum(reach)
+    figures = 0
+    do i = 1, size(collected)
+      rows = collected(i)%rows
+      call model%communicator%maximum(rows)
+      if (.not. sums(i) > 0) cycle
+      figures(figure_area, i) = sums(i)*model%mesh%multiplicity
+      figures(figure_mean, i) = sums(size(collected) + i)/sums(i)
+      figures(figure_reach, i) = reach(i)
+      figures(figure_width, i) = share_of_width(model, along, rows > 0)
+    end do
+  end function figures_of
+
+  !> Share of the width between the supports in whose rows something has failed. A strip as wide as the plate is thick
+  !> is left out at each side: there the supports hold the layers together.
+  pure real(wp) function share_of_width(model, along, failed) result(share)
+    type(model_t), intent(in) :: model
+    !> Axis of the load
+    integer, intent(in) :: along
+    !> True for rows in which something has failed
+    logical, intent(in) :: failed(:)
+    real(wp) :: widths(size(failed)), middles(size(failed))
+    logical :: either(size(failed))
+
+    if (along == 1) then
+      associate (edges => model%mesh%y_edges)
+        widths = edges(2:) - edges(:size(edges) - 1)
+        middles = (edges(2:) + edges(:size(edges) - 1))/2
+      end associate
+    else
+      associate (edges => model%mesh%x_edges)
+        widths = edges(2:) - edges(:size(edges) - 1)
+        middles = (edges(2:) + edges(:size(edges) - 1))/2
+      end associate
+    end if
+    either = failed
+    ! What a half that is turned onto the other has failed in a row, the other has in its image.
+    if (model%setup%plate%symmetry == symmetry_point .and. along == 1) either = failed .or. failed(size(failed):1:-1)
+    widths = merge(widths, 0.0_wp, abs(middles) < between_supports(model, 3 - along)/2 - model%thickness)
+    share = 0
+    if (sum(widths) > 0) share = sum(widths, mask=either)/sum(widths)
+  end function share_of_width
+
+  !> Saves or loads the damage.
+  subroutine visit(self, name, archive)
+    !> The damage
+    class(compressed_damage_t), intent(inout) :: self
+    !> Beginning of the names in the archive
+    character(len=*), intent(in) :: name
+    !> Archive of the checkpoint
+    class(archive_t), intent(inout) :: archive
+
+    logical :: known
+
+    known = allocated(self%plies)
+    call archive%item(name//'/known', known)
+    if (.not. known) return
+    call archive%item(name//'/interfaces', self%interfaces)
+    call archive%item(name//'/plies', self%plies)
+  end subroutine visit
+end module compressed_damage
