@@ -127,8 +127,8 @@ contains
   end subroutine solve_tangent
 
   !> Solution under forces, ghosts included, with the tangent of a load step, whose symmetric part has just been
-  !> factored. A cohesive law whose toughness depends on the mixture of modes has an unsymmetric tangent where damage grows.
-  !> Collective.
+  !> factored. A cohesive law whose toughness depends on the mixture of modes has an unsymmetric tangent where damage
+  !> grows. Collective.
   subroutine solve_load_tangent(operator, model, cohesive, forces, solution, error)
     !> The operator, just factored
     type(tangent_operator_t), target, intent(inout) :: operator
