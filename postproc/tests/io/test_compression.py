@@ -10,6 +10,7 @@ import numpy as np
 from implam_post.io.compression import kinetic_share, strength_of, went_across
 from implam_post.io.errors import FileError
 from implam_post.io.history import History
+from tests.io.test_summary_shape import SUMMARY
 
 
 class CompressionTest(unittest.TestCase):
@@ -24,7 +25,7 @@ class CompressionTest(unittest.TestCase):
 
     def test_strength_of_another_run(self) -> None:
         """A summary without a strength is refused."""
-        summary = {"case": "a", "exit": {}, "plies": [], "provenance": {}}
+        summary = SUMMARY | {"case": "a"}
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "a_summary.json"
             path.write_text(json.dumps(summary), encoding="utf-8")

@@ -13,6 +13,7 @@ from implam_post.sweep.chain_plots import groups, plot_strength
 from implam_post.sweep.plan import read_plan
 from implam_post.sweep.runs import Sweep
 from implam_post.sweep.table import Table
+from tests.io.test_summary_shape import SUMMARY
 
 _IMPACT = """! strikes
 &case name='hit' /
@@ -58,7 +59,7 @@ class ChainTest(unittest.TestCase):
         (folder / "run.json").write_text(json.dumps({"exit_code": 0}), encoding="utf-8")
         (folder / f"{name}_history.csv").write_text("time\n0\n", encoding="utf-8")
         (folder / f"{name}_restart.h5").write_text("", encoding="utf-8")
-        whole = {"case": name, "exit": {}, "plies": [], "provenance": {}} | summary
+        whole = SUMMARY | {"case": name} | summary
         (folder / f"{name}_summary.json").write_text(json.dumps(whole), encoding="utf-8")
 
     def test_second_deck(self) -> None:
