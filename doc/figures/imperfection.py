@@ -1,5 +1,5 @@
 """Draws imperfection.svg: strength of the undamaged panel of doc/studies/residual_strength.md against its imperfection.
-Usage: imperfection.py [FILE.svg]"""
+Usage: imperfection.py [FOLDER]"""
 
 import sys
 from pathlib import Path
@@ -10,7 +10,7 @@ AMPLITUDES, STRENGTHS = (0.01, 0.03, 0.1, 0.3, 1.0), (459, 441, 416, 382, 331)
 EIGENVALUE = 438
 
 
-def main(path):
+def main(folder):
     """Draw the picture."""
     figure = Figure(figsize=(6, 3.4), layout="constrained")
     axes = figure.subplots()
@@ -19,8 +19,8 @@ def main(path):
     axes.set(xlabel="amplitude of the imperfection [mm]", ylabel="stress [MPa]", ylim=(0, 500))
     axes.grid(alpha=0.3)
     axes.legend()
-    figure.savefig(path)
+    figure.savefig(Path(folder) / "imperfection.svg")
 
 
 if __name__ == "__main__":
-    main(sys.argv[1] if len(sys.argv) > 1 else Path(__file__).with_suffix(".svg"))
+    main(sys.argv[1] if len(sys.argv) > 1 else Path(__file__).parent)

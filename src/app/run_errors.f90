@@ -11,7 +11,7 @@ module run_errors
   !> Errors of figures, in their units; negative: not known.
   type :: run_errors_t
     !> Their source: none, elastic or coarse_run
-    character(len=9) :: source = 'none'
+    character(len=10) :: source = 'none'
     !> Of the largest force and its time
     real(wp) :: peak_force = -1, peak_time = -1
     !> Of the time in contact
