@@ -47,7 +47,7 @@ MODELS = {
 }
 
 
-AT = re.compile(r"(?:time|load factor) ([-\d.e]+\d)")
+AT = re.compile(r"(?:time|load factor) ([-\d.e]*\d)")
 
 
 def time_of(warning):
