@@ -24,7 +24,7 @@ _STATISTICS = {
                     "low_5": _FIGURE, "high_95": _FIGURE}],
     "inputs": [{"input": str, "kind": str, "variation": float, "source": str}], "variants": [list]}
 _DIFFERENCE = {"group": str, "figure": str, "pairs": int, "first": _FIGURE, "difference": _FIGURE,
-               "error_of_mean": _FIGURE, "within": int}
+               "error_of_mean": _FIGURE, "differs": int}
 _MEASURED = {"group": str, "figure": str, "measured": _FIGURE, "aim": _FIGURE, "mean": _FIGURE,
              "error_of_mean": _FIGURE, "within": int}
 
