@@ -61,7 +61,7 @@ def main(implam, folder):
         here = Path(folder) / str(number)
         here.mkdir(parents=True, exist_ok=True)
         deck = here / "deck.nml"
-        fails = "over an area as large" in sentence or "failed fibres" in sentence or "&adapt" in rest or "travel" in rest
+        fails = any(words in sentence + rest for words in ("over an area as large", "failed fibres", "&adapt", "travel"))
         plate = WEAK if fails else BEGINNING
         deck.write_text("&case name='limits' /\n" + plate + rest, "utf-8")
         said = run([implam, deck, "--output", here])
