@@ -61,7 +61,8 @@ def main(implam, folder):
         here = Path(folder) / str(number)
         here.mkdir(parents=True, exist_ok=True)
         deck = here / "deck.nml"
-        fails = any(words in sentence + rest for words in ("over an area as large", "failed fibres", "&adapt", "travel"))
+        breaking = ("over an area as large", "failed fibres", "&adapt", "travel")
+        fails = any(words in sentence + rest for words in breaking)
         plate = WEAK if fails else BEGINNING
         deck.write_text("&case name='limits' /\n" + plate + rest, "utf-8")
         said = run([implam, deck, "--output", here])
