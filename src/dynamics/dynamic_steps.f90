@@ -296,42 +296,11 @@ contains
                                 negative_curvature, converged)
     if (allocated(error)) return
     self%correction_is_costly = .not. converged
-    if (model%setup%has_impactor) call add_force_response(self, model, operator, old, new, tangent%is_factored(), &
-                                                          correction, error)
+    if (model%setup%has_impactor) &
+      call self%coupling%solve(model, operator, old, new, tangent%is_factored(), correction, error)
     if (allocated(error)) error%code = exit_convergence
     call new%interfaces%faces%hold(model, correction)
   end subroutine find_correction
-
-  !> Finds the impactor's force after a correction. Where the tangent is the factored operator, the plate's response to
-  !> the change of the force is known and added; otherwise the correction includes the slope of the force, and what the
-  !> law leaves of it is in the next residual: the response of the factored operator would open contacts that have
-  !> closed since.
-  subroutine add_force_response(self, model, operator, old, new, is_factored, correction, error)
-    !> The problem
-    class(dynamic_step_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
-    !> Holds the response to a unit force
-    type(tangent_operator_t), intent(in) :: operator
-    !> State at the start
-    type(state_t), intent(in) :: old
-    !> State at the end, before the correction
-    type(state_t), intent(inout) :: new
-    !> True: the tangent is the factored operator
-    logical, intent(in) :: is_factored
-    !> Correction of the displacement, (5, points)
-    real(wp), intent(inout) :: correction(:, :)
-    !> Set if numbers are not finite
-    type(error_t), allocatable, intent(inout) :: error
-    integer :: iterations
-
-    if (is_factored) then
-      call self%coupling%solve(model, operator, old, new, correction, error)
-    else
-      new%patch_mean = model%contact_deflection(new%motion%displacement) + model%patch_mean(correction)
-      call self%coupling%find_force(model%setup%indentation, old%indentation, new%patch_mean, 0.0_wp, iterations, error)
-      new%force_iterations = new%force_iterations + iterations
-    end if
-  end subroutine add_force_response
 
   !> Finds the impactor's force for a displacement.
   subroutine find_force(self, model, old, new)

@@ -84,9 +84,11 @@ contains
     forces_agree = .not. self%mean .or. abs(self%alpha_f - 0.5_wp) <= 0
   end function forces_agree
 
-  !> Solves for the impact force, given the correction of the plate for the force assumed, and adds the
-  !> plate's response to the change of the force.
-  subroutine solve(self, model, operator, old, new, correction, error)
+  !> Solves for the impact force, given the correction of the plate for the force assumed. Where the tangent is the
+  !> factored operator, the plate's response to the change of the force is known and added. Otherwise the correction
+  !> includes the slope of the force, and what the law leaves of it is in the next residual: the response of the
+  !> factored operator would open contacts that have closed since.
+  subroutine solve(self, model, operator, old, new, is_factored, correction, error)
     !> The coupling
     class(impact_coupling_t), intent(inout) :: self
     type(model_t), intent(in) :: model
@@ -96,6 +98,8 @@ contains
     type(state_t), intent(in) :: old
     !> State at the end, before the correction
     type(state_t), intent(inout) :: new
+    !> True: the tangent is the factored operator
+    logical, intent(in) :: is_factored
     !> Correction of the displacement, (5, points)
     real(wp), intent(inout) :: correction(:, :)
     !> Set if numbers are not finite
@@ -105,9 +109,9 @@ contains
 
     before = self%unknown
     new%patch_mean = model%contact_deflection(new%motion%displacement) + model%patch_mean(correction)
-    call self%find_force(model%setup%indentation, old%indentation, new%patch_mean, operator%compliance, iterations, &
-                         error)
-    correction = correction + (self%share*(self%unknown - before))*operator%response
+    call self%find_force(model%setup%indentation, old%indentation, new%patch_mean, &
+                         merge(operator%compliance, 0.0_wp, is_factored), iterations, error)
+    if (is_factored) correction = correction + (self%share*(self%unknown - before))*operator%response
     new%force_iterations = new%force_iterations + iterations
   end subroutine solve
 

@@ -71,24 +71,6 @@ module krylov_solvers
       !> The address
       type(c_ptr), intent(out) :: context
     end function get_matrix_context
-
-    !> The same of a preconditioner.
-    integer(c_int) function set_preconditioner_context(preconditioner, context) bind(c, name='PCShellSetContext')
-      import :: c_int, c_intptr_t, c_ptr
-      !> The preconditioner
-      integer(c_intptr_t), value :: preconditioner
-      !> The address
-      type(c_ptr), value :: context
-    end function set_preconditioner_context
-
-    !> What it carries along.
-    integer(c_int) function get_preconditioner_context(preconditioner, context) bind(c, name='PCShellGetContext')
-      import :: c_int, c_intptr_t, c_ptr
-      !> The preconditioner
-      integer(c_intptr_t), value :: preconditioner
-      !> The address
-      type(c_ptr), intent(out) :: context
-    end function get_preconditioner_context
   end interface
 
 contains
@@ -151,19 +133,18 @@ contains
     !> Set if a product fails
     type(error_t), allocatable, intent(inout) :: error
     type(products_t), target :: products
-    integer :: reason, ierr(8)
+    integer :: reason, ierr(7)
 
     products%matrix => matrix
     products%preconditioner => preconditioner
     products%row_factors = row_factors
     ierr(1) = int(set_matrix_context(int(self%matrix%v, c_intptr_t), c_loc(products)))
-    ierr(2) = int(set_preconditioner_context(int(self%preconditioner%v, c_intptr_t), c_loc(products)))
-    call KSPSetTolerances(self%solver, tolerance, tiny(tolerance), PETSC_DEFAULT_REAL, max_dimension, ierr(3))
-    call put(self%right, row_factors*right_hand_side, ierr(4))
-    call KSPSolve(self%solver, self%right, self%left, ierr(5))
-    call take(self%left, solution, ierr(6))
-    call KSPGetIterationNumber(self%solver, self%iterations, ierr(7))
-    call KSPGetConvergedReason(self%solver, reason, ierr(8))
+    call KSPSetTolerances(self%solver, tolerance, tiny(tolerance), PETSC_DEFAULT_REAL, max_dimension, ierr(2))
+    call put(self%right, row_factors*right_hand_side, ierr(3))
+    call KSPSolve(self%solver, self%right, self%left, ierr(4))
+    call take(self%left, solution, ierr(5))
+    call KSPGetIterationNumber(self%solver, self%iterations, ierr(6))
+    call KSPGetConvergedReason(self%solver, reason, ierr(7))
     converged = reason > 0
     indefinite = reason == KSP_DIVERGED_INDEFINITE_MAT
     if (allocated(products%error)) then
@@ -172,6 +153,20 @@ contains
       call report_petsc(ierr, error)
     end if
   end subroutine solve
+
+  !> The products that a matrix carries along.
+  subroutine find_products(matrix, products, ierr)
+    !> The matrix
+    type(tMat), intent(in) :: matrix
+    !> The products
+    type(products_t), pointer, intent(out) :: products
+    !> PETSc's code
+    integer, intent(out) :: ierr
+    type(c_ptr) :: context
+
+    ierr = int(get_matrix_context(int(matrix%v, c_intptr_t), context))
+    if (ierr == 0) call c_f_pointer(context, products)
+  end subroutine find_products
 
   !> Product of the matrix, its rows multiplied by their factors.
   subroutine multiply_rows(matrix, vector, product, ierr)
@@ -182,12 +177,10 @@ contains
     !> PETSc's code
     integer, intent(out) :: ierr
     type(products_t), pointer :: products
-    type(c_ptr) :: context
     real(wp), allocatable :: values(:), results(:)
 
-    ierr = int(get_matrix_context(int(matrix%v, c_intptr_t), context))
+    call find_products(matrix, products, ierr)
     if (ierr /= 0) return
-    call c_f_pointer(context, products)
     allocate (values, results, mold=products%row_factors)
     call take(vector, values, ierr)
     call products%matrix%multiply(values, results, products%error)
@@ -204,12 +197,12 @@ contains
     !> PETSc's code
     integer, intent(out) :: ierr
     type(products_t), pointer :: products
-    type(c_ptr) :: context
+    type(tMat) :: matrix, of_preconditioner
     real(wp), allocatable :: values(:), results(:)
 
-    ierr = int(get_preconditioner_context(int(preconditioner%v, c_intptr_t), context))
+    call PCGetOperators(preconditioner, matrix, of_preconditioner, ierr)
+    if (ierr == 0) call find_products(matrix, products, ierr)
     if (ierr /= 0) return
-    call c_f_pointer(context, products)
     allocate (values, results, mold=products%row_factors)
     call take(vector, values, ierr)
     call products%preconditioner%multiply(values/products%row_factors, results, products%error)
