@@ -4,6 +4,7 @@ module petsc_matrices
                       MAT_IGNORE_LOWER_TRIANGULAR, MAT_NEW_NONZERO_LOCATION_ERR, MatSetValues, VecGetArrayF90, &
                       VecRestoreArrayF90, VecGetArrayReadF90, VecRestoreArrayReadF90
   use communicators, only: communicator_t
+  use element_places, only: element_places_t
   use errors, only: error_t, fail, exit_internal
   use kinds, only: wp
   use petsc_session, only: report_petsc
@@ -22,6 +23,8 @@ module petsc_matrices
     type(communicator_t), private :: communicator
     !> True between `define` and `release`
     logical, private :: defined = .false.
+    !> Places of the elements' matrices
+    type(element_places_t), private :: places
     !> First code that PETSc returned for an added matrix, 0 for success
     integer, private :: first_error = 0
   contains
@@ -55,14 +58,16 @@ contains
     !> Raised when PETSc fails
     type(error_t), allocatable, intent(inout) :: error
     integer :: rows, row, ierr(5), inner(size(row_start) - 1), outer(size(row_start) - 1)
+    logical :: is_inner(size(columns))
 
     self%communicator = communicator
     self%defined = .true.
     rows = size(row_start) - 1
     do row = 1, rows
-      associate (mine => columns(row_start(row):row_start(row + 1) - 1))
-        inner(row) = count(mine >= first_row + row - 1 .and. mine < first_row + rows)
-        outer(row) = count(mine >= first_row + rows)
+      associate (first => row_start(row), last => row_start(row + 1) - 1)
+        is_inner(first:last) = columns(first:last) >= first_row + row - 1 .and. columns(first:last) < first_row + rows
+        inner(row) = count(is_inner(first:last))
+        outer(row) = count(columns(first:last) >= first_row + rows)
       end associate
     end do
     call MatCreateSBAIJ(communicator%handle(), 1, rows, rows, total_rows, total_rows, 0, inner, 0, outer, &
@@ -71,6 +76,7 @@ contains
     call fill_pattern(self%object, first_row, row_start, columns, ierr(3))
     call MatSetOption(self%object, MAT_NEW_NONZERO_LOCATION_ERR, PETSC_TRUE, ierr(4))
     call MatCreateVecs(self%object, self%left, self%right, ierr(5))
+    call self%places%define(first_row, row_start, columns, is_inner)
     call report_petsc(ierr, error)
   end subroutine define
 
@@ -99,21 +105,30 @@ contains
   end subroutine fill_pattern
 
   !> Zeroes the values of the matrix.
-  subroutine clear(self)
+  subroutine clear(self, elements)
     class(petsc_matrix_t), intent(inout) :: self
+    !> Number of elements of this rank
+    integer, intent(in) :: elements
 
     call MatZeroEntries(self%object, self%first_error)
+    if (self%first_error == 0) call self%places%begin(self%object, elements, self%first_error)
   end subroutine clear
 
-  !> Adds an element's matrix; each element is added by one rank only.
-  subroutine add(self, equations, values)
+  !> Adds a matrix; each is added by one rank only.
+  subroutine add(self, equations, values, element)
     class(petsc_matrix_t), intent(inout) :: self
     !> Equation of each row of the element's matrix, owned by any rank; -1 for a row left out
     integer, intent(in) :: equations(:)
     !> The symmetric matrix, shape (equations, equations)
     real(wp), intent(in) :: values(:, :)
+    !> Number of the element whose matrix it is, with no equation twice
+    integer, intent(in), optional :: element
     integer :: ierr
+    logical :: added
 
+    added = .false.
+    if (present(element)) call self%places%add(element, equations, values, added)
+    if (added) return
     call MatSetValues(self%object, size(equations), equations, size(equations), equations, values, ADD_VALUES, ierr)
     if (self%first_error == 0) self%first_error = ierr
   end subroutine add

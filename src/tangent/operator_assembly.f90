@@ -64,7 +64,7 @@ contains
       end do
       do lane = 1, model%elements%lanes_used(b)
         call add_block(model, numbering, model%distribution%connectivity(:, first_element(b) + lane - 1), &
-                       turned(:, :, lane), solver, diagonal)
+                       turned(:, :, lane), solver, diagonal, first_element(b) + lane - 1)
       end do
     end do
     if (allocated(model%lumped)) then
@@ -137,7 +137,7 @@ contains
   end subroutine add_lines
 
   !> Adds a matrix of layer motions, transformed to the unknowns.
-  subroutine add_block(model, numbering, points, matrix, solver, diagonal)
+  subroutine add_block(model, numbering, points, matrix, solver, diagonal, element)
     type(model_t), intent(in) :: model
     !> Equations
     type(numbering_t), intent(in) :: numbering
@@ -149,21 +149,23 @@ contains
     class(linear_solver_t), intent(inout) :: solver
     !> Receives its diagonal
     real(wp), intent(inout) :: diagonal(:, :)
+    !> Number of the element whose matrix it is
+    integer, intent(in), optional :: element
     integer, allocatable :: unknown_points(:)
     real(wp), allocatable :: expanded(:, :)
 
     if (model%map%layered) then
       if (any(model%map%above(points) > 0)) then
         call model%map%expand(points, matrix, unknown_points, expanded)
-        call add_to(numbering, unknown_points, expanded, solver, diagonal)
+        call add_to(numbering, unknown_points, expanded, solver, diagonal, element)
         return
       end if
     end if
-    call add_to(numbering, points, matrix, solver, diagonal)
+    call add_to(numbering, points, matrix, solver, diagonal, element)
   end subroutine add_block
 
   !> Adds a matrix of the unknowns of some points.
-  subroutine add_to(numbering, points, matrix, solver, diagonal)
+  subroutine add_to(numbering, points, matrix, solver, diagonal, element)
     !> Equations
     type(numbering_t), intent(in) :: numbering
     !> The points
@@ -174,6 +176,8 @@ contains
     class(linear_solver_t), intent(inout) :: solver
     !> Receives its diagonal
     real(wp), intent(inout) :: diagonal(:, :)
+    !> Number of the element whose matrix it is
+    integer, intent(in), optional :: element
     real(wp), allocatable :: signs(:)
     integer :: a, component
 
@@ -182,7 +186,7 @@ contains
       call solver%matrix%add(reshape(numbering%equation(:, points), [5*size(points)]), &
                       matrix*spread(signs, 1, size(signs))*spread(signs, 2, size(signs)))
     else
-      call solver%matrix%add(reshape(numbering%equation(:, points), [5*size(points)]), matrix)
+      call solver%matrix%add(reshape(numbering%equation(:, points), [5*size(points)]), matrix, element)
     end if
     do a = 1, size(points)
       do component = 1, 5

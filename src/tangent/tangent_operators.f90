@@ -123,7 +123,7 @@ contains
     self%stiffness_factor = stiffness_factor
     self%mass_factor = mass_factor
     call self%timers%start('assembly')
-    call self%solver%matrix%clear()
+    call self%solver%matrix%clear(size(model%distribution%connectivity, 2))
     call assemble_elements(model, stiffness, self%numbering, displacement, stiffness_factor, mass_factor, self%solver, &
                            self%diagonal)
     if (allocated(interfaces%cohesive%tangents)) &
@@ -296,7 +296,7 @@ contains
 
     call model%halo%update(self%displacement)
     self%deflection = model%deflection(self%displacement)
-    call self%solver%matrix%clear()
+    call self%solver%matrix%clear(size(model%distribution%connectivity, 2))
     call assemble_elements(model, self%stiffness, self%numbering, self%displacement, self%stiffness_factor, &
                            self%mass_factor, self%solver, self%diagonal)
     call self%factorize(model, error)

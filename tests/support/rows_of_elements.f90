@@ -100,9 +100,9 @@ contains
     type(error_t), allocatable, intent(inout) :: error
     integer :: e
 
-    call solver%matrix%clear()
+    call solver%matrix%clear(elements)
     do e = 1 + communicator%rank, elements, communicator%size
-      call solver%matrix%add(equations_of(e), scale*element_matrix(e, shift))
+      call solver%matrix%add(equations_of(e), scale*element_matrix(e, shift), element=e)
     end do
     call solver%matrix%finish_assembly(error)
   end subroutine assemble
