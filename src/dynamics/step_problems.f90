@@ -6,6 +6,7 @@
 module step_problems
   use kinds, only: wp
   use errors, only: error_t, exit_convergence
+  use forcing_terms, only: forcing_term
   use line_searches, only: line_search_t
   use models, only: model_t
   use states, only: state_t
@@ -15,18 +16,12 @@ module step_problems
   private
   public :: step_problem_t, solve_step
 
-  !> Largest forcing term of the inexact Newton method, and the factor of the squared ratio of the last residuals that
-  !> gives the next one (S. C. Eisenstat, H. F. Walker, SIAM J. Sci. Comput. 17 (1996) 16-32,
-  !> choice 2).
-  real(wp), parameter :: max_forcing_term = 1.0e-3_wp, forcing_factor = 0.9_wp
   !> Reduction of the residual by the factored operator below which element tangents are used, whose product costs a
   !> fifth of a solve.
   real(wp), parameter :: acceptable_reduction = 1.0e-2_wp
   !> Complementarity of pressures and gaps, relative to the largest pressure, over the tolerance of the residual: both
   !> are errors of forces, and the two together are to stay near the tolerance.
   real(wp), parameter :: contact_share = 0.5_wp
-  !> Part of the tolerance to which the last linear system is solved: more would gain nothing.
-  real(wp), parameter :: tolerance_margin = 0.3_wp
 
   !> One kind of step.
   type, abstract :: step_problem_t
@@ -222,8 +217,8 @@ contains
       if (.not. norm <= huge(norm) .or. new%iterations >= equilibrium%max_iterations) exit
       problem%uses_element_tangents = problem%uses_element_tangents .or. before > 0 &
         .and. norm > acceptable_reduction*before
-      call correct(problem, model, operator, old, new, residual, smooth, forcing_term(equilibrium, norm, before), &
-                   correction, search, error)
+      call correct(problem, model, operator, old, new, residual, smooth, &
+                   forcing_term(equilibrium%tolerance, norm, before), correction, search, error)
       if (allocated(error)) then
         call forgive(problem, model, error)
         return
@@ -297,22 +292,6 @@ contains
     call problem%complete(old, new)
     call problem%find_force(model, old, new)
   end subroutine try_fraction
-
-  !> Forcing term: reduction of the residual required of the next correction.
-  pure real(wp) function forcing_term(equilibrium, norm, before) result(left)
-    !> Required convergence
-    type(equilibrium_t), intent(in) :: equilibrium
-    !> Norm of the residual, and of that before the last correction; 0: there was none
-    real(wp), intent(in) :: norm, before
-
-    ! After a correction that closes contacts their forces may be a thousand times the reference force.
-    left = max_forcing_term/max(1.0_wp, norm)
-    if (norm < before) left = min(left, forcing_factor*(norm/before)**2)
-    ! A residual within the tolerance may be left whole; it can be zero.
-    associate (enough => tolerance_margin*equilibrium%tolerance)
-      left = min(max(left, enough/max(norm, enough)), forcing_factor)
-    end associate
-  end function forcing_term
 
   !> Residual with and without ties and contacts.
   subroutine find_forces(problem, model, operator, old, new, residual, smooth, energy)

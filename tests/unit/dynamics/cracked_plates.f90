@@ -4,14 +4,12 @@ module cracked_plates
   use errors, only: error_t
   use mpi_f08, only: MPI_COMM_SELF
   use communicators, only: communicator_from_handle
-  use plate_options, only: kinematics_linear
   use element_batches, only: lanes
-  use mesh_parameters, only: edge_free, edge_clamped, symmetry_none, symmetry_quarter
-  use material_parameters, only: material_t
-  use delamination_parameters, only: contact_none
   use front_energy_release, only: front_energy_release_t, release_along_front
-  use stepped_setups, only: stepped_setup_t, build_model
+  use layered_plates, only: release_cells
+  use model_building, only: create_model
   use models, only: model_t
+  use setups, only: setup_t
   use states, only: state_t, new_state
   use tangent_operators, only: tangent_operator_t
   use static_steps, only: static_step_t, new_static_step
@@ -20,7 +18,7 @@ module cracked_plates
   use linear_solver_parameters, only: factorization_mumps
   implicit none
   private
-  public :: cracked_plate_t, strip, disc, front_mean
+  public :: cracked_plate_t, front_mean
 
   !> A plate and its state under the forces in model%pressure.
   type :: cracked_plate_t
@@ -55,90 +53,19 @@ module cracked_plates
 
 contains
 
-  !> A strip along x, clamped at its far end, with linear strains; its first ply is the upper arm.
-  pure function strip(materials, angles, thickness, below_ply, length, width, elements) result(setup)
-    !> Materials, of which all plies have the first
-    type(material_t), intent(in) :: materials(:)
-    !> Angle and thickness of each ply
-    real(wp), intent(in) :: angles(:), thickness(:)
-    !> Plies of the upper arm
-    integer, intent(in) :: below_ply
-    !> Length and width
-    real(wp), intent(in) :: length, width
-    !> Cells along the strip, an even number
-    integer, intent(in) :: elements
-    !> The setup
-    type(stepped_setup_t) :: setup
-
-    setup = layered(materials, angles, thickness, below_ply)
-    setup%plate%length = [length, width]
-    setup%plate%edges = [edge_free, edge_clamped, edge_free, edge_free]
-    setup%plate%symmetry = symmetry_none
-    setup%mesh%elements = [elements, 1]
-    setup%delaminations%zone(1) = 2*length
-    setup%delaminations%zone(2) = 2*width
-  end function strip
-
-  !> A quarter of a clamped square of two equal plies, loaded on a square patch in its middle.
-  pure function disc(material, thickness, side, patch, elements) result(setup)
-    !> The material
-    type(material_t), intent(in) :: material
-    !> Thickness, side, and side of the patch
-    real(wp), intent(in) :: thickness, side, patch
-    !> Cells along half a side
-    integer, intent(in) :: elements
-    !> The setup
-    type(stepped_setup_t) :: setup
-
-    setup = layered([material], [0.0_wp, 0.0_wp], [thickness, thickness]/2, 1)
-    setup%plate%length = side
-    setup%plate%edges = edge_clamped
-    setup%plate%symmetry = symmetry_quarter
-    setup%mesh%elements = elements
-    setup%mesh%patch = patch
-    setup%mesh%grading = 1
-    setup%delaminations%zone(1) = 0.9_wp*side
-    setup%delaminations%zone(2) = 0.9_wp*side
-  end function disc
-
-  !> A laminate with one interface, all intact.
-  pure function layered(materials, angles, thickness, below_ply) result(setup)
-    !> Materials, of which all plies have the first
-    type(material_t), intent(in) :: materials(:)
-    !> Angle and thickness of each ply
-    real(wp), intent(in) :: angles(:), thickness(:)
-    !> Plies above the interface
-    integer, intent(in) :: below_ply
-    !> The setup, without plate and mesh
-    type(stepped_setup_t) :: setup
-
-    setup%kinematics = kinematics_linear
-    allocate (setup%materials, source=materials)
-    allocate (setup%laminate%material(size(angles)), source=1)
-    allocate (setup%laminate%angle, source=angles)
-    allocate (setup%laminate%thickness, source=thickness)
-    setup%has_static = .true.
-    setup%has_pressure = .true.
-    setup%stepping%equilibrium%tolerance = 1.0e-9_wp
-    allocate (setup%delaminations(1))
-    setup%delaminations%below_ply = below_ply
-    setup%delaminations%toughness = 1
-    setup%delaminations%contact = contact_none
-  end function layered
-
   !> Builds the model of a setup, without forces and delaminated cells.
   subroutine create(self, setup)
     class(cracked_plate_t), intent(out) :: self
-    type(stepped_setup_t), intent(in) :: setup
+    type(setup_t), intent(in) :: setup
     type(error_t), allocatable :: error
 
     ! These tests run on one process also where there are more.
-    call build_model(setup, communicator_from_handle(MPI_COMM_SELF%mpi_val), self%model, error)
+    call create_model(setup, communicator_from_handle(MPI_COMM_SELF%mpi_val), self%model, error)
     if (allocated(error)) error stop 'no model'
     self%model%pressure = 0
     self%state = new_state(self%model)
     self%stiffness = self%model%elements%stiffness
-    self%equilibrium = setup%stepping%equilibrium
+    self%equilibrium%tolerance = 1.0e-9_wp
     call self%operator%create(self%model, factorization_mumps, error)
     if (allocated(error)) error stop 'no operator'
   end subroutine create
@@ -148,18 +75,8 @@ contains
     class(cracked_plate_t), intent(inout) :: self
     integer, intent(in) :: columns(2), rows(2)
     real(wp), intent(in) :: radius
-    integer, allocatable :: nodes(:)
-    integer :: i, j
 
-    associate (mesh => self%model%mesh, region => self%state%interfaces%faces%regions(1))
-      do j = rows(1), rows(2)
-        do i = columns(1), columns(2)
-          nodes = mesh%cell_nodes(mesh%cell_at(i, j))
-          if (norm2(mesh%node_coordinates(:, nodes(5))) < radius) call region%release([i, j])
-        end do
-      end do
-    end associate
-    call self%state%interfaces%faces%free_jumps(self%model)
+    call release_cells(self%model, self%state%interfaces%faces, columns, rows, radius)
   end subroutine release
 
   !> Adds a force along a line of nodes across the strip.
