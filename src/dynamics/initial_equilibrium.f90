@@ -45,7 +45,7 @@ contains
       state%ledger%initial = state%ledger%initial + energy
       state%ledger%residual = energy
     end if
-    if (model%setup%has_static .or. .not. lines_precede(model)) return
+    if (.not. lines_precede(model)) return
     call equilibrate(model, operator, .true., state, error)
     if (allocated(error)) return
     state%ledger%external_work = state%ledger%strain + state%ledger%ply_damage - energy
@@ -63,7 +63,7 @@ contains
     type(model_t), intent(in) :: model
     integer :: i
 
-    lines_precede = any([(model%lines(i)%load%precedes(), i=1, size(model%lines))])
+    lines_precede = model%setup%has_inertia() .and. any([(model%lines(i)%load%precedes(), i=1, size(model%lines))])
   end function lines_precede
 
   !> Brings a plate at rest into equilibrium. Collective.
@@ -173,7 +173,7 @@ contains
     type(model_t), intent(in) :: model
 
     factor = 0
-    if (model%setup%has_static) return
+    if (.not. model%setup%has_inertia()) return
     factor = negligible_mass*min(model%section%stiffness(13), model%section%stiffness(16))/model%section%mass(1) &
              *(pi/maxval(model%setup%plate%length))**4
   end function mass_factor

@@ -205,11 +205,11 @@ contains
       energies(2) = model%product(motion%velocity, motion%momentum)/2
       call model%communicator%sum(energies)
       energies = energies*model%mesh%multiplicity
-      if (model%setup%has_static) energies(2) = now%ledger%kinetic
+      if (.not. model%setup%has_inertia()) energies(2) = now%ledger%kinetic
       now%ledger%layers = now%ledger%layers + now%ledger%strain + now%ledger%kinetic - sum(energies)
       now%ledger%strain = energies(1)
       now%ledger%kinetic = energies(2)
-      if (.not. model%setup%has_static) call balance_new_layers(model, transfer, now)
+      if (model%setup%has_inertia()) call balance_new_layers(model, transfer, now)
     end associate
   end subroutine transfer_state
 

@@ -4,14 +4,10 @@ module step_acceptance
   use crack_flaws, only: note_flaws
   use energy_balance, only: book_failures
   use errors, only: error_t, fail, exit_convergence
-  use front_growth, only: find_release_ratio
-  use growth_in_steps, only: grows_by_steps
   use models, only: model_t
   use states, only: state_t
   use step_controllers, only: rejection_error
-  use step_limits, only: has_gear
   use steppers, only: stepper_t
-  use stepping_parameters, only: is_error_controlled
   use struck_stresses, only: struck_stress
   use text, only: rounded_text
   implicit none
@@ -38,14 +34,14 @@ contains
     if (self%trial%largest_stress > 0) change = abs(self%trial%stress - self%now%stress)/self%trial%largest_stress
     call note_damage(self, model)
     extended = self%trial%ledger%delamination > self%now%ledger%delamination
-    if (is_error_controlled(self%stepping%adapt) .and. .not. model%setup%has_static) then
+    if (self%kind%follows_error(self%stepping)) then
       call self%step_error%note(model, self%now, self%trial)
       if (extended .or. self%trial%plies%softened) call self%step_error%reset()
     end if
     call move_alloc(self%now, before)
     call move_alloc(self%trial, self%now)
     call move_alloc(before, self%trial)
-    call choose_next_step(self, model, step, change, extended)
+    call self%kind%choose_next(self, model, step, change, extended)
   end subroutine accept_step
 
   !> Plies that fail and interfaces that have changed in the step tried.
@@ -59,44 +55,11 @@ contains
     call model%profile%leave()
     if (self%trial%plies%softened) call book_failures(model, self%now, self%trial)
     call note_flaws(model, self%trial%plies, self%trial%motion%displacement, self%trial%interfaces)
+    call self%kind%note_state(self, model)
     associate (interfaces => self%trial%interfaces)
-      if (model%setup%has_static) &
-        call find_release_ratio(model, self%trial%plies%stiffness, self%trial%motion, interfaces)
       interfaces%border_reached = interfaces%border_reached .or. interfaces%cohesive%border_reached(model)
-      interfaces%faces%glued = interfaces%faces%glued .or. model%setup%has_impactor .and. .not. model%setup%has_static &
-        .and. self%trial%impactor%velocity <= 0 .and. self%trial%force < self%now%force
     end associate
   end subroutine note_damage
-
-  !> Length of the next step.
-  subroutine choose_next_step(self, model, step, change, extended)
-    !> The time stepper, the step accepted
-    class(stepper_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
-    !> Step taken
-    real(wp), intent(in) :: step
-    !> Change of the struck point's stress over the largest so far
-    real(wp), intent(in) :: change
-    !> True: delaminations have grown
-    logical, intent(in) :: extended
-    integer :: lag_iterations
-
-    if (model%setup%has_static) then
-      self%controller%target = 1.0_wp/self%stepping%static_steps
-      return
-    end if
-    lag_iterations = self%operator%solves - self%solves_at_start
-    call self%controller%accept(self%stepping, step, self%now%iterations, lag_iterations, change)
-    if (model%setup%has_crack_bands()) call self%controller%limit_by_ply_damage(self%stepping, self%damage_lag)
-    if (is_error_controlled(self%stepping%adapt)) &
-      call self%controller%adapt_to_error(self%stepping, step, self%error, self%stepping%time%end - self%now%time, &
-        .not. model%setup%has_impactor .or. self%step_error%impact_is_over(self%stepping%expected, self%now), &
-                                        has_gear(model), self%now%has_failures())
-    ! What a step took until it renewed the operator itself does not speak against the new one.
-    if (self%operator%factorizations /= self%factorizations_at_start) call self%controller%renewed()
-    if (grows_by_steps(model)) &
-      call self%controller%limit_by_fronts(self%stepping, self%now%interfaces%growth_ratio, extended)
-  end subroutine choose_next_step
 
   !> Estimates the error of the step tried; one too large is to be tried again shorter.
   subroutine assess_error(self, model, step, shortest, accurate)
@@ -133,9 +96,9 @@ contains
     call self%controller%reject(step/self%step_scale())
     self%operator%ready = .false.
     if (self%stepping%dissipation > 0) self%now%path%by_dissipation = self%now%path%dissipated > 0
-    if (step <= self%smallest_step(model)*self%step_scale()*(1 + 1.0e-9_wp)) &
+    if (step <= self%smallest_step()*self%step_scale()*(1 + 1.0e-9_wp)) &
       call fail(error, exit_convergence, 'No equilibrium from '// &
-                trim(merge('load factor', 'time       ', model%setup%has_static))//' '//rounded_text(self%now%time)// &
+                model%setup%progress_name()//' '//rounded_text(self%now%time)// &
                 ' on with the smallest step, '//rounded_text(step)//'.')
   end subroutine reject_step
 end module step_acceptance

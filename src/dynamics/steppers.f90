@@ -1,7 +1,8 @@
-!> What a stepper through time or load keeps from step to step.
+!> What a stepper through time or load keeps from step to step, and what kinds of stepping have in common.
 module steppers
-  use kinds, only: wp
   use central_differences, only: central_difference_t
+  use errors, only: error_t
+  use kinds, only: wp
   use models, only: model_t
   use newmark_integrators, only: plate_integrator_t
   use states, only: state_t
@@ -11,7 +12,26 @@ module steppers
   use tangent_operators, only: tangent_operator_t
   implicit none
   private
-  public :: stepper_t
+  public :: stepper_t, step_kind_t
+
+  !> A kind of implicit steps: in time or by load. It has no data of its own; all that evolves is the stepper's.
+  type, abstract :: step_kind_t
+  contains
+    !> Prepares the first step.
+    procedure(start_steps), deferred :: start
+    !> Tries a step.
+    procedure(try_one_step), deferred :: try
+    !> True if the length of steps follows the error of each.
+    procedure(follows_the_error), deferred :: follows_error
+    !> Completes the state tried before it is accepted.
+    procedure(note_state_tried), deferred :: note_state
+    !> Chooses the length of the next step.
+    procedure(choose_length), deferred :: choose_next
+    !> Completes the state accepted.
+    procedure(settle_state), deferred :: settle
+    !> Smallest step worth trying.
+    procedure(smallest), deferred :: smallest_step
+  end type step_kind_t
 
   !> All that evolves during a run, and how steps are taken.
   type :: stepper_t
@@ -31,6 +51,8 @@ module steppers
     type(plate_integrator_t) :: integrator
     !> How steps are taken
     type(stepping_t) :: stepping
+    !> Steps in time or by load; unallocated: central differences
+    class(step_kind_t), allocatable :: kind
     !> Factorizations and solves when the present step was begun
     integer :: factorizations_at_start = 0, solves_at_start = 0
     !> Rejected steps
@@ -50,15 +72,103 @@ module steppers
     procedure :: step_scale
   end type stepper_t
 
+  abstract interface
+    !> Prepares the first step from the initial equilibrium. Collective.
+    subroutine start_steps(self, stepper, model, error)
+      import :: step_kind_t, stepper_t, model_t, error_t
+      !> The kind
+      class(step_kind_t), intent(in) :: self
+      !> The stepper, its state in equilibrium
+      class(stepper_t), intent(inout) :: stepper
+      type(model_t), intent(in) :: model
+      !> Set if there is no factor
+      type(error_t), allocatable, intent(inout) :: error
+    end subroutine start_steps
+
+    !> Tries a step, at most to an event. Collective.
+    subroutine try_one_step(self, stepper, model, event, step, converged, error)
+      import :: step_kind_t, stepper_t, model_t, error_t, wp
+      !> The kind
+      class(step_kind_t), intent(in) :: self
+      !> The stepper; its trial state is that at the end of the step
+      class(stepper_t), intent(inout) :: stepper
+      type(model_t), intent(in) :: model
+      !> Time, or load factor, not to be passed
+      real(wp), intent(in) :: event
+      !> Step tried
+      real(wp), intent(out) :: step
+      !> True if equilibrium was reached
+      logical, intent(out) :: converged
+      !> Set if the solver fails for good
+      type(error_t), allocatable, intent(out) :: error
+    end subroutine try_one_step
+
+    !> True if the length of steps follows the error of each.
+    pure logical function follows_the_error(self, stepping)
+      import :: step_kind_t, stepping_t
+      !> The kind
+      class(step_kind_t), intent(in) :: self
+      !> How steps are taken
+      type(stepping_t), intent(in) :: stepping
+    end function follows_the_error
+
+    !> Completes the state tried before it is accepted. Collective.
+    subroutine note_state_tried(self, stepper, model)
+      import :: step_kind_t, stepper_t, model_t
+      !> The kind
+      class(step_kind_t), intent(in) :: self
+      !> The stepper, the failures of the step tried noted
+      class(stepper_t), intent(inout) :: stepper
+      type(model_t), intent(in) :: model
+    end subroutine note_state_tried
+
+    !> Chooses the length of the next step.
+    subroutine choose_length(self, stepper, model, step, change, extended)
+      import :: step_kind_t, stepper_t, model_t, wp
+      !> The kind
+      class(step_kind_t), intent(in) :: self
+      !> The stepper, the step accepted
+      class(stepper_t), intent(inout) :: stepper
+      type(model_t), intent(in) :: model
+      !> Step taken
+      real(wp), intent(in) :: step
+      !> Change of the struck point's stress over the largest so far
+      real(wp), intent(in) :: change
+      !> True: delaminations have grown
+      logical, intent(in) :: extended
+    end subroutine choose_length
+
+    !> Completes the state accepted, where failures have changed its equilibrium. Collective.
+    subroutine settle_state(self, stepper, model, error)
+      import :: step_kind_t, stepper_t, model_t, error_t
+      !> The kind
+      class(step_kind_t), intent(in) :: self
+      !> The stepper, the step accepted
+      class(stepper_t), intent(inout) :: stepper
+      type(model_t), intent(in) :: model
+      !> Set if there is no equilibrium
+      type(error_t), allocatable, intent(inout) :: error
+    end subroutine settle_state
+
+    !> Smallest step worth trying.
+    pure real(wp) function smallest(self, stepping)
+      import :: step_kind_t, stepping_t, wp
+      !> The kind
+      class(step_kind_t), intent(in) :: self
+      !> How steps are taken
+      type(stepping_t), intent(in) :: stepping
+    end function smallest
+  end interface
+
 contains
 
   !> Smallest step worth trying.
-  pure real(wp) function smallest_step(self, model) result(step)
+  pure real(wp) function smallest_step(self) result(step)
     !> The stepper
     class(stepper_t), intent(in) :: self
-    type(model_t), intent(in) :: model
 
-    step = merge(1.0_wp/(1024*self%stepping%static_steps), self%stepping%time%step_min, model%setup%has_static)
+    step = self%stepping%time%step_min
+    if (allocated(self%kind)) step = self%kind%smallest_step(self%stepping)
   end function smallest_step
 
   !> Energy that is to be dissipated per time from now on, so that at the end it is what the deck asks for.

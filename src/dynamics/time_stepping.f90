@@ -2,21 +2,18 @@
 module time_stepping
   use kinds, only: wp
   use archives, only: archive_t
-  use errors, only: error_t, fail, exit_convergence
+  use errors, only: error_t
   use explicit_steps, only: advance_explicit, complete_step, equilibrate_initial_stresses
-  use initial_equilibrium, only: find_initial_equilibrium, find_acceleration, has_initial_motion
+  use initial_equilibrium, only: find_initial_equilibrium, has_initial_motion
   use linear_solver_parameters, only: linear_solver_parameters_t
+  use load_steps, only: load_steps_t
   use models, only: model_t
-  use newmark_integrators, only: plate_integrator
+  use motion_steps, only: motion_steps_t
   use states, only: new_state
-  use static_steps, only: static_step_t, new_static_step
   use step_acceptance, only: accept_step, reject_step, assess_error
   use step_controllers, only: shortening_error
-  use step_problems, only: solve_step
-  use step_trials, only: try_step, try_load
-  use steppers, only: stepper_t
-  use stepping_parameters, only: stepping_t, is_error_controlled, is_explicit
-  use text, only: rounded_text
+  use steppers, only: stepper_t, step_kind_t
+  use stepping_parameters, only: stepping_t, is_explicit
   implicit none
   private
   public :: time_stepper_t
@@ -61,18 +58,26 @@ contains
       return
     end if
     allocate (self%trial, source=self%now)
-    self%controller%target = 1.0_wp/self%stepping%static_steps
+    call choose_kind(model, self%kind)
     if (self%stepping%dissipation > 0) allocate (self%now%path%change, source=self%now%motion%displacement)
     call self%operator%create(model, linear_solver%factorization, error)
     self%unknowns = self%operator%numbering%total
     if (.not. allocated(error)) call find_initial_equilibrium(model, self%operator, self%now, error)
-    if (allocated(error) .or. model%setup%has_static) return
-    self%integrator = plate_integrator(self%stepping%time)
-    self%controller%target = self%stepping%time%step
-    if (is_error_controlled(stepping%adapt)) call self%step_error%start(model, stepping%time%step)
-    if (allocated(model%pressure) .or. size(model%lines) > 0) &
-      call find_acceleration(model, self%operator, self%integrator%mass_factor(stepping%time%step), self%now, error)
+    if (.not. allocated(error)) call self%kind%start(self, model, error)
   end subroutine start
+
+  !> Chooses steps in time or by load.
+  subroutine choose_kind(model, kind)
+    type(model_t), intent(in) :: model
+    !> The kind
+    class(step_kind_t), allocatable, intent(out) :: kind
+
+    if (model%setup%is_static()) then
+      allocate (load_steps_t :: kind)
+    else
+      allocate (motion_steps_t :: kind)
+    end if
+  end subroutine choose_kind
 
   !> Takes one step, at most to the next event; the step is tried again with half its length until
   !> equilibrium is reached or the smallest step of the deck has failed.
@@ -92,14 +97,14 @@ contains
       self%controller%last = self%explicit%steps%now
       return
     end if
-    follows = is_error_controlled(self%stepping%adapt) .and. .not. model%setup%has_static
+    follows = self%kind%follows_error(self%stepping)
     if (follows .and. self%now%step == 0) call self%controller%begin(self%stepping, event)
     call find_step(self, model, event, follows, step, shortest, error)
     if (allocated(error)) return
     if (follows) self%errs = self%error > shortening_error .and. step <= shortest*(1 + 1.0e-9_wp)
     if (abs(self%trial%time - event) <= 1.0e-9_wp*step) self%trial%time = event
     call accept_step(self, model, step)
-    if (model%setup%has_static .and. self%now%plies%softened) call equilibrate(self, model, error)
+    call self%kind%settle(self, model, error)
   end subroutine advance
 
   !> Tries steps, each shorter than the one before, until one has converged with an error within the tolerance.
@@ -121,11 +126,7 @@ contains
 
     shortest = 0
     do
-      if (model%setup%has_static) then
-        call try_load(self, model, event, step, converged, error)
-      else
-        call try_step(self, model, event, step, converged, error)
-      end if
+      call self%kind%try(self, model, event, step, converged, error)
       if (allocated(error)) return
       if (converged) then
         accurate = .true.
@@ -137,28 +138,6 @@ contains
       end if
     end do
   end subroutine find_step
-
-  !> Brings a plate whose plies have failed under a load back into equilibrium with it, until no more of them fail.
-  subroutine equilibrate(self, model, error)
-    !> The time stepper
-    class(time_stepper_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
-    !> Set if what is left of the plate does not bear the load
-    type(error_t), allocatable, intent(out) :: error
-    type(static_step_t) :: problem
-    logical :: converged
-
-    do while (self%now%plies%softened)
-      problem = new_static_step(model, self%now%time, self%now%load_factor)
-      call solve_step(problem, model, self%stepping%equilibrium, self%operator, self%now, self%trial, converged, error)
-      if (.not. (allocated(error) .or. converged)) &
-        call fail(error, exit_convergence, 'No equilibrium at '//rounded_text(self%now%time)// &
-                  ' of the load: what is left of the plate after failures of plies does not bear it.')
-      if (allocated(error)) return
-      self%trial%step = self%now%step
-      call accept_step(self, model, 0.0_wp)
-    end do
-  end subroutine equilibrate
 
   !> Completes what a step by central differences leaves until output or a check is due. Collective.
   subroutine complete_state(self, model, error)

@@ -55,11 +55,7 @@ contains
     if (area > 0) weights = weights/area
     call self%spread_force(weights, 0.0_wp)
     if (self%setup%impactor%spreads) call build_nose(self, area)
-    if (self%setup%has_pressure) then
-      call build_pressure(self)
-    else if (self%setup%has_static) then
-      allocate (self%pressure(5, size(self%distribution%points)), source=0.0_wp)
-    end if
+    if (self%setup%has_pressure) call build_pressure(self)
     if (allocated(self%lumped)) then
       allocate (mass(3, self%borders%columns), source=0.0_wp)
       call add_lumped_mass(self%elements, mass)
