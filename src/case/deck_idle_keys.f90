@@ -1,6 +1,7 @@
 !> Reports keys without effect because the group that uses them is missing.
 module deck_idle_keys
   use adapt_deck, only: adapt_group
+  use controls_deck, only: controls_group
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
   use deck_remarks, only: remark, remark_idle
@@ -31,6 +32,7 @@ contains
       call check_material(deck, place, problems)
     end do
     associate (s => deck%settings)
+      if (s%has_group(controls_group)) call remark(s, problems, controls_group, '', 'is for studies of the iteration.')
       if (.not. (deck%stepping%adapt%on .or. deck%is_static() .or. is_explicit(deck%stepping)) .and. deck%has_time) &
         call remark_idle(s, problems, time_group, key_longest_step, 'has no effect without &'//adapt_group// &
                          ', as every step has the length of step.')

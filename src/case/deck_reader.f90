@@ -2,6 +2,7 @@
 module deck_reader
   use adapt_deck, only: adapt_group, fill_adapt
   use case_deck, only: fill_case, fill_claims, has_accuracy
+  use controls_deck, only: fill_controls
   use deck_accuracy, only: check_left_out, choose_by_accuracy
   use deck_contents, only: deck_t
   use deck_crack_bands, only: check_crack_bands
@@ -266,6 +267,7 @@ contains
     type(deck_t), intent(inout) :: deck
 
     call fill_equilibrium(deck%settings, deck%stepping%equilibrium)
+    call fill_controls(deck%settings, deck%stepping)
     call fill_linear_solver(deck%settings, deck%linear_solver)
     call fill_output(deck%settings, deck%output)
     call fill_gauges(deck%settings, deck%gauges)

@@ -241,7 +241,7 @@ contains
                                       new%motion%inertia, self%patch_square*self%coupling%load()**2, &
                                       operator%diagonal, new%motion%displacement, &
                                       self%may_stop(model, new, .false.), equilibrium%tolerance, model%thickness, &
-                                      new%largest_forces)
+                                      equilibrium%controls, new%largest_forces)
   end function residual_norm
 
   !> The force depends on the motion only within an iteration, so an impact needs one.

@@ -11,6 +11,7 @@ module initial_equilibrium
   use line_motions, only: has_moved_lines, prescribe_lines, line_displacement, move_lines
   use models, only: model_t
   use residual_norms, only: relative_residual
+  use solution_controls, only: newton_controls_t
   use states, only: state_t
   use tangent_operators, only: tangent_operator_t
   implicit none
@@ -101,7 +102,7 @@ contains
       if (iteration == 0) suppressing = state%motion%internal
       if (relative_residual(model%communicator, operator%numbering, residual, suppressing, suppressing, force_square, &
                             operator%diagonal, state%motion%displacement, .true., tolerance, model%thickness, &
-                            largest) <= tolerance) exit
+                            newton_controls_t(), largest) <= tolerance) exit
       if (iteration == max_iterations) call fail(error, exit_convergence, &
         'No equilibrium at the start, under the residual stresses of &thermal or &line of history = ''fixed''.')
       if (.not. allocated(error)) call operator%renew(model, state%plies%stiffness, state%interfaces, &

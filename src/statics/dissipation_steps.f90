@@ -11,16 +11,13 @@ module dissipation_steps
   use stepping_parameters, only: equilibrium_t
   use models, only: model_t
   use states, only: state_t
-  use static_steps, only: static_step_t, new_static_step, correction_factor
+  use static_steps, only: static_step_t, new_static_step
   use krylov_corrections, only: solve_load_tangent
   use slow_impactors, only: add_impactor_force, travel_for
   use tangent_operators, only: tangent_operator_t
   implicit none
   private
   public :: dissipation_step_t, new_dissipation_step
-
-  !> Relative tolerance of the dissipated energy. It affects the length of a step, not its equilibrium.
-  real(wp), parameter :: dissipation_tolerance = 1.0e-2_wp
 
   !> A step that dissipates a given energy.
   type, extends(static_step_t) :: dissipation_step_t
@@ -118,7 +115,7 @@ contains
     residual_norm = self%static_step_t%residual_norm(model, equilibrium, operator, residual, new)
     residual_norm = max(residual_norm, &
                         abs(new%path%dissipated/self%target_dissipation &
-                            - 1)/dissipation_tolerance*equilibrium%tolerance)
+                            - 1)/equilibrium%controls%dissipation_tolerance*equilibrium%tolerance)
   end function residual_norm
 
   !> Adds the change of the load by which the step dissipates the prescribed energy.
@@ -158,14 +155,14 @@ contains
     change = 0
     if (abs(sums(2)) > 0) change = (self%target_dissipation - new%path%dissipated - sums(1))/sums(2)
     if (model%setup%has_impactor) then
-      new%force = new%force + correction_factor(new%iterations)*change
+      new%force = new%force + self%correction_factor(new%iterations)*change
     else
       ! Near a limit point a correction may be so large that the iteration diverges.
-      factor = new%load_factor + correction_factor(new%iterations)*change
+      factor = new%load_factor + self%correction_factor(new%iterations)*change
       factor = min(max(factor, old%load_factor - self%max_load_change), old%load_factor + self%max_load_change)
-      change = (factor - new%load_factor)/correction_factor(new%iterations)
+      change = (factor - new%load_factor)/self%correction_factor(new%iterations)
       new%load_factor = factor
     end if
-    correction = correction_factor(new%iterations)*(correction + change*response)
+    correction = self%correction_factor(new%iterations)*(correction + change*response)
   end subroutine complete_correction
 end module dissipation_steps

@@ -14,10 +14,7 @@ module static_steps
   use tangent_operators, only: tangent_operator_t
   implicit none
   private
-  public :: static_step_t, new_static_step, correction_factor
-
-  !> Iterations within which a step with the consistent tangent converges unless it alternates between two states.
-  integer, parameter :: usual_iterations = 8
+  public :: static_step_t, new_static_step
 
   !> A load step.
   type, extends(step_problem_t) :: static_step_t
@@ -33,6 +30,8 @@ module static_steps
     procedure :: find_correction
     !> Completes a correction at the load before: impactor, or change of the load.
     procedure :: complete_correction
+    !> Factor of a correction.
+    procedure :: correction_factor
     procedure :: complete
     procedure :: finish
   end type static_step_t
@@ -113,7 +112,8 @@ contains
     ! A second iteration removes the round-off of the first, so it is required.
     residual_norm = relative_residual(model%communicator, operator%numbering, residual, new%motion%internal, loads, &
                                       0.0_wp, operator%diagonal, new%motion%displacement, new%iterations > 1, &
-                                      equilibrium%tolerance, model%thickness, new%largest_forces)
+                                      equilibrium%tolerance, model%thickness, equilibrium%controls, &
+                                      new%largest_forces)
     if (model%setup%has_impactor) residual_norm = max(residual_norm, force_mismatch(model, new))
   end function residual_norm
 
@@ -180,10 +180,10 @@ contains
     !> Set if a solve fails
     type(error_t), allocatable, intent(inout) :: error
 
-    if (model%setup%has_impactor) call find_force_change(model, operator, correction_factor(new%iterations), new, &
+    if (model%setup%has_impactor) call find_force_change(model, operator, self%correction_factor(new%iterations), new, &
                                                          correction, error)
     if (allocated(error)) error%code = exit_convergence
-    correction = correction_factor(new%iterations)*correction
+    correction = self%correction_factor(new%iterations)*correction
   end subroutine complete_correction
 
   !> True if the tangent may differ from that of the previous iteration.
@@ -204,12 +204,14 @@ contains
 
   !> Factor of a correction. Newton iterations may alternate between two sets of points whose damage grows;
   !> halving every other correction, once there have been more than it takes to converge, ends that.
-  elemental real(wp) function correction_factor(iterations) result(part)
+  elemental real(wp) function correction_factor(self, iterations) result(part)
+    !> The problem
+    class(static_step_t), intent(in) :: self
     !> Iterations of the step so far
     integer, intent(in) :: iterations
 
     part = 1
-    if (iterations >= usual_iterations .and. modulo(iterations, 2) == 0) part = 0.5_wp
+    if (iterations >= self%controls%alternating_iterations .and. modulo(iterations, 2) == 0) part = 0.5_wp
   end function correction_factor
 
   !> Nothing moves.

@@ -15,11 +15,6 @@ module load_steps
   private
   public :: load_steps_t
 
-  !> Largest ratio of the energies that consecutive steps dissipate: the predictor is scaled by it.
-  real(wp), parameter :: max_growth = 4
-  !> Largest number of parts of a load step.
-  integer, parameter :: max_parts = 1024
-
   !> Load steps.
   type, extends(step_kind_t) :: load_steps_t
   contains
@@ -90,7 +85,7 @@ contains
     type(dissipation_step_t) :: by_dissipation
     real(wp) :: target
 
-    associate (now => stepper%now)
+    associate (now => stepper%now, max_growth => stepper%stepping%controls%dissipation_growth)
       target = stepper%energy_rate()*step
       if (target > max_growth*now%path%dissipated) step = step*max_growth*now%path%dissipated/target
       by_dissipation = new_dissipation_step(model, now%time + step, stepper%energy_rate()*step, &
@@ -174,6 +169,6 @@ contains
     !> How steps are taken
     type(stepping_t), intent(in) :: stepping
 
-    smallest_step = 1.0_wp/(max_parts*stepping%static_steps)
+    smallest_step = 1.0_wp/(stepping%controls%load_step_parts*stepping%static_steps)
   end function smallest_step
 end module load_steps

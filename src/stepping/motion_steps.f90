@@ -69,7 +69,7 @@ contains
     converged = .false.
     associate (now => stepper%now, controller => stepper%controller, stepping => stepper%stepping)
       step = controller%propose(event - now%time, impactor_limit(model, now, controller%target), &
-                                growth_limit(model, stepping%adapt, controller))
+                                growth_limit(model, stepping, controller))
       call renew_if_due(stepper, model, stepper%integrator%mass_factor(step), error)
       if (allocated(error)) return
       problem = new_dynamic_step(stepper%integrator, step, stepping%adapt%iterations)
@@ -96,7 +96,7 @@ contains
     associate (now => stepper%now, operator => stepper%operator)
       due = .not. operator%ready
       if (.not. due) &
-        due = stepper%controller%renewal_due(stepper%stepping%adapt, model%setup%kinematics == kinematics_von_karman, &
+        due = stepper%controller%renewal_due(stepper%stepping, model%setup%kinematics == kinematics_von_karman, &
           mass_factor/operator%mass_factor, now%deflection - operator%deflection, model%thickness)
       if (due) then
         call operator%renew(model, now%plies%stiffness, now%interfaces, now%motion%displacement, &

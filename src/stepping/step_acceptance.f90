@@ -6,7 +6,6 @@ module step_acceptance
   use errors, only: error_t, fail, exit_convergence
   use models, only: model_t
   use states, only: state_t
-  use step_controllers, only: rejection_error
   use steppers, only: stepper_t
   use struck_stresses, only: struck_stress
   use text, only: rounded_text
@@ -76,10 +75,10 @@ contains
     call self%step_error%estimate(model, self%integrator, self%stepping%expected, self%now, self%trial, self%error)
     self%error = self%error/self%stepping%adapt%tolerance
     shortest = self%controller%shortest(self%stepping, self%now%has_failures())
-    accurate = self%error <= rejection_error .or. step <= shortest*(1 + 1.0e-9_wp)
+    accurate = self%error <= self%stepping%controls%rejection_error .or. step <= shortest*(1 + 1.0e-9_wp)
     if (accurate) return
     self%rejected = self%rejected + 1
-    call self%controller%shorten(step, self%error, shortest)
+    call self%controller%shorten(self%stepping%controls, step, self%error, shortest)
   end subroutine assess_error
 
   !> Prepares a shorter step after one that has not converged.

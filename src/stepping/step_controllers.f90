@@ -3,36 +3,14 @@ module step_controllers
   use kinds, only: wp
   use archives, only: archive_t
   use gear_integrator, only: largest_growth_ratio
-  use stepping_parameters, only: stepping_t, adapt_t, is_error_controlled, refactor_deflection
+  use solution_controls, only: step_controls_t
+  use stepping_parameters, only: stepping_t, is_error_controlled, refactor_deflection
   implicit none
   private
   public :: step_controller_t
 
-  !> Ratio of the energy release rate to its critical value above which fronts that grow one cell per step shorten it.
-  real(wp), parameter :: ratio_near_growth = 0.8_wp
-  !> Range of the ratio of mass factors in which a lagged operator is still a good preconditioner.
-  real(wp), parameter :: lag_low = 0.3_wp, lag_high = 1.7_wp
-
-  !> Errors, relative to the tolerance, above which the next step is halved, and above which a step is rejected. The
-  !> error is of third order in the step length: halving reduces the first to a quarter.
-  real(wp), parameter, public :: shortening_error = 2, rejection_error = 8
-  !> Error of a step relative to the third power of its ratio to the rise time of first contact.
-  real(wp), parameter :: first_error = 4
-  !> Largest predicted error of a longer step, relative to the tolerance, during an impact and after it.
-  real(wp), parameter :: allowed_in_impact = 0.125_wp, allowed_after = 0.5_wp
-  !> Largest number of doublings at once under error control. Gear's method is stable with one after some equal steps:
-  !> the product of its companion matrices then has the norm 23; 1100 after two steps, 128 with two at once, 6 without.
-  integer, parameter :: max_doublings = 3, max_doublings_of_gear = 1
-  integer, parameter, public :: equal_of_gear = 4
-  !> Steps without a change before a step is lengthened: during an impact, where waves may return, and after it.
-  integer, parameter :: steady_in_impact = 24, steady_after = 8
   !> Ratio above which a step counts as longer than another one.
   real(wp), parameter :: longer_than = 1 + 1.0e-9_wp
-  !> Lag of damage in a step, relative to its limit, above which the next step is not doubled. It is of second order: an
-  !> onset within a step costs half the decrease of the force times the displacement beyond it.
-  real(wp), parameter :: allowed_damage_lag = 0.25_wp
-  !> Largest number of parts of the time to the first event; error-controlled steps are these parts, halved repeatedly.
-  integer, parameter :: max_parts = 8
 
   !> State of the controller.
   type :: step_controller_t
@@ -160,11 +138,11 @@ contains
 
     step = stepping%time%step
     if (stepping%expected%rise > 0) &
-      step = min(step, stepping%expected%rise*(first_error*stepping%adapt%tolerance)**(1.0_wp/3))
+      step = min(step, stepping%expected%rise*(stepping%controls%first_error*stepping%adapt%tolerance)**(1.0_wp/3))
     step = min(max(step, stepping%time%step_min), stepping%time%step_max)
     parts = remaining/step
     self%target = 1
-    do while (parts > max_parts)
+    do while (parts > stepping%controls%first_parts)
       parts = parts/2
       self%target = self%target/2
     end do
@@ -205,26 +183,29 @@ contains
     integer :: doublings
     real(wp) :: allowed_error, shortest
 
-    if (step > 1.5_wp*self%part*self%target) then
-      self%target = step/self%part
-      call reset_errors(self)
-    end if
-    self%steady_steps = self%steady_steps + 1
-    self%error = max(self%error, error)
-    shortest = self%shortest(stepping, damaged)
-    if (error > shortening_error .and. self%part*self%target > shortest*longer_than) then
-      call self%shorten(step, error, shortest)
-    else if (self%doublings == 0 .and. self%steady_steps >= merge(steady_after, steady_in_impact, is_over)) then
-      allowed_error = merge(allowed_after, allowed_in_impact, is_over)
-      do doublings = merge(max_doublings_of_gear, max_doublings, gear), 1, -1
-        if (self%target*2.0_wp**doublings > stepping%time%step_max) cycle
-        if (self%error*8.0_wp**doublings > allowed_error &
-            .and. self%target*2.0_wp**doublings > shortest*longer_than) cycle
-        if (remaining*(1 - 0.5_wp**doublings) > stepping%adapt%iterations*step) exit
-      end do
-      call reset_errors(self)
-      self%doublings = doublings
-    end if
+    associate (controls => stepping%controls)
+      if (step > 1.5_wp*self%part*self%target) then
+        self%target = step/self%part
+        call reset_errors(self)
+      end if
+      self%steady_steps = self%steady_steps + 1
+      self%error = max(self%error, error)
+      shortest = self%shortest(stepping, damaged)
+      if (error > controls%shortening_error .and. self%part*self%target > shortest*longer_than) then
+        call self%shorten(controls, step, error, shortest)
+      else if (self%doublings == 0 .and. &
+               self%steady_steps >= merge(controls%steady_after, controls%steady_in_impact, is_over)) then
+        allowed_error = merge(controls%allowed_after, controls%allowed_in_impact, is_over)
+        do doublings = merge(controls%doublings_of_gear, controls%max_doublings, gear), 1, -1
+          if (self%target*2.0_wp**doublings > stepping%time%step_max) cycle
+          if (self%error*8.0_wp**doublings > allowed_error &
+              .and. self%target*2.0_wp**doublings > shortest*longer_than) cycle
+          if (remaining*(1 - 0.5_wp**doublings) > stepping%adapt%iterations*step) exit
+        end do
+        call reset_errors(self)
+        self%doublings = doublings
+      end if
+    end associate
   end subroutine adapt_to_error
 
   !> Resets the record of errors.
@@ -238,15 +219,17 @@ contains
   end subroutine reset_errors
 
   !> Halves the step until the predicted error is within the tolerance.
-  pure subroutine shorten(self, step, error, shortest)
+  pure subroutine shorten(self, controls, step, error, shortest)
     !> The controller
     class(step_controller_t), intent(inout) :: self
+    !> Constants of the control of steps
+    type(step_controls_t), intent(in) :: controls
     !> Step taken or tried in vain, and its error over the tolerance
     real(wp), intent(in) :: step, error
     !> Shortest step under error control
     real(wp), intent(in) :: shortest
 
-    self%target = max(shortest, step/self%part*0.5_wp**max(1, nint(log(error/shortening_error)/log(8.0_wp) &
+    self%target = max(shortest, step/self%part*0.5_wp**max(1, nint(log(error/controls%shortening_error)/log(8.0_wp) &
                                                                                  + 0.2_wp)))
     call reset_errors(self)
   end subroutine shorten
@@ -270,7 +253,7 @@ contains
 
     smallest = min(1.0_wp, max(stepping%adapt%growth_step, stepping%time%step_min/self%target))
     allowed = 1
-    do while (allowed/2 >= max(2*smallest, (1 - ratio)/(1 - ratio_near_growth)))
+    do while (allowed/2 >= max(2*smallest, (1 - ratio)/(1 - stepping%controls%ratio_near_growth)))
       allowed = allowed/2
     end do
     if (extended) then
@@ -291,7 +274,7 @@ contains
 
     if (stepping%adapt%on) return
     self%target = self%last/self%part
-    if (damage_lag < allowed_damage_lag) self%target = min(2*self%target, stepping%time%step_max)
+    if (damage_lag < stepping%controls%allowed_damage_lag) self%target = min(2*self%target, stepping%time%step_max)
   end subroutine limit_by_ply_damage
 
   !> Halves the step after a rejected one.
@@ -306,11 +289,11 @@ contains
 
   !> True if the operator should be factorized again before a step: by the paper's rule, or once the additional
   !> iterations have cost about as much as a factorization.
-  pure logical function renewal_due(self, adapt, nonlinear, mass_ratio, deflection_change, thickness) result(due)
+  pure logical function renewal_due(self, stepping, nonlinear, mass_ratio, deflection_change, thickness) result(due)
     !> The controller
     class(step_controller_t), intent(in) :: self
-    !> The rule
-    type(adapt_t), intent(in) :: adapt
+    !> How steps are taken
+    type(stepping_t), intent(in) :: stepping
     !> True: the stiffness depends on the deflection
     logical, intent(in) :: nonlinear
     !> Mass factor of the step over that of the operator
@@ -320,12 +303,13 @@ contains
     !> Thickness of the laminate
     real(wp), intent(in) :: thickness
 
-    if (adapt%refactor == refactor_deflection) then
+    if (stepping%adapt%refactor == refactor_deflection) then
       due = abs(mass_ratio - 1) > 0.01_wp
       if (nonlinear) &
-        due = due .or. abs(deflection_change) > adapt%stiffness_update*thickness
+        due = due .or. abs(deflection_change) > stepping%adapt%stiffness_update*thickness
     else
-      due = mass_ratio < lag_low .or. mass_ratio > lag_high .or. self%excess >= adapt%iterations
+      due = mass_ratio < stepping%controls%lag_low .or. mass_ratio > stepping%controls%lag_high .or. &
+            self%excess >= stepping%adapt%iterations
     end if
   end function renewal_due
 

@@ -6,8 +6,8 @@ module step_limits
   use kinds, only: wp
   use models, only: model_t
   use states, only: state_t
-  use step_controllers, only: step_controller_t, equal_of_gear
-  use stepping_parameters, only: adapt_t, is_error_controlled
+  use step_controllers, only: step_controller_t
+  use stepping_parameters, only: stepping_t, is_error_controlled
   implicit none
   private
   public :: impactor_limit, growth_limit, has_gear
@@ -31,17 +31,18 @@ contains
   end function impactor_limit
 
   !> Largest ratio of a step to the one before that the integrators bear.
-  pure real(wp) function growth_limit(model, adapt, controller) result(ratio)
+  pure real(wp) function growth_limit(model, stepping, controller) result(ratio)
     type(model_t), intent(in) :: model
-    !> Adaptive rules
-    type(adapt_t), intent(in) :: adapt
+    !> How steps are taken
+    type(stepping_t), intent(in) :: stepping
     !> The step controller
     type(step_controller_t), intent(in) :: controller
 
     ratio = largest_growth_ratio
-    if (.not. (is_error_controlled(adapt) .or. model%setup%has_crack_bands() .and. .not. adapt%on)) return
+    if (.not. (is_error_controlled(stepping%adapt) .or. &
+               model%setup%has_crack_bands() .and. .not. stepping%adapt%on)) return
     ratio = 1024
-    if (has_gear(model)) ratio = merge(2, 1, controller%equal_steps >= equal_of_gear)
+    if (has_gear(model)) ratio = merge(2, 1, controller%equal_steps >= stepping%controls%equal_of_gear)
   end function growth_limit
 
   !> True: Gear's method moves the impactor.

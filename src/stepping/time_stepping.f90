@@ -11,7 +11,6 @@ module time_stepping
   use motion_steps, only: motion_steps_t
   use states, only: new_state
   use step_acceptance, only: accept_step, reject_step, assess_error
-  use step_controllers, only: shortening_error
   use steppers, only: stepper_t, step_kind_t
   use stepping_parameters, only: stepping_t, is_explicit
   implicit none
@@ -101,7 +100,7 @@ contains
     if (follows .and. self%now%step == 0) call self%controller%begin(self%stepping, event)
     call find_step(self, model, event, follows, step, shortest, error)
     if (allocated(error)) return
-    if (follows) self%errs = self%error > shortening_error .and. step <= shortest*(1 + 1.0e-9_wp)
+    if (follows) self%errs = self%error > self%stepping%controls%shortening_error .and. step <= shortest*(1 + 1.0e-9_wp)
     if (abs(self%trial%time - event) <= 1.0e-9_wp*step) self%trial%time = event
     call accept_step(self, model, step)
     call self%kind%settle(self, model, error)

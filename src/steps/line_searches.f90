@@ -7,19 +7,15 @@
 module line_searches
   use kinds, only: wp
   use models, only: model_t
+  use solution_controls, only: newton_controls_t
   implicit none
   private
   public :: line_search_t
 
-  !> Directional derivative over its initial value at which a search ends (Matthies and Strang).
-  real(wp), parameter :: slope_reduction = 0.5_wp
-  !> Bounds of the next trial within a bracket, and largest number of trials: the eighth is within 1e-3 of the bracket,
-  !> and a correction that requires more is not worth it.
-  real(wp), parameter :: min_part = 0.1_wp, max_part = 0.9_wp
-  integer, parameter :: max_trials = 8
-
   !> A line search.
   type :: line_search_t
+    !> Its constants
+    type(newton_controls_t) :: controls
     !> True: a search is active
     logical :: on = .false.
     !> True: a direction of negative curvature, which may be extended
@@ -94,7 +90,7 @@ contains
     call model%communicator%sum(force)
     force = force + self%contact - self%fraction*self%contact_decrease
     self%trials = self%trials + 1
-    ends = abs(force) <= slope_reduction*self%first .or. self%trials >= max_trials &
+    ends = abs(force) <= self%controls%search_slope*self%first .or. self%trials >= self%controls%search_trials &
            .or. force > 0 .and. .not. (self%negative_curvature .or. self%high < huge(self%high))
     self%on = .not. ends
     if (ends) return
@@ -107,7 +103,8 @@ contains
     end if
     if (self%high < huge(self%high)) then
       part = self%low_force/(self%low_force - self%high_force)
-      self%fraction = self%low + min(max_part, max(min_part, part))*(self%high - self%low)
+      part = min(self%controls%search_max_part, max(self%controls%search_min_part, part))
+      self%fraction = self%low + part*(self%high - self%low)
     else
       self%fraction = 2*self%fraction
     end if

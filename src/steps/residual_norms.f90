@@ -5,6 +5,7 @@ module residual_norms
   use kinds, only: wp
   use communicators, only: communicator_t
   use numberings, only: numbering_t
+  use solution_controls, only: newton_controls_t
   implicit none
   private
   public :: relative_residual
@@ -17,7 +18,7 @@ contains
   !> Residual over the largest reference force, the larger of translations and rotations; infinite if a number is not
   !> finite. The same on every rank.
   real(wp) function relative_residual(communicator, numbering, residual, first, second, load, diagonal, displacement, &
-                                      may_end, tolerance, length, largest) result(norm)
+                                      may_end, tolerance, length, controls, largest) result(norm)
     !> The ranks
     type(communicator_t), intent(in) :: communicator
     !> Knows which unknowns are constrained
@@ -38,10 +39,11 @@ contains
     !> Lever arm that makes moments of forces, the laminate's thickness: moments balance among themselves, so
     !> those left over say nothing of the reference moments
     real(wp), intent(in) :: length
+    !> Constants of Newton's method
+    type(newton_controls_t), intent(in) :: controls
     !> Largest forces so far, translations and rotations: used as the reference once forces have become small
     real(wp), intent(inout) :: largest(2)
     real(wp) :: squares(8), limits(2), scale(2)
-    real(wp), parameter :: force_floor = 1.0e-6_wp, last_digits = 32*epsilon(1.0_wp)
 
     squares = [sums_of_squares(numbering, residual), sums_of_squares(numbering, first), &
                sums_of_squares(numbering, second), load, 0.0_wp]
@@ -49,7 +51,7 @@ contains
     norm = ieee_value(norm, ieee_positive_inf)
     if (.not. all(squares <= huge(norm))) return
     squares = sqrt(squares)
-    scale = max(squares(3:4), squares(5:6), squares(7:8), force_floor*largest)
+    scale = max(squares(3:4), squares(5:6), squares(7:8), controls%force_floor*largest)
     scale(2) = max(scale(2), length*scale(1))
     largest = max(largest, scale)
     scale = max(scale, tiny(norm))
@@ -57,7 +59,8 @@ contains
     if (norm <= tolerance .or. .not. may_end) return
     limits = sums_of_squares(numbering, forces_to_round(diagonal, displacement))
     call communicator%sum(limits)
-    if (all(limits <= huge(norm))) norm = maxval(squares(1:2)/max(scale, last_digits/tolerance*sqrt(limits)))
+    if (.not. all(limits <= huge(norm))) return
+    norm = maxval(squares(1:2)/max(scale, controls%last_digits*epsilon(norm)/tolerance*sqrt(limits)))
   end function relative_residual
 
   !> Forces whose last digit a residual can't fall below. A moment is a sum of what rotation and deflection give, and

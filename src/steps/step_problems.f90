@@ -9,19 +9,13 @@ module step_problems
   use forcing_terms, only: forcing_term
   use line_searches, only: line_search_t
   use models, only: model_t
+  use solution_controls, only: newton_controls_t
   use states, only: state_t
   use stepping_parameters, only: equilibrium_t
   use tangent_operators, only: tangent_operator_t
   implicit none
   private
   public :: step_problem_t, solve_step
-
-  !> Reduction of the residual by the factored operator below which element tangents are used, whose product costs a
-  !> fifth of a solve.
-  real(wp), parameter :: acceptable_reduction = 1.0e-2_wp
-  !> Complementarity of pressures and gaps, relative to the largest pressure, over the tolerance of the residual: both
-  !> are errors of forces, and the two together are to stay near the tolerance.
-  real(wp), parameter :: contact_share = 0.5_wp
 
   !> One kind of step.
   type, abstract :: step_problem_t
@@ -31,6 +25,8 @@ module step_problems
     logical :: uses_element_tangents = .false.
     !> True: a line search follows each correction
     logical :: searches_lines = .false.
+    !> Constants of Newton's method
+    type(newton_controls_t) :: controls
   contains
     !> Predictor of the state at the end of the step.
     procedure(begin_step), deferred :: begin
@@ -200,6 +196,8 @@ contains
     converged = .false.
     call new%start_from(model, old)
     allocate (residual, correction, mold=old%motion%displacement)
+    problem%controls = equilibrium%controls
+    search%controls = equilibrium%controls
     pressures_new = .false.
     before = 0
     call problem%begin(model, operator, old, new)
@@ -216,9 +214,10 @@ contains
       if (pressures_new .and. new%contact_iterations < equilibrium%max_iterations) cycle
       if (.not. norm <= huge(norm) .or. new%iterations >= equilibrium%max_iterations) exit
       problem%uses_element_tangents = problem%uses_element_tangents .or. before > 0 &
-        .and. norm > acceptable_reduction*before
+        .and. norm > equilibrium%controls%element_reduction*before
       call correct(problem, model, operator, old, new, residual, smooth, &
-                   forcing_term(equilibrium%tolerance, norm, before), correction, search, error)
+                   forcing_term(equilibrium%controls, equilibrium%tolerance, norm, before), correction, &
+                   search, error)
       if (allocated(error)) then
         call forgive(problem, model, error)
         return
@@ -253,7 +252,7 @@ contains
     if (converged) converged = problem%may_stop(model, new, pressures_new)
     pressures_new = .false.
     if (.not. converged) return
-    call update_multipliers(contact_share*equilibrium%tolerance, model, new, converged)
+    call update_multipliers(equilibrium%controls%contact_share*equilibrium%tolerance, model, new, converged)
     pressures_new = .not. converged
     if (pressures_new) before = 0
   end subroutine update_contact

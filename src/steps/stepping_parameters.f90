@@ -2,6 +2,7 @@
 module stepping_parameters
   use central_difference_parameters, only: central_difference_parameters_t
   use kinds, only: wp
+  use solution_controls, only: newton_controls_t, step_controls_t
   implicit none
   private
   public :: time_t, adapt_t, equilibrium_t, expected_response_t, stepping_t, is_error_controlled, is_explicit, &
@@ -67,6 +68,8 @@ module stepping_parameters
     real(wp) :: tolerance = 1.0e-6_wp
     !> Iterations of equilibrium before a step is tried again with half its length
     integer :: max_iterations = 30
+    !> Constants of Newton's method
+    type(newton_controls_t) :: controls
   end type equilibrium_t
 
   !> What a run is expected to show, by a pilot calculation; 0: not known.
@@ -95,6 +98,8 @@ module stepping_parameters
     type(expected_response_t) :: expected
     !> Convergence of equilibrium
     type(equilibrium_t) :: equilibrium
+    !> Constants of the control of steps
+    type(step_controls_t) :: controls
   end type stepping_t
 
 contains
