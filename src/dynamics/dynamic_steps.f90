@@ -95,7 +95,7 @@ contains
     new%time = old%time + self%step
     new%load_factor = new%time/model%setup%ramp_time
     call new%interfaces%ties%ramp_down(model, self%step)
-    self%patch_square = sum((model%patch(model%patch_points)/model%mesh%multiplicity)**2)
+    self%patch_square = sum((model%contact%weights(model%contact%points)/model%mesh%multiplicity)**2)
     if (model%setup%has_impactor) self%coupling = begin_coupling(model, self%integrator, old, self%step)
     self%keeps_velocity = model%setup%has_impactor .and. .not. (allocated(self%guess) .or. model%has_bonds)
     self%keeps_displacement = self%keeps_velocity &

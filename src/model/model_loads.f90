@@ -89,9 +89,10 @@ contains
     integer :: i
 
     associate (mesh => self%mesh, points => self%distribution%points, struck => self%setup%mesh%struck)
-      self%nose = new_contact_area(self%patch, area, nodal_areas(self, patch_elements(self, .false.)), &
-                                   [(norm2(mesh%node_coordinates(:, mesh%point_node(points(i))) - struck), &
-                                     i=1, size(points))], self%setup%impactor%radius)
+      self%contact%nose = &
+        new_contact_area(self%contact%weights, area, nodal_areas(self, patch_elements(self, .false.)), &
+                         [(norm2(mesh%node_coordinates(:, mesh%point_node(points(i))) - struck), i=1, size(points))], &
+                         self%setup%impactor%radius)
     end associate
   end subroutine build_nose
 

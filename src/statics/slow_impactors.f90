@@ -23,7 +23,7 @@ contains
     !> Forces on the unknowns at the owned points, (5, points)
     real(wp), intent(inout) :: loads(:, :)
 
-    if (model%setup%has_impactor) loads(3, :) = loads(3, :) + force/model%mesh%multiplicity*model%patch
+    if (model%setup%has_impactor) loads(3, :) = loads(3, :) + force/model%mesh%multiplicity*model%contact%weights
   end subroutine add_impactor_force
 
   !> Finds the force that goes with the travel and with the plate's response to it, and adds this response to a

@@ -256,7 +256,7 @@ contains
     ! become kinetic.
     call add_impactor_force(model, old%force, loads_before)
     sums(5) = sums(5) + model%product(change, loads_before - old%motion%internal)/2
-    if (.not. (model%setup%has_ply_damage .or. allocated(model%nose))) sums(5) = 0
+    if (.not. (model%setup%has_ply_damage .or. allocated(model%contact%nose))) sums(5) = 0
     call model%communicator%sum(sums)
     sums = sums*model%mesh%multiplicity
     call new%count_step(old)
@@ -274,7 +274,7 @@ contains
     new%ledger%ply_damage = old%ledger%ply_damage + damage
     new%ledger%delamination = old%ledger%delamination + fracture
     excess = sums(1) - old%ledger%strain - sums(2)
-    if (.not. allocated(model%nose) .and. fracture + heat + new%ledger%ply_damage <= 0) &
+    if (.not. allocated(model%contact%nose) .and. fracture + heat + new%ledger%ply_damage <= 0) &
       call correct_work(excess, sums(6), new%ledger%external_work)
     new%ledger%algorithmic = old%ledger%algorithmic - excess + sums(5) - fracture - heat - damage
   end subroutine finish

@@ -34,11 +34,11 @@ contains
     type(error_t), allocatable, intent(inout) :: error
     real(wp), allocatable :: change(:)
 
-    if (.not. allocated(model%nose)) return
-    associate (w => now%motion%displacement(3, :))
-      change = relaxation*(model%nose%weights(model%communicator, w, now%indentation%alpha) - model%patch)
+    if (.not. allocated(model%contact%nose)) return
+    associate (w => now%motion%displacement(3, :), contact => model%contact)
+      change = relaxation*(contact%nose%weights(model%communicator, w, now%indentation%alpha) - contact%weights)
       if (.not. total_of(model%communicator, abs(change)) > negligible) return
-      now%patch = model%patch + change
+      now%patch = contact%weights + change
       now%patch_offset = now%patch_offset - total_of(model%communicator, change*w)
     end associate
     call set_contact_area(model, now, operator, error)

@@ -98,8 +98,9 @@ contains
     !> Set if the motion has become unstable
     type(error_t), allocatable, intent(out) :: error
 
-    if (allocated(model%nose)) &
-      call model%spread_force(method%impact%patch%local_weights(size(model%patch)), method%impact%patch%offset)
+    if (allocated(model%contact%nose)) &
+      call model%spread_force(method%impact%patch%local_weights(size(model%contact%weights)), &
+                              method%impact%patch%offset)
     call book_energies(method, model, now)
     now%interfaces%rig%found = reactions_of(method, model, now)
     if (size(model%lines) > 0) now%line_reactions = method%lines%totals(model)
