@@ -23,7 +23,7 @@ module load_steps
     procedure :: follows_error
     procedure :: note_state
     procedure :: choose_next
-    procedure :: settle
+    procedure :: equilibrate
     procedure :: smallest_step
   end type load_steps_t
 
@@ -138,7 +138,7 @@ contains
   end subroutine choose_next
 
   !> Brings a plate whose plies have failed under a load back into equilibrium with it, until no more of them fail.
-  subroutine settle(self, stepper, model, error)
+  subroutine equilibrate(self, stepper, model, error)
     !> The kind
     class(load_steps_t), intent(in) :: self
     !> The stepper, the step accepted
@@ -160,7 +160,7 @@ contains
       stepper%trial%step = stepper%now%step
       call accept_step(stepper, model, 0.0_wp)
     end do
-  end subroutine settle
+  end subroutine equilibrate
 
   !> Smallest part of a load step.
   pure real(wp) function smallest_step(self, stepping)

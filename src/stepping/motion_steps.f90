@@ -24,7 +24,7 @@ module motion_steps
     procedure :: follows_error
     procedure :: note_state
     procedure :: choose_next
-    procedure :: settle
+    procedure :: equilibrate
     procedure :: smallest_step
   end type motion_steps_t
 
@@ -163,7 +163,7 @@ contains
   end subroutine choose_next
 
   !> Failures take effect in the next step.
-  subroutine settle(self, stepper, model, error)
+  subroutine equilibrate(self, stepper, model, error)
     !> The kind
     class(motion_steps_t), intent(in) :: self
     !> The stepper, the step accepted
@@ -171,7 +171,7 @@ contains
     type(model_t), intent(in) :: model
     !> Not set
     type(error_t), allocatable, intent(inout) :: error
-  end subroutine settle
+  end subroutine equilibrate
 
   !> Smallest step of the deck.
   pure real(wp) function smallest_step(self, stepping)

@@ -28,12 +28,13 @@ module steppers
     !> Chooses the length of the next step.
     procedure(choose_length), deferred :: choose_next
     !> Completes the state accepted.
-    procedure(settle_state), deferred :: settle
+    procedure(equilibrate_state), deferred :: equilibrate
     !> Smallest step worth trying.
     procedure(smallest), deferred :: smallest_step
   end type step_kind_t
 
-  !> All that evolves during a run, and how steps are taken.
+  !> All that evolves during a run, and how steps are taken. It has many components because each part of the control of
+  !> steps stores its own.
   type :: stepper_t
     !> The state reached
     type(state_t), allocatable :: now
@@ -139,7 +140,7 @@ module steppers
     end subroutine choose_length
 
     !> Completes the state accepted, where failures have changed its equilibrium. Collective.
-    subroutine settle_state(self, stepper, model, error)
+    subroutine equilibrate_state(self, stepper, model, error)
       import :: step_kind_t, stepper_t, model_t, error_t
       !> The kind
       class(step_kind_t), intent(in) :: self
@@ -148,7 +149,7 @@ module steppers
       type(model_t), intent(in) :: model
       !> Set if there is no equilibrium
       type(error_t), allocatable, intent(inout) :: error
-    end subroutine settle_state
+    end subroutine equilibrate_state
 
     !> Smallest step worth trying.
     pure real(wp) function smallest(self, stepping)

@@ -103,7 +103,7 @@ contains
     if (follows) self%errs = self%error > self%stepping%controls%shortening_error .and. step <= shortest*(1 + 1.0e-9_wp)
     if (abs(self%trial%time - event) <= 1.0e-9_wp*step) self%trial%time = event
     call accept_step(self, model, step)
-    call self%kind%settle(self, model, error)
+    call self%kind%equilibrate(self, model, error)
   end subroutine advance
 
   !> Tries steps, each shorter than the one before, until one has converged with an error within the tolerance.
