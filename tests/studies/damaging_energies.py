@@ -11,6 +11,7 @@ import sys
 import tempfile
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "bench"))
 from damaging_models import deck, ended, model
 
 WAYS = (("as it is", 1, ""), ("half the step", 2, ""), ("rho_inf=.99", 1, "rho_inf=.99 "))
