@@ -8,13 +8,11 @@
 module dissipation_steps
   use kinds, only: wp
   use errors, only: error_t
-  use stepping_parameters, only: equilibrium_t
   use models, only: model_t
-  use states, only: state_t
+  use newton_iterations, only: newton_iteration_t
   use static_steps, only: static_step_t, new_static_step
   use krylov_corrections, only: solve_load_tangent
   use slow_impactors, only: add_impactor_force, travel_for
-  use tangent_operators, only: tangent_operator_t
   implicit none
   private
   public :: dissipation_step_t, new_dissipation_step
@@ -53,116 +51,99 @@ contains
   end function new_dissipation_step
 
   !> Predictor: the last step, scaled by the ratio of the energies.
-  subroutine begin(self, model, operator, old, new)
+  subroutine begin(self, at)
     !> The problem
     class(dissipation_step_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
-    !> The factored operator
-    type(tangent_operator_t), intent(inout) :: operator
-    !> State at the start
-    type(state_t), intent(in) :: old
-    !> State at the end
-    type(state_t), intent(inout) :: new
+    !> The iteration, before its first residual
+    type(newton_iteration_t), intent(inout) :: at
     real(wp) :: part
 
-    part = min(1.0_wp, self%target_dissipation/old%path%dissipated)
-    self%load_factor = old%load_factor + part*old%path%factor_change
-    call self%static_step_t%begin(model, operator, old, new)
-    new%motion%displacement = old%motion%displacement + part*old%path%change
-    new%force = old%force + part*old%path%force_change
+    associate (old => at%old, new => at%new)
+      part = min(1.0_wp, self%target_dissipation/old%path%dissipated)
+      self%load_factor = old%load_factor + part*old%path%factor_change
+      call self%static_step_t%begin(at)
+      new%motion%displacement = old%motion%displacement + part*old%path%change
+      new%force = old%force + part*old%path%force_change
+    end associate
   end subroutine begin
 
   !> Load less internal forces, and the energy dissipated.
-  subroutine find_residual(self, model, old, new, residual, energy)
+  subroutine find_residual(self, at)
     !> The problem
     class(dissipation_step_t), intent(in) :: self
-    type(model_t), intent(in) :: model
-    !> State at the start
-    type(state_t), intent(in) :: old
-    !> State at the end; receives its internal forces
-    type(state_t), intent(inout) :: new
-    !> Residual at the owned points, (5, points)
-    real(wp), intent(inout) :: residual(:, :)
-    !> Strain energy of this rank's elements
-    real(wp), intent(out) :: energy
+    !> The iteration; receives residual and energy
+    type(newton_iteration_t), intent(inout) :: at
 
-    call self%static_step_t%find_residual(model, old, new, residual, energy)
-    new%path%dissipated = new%interfaces%cohesive%dissipation(model, old%interfaces%cohesive)
+    associate (model => at%model, old => at%old, new => at%new)
+      call self%static_step_t%find_residual(at)
+      new%path%dissipated = new%interfaces%cohesive%dissipation(model, old%interfaces%cohesive)
+    end associate
   end subroutine find_residual
 
   !> Residual relative to internal forces and load, or the error of the dissipated energy, scaled to the same tolerance.
-  real(wp) function residual_norm(self, model, equilibrium, operator, residual, new)
+  real(wp) function residual_norm(self, at)
     !> The problem
     class(dissipation_step_t), intent(in) :: self
-    type(model_t), intent(in) :: model
-    !> Required convergence
-    type(equilibrium_t), intent(in) :: equilibrium
-    !> The factored operator
-    type(tangent_operator_t), intent(in) :: operator
-    !> Residual at the owned points, (5, points)
-    real(wp), intent(in) :: residual(:, :)
-    !> State at the end; stores its largest forces
-    type(state_t), intent(inout) :: new
+    !> The iteration; its state stores its largest forces
+    type(newton_iteration_t), intent(inout) :: at
 
-    if (model%setup%has_impactor) then
-      ! The impactor's travel follows from its force.
-      if (new%force < 0) then
-        residual_norm = huge(residual_norm)
-        return
+    associate (model => at%model, new => at%new)
+      if (model%setup%has_impactor) then
+        ! The impactor's travel follows from its force.
+        if (new%force < 0) then
+          residual_norm = huge(residual_norm)
+          return
+        end if
+        new%load_factor = travel_for(model, new)/model%setup%impactor%travel
       end if
-      new%load_factor = travel_for(model, new)/model%setup%impactor%travel
-    end if
-    residual_norm = self%static_step_t%residual_norm(model, equilibrium, operator, residual, new)
-    residual_norm = max(residual_norm, &
-                        abs(new%path%dissipated/self%target_dissipation &
-                            - 1)/equilibrium%controls%dissipation_tolerance*equilibrium%tolerance)
+      residual_norm = self%static_step_t%residual_norm(at)
+      residual_norm = max(residual_norm, &
+                          abs(new%path%dissipated/self%target_dissipation - 1) &
+                          /at%equilibrium%controls%dissipation_tolerance*at%equilibrium%tolerance)
+    end associate
   end function residual_norm
 
   !> Adds the change of the load by which the step dissipates the prescribed energy.
-  subroutine complete_correction(self, model, operator, old, new, correction, error)
+  subroutine complete_correction(self, at, error)
     !> The problem
     class(dissipation_step_t), intent(inout) :: self
-    !> Mesh, numbering and interfaces of the plate
-    type(model_t), target, intent(in) :: model
-    !> The factored operator
-    type(tangent_operator_t), target, intent(inout) :: operator
-    !> State at the start
-    type(state_t), intent(in) :: old
-    !> State at the end, before the correction
-    type(state_t), intent(inout) :: new
-    !> Correction of the displacement, (5, points)
-    real(wp), intent(inout) :: correction(:, :)
-    !> Set if the solver fails
+    !> The iteration; receives the correction
+    type(newton_iteration_t), intent(inout) :: at
+    !> Set if a solve fails
     type(error_t), allocatable, intent(inout) :: error
     real(wp), allocatable :: loads(:, :), response(:, :), slopes(:, :)
     real(wp) :: sums(2), change, factor
 
-    allocate (loads, response, slopes, mold=correction)
-    response = 0
-    slopes = 0
-    loads = 0
-    if (model%setup%has_impactor) then
-      call add_impactor_force(model, 1.0_wp, loads)
-    else
-      call model%load_slopes(loads)
-    end if
-    call solve_load_tangent(operator, model, new%interfaces%cohesive, loads, response, error)
-    if (allocated(error)) return
-    call new%interfaces%cohesive%add_dissipation_slopes(model, old%interfaces%cohesive, new%motion%displacement, slopes)
-    sums = [model%product(slopes, correction), model%product(slopes, response)]
-    call model%communicator%sum(sums)
-    sums = sums*model%mesh%multiplicity
-    change = 0
-    if (abs(sums(2)) > 0) change = (self%target_dissipation - new%path%dissipated - sums(1))/sums(2)
-    if (model%setup%has_impactor) then
-      new%force = new%force + self%correction_factor(new%iterations)*change
-    else
-      ! Near a limit point a correction may be so large that the iteration diverges.
-      factor = new%load_factor + self%correction_factor(new%iterations)*change
-      factor = min(max(factor, old%load_factor - self%max_load_change), old%load_factor + self%max_load_change)
-      change = (factor - new%load_factor)/self%correction_factor(new%iterations)
-      new%load_factor = factor
-    end if
-    correction = self%correction_factor(new%iterations)*(correction + change*response)
+    associate (model => at%model, operator => at%operator, old => at%old, new => at%new, &
+               correction => at%correction)
+      allocate (loads, response, slopes, mold=correction)
+      response = 0
+      slopes = 0
+      loads = 0
+      if (model%setup%has_impactor) then
+        call add_impactor_force(model, 1.0_wp, loads)
+      else
+        call model%load_slopes(loads)
+      end if
+      call solve_load_tangent(operator, model, new%interfaces%cohesive, loads, response, error)
+      if (allocated(error)) return
+      call new%interfaces%cohesive%add_dissipation_slopes(model, old%interfaces%cohesive, new%motion%displacement, &
+                                                          slopes)
+      sums = [model%product(slopes, correction), model%product(slopes, response)]
+      call model%communicator%sum(sums)
+      sums = sums*model%mesh%multiplicity
+      change = 0
+      if (abs(sums(2)) > 0) change = (self%target_dissipation - new%path%dissipated - sums(1))/sums(2)
+      if (model%setup%has_impactor) then
+        new%force = new%force + self%correction_factor(new%iterations)*change
+      else
+        ! Near a limit point a correction may be so large that the iteration diverges.
+        factor = new%load_factor + self%correction_factor(new%iterations)*change
+        factor = min(max(factor, old%load_factor - self%max_load_change), old%load_factor + self%max_load_change)
+        change = (factor - new%load_factor)/self%correction_factor(new%iterations)
+        new%load_factor = factor
+      end if
+      correction = self%correction_factor(new%iterations)*(correction + change*response)
+    end associate
   end subroutine complete_correction
 end module dissipation_steps

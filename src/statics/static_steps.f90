@@ -4,14 +4,13 @@ module static_steps
   use errors, only: error_t, exit_convergence
   use plate_options, only: kinematics_linear
   use delamination_parameters, only: contact_none, law_cohesive
-  use stepping_parameters, only: equilibrium_t
   use models, only: model_t
+  use newton_iterations, only: newton_iteration_t
   use states, only: state_t
   use step_problems, only: step_problem_t
   use residual_norms, only: relative_residual
   use slow_impactors, only: add_impactor_force, find_force_change, force_mismatch, move_slow_impactor
   use krylov_corrections, only: solve_load_tangent
-  use tangent_operators, only: tangent_operator_t
   implicit none
   private
   public :: static_step_t, new_static_step
@@ -54,136 +53,104 @@ contains
   end function new_static_step
 
   !> Predictor: the previous state.
-  subroutine begin(self, model, operator, old, new)
+  subroutine begin(self, at)
     !> The problem
     class(static_step_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
-    !> The factored operator
-    type(tangent_operator_t), intent(inout) :: operator
-    !> State at the load before
-    type(state_t), intent(in) :: old
-    !> State at this load
-    type(state_t), intent(inout) :: new
+    !> The iteration, before its first residual
+    type(newton_iteration_t), intent(inout) :: at
 
-    new%time = self%time
-    new%load_factor = self%load_factor
-    new%iterations = 0
-    new%contact_iterations = 0
+    associate (new => at%new)
+      new%time = self%time
+      new%load_factor = self%load_factor
+      new%iterations = 0
+      new%contact_iterations = 0
+    end associate
   end subroutine begin
 
   !> Load less internal forces.
-  subroutine find_residual(self, model, old, new, residual, energy)
+  subroutine find_residual(self, at)
     !> The problem
     class(static_step_t), intent(in) :: self
-    type(model_t), intent(in) :: model
-    !> State at the load before
-    type(state_t), intent(in) :: old
-    !> State at this load; receives its internal forces
-    type(state_t), intent(inout) :: new
-    !> Residual at the owned points, (5, points)
-    real(wp), intent(inout) :: residual(:, :)
-    !> Strain energy of this rank's elements
-    real(wp), intent(out) :: energy
+    !> The iteration; receives residual and energy
+    type(newton_iteration_t), intent(inout) :: at
 
-    call new%find_internal(model, old, energy)
-    call model%static_loads(new%motion%displacement, new%load_factor, residual)
-    call add_impactor_force(model, new%force, residual)
-    residual = residual - new%motion%internal
+    associate (model => at%model, old => at%old, new => at%new, residual => at%residual)
+      call new%find_internal(model, old, at%energy)
+      call model%static_loads(new%motion%displacement, new%load_factor, residual)
+      call add_impactor_force(model, new%force, residual)
+      residual = residual - new%motion%internal
+    end associate
   end subroutine find_residual
 
   !> Residual relative to internal forces and load.
-  real(wp) function residual_norm(self, model, equilibrium, operator, residual, new)
+  real(wp) function residual_norm(self, at)
     !> The problem
     class(static_step_t), intent(in) :: self
-    type(model_t), intent(in) :: model
-    !> Required convergence
-    type(equilibrium_t), intent(in) :: equilibrium
-    !> The factored operator
-    type(tangent_operator_t), intent(in) :: operator
-    !> Residual at the owned points, (5, points)
-    real(wp), intent(in) :: residual(:, :)
-    !> State at this load; stores its largest forces
-    type(state_t), intent(inout) :: new
+    !> The iteration; its state stores its largest forces
+    type(newton_iteration_t), intent(inout) :: at
     real(wp), allocatable :: loads(:, :)
 
-    allocate (loads, mold=residual)
-    call model%static_loads(new%motion%displacement, new%load_factor, loads)
-    call add_impactor_force(model, new%force, loads)
-    ! A second iteration removes the round-off of the first, so it is required.
-    residual_norm = relative_residual(model%communicator, operator%numbering, residual, new%motion%internal, loads, &
-                                      0.0_wp, operator%diagonal, new%motion%displacement, new%iterations > 1, &
-                                      equilibrium%tolerance, model%thickness, equilibrium%controls, &
-                                      new%largest_forces)
-    if (model%setup%has_impactor) residual_norm = max(residual_norm, force_mismatch(model, new))
+    associate (model => at%model, operator => at%operator, new => at%new, equilibrium => at%equilibrium, &
+               residual => at%residual)
+      allocate (loads, mold=residual)
+      call model%static_loads(new%motion%displacement, new%load_factor, loads)
+      call add_impactor_force(model, new%force, loads)
+      ! A second iteration removes the round-off of the first, so it is required.
+      residual_norm = relative_residual(model%communicator, operator%numbering, residual, new%motion%internal, loads, &
+                                        0.0_wp, operator%diagonal, new%motion%displacement, new%iterations > 1, &
+                                        equilibrium%tolerance, model%thickness, equilibrium%controls, &
+                                        new%largest_forces)
+      if (model%setup%has_impactor) residual_norm = max(residual_norm, force_mismatch(model, new))
+    end associate
   end function residual_norm
 
   !> A change of multipliers may be below the tolerance of the residual; it needs a correction nevertheless.
-  pure logical function may_stop(self, model, new, pressures_new)
+  pure logical function may_stop(self, at)
     !> The problem
     class(static_step_t), intent(in) :: self
-    type(model_t), intent(in) :: model
-    !> State at this load
-    type(state_t), intent(in) :: new
-    !> True: multipliers were updated after the last correction
-    logical, intent(in) :: pressures_new
+    !> The iteration
+    type(newton_iteration_t), intent(in) :: at
 
-    may_stop = .not. pressures_new
+    may_stop = .not. at%pressures_new
   end function may_stop
 
   !> Solves for a correction, by a new tangent if it may have changed.
-  subroutine find_correction(self, model, operator, old, new, residual, tolerance, correction, negative_curvature, &
-                             error)
+  subroutine find_correction(self, at, tolerance, error)
     !> The problem
     class(static_step_t), intent(inout) :: self
-    !> Mesh, numbering and interfaces of the plate
-    type(model_t), target, intent(in) :: model
-    !> The factored operator
-    type(tangent_operator_t), target, intent(inout) :: operator
-    !> State at the load before
-    type(state_t), intent(in) :: old
-    !> State at this load, before the correction
-    type(state_t), target, intent(inout) :: new
-    !> The residual at the owned points, (5, points)
-    real(wp), intent(in) :: residual(:, :)
+    !> The iteration; receives the correction
+    type(newton_iteration_t), intent(inout) :: at
     !> Required reduction of the residual
     real(wp), intent(in) :: tolerance
-    !> Correction of the displacement, (5, points)
-    real(wp), intent(inout) :: correction(:, :)
-    !> True: it is a direction of negative curvature of the tangent
-    logical, intent(out) :: negative_curvature
-    !> Set if a solve fails
+    !> Set if a solve fails or numbers are not finite
     type(error_t), allocatable, intent(inout) :: error
 
-    negative_curvature = .false.
-    if (.not. operator%ready .or. tangent_changes(model, new%iterations)) &
-      call operator%renew(model, new%plies%stiffness, new%interfaces, new%motion%displacement, 1.0_wp, 0.0_wp, error)
-    if (.not. allocated(error)) &
-      call solve_load_tangent(operator, model, new%interfaces%cohesive, residual, correction, error)
-    if (.not. allocated(error)) call self%complete_correction(model, operator, old, new, correction, error)
-    if (.not. allocated(error)) call new%interfaces%faces%hold(model, correction)
+    at%negative_curvature = .false.
+    associate (model => at%model, operator => at%operator, new => at%new)
+      if (.not. operator%ready .or. tangent_changes(model, new%iterations)) &
+        call operator%renew(model, new%plies%stiffness, new%interfaces, new%motion%displacement, 1.0_wp, 0.0_wp, error)
+      if (.not. allocated(error)) &
+        call solve_load_tangent(operator, model, new%interfaces%cohesive, at%residual, at%correction, error)
+      if (.not. allocated(error)) call self%complete_correction(at, error)
+      if (.not. allocated(error)) call new%interfaces%faces%hold(model, at%correction)
+    end associate
   end subroutine find_correction
 
   !> Adds the response to the change of the impactor's force, and scales the correction.
-  subroutine complete_correction(self, model, operator, old, new, correction, error)
+  subroutine complete_correction(self, at, error)
     !> The problem
     class(static_step_t), intent(inout) :: self
-    !> Mesh, numbering and interfaces of the plate
-    type(model_t), target, intent(in) :: model
-    !> The factored operator
-    type(tangent_operator_t), target, intent(inout) :: operator
-    !> State at the load before
-    type(state_t), intent(in) :: old
-    !> State at this load, before the correction
-    type(state_t), intent(inout) :: new
-    !> Correction of the displacement, (5, points)
-    real(wp), intent(inout) :: correction(:, :)
+    !> The iteration; receives the correction
+    type(newton_iteration_t), intent(inout) :: at
     !> Set if a solve fails
     type(error_t), allocatable, intent(inout) :: error
 
-    if (model%setup%has_impactor) call find_force_change(model, operator, self%correction_factor(new%iterations), new, &
-                                                         correction, error)
-    if (allocated(error)) error%code = exit_convergence
-    correction = self%correction_factor(new%iterations)*correction
+    associate (model => at%model, operator => at%operator, new => at%new, correction => at%correction)
+      if (model%setup%has_impactor) &
+        call find_force_change(model, operator, self%correction_factor(new%iterations), new, correction, error)
+      if (allocated(error)) error%code = exit_convergence
+      correction = self%correction_factor(new%iterations)*correction
+    end associate
   end subroutine complete_correction
 
   !> True if the tangent may differ from that of the previous iteration.
@@ -215,68 +182,63 @@ contains
   end function correction_factor
 
   !> Nothing moves.
-  subroutine complete(self, old, new)
+  subroutine complete(self, at)
     !> The problem
     class(static_step_t), intent(in) :: self
-    !> State at the load before
-    type(state_t), intent(in) :: old
-    !> State at this load
-    type(state_t), intent(inout) :: new
+    !> The iteration
+    type(newton_iteration_t), intent(inout) :: at
   end subroutine complete
 
   !> Completes an accepted load step.
-  subroutine finish(self, model, old, energy, new)
+  subroutine finish(self, at)
     !> The problem
     class(static_step_t), intent(in) :: self
-    type(model_t), intent(in) :: model
-    !> State at the load before
-    type(state_t), intent(in) :: old
-    !> Strain energy of this rank's elements
-    real(wp), intent(in) :: energy
-    !> State at this load
-    type(state_t), intent(inout) :: new
+    !> The iteration; its state is completed
+    type(newton_iteration_t), intent(inout) :: at
     real(wp) :: sums(6), faces, fracture, heat, damage, excess
     real(wp), allocatable :: change(:, :), loads(:, :), loads_before(:, :)
 
-    allocate (loads, loads_before, mold=old%motion%internal)
-    call model%static_loads(new%motion%displacement, new%load_factor, loads)
-    call loads_carried(model, old, loads_before)
-    change = new%motion%displacement - old%motion%displacement
-    sums(1) = energy
-    sums(2) = model%product(change, new%motion%internal + old%motion%internal)/2
-    sums(3) = model%product(change, loads + loads_before)/2
-    sums(4:5) = 0
-    if (model%has_bonds) then
-      faces = old%interfaces%contact_work(model, old%motion%displacement, change)
-      sums(4) = (faces + new%interfaces%contact_work(model, new%motion%displacement, change))/2
-      sums(5) = faces/2
-    end if
-    sums(6) = model%product(change, loads - loads_before)/2
-    ! Failed plies and a changed contact area leave the previous state out of equilibrium; the energy released would
-    ! become kinetic.
-    call add_impactor_force(model, old%force, loads_before)
-    sums(5) = sums(5) + model%product(change, loads_before - old%motion%internal)/2
-    if (.not. (model%setup%has_ply_damage .or. allocated(model%contact%nose))) sums(5) = 0
-    call model%communicator%sum(sums)
-    sums = sums*model%mesh%multiplicity
-    call new%count_step(old)
-    new%deflection = model%deflection(new%motion%displacement)
-    new%patch_mean = model%contact_deflection(new%motion%displacement)
-    new%ledger%strain = sums(1)
-    new%ledger%external_work = old%ledger%external_work + sums(3)
-    new%ledger%contact = old%ledger%contact - sums(4)
-    fracture = new%interfaces%cohesive%dissipation(model, old%interfaces%cohesive)
-    heat = new%interfaces%friction_heat(model, old%interfaces)
-    new%ledger%friction = old%ledger%friction + heat
-    if (model%setup%has_impactor) call move_slow_impactor(model, old, new)
-    sums(6) = sums(6) + (new%force - old%force)*(new%patch_mean - old%patch_mean)/2
-    call new%plies%book(model, damage)
-    new%ledger%ply_damage = old%ledger%ply_damage + damage
-    new%ledger%delamination = old%ledger%delamination + fracture
-    excess = sums(1) - old%ledger%strain - sums(2)
-    if (.not. allocated(model%contact%nose) .and. fracture + heat + new%ledger%ply_damage <= 0) &
-      call correct_work(excess, sums(6), new%ledger%external_work)
-    new%ledger%algorithmic = old%ledger%algorithmic - excess + sums(5) - fracture - heat - damage
+    associate (model => at%model, old => at%old, new => at%new)
+      allocate (loads, loads_before, mold=old%motion%internal)
+      call model%static_loads(new%motion%displacement, new%load_factor, loads)
+      call loads_carried(model, old, loads_before)
+      change = new%motion%displacement - old%motion%displacement
+      sums(1) = at%energy
+      sums(2) = model%product(change, new%motion%internal + old%motion%internal)/2
+      sums(3) = model%product(change, loads + loads_before)/2
+      sums(4:5) = 0
+      if (model%has_bonds) then
+        faces = old%interfaces%contact_work(model, old%motion%displacement, change)
+        sums(4) = (faces + new%interfaces%contact_work(model, new%motion%displacement, change))/2
+        sums(5) = faces/2
+      end if
+      sums(6) = model%product(change, loads - loads_before)/2
+      ! Failed plies and a changed contact area leave the previous state out of equilibrium; the energy released would
+      ! become kinetic.
+      call add_impactor_force(model, old%force, loads_before)
+      sums(5) = sums(5) + model%product(change, loads_before - old%motion%internal)/2
+      if (.not. (model%setup%has_ply_damage .or. allocated(model%contact%nose))) sums(5) = 0
+      call model%communicator%sum(sums)
+      sums = sums*model%mesh%multiplicity
+      call new%count_step(old)
+      new%deflection = model%deflection(new%motion%displacement)
+      new%patch_mean = model%contact_deflection(new%motion%displacement)
+      new%ledger%strain = sums(1)
+      new%ledger%external_work = old%ledger%external_work + sums(3)
+      new%ledger%contact = old%ledger%contact - sums(4)
+      fracture = new%interfaces%cohesive%dissipation(model, old%interfaces%cohesive)
+      heat = new%interfaces%friction_heat(model, old%interfaces)
+      new%ledger%friction = old%ledger%friction + heat
+      if (model%setup%has_impactor) call move_slow_impactor(model, old, new)
+      sums(6) = sums(6) + (new%force - old%force)*(new%patch_mean - old%patch_mean)/2
+      call new%plies%book(model, damage)
+      new%ledger%ply_damage = old%ledger%ply_damage + damage
+      new%ledger%delamination = old%ledger%delamination + fracture
+      excess = sums(1) - old%ledger%strain - sums(2)
+      if (.not. allocated(model%contact%nose) .and. fracture + heat + new%ledger%ply_damage <= 0) &
+        call correct_work(excess, sums(6), new%ledger%external_work)
+      new%ledger%algorithmic = old%ledger%algorithmic - excess + sums(5) - fracture - heat - damage
+    end associate
   end subroutine finish
 
   !> Where nothing dissipates, the strain energy is the work of the loads along the equilibrium path, which the

@@ -9,6 +9,7 @@ module step_problems
   use forcing_terms, only: forcing_term
   use line_searches, only: line_search_t
   use models, only: model_t
+  use newton_iterations, only: newton_iteration_t, new_newton_iteration
   use solution_controls, only: newton_controls_t
   use states, only: state_t
   use stepping_parameters, only: equilibrium_t
@@ -48,126 +49,81 @@ module step_problems
 
   abstract interface
     !> Predictor of the state at the end of the step.
-    subroutine begin_step(self, model, operator, old, new)
-      import :: step_problem_t, model_t, tangent_operator_t, state_t
+    subroutine begin_step(self, at)
+      import :: step_problem_t, newton_iteration_t
       !> The problem
       class(step_problem_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
-      !> The factored operator
-      type(tangent_operator_t), intent(inout) :: operator
-      !> State at the start
-      type(state_t), intent(in) :: old
-      !> State at the end
-      type(state_t), intent(inout) :: new
+      !> The iteration; receives the state at the end
+      type(newton_iteration_t), intent(inout) :: at
     end subroutine begin_step
 
     !> Residual of equilibrium without ties and contact.
-    subroutine find_residual(self, model, old, new, residual, energy)
-      import :: step_problem_t, model_t, state_t, wp
+    subroutine find_residual(self, at)
+      import :: step_problem_t, newton_iteration_t
       !> The problem
       class(step_problem_t), intent(in) :: self
-      type(model_t), intent(in) :: model
-      !> State at the start
-      type(state_t), intent(in) :: old
-      !> State at the end; receives its forces
-      type(state_t), intent(inout) :: new
-      !> Residual at the owned points, (5, points)
-      real(wp), intent(inout) :: residual(:, :)
-      !> Strain energy of this rank's elements
-      real(wp), intent(out) :: energy
+      !> The iteration; receives residual and energy, and its state the forces
+      type(newton_iteration_t), intent(inout) :: at
     end subroutine find_residual
 
     !> Residual relative to the reference force; infinite if a number is not finite.
-    real(wp) function residual_norm(self, model, equilibrium, operator, residual, new)
-      import :: step_problem_t, model_t, equilibrium_t, tangent_operator_t, state_t, wp
+    real(wp) function residual_norm(self, at)
+      import :: step_problem_t, newton_iteration_t, wp
       !> The problem
       class(step_problem_t), intent(in) :: self
-      type(model_t), intent(in) :: model
-      !> Required convergence
-      type(equilibrium_t), intent(in) :: equilibrium
-      !> The factored operator
-      type(tangent_operator_t), intent(in) :: operator
-      !> Residual at the owned points, (5, points)
-      real(wp), intent(in) :: residual(:, :)
-      !> State at the end; stores its largest forces
-      type(state_t), intent(inout) :: new
+      !> The iteration; its state stores its largest forces
+      type(newton_iteration_t), intent(inout) :: at
     end function residual_norm
 
     !> True if the iteration may end with a residual within the tolerance.
-    pure logical function may_stop(self, model, new, pressures_new)
-      import :: step_problem_t, model_t, state_t
+    pure logical function may_stop(self, at)
+      import :: step_problem_t, newton_iteration_t
       !> The problem
       class(step_problem_t), intent(in) :: self
-      type(model_t), intent(in) :: model
-      !> State at the end
-      type(state_t), intent(in) :: new
-      !> True: multipliers were updated after the last correction
-      logical, intent(in) :: pressures_new
+      !> The iteration
+      type(newton_iteration_t), intent(in) :: at
     end function may_stop
 
     !> Finds a correction by the tangent, renewing the operator where that is due.
-    subroutine find_correction(self, model, operator, old, new, residual, tolerance, correction, negative_curvature, &
-                               error)
-      import :: step_problem_t, model_t, tangent_operator_t, state_t, error_t, wp
+    subroutine find_correction(self, at, tolerance, error)
+      import :: step_problem_t, newton_iteration_t, error_t, wp
       !> The problem
       class(step_problem_t), intent(inout) :: self
-      !> Mesh, numbering and interfaces of the plate
-      type(model_t), target, intent(in) :: model
-      !> The factored operator
-      type(tangent_operator_t), target, intent(inout) :: operator
-      !> State at the start
-      type(state_t), intent(in) :: old
-      !> State at the end, before the correction
-      type(state_t), target, intent(inout) :: new
-      !> The residual at the owned points, (5, points)
-      real(wp), intent(in) :: residual(:, :)
+      !> The iteration; receives the correction and whether it is one of negative curvature
+      type(newton_iteration_t), intent(inout) :: at
       !> Required reduction of the residual
       real(wp), intent(in) :: tolerance
-      !> Correction of the displacement, (5, points)
-      real(wp), intent(inout) :: correction(:, :)
-      !> True: it is a direction of negative curvature of the tangent
-      logical, intent(out) :: negative_curvature
       !> Set if a solve fails or numbers are not finite
       type(error_t), allocatable, intent(inout) :: error
     end subroutine find_correction
 
     !> Completes the motion after a correction.
-    subroutine complete(self, old, new)
-      import :: step_problem_t, state_t
+    subroutine complete(self, at)
+      import :: step_problem_t, newton_iteration_t
       !> The problem
       class(step_problem_t), intent(in) :: self
-      !> State at the start
-      type(state_t), intent(in) :: old
-      !> State at the end
-      type(state_t), intent(inout) :: new
+      !> The iteration; its state receives the motion
+      type(newton_iteration_t), intent(inout) :: at
     end subroutine complete
 
     !> Completes the state of a step that has converged, and its ledger.
-    subroutine finish(self, model, old, energy, new)
-      import :: step_problem_t, model_t, state_t, wp
+    subroutine finish(self, at)
+      import :: step_problem_t, newton_iteration_t
       !> The problem
       class(step_problem_t), intent(in) :: self
-      type(model_t), intent(in) :: model
-      !> State at the start
-      type(state_t), intent(in) :: old
-      !> Strain energy of this rank's elements
-      real(wp), intent(in) :: energy
-      !> State at the end
-      type(state_t), intent(inout) :: new
+      !> The iteration; completes its state
+      type(newton_iteration_t), intent(inout) :: at
     end subroutine finish
   end interface
 
 contains
 
   !> There is no impactor.
-  subroutine find_force(self, model, old, new)
+  subroutine find_force(self, at)
     !> The problem
     class(step_problem_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
-    !> State at the start
-    type(state_t), intent(in) :: old
-    !> State at the end, its displacement known
-    type(state_t), intent(inout) :: new
+    !> The iteration, the displacement of its state known
+    type(newton_iteration_t), intent(inout) :: at
   end subroutine find_force
 
   !> Tries a step. If it has not converged, `new` is undefined on return.
@@ -181,80 +137,66 @@ contains
     !> The factored operator; factorized again if convergence requires it
     type(tangent_operator_t), target, intent(inout) :: operator
     !> State at the start
-    type(state_t), intent(in) :: old
+    type(state_t), target, intent(in) :: old
     !> State at the end
     type(state_t), target, intent(inout) :: new
     !> True if equilibrium was reached
     logical, intent(out) :: converged
     !> Set if the solver fails for good
     type(error_t), allocatable, intent(out) :: error
-    real(wp), allocatable :: residual(:, :), smooth(:, :), correction(:, :)
+    type(newton_iteration_t) :: at
     type(line_search_t) :: search
-    real(wp) :: norm, before, energy
-    logical :: pressures_new, ends
+    logical :: ends
 
     converged = .false.
     call new%start_from(model, old)
-    allocate (residual, correction, mold=old%motion%displacement)
+    at = new_newton_iteration(model, equilibrium, operator, old, new)
     problem%controls = equilibrium%controls
     search%controls = equilibrium%controls
-    pressures_new = .false.
-    before = 0
-    call problem%begin(model, operator, old, new)
+    call problem%begin(at)
     do
-      call find_forces(problem, model, operator, old, new, residual, smooth, energy)
-      norm = problem%residual_norm(model, equilibrium, operator, residual, new)
-      if (search%on .and. norm > equilibrium%tolerance) then
-        call try_fraction(problem, model, old, new, smooth, search, ends)
+      call find_forces(problem, at)
+      at%norm = problem%residual_norm(at)
+      if (search%on .and. at%norm > equilibrium%tolerance) then
+        call try_fraction(problem, at, search, ends)
         if (.not. ends) cycle
       end if
       search%on = .false.
-      call update_contact(problem, model, equilibrium, norm, new, before, pressures_new, converged)
+      call update_contact(problem, at, converged)
       if (converged) exit
-      if (pressures_new .and. new%contact_iterations < equilibrium%max_iterations) cycle
-      if (.not. norm <= huge(norm) .or. new%iterations >= equilibrium%max_iterations) exit
-      problem%uses_element_tangents = problem%uses_element_tangents .or. before > 0 &
-        .and. norm > equilibrium%controls%element_reduction*before
-      call correct(problem, model, operator, old, new, residual, smooth, &
-                   forcing_term(equilibrium%controls, equilibrium%tolerance, norm, before), correction, &
-                   search, error)
+      if (at%pressures_new .and. new%contact_iterations < equilibrium%max_iterations) cycle
+      if (.not. at%norm <= huge(at%norm) .or. new%iterations >= equilibrium%max_iterations) exit
+      problem%uses_element_tangents = problem%uses_element_tangents .or. at%before > 0 &
+        .and. at%norm > equilibrium%controls%element_reduction*at%before
+      call correct(problem, at, search, error)
       if (allocated(error)) then
         call forgive(problem, model, error)
         return
       end if
-      before = norm
-      new%motion%displacement = new%motion%displacement + correction
-      call problem%complete(old, new)
+      at%before = at%norm
+      new%motion%displacement = new%motion%displacement + at%correction
+      call problem%complete(at)
       new%iterations = new%iterations + 1
     end do
-    if (converged) call problem%finish(model, old, energy, new)
+    if (converged) call problem%finish(at)
   end subroutine solve_step
 
   !> Updates the multipliers of contact at equilibrium; the step has converged once they have.
-  subroutine update_contact(problem, model, equilibrium, norm, new, before, pressures_new, converged)
+  subroutine update_contact(problem, at, converged)
     !> The kind of step
     class(step_problem_t), intent(in) :: problem
-    type(model_t), intent(in) :: model
-    !> Required convergence
-    type(equilibrium_t), intent(in) :: equilibrium
-    !> Norm of the residual
-    real(wp), intent(in) :: norm
-    !> State at the end
-    type(state_t), intent(inout) :: new
-    !> Norm of the residual before the last correction, zero with new multipliers
-    real(wp), intent(inout) :: before
-    !> True: multipliers were updated after the last correction
-    logical, intent(inout) :: pressures_new
+    !> The iteration
+    type(newton_iteration_t), intent(inout) :: at
     !> True: the step has converged
     logical, intent(out) :: converged
 
-    converged = norm <= equilibrium%tolerance
-    if (converged) converged = problem%may_stop(model, new, pressures_new)
-    pressures_new = .false.
+    converged = at%norm <= at%equilibrium%tolerance
+    if (converged) converged = problem%may_stop(at)
+    at%pressures_new = .false.
     if (.not. converged) return
-    call update_multipliers(equilibrium%controls%contact_share*equilibrium%tolerance, model, new, converged)
-    pressures_new = .not. converged
-    if (pressures_new) before = 0
+    call update_multipliers(at, converged)
+    at%pressures_new = .not. converged
+    if (at%pressures_new) at%before = 0
   end subroutine update_contact
 
   !> Drops the error of a solver where a shorter step may succeed: divergence, or an operator that is not positive
@@ -270,103 +212,74 @@ contains
   end subroutine forgive
 
   !> Accepts a fraction of the correction, or tries the next one.
-  subroutine try_fraction(problem, model, old, new, smooth, search, ends)
+  subroutine try_fraction(problem, at, search, ends)
     !> The kind of step
     class(step_problem_t), intent(inout) :: problem
-    type(model_t), intent(in) :: model
-    !> State at the start
-    type(state_t), intent(in) :: old
-    !> State at the end
-    type(state_t), intent(inout) :: new
-    !> Residual without ties and contacts, (5, points)
-    real(wp), intent(in) :: smooth(:, :)
+    !> The iteration
+    type(newton_iteration_t), intent(inout) :: at
     !> The search
     type(line_search_t), intent(inout) :: search
     !> True: the fraction is accepted
     logical, intent(out) :: ends
 
-    call search%assess(model, smooth, ends)
+    call search%assess(at%model, at%smooth, ends)
     if (ends) return
-    new%motion%displacement = search%start + search%fraction*search%direction
-    call problem%complete(old, new)
-    call problem%find_force(model, old, new)
+    at%new%motion%displacement = search%start + search%fraction*search%direction
+    call problem%complete(at)
+    call problem%find_force(at)
   end subroutine try_fraction
 
   !> Residual with and without ties and contacts.
-  subroutine find_forces(problem, model, operator, old, new, residual, smooth, energy)
+  subroutine find_forces(problem, at)
     !> The kind of step
     class(step_problem_t), intent(inout) :: problem
-    type(model_t), intent(in) :: model
-    !> Its timers are used
-    type(tangent_operator_t), intent(inout) :: operator
-    !> State at the start
-    type(state_t), intent(in) :: old
-    !> State at the end
-    type(state_t), intent(inout) :: new
-    !> The residual at the owned points, (5, points)
-    real(wp), intent(inout) :: residual(:, :)
-    !> Residual without ties and contacts; allocated if lines are searched
-    real(wp), allocatable, intent(inout) :: smooth(:, :)
-    !> Strain energy of this rank's elements
-    real(wp), intent(out) :: energy
+    !> The iteration
+    type(newton_iteration_t), intent(inout) :: at
 
-    call operator%timers%start('element forces')
-    call problem%find_residual(model, old, new, residual, energy)
-    if (problem%searches_lines) smooth = residual
-    call model%profile%enter('contact and ties')
-    call new%interfaces%act(model, new%motion%displacement, residual)
-    call model%profile%leave()
-    call operator%timers%stop('element forces')
+    call at%operator%timers%start('element forces')
+    call problem%find_residual(at)
+    if (problem%searches_lines) at%smooth = at%residual
+    call at%model%profile%enter('contact and ties')
+    call at%new%interfaces%act(at%model, at%new%motion%displacement, at%residual)
+    call at%model%profile%leave()
+    call at%operator%timers%stop('element forces')
   end subroutine find_forces
 
   !> Updates the multipliers of the augmented Lagrangian by the pressures found.
-  subroutine update_multipliers(tolerance, model, new, converged)
-    !> Tolerance of complementarity
-    real(wp), intent(in) :: tolerance
-    type(model_t), intent(in) :: model
-    !> State at the end
-    type(state_t), intent(inout) :: new
+  subroutine update_multipliers(at, converged)
+    !> The iteration
+    type(newton_iteration_t), intent(inout) :: at
     !> True if they have converged
     logical, intent(out) :: converged
 
-    call model%profile%enter('contact and ties')
-    call new%interfaces%update_contact(model, new%motion%displacement, tolerance, new%contact_iterations, &
-                                       converged)
-    call model%profile%leave()
+    call at%model%profile%enter('contact and ties')
+    associate (equilibrium => at%equilibrium, new => at%new)
+      call new%interfaces%update_contact(at%model, new%motion%displacement, &
+                                         equilibrium%controls%contact_share*equilibrium%tolerance, &
+                                         new%contact_iterations, converged)
+    end associate
+    call at%model%profile%leave()
   end subroutine update_multipliers
 
   !> Finds a correction, and starts the line search along it.
-  subroutine correct(problem, model, operator, old, new, residual, smooth, tolerance, correction, search, error)
+  subroutine correct(problem, at, search, error)
     !> The kind of step
     class(step_problem_t), intent(inout) :: problem
-    !> Mesh, numbering and interfaces of the plate
-    type(model_t), target, intent(in) :: model
-    !> The factored operator
-    type(tangent_operator_t), target, intent(inout) :: operator
-    !> State at the start
-    type(state_t), intent(in) :: old
-    !> State at the end
-    type(state_t), target, intent(inout) :: new
-    !> Residual at the owned points, (5, points)
-    real(wp), intent(in) :: residual(:, :)
-    !> Residual without ties and contacts; allocated if lines are searched
-    real(wp), allocatable, intent(in) :: smooth(:, :)
-    !> Required reduction of the residual
-    real(wp), intent(in) :: tolerance
-    !> Correction of the displacement, (5, points)
-    real(wp), intent(inout) :: correction(:, :)
+    !> The iteration
+    type(newton_iteration_t), intent(inout) :: at
     !> The search
     type(line_search_t), intent(inout) :: search
     !> Set if a solve fails or numbers are not finite
     type(error_t), allocatable, intent(inout) :: error
     real(wp), allocatable :: stiffness(:, :)
-    logical :: negative_curvature
 
-    call problem%find_correction(model, operator, old, new, residual, tolerance, correction, negative_curvature, error)
+    call problem%find_correction(at, forcing_term(at%equilibrium%controls, at%equilibrium%tolerance, at%norm, &
+                                                  at%before), error)
     if (allocated(error) .or. .not. problem%searches_lines) return
-    allocate (stiffness(3, size(correction, 2)))
-    call new%interfaces%faces%added_stiffness(model, operator%diagonal, stiffness)
-    call new%interfaces%rig%add_stiffness(model, 0.0_wp, stiffness)
-    call search%begin(model, new%motion%displacement, correction, residual, smooth, stiffness, negative_curvature)
+    allocate (stiffness(3, size(at%correction, 2)))
+    call at%new%interfaces%faces%added_stiffness(at%model, at%operator%diagonal, stiffness)
+    call at%new%interfaces%rig%add_stiffness(at%model, 0.0_wp, stiffness)
+    call search%begin(at%model, at%new%motion%displacement, at%correction, at%residual, at%smooth, stiffness, &
+                      at%negative_curvature)
   end subroutine correct
 end module step_problems
