@@ -36,16 +36,17 @@ def constants(program):
     return {row[0]: (row[1].split()[0], float(row[4])) for row in rows if len(row) > 4}
 
 
-def run(program, deck, added, folder):
+def run(program, deck, added):
     """Cost and history of a deck with something added; None if it has not ended."""
-    path = Path(folder) / "deck.nml"
-    path.write_text(deck + "\n" + added, encoding="utf-8")
-    done = subprocess.run([program, path, "--output", folder], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-                          check=False)
-    if done.returncode:
-        return None
-    with next(Path(folder).glob("*_history.csv")).open(encoding="utf-8") as file:
-        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "deck.nml"
+        path.write_text(deck + "\n" + added, encoding="utf-8")
+        done = subprocess.run([program, path, "--output", folder], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                              check=False)
+        if done.returncode:
+            return None
+        with next(Path(folder).glob("*_history.csv")).open(encoding="utf-8") as file:
+            rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
     last = rows[-1]
     force = "force" if any(abs(float(row["force"])) > 0 for row in rows) else "energy_strain"
     history = np.array([[float(row["time"]), float(row[force])] for row in rows])
@@ -87,20 +88,17 @@ def main():
     """Run the variants and print their table."""
     program, wanted = sys.argv[1], sys.argv[2:]
     decks = {name: (ROOT / path).read_text(encoding="utf-8") for name, path in DECKS.items()}
-    with tempfile.TemporaryDirectory() as folder:
-        plain = {}
-        for name, deck in decks.items():
-            plain[name] = run(program, deck, ADDED.get(name, ""), folder)
-        print("| constant | value | " + " | ".join(decks) + " |")
-        print("|---" * (len(decks) + 2) + "|")
-        for key, (kind, value) in constants(program).items():
-            if wanted and key not in wanted:
-                continue
-            for other in variants(kind, value, key):
-                cells = ["" if name not in decks_of(key) else
-                         compared(run(program, deck, f"{ADDED.get(name, '')}&controls {key}={other:g} /\n", folder),
-                                  plain[name]) for name, deck in decks.items()]
-                print(f"| {key} | {value:g} -> {other:g} | " + " | ".join(cells) + " |", flush=True)
+    plain = {name: run(program, deck, ADDED.get(name, "")) for name, deck in decks.items()}
+    print("| constant | value | " + " | ".join(decks) + " |")
+    print("|---" * (len(decks) + 2) + "|")
+    for key, (kind, value) in constants(program).items():
+        if wanted and key not in wanted:
+            continue
+        for other in variants(kind, value, key):
+            cells = ["" if name not in decks_of(key) else
+                     compared(run(program, deck, f"{ADDED.get(name, '')}&controls {key}={other:g} /\n"), plain[name])
+                     for name, deck in decks.items()]
+            print(f"| {key} | {value:g} -> {other:g} | " + " | ".join(cells) + " |", flush=True)
 
 
 if __name__ == "__main__":
