@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """What the constants of the iteration change: each halved and doubled, on small decks.
-Usage: solution_controls.py IMPLAM [CONSTANT ...]     (about six minutes)
+Usage: solution_controls.py IMPLAM [CONSTANT or DECK ...]     (about six minutes)
 
-The constants are those of the group &controls, which `implam explain controls` lists; without a name all are varied.
+The constants are those of the group &controls, which `implam explain controls` lists. Without a name all are varied,
+on all decks.
 Prints a row a variant: the constant, its value, and for each deck the ratio of its cost to that of the deck as it is,
 and the largest change of the force in the history over the peak force (of the energies, where no impactor presses), in
 %. The cost is the number of solves plus 30 for each factorization, which takes about as long as 30 solves. A dash is a
@@ -20,9 +21,11 @@ ROOT = Path(__file__).resolve().parents[2] / "input"
 # A blow with plies and an interface that fail; layers that follow damage, with adaptive steps; softening plies in
 # implicit motion; an impact with adaptive steps; buckling under load steps; load steps by dissipated energy.
 DECKS = {"damage": "small/damage.nml", "layers": "small/layers.nml", "snapping": "verify/snapping.nml",
-         "adaptive": "verify/karas.nml", "buckling": "verify/buckled_strip.nml", "dcb": "verify/dcb.nml"}
+         "adaptive": "sun_chen.nml", "buckling": "verify/buckled_strip.nml", "dcb": "verify/dcb.nml"}
 # What is added to a deck: steps that follow their error.
 ADDED = {"adaptive": "&adapt on=.true. /\n"}
+# What is replaced in a deck: a first step that the error chooses.
+REPLACED = {"adaptive": ("step=2e-6", "step=20e-6")}
 # Decks of the constants of load steps, of Newton's method, and of the control of steps in time.
 BY_LOAD = ("dissipation_tolerance", "dissipation_growth", "load_step_parts")
 NEWTON = ("forcing", "max_forcing", "element", "contact", "search", "force", "last", "alternating")
@@ -86,13 +89,16 @@ def decks_of(key):
 
 def main():
     """Run the variants and print their table."""
-    program, wanted = sys.argv[1], sys.argv[2:]
-    decks = {name: (ROOT / path).read_text(encoding="utf-8") for name, path in DECKS.items()}
+    program, wanted = sys.argv[1], [word for word in sys.argv[2:] if word not in DECKS]
+    decks = {name: (ROOT / path).read_text(encoding="utf-8").replace(*REPLACED.get(name, ("", "")))
+             for name, path in DECKS.items() if name in sys.argv or not set(DECKS) & set(sys.argv)}
     plain = {name: run(program, deck, ADDED.get(name, "")) for name, deck in decks.items()}
     print("| constant | value | " + " | ".join(decks) + " |")
     print("|---" * (len(decks) + 2) + "|")
     for key, (kind, value) in constants(program).items():
         if wanted and key not in wanted:
+            continue
+        if not set(decks_of(key)) & set(decks):
             continue
         for other in variants(kind, value, key):
             cells = ["" if name not in decks_of(key) else
