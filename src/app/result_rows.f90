@@ -128,12 +128,9 @@ contains
     real(wp), allocatable :: loads(:, :)
 
     allocate (loads, mold=now%motion%displacement)
-    if (model%setup%has_static) then
-      call model%static_loads(now%motion%displacement, now%load_factor, loads)
-    else
-      call model%line_forces(now%motion%displacement, now%load_factor, loads)
-      if (allocated(model%pressure)) loads = loads + model%setup%pressure%amplitude(now%time)*model%pressure
-    end if
+    call model%line_forces(now%motion%displacement, now%load_factor, loads)
+    if (allocated(model%pressure)) &
+      loads = loads + model%setup%pressure_factor(now%time, now%load_factor)*model%pressure
   end function loads_on
 
   !> Row of the state reached. Collective.

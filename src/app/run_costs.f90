@@ -31,7 +31,7 @@ contains
     type(line_t), allocatable :: lines(:)
 
     allocate (lines(0))
-    if (deck%has_static) then
+    if (deck%is_static()) then
       call append(lines, to_text(deck%stepping%static_steps)//' load steps'//min_time(deck, model_size, &
         deck%stepping%static_steps*tangents_of_load_step*factor_over_solve, &
         deck%stepping%static_steps*tangents_of_load_step))

@@ -18,9 +18,7 @@ contains
     !> Such as time 0.001, load factor 0.5, or 0.5 of the run
     character(len=:), allocatable :: words
 
-    words = 'time '//rounded_text(time)
-    if (.not. deck%has_static) return
-    words = 'load factor '//rounded_text(time)
-    if (deck%stepping%dissipation > 0) words = rounded_text(time)//' of the run'
+    words = deck%progress_name()//' '//rounded_text(time)
+    if (deck%is_static() .and. deck%stepping%dissipation > 0) words = rounded_text(time)//' of the run'
   end function moment
 end module run_moments

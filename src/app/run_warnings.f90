@@ -18,7 +18,6 @@ module run_warnings
                          warning_slopes, &
                          warning_steps, warning_torn
   use run_moments, only: moment
-  use setup_scales, only: has_impact_velocity
   use short_numbers, only: short_text
   use states, only: state_t
   use stepping_parameters, only: is_explicit
@@ -88,7 +87,7 @@ contains
     type(energy_watch_t), intent(inout) :: watch
     !> One sentence each; empty: nothing new
     type(line_t), allocatable, intent(out) :: warnings(:)
-    real(wp) :: amplitude, thickness
+    real(wp) :: thickness
     integer :: zone
     logical :: alarms(3)
 
@@ -110,15 +109,9 @@ contains
     if (.not. record%has_warned(warning_hole, 0) .and. deck%has_ply_damage .and. now%force > 0) then
       if (has_hole(model, now)) call add_warning(warning_hole, 0)
     end if
-    amplitude = 1
-    if (deck%has_static) then
-      amplitude = now%time
-    else if (deck%has_pressure .and. .not. deck%has_impactor) then
-      amplitude = deck%pressure%amplitude(now%time)
-    end if
-    alarms = watch%check(now%ledger, now%interfaces%unreleased(model), amplitude, deck%has_static)
+    alarms = watch%check(now%ledger, now%interfaces%unreleased(model), deck%load_level(now%time), deck%is_static())
     call record%note_scaled(now%ledger%scaled, watch%largest)
-    if (has_impact_velocity(deck%setup_t) .or. now%time > slow_start*deck%stepping%time%end) then
+    if (deck%is_impact() .or. now%time > slow_start*deck%stepping%time%end) then
       if (record%scaled_energy > max_scaled*watch%largest) call add_warning(warning_scaled, 0)
     end if
     if (is_slow_motion(deck) .and. now%time > slow_start*deck%stepping%time%end) then
@@ -147,7 +140,7 @@ contains
     type(deck_t), intent(in) :: deck
 
     is_slow_motion = .false.
-    if (deck%has_static .or. deck%has_pressure .or. has_impact_velocity(deck%setup_t)) return
+    if (deck%is_static() .or. deck%has_pressure .or. deck%is_impact()) return
     is_slow_motion = deck%impactor%travel > 0
     if (allocated(deck%lines)) is_slow_motion = is_slow_motion .or. &
       any(deck%lines%prescribed .and. deck%lines%history == line_ramp .and. abs(deck%lines%value) > 0)
@@ -273,7 +266,7 @@ contains
       !> The sentence
       character(len=:), allocatable :: words
 
-      if (deck%has_static) then
+      if (deck%is_static()) then
         words = 'Load steps have '//what//' more than '//short_text(100*energy_tolerance)//' % of the energy by '// &
           at// &
                 ' (energy_algorithmic): take more steps, unless failures or snap-through release it as kinetic energy.'

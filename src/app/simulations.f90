@@ -245,7 +245,7 @@ contains
     class(simulation_t), intent(in) :: self
 
     end_of = 1
-    if (.not. self%deck%has_static) end_of = end_of_run(self%deck%stepping, self%record%contact_end)
+    if (.not. self%deck%is_static()) end_of = end_of_run(self%deck%stepping, self%record%contact_end)
   end function end_of
 
   !> Steps until the end, or until a queue's signal or the wall-clock time ends the run.
@@ -257,7 +257,7 @@ contains
     real(wp) :: event, closest, begun
 
     call self%timers%stop('set-up')
-    closest = self%stepper%smallest_step(self%model)
+    closest = self%stepper%smallest_step()
     do while (self%stepper%now%time < end_of(self))
       event = next_event([self%history_clock, self%fields_clock, self%checkpoint_clock], end_of(self), closest)
       begun = wall_time()
@@ -314,7 +314,7 @@ contains
     fields_due = .false.
     checkpoint_due = .false.
     if (at_event) then
-      closest = self%stepper%smallest_step(self%model)
+      closest = self%stepper%smallest_step()
       if (self%history_clock%strikes_at(self%stepper%now%time, closest)) row_due = .true.
       fields_due = self%fields_clock%strikes_at(self%stepper%now%time, closest)
       ! The last fields are those of the state that the summary is about.

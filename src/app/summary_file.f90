@@ -61,16 +61,16 @@ contains
     call json%put('code', ending%code)
     call json%put('message', ending%message)
     call json%close()
-    call json%put(trim(merge('load_factor_reached', 'time_reached       ', deck%has_static)), shown_time(record%time))
+    call json%put(trim(merge('load_factor_reached', 'time_reached       ', deck%is_static())), shown_time(record%time))
     call json%put('accepted_steps', stepper%now%step)
-    if (deck%has_impactor .and. .not. deck%has_static) call put_impact(json, stepper%now, record, figures)
+    if (deck%moves_impactor()) call put_impact(json, stepper%now, record, figures)
     call json%put('largest_deflection', record%deflection)
     call json%put('largest_deflection_at', shown_time(record%deflection_time))
     if (record%compression%strength > 0) then
       call put_compression(json, record%compression, deck%gauges)
       call put_collapse(json, record, figures, deck%delaminations%below_ply)
     end if
-    if (deck%has_impactor .and. deck%has_static) then
+    if (deck%presses_impactor()) then
       call json%put('peak_force', record%peak_force)
       call json%put('peak_force_at', shown_time(record%peak_time))
     end if
@@ -163,7 +163,7 @@ contains
     !> The state reached
     type(state_t), intent(in) :: now
 
-    if (deck%has_impactor .and. .not. deck%has_static) call put_impact_energies(json, deck, now)
+    if (deck%moves_impactor()) call put_impact_energies(json, deck, now)
     associate (ledger => now%ledger)
       call json%put('work_external', ledger%external_work)
       call json%put('energy_kinetic', ledger%kinetic)

@@ -39,7 +39,7 @@ contains
     type(line_t), allocatable :: lines(:)
     logical :: struck
 
-    struck = deck%has_impactor .and. .not. (deck%has_static .or. deck%impactor%travel > 0)
+    struck = deck%moves_impactor() .and. .not. deck%impactor%travel > 0
     if (deck%units == '') call append(lines, 'Summary, in the units of the deck:')
     if (deck%units /= '') call append(lines, 'Summary, in the units of the deck, '//deck%units//':')
     if (struck) then

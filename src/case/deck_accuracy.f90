@@ -13,7 +13,7 @@ module deck_accuracy
   use output_deck, only: output_group, key_fields_every
   use elastic_impacts, only: elastic_impact_t
   use setup_elastic_impacts, only: setup_elastic_impact_t, start_elastic_impact, contact_end, largest_step, largest_cell
-  use setup_scales, only: setup_scales_t, scales_of, contact_side, has_impact_velocity
+  use setup_scales, only: setup_scales_t, scales_of, contact_side
   use short_numbers, only: short_text
   use stepping_parameters, only: is_explicit, past_contact
   use text, only: line_t, append, to_text
@@ -87,7 +87,7 @@ contains
     if (problems%errors() > 0) return
     if (.not. allocated(deck%reasons)) allocate (deck%reasons(0))
     scales = scales_of(deck%setup_t)
-    if (has_impact_velocity(deck%setup_t) .and. scales%area_mass > 0) then
+    if (deck%is_impact() .and. scales%area_mass > 0) then
       call choose_for_impact(deck, scales, problems)
     else
       call choose_for_pressure(deck, scales, problems)
@@ -167,7 +167,7 @@ contains
 
     if (.not. deck%settings%is_given(mesh_group, key_elements)) &
       call choose_elements(deck, part_of_side*minval(deck%plate%length)*deck%accuracy**0.25_wp, scales, problems)
-    if (deck%has_static) return
+    if (deck%is_static()) return
     if (.not. deck%settings%is_given(time_group, key_end)) then
       call problems%error(deck%settings%line_of_group(time_group), time_group, key_end, '&'//time_group//' '// &
                           key_end//' is missing; &case accuracy chooses it where an impactor comes with a velocity.', 1)

@@ -15,7 +15,7 @@ module deck_central_differences
   use elastic_impacts, only: elastic_impact_t
   use plate_options, only: mass_lumped
   use setup_elastic_impacts, only: contact_end, start_elastic_impact
-  use setup_scales, only: has_impact_velocity, scales_of, setup_scales_t
+  use setup_scales, only: scales_of, setup_scales_t
   use short_numbers, only: short_text
   use stepping_parameters, only: past_contact
   use text, only: append, to_text
@@ -73,7 +73,7 @@ contains
 
     deck%stepping%time%follows_contact = .true.
     if (deck%settings%is_known(time_group, key_end)) return
-    if (.not. (has_impact_velocity(deck%setup_t) .and. scales%area_mass > 0)) then
+    if (.not. (deck%is_impact() .and. scales%area_mass > 0)) then
       if (.not. problems%concern(time_group, key_end)) &
         call problems%error(deck%settings%line_of_group(time_group), time_group, key_end, '&'//time_group//' '// &
                             key_end//' is missing; it follows from the contact only where an impactor comes with a '// &

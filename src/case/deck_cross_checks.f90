@@ -43,7 +43,7 @@ contains
     type(problems_t), intent(inout) :: problems
 
     call check_loads(deck, problems)
-    if (deck%has_static) then
+    if (deck%is_static()) then
       call check_static(deck, problems)
     else
       call check_transient(deck, problems)
@@ -62,14 +62,14 @@ contains
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
 
-    if (deck%has_static .and. deck%has_impactor) then
+    if (deck%presses_impactor()) then
       call check_travel(deck, problems)
     else if (deck%has_impactor .and. deck%settings%is_given(impactor_group, key_travel)) then
       call check_travel_in_time(deck, problems)
-    else if (deck%has_static .and. .not. (deck%has_pressure .or. deck%has_thermal .or. loads(deck%lines) .or. &
+    else if (deck%is_static() .and. .not. (deck%has_pressure .or. deck%has_thermal .or. loads(deck%lines) .or. &
              problems%concern(pressure_group) .or. problems%concern(line_group))) then
       call report(deck%settings, problems, static_group, '', 'there is no load; give &pressure, or a &line with one.')
-    else if (.not. (deck%has_static .or. deck%has_impactor .or. deck%has_pressure .or. deck%has_thermal .or. &
+    else if (.not. (deck%is_static() .or. deck%has_impactor .or. deck%has_pressure .or. deck%has_thermal .or. &
                     deck%inherits .or. loads(deck%lines) .or. problems%concern(line_group) .or. &
                     problems%concern(static_group) .or. problems%concern(impactor_group) .or. &
                     problems%concern(pressure_group))) then
@@ -223,7 +223,7 @@ contains
           are_clear(s, problems, indentation_group, key_k) .and. are_clear(s, problems, impactor_group, key_radius)) &
         call report(s, problems, impactor_group, key_radius, &
                   'is missing; give it, or the contact stiffness &indentation k.')
-      if (deck%has_static .or. deck%impactor%travel > 0) return
+      if (deck%is_static() .or. deck%impactor%travel > 0) return
       if (deck%impactor%velocity <= 0 .and. deck%impactor%gravity <= 0 .and. .not. deck%has_pressure .and. &
           .not. problems%concern(pressure_group) .and. &
           are_clear(s, problems, impactor_group, keys_of_motion(s)//' '//key_gravity)) &

@@ -1,6 +1,7 @@
 !> Reports keys without effect because the group that uses them is missing.
 module deck_idle_keys
   use adapt_deck, only: adapt_group
+  use controls_deck, only: controls_group
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
   use deck_remarks, only: remark, remark_idle
@@ -31,12 +32,13 @@ contains
       call check_material(deck, place, problems)
     end do
     associate (s => deck%settings)
-      if (.not. (deck%stepping%adapt%on .or. deck%has_static .or. is_explicit(deck%stepping)) .and. deck%has_time) &
+      if (s%has_group(controls_group)) call remark(s, problems, controls_group, '', 'is for studies of the iteration.')
+      if (.not. (deck%stepping%adapt%on .or. deck%is_static() .or. is_explicit(deck%stepping)) .and. deck%has_time) &
         call remark_idle(s, problems, time_group, key_longest_step, 'has no effect without &'//adapt_group// &
                          ', as every step has the length of step.')
       if (deck%kinematics == kinematics_linear) &
         call remark_idle(s, problems, plate_group, key_imperfection, 'has no effect with kinematics = ''linear''.')
-      if (deck%has_static) then
+      if (deck%is_static()) then
         call remark_idle(s, problems, impactor_group, key_rise, 'has no effect on a static analysis.')
         call remark_idle(s, problems, output_group, key_force_filter, 'has no effect on a static analysis.')
       else if (.not. s%is_given(impactor_group, key_travel)) then

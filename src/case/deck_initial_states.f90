@@ -43,7 +43,7 @@ contains
         call report(s, problems, time_group, key_settle, 'leaves no time for the load; allowed: less than end = '// &
                   to_text(deck%stepping%time%end)//'.')
       if (.not. deck%inherits) return
-      if (deck%has_static) then
+      if (deck%is_static()) then
         call report(s, problems, static_group, '', &
                     'load steps do not begin from a state of another run; give &time '// &
                   'with integrator = ''central_difference'', or leave &initial_state out.')

@@ -41,7 +41,7 @@ contains
     character(len=:), allocatable :: softening
 
     softening = ''
-    if (deck%has_static .or. .not. deck%has_time) return
+    if (deck%is_static() .or. .not. deck%has_time) return
     if (any(deck%delaminations%law == law_front)) return
     if (deck%settings%is_given(mesh_group, key_mass) .and. &
         deck%settings%text_of(mesh_group, key_mass) == 'consistent') return

@@ -2,6 +2,7 @@
 module deck_reader
   use adapt_deck, only: adapt_group, fill_adapt
   use case_deck, only: fill_case, fill_claims, has_accuracy
+  use controls_deck, only: fill_controls
   use deck_accuracy, only: check_left_out, choose_by_accuracy
   use deck_contents, only: deck_t
   use deck_crack_bands, only: check_crack_bands
@@ -41,6 +42,7 @@ module deck_reader
   use initial_state_deck, only: fill_initial_state, initial_state_group
   use kinds, only: wp
   use laminate_deck, only: fill_laminate
+  use load_cases, only: analysis_by_load_steps
   use line_deck, only: fill_lines, check_lines
   use delamination_parameters, only: law_cohesive, law_front
   use linear_solver_deck, only: check_petsc_options, fill_linear_solver
@@ -150,11 +152,11 @@ contains
     deck%has_indentation = deck%settings%has_group(indentation_group)
     deck%has_pressure = deck%settings%has_group(pressure_group)
     deck%has_thermal = deck%settings%has_group(thermal_group)
-    deck%has_static = deck%settings%has_group(static_group)
+    if (deck%settings%has_group(static_group)) deck%analysis = analysis_by_load_steps
     deck%inherits = deck%settings%has_group(initial_state_group)
     deck%has_ply_damage = deck%settings%has_group(ply_damage_group)
     deck%has_time = deck%settings%has_group(time_group) .or. &
-                    has_accuracy(deck%settings) .and. .not. deck%has_static
+                    has_accuracy(deck%settings) .and. .not. deck%is_static()
     if (.not. deck%has_time) call deck%settings%set_aside(time_group)
     deck%has_adapt = deck%settings%has_group(adapt_group)
   end subroutine note_groups
@@ -245,7 +247,7 @@ contains
     if (.not. deck%has_impactor) deck%load_start = deck%stepping%central%settle
     if (deck%has_time) deck%ramp_time = deck%stepping%time%end - deck%load_start
     call fill_lines(deck%settings, merge(deck%ramp_time, 0.0_wp, deck%has_time), deck%lines)
-    if (deck%has_static) call fill_static(deck%settings, deck%stepping%static_steps, deck%stepping%dissipation)
+    if (deck%is_static()) call fill_static(deck%settings, deck%stepping%static_steps, deck%stepping%dissipation)
   end subroutine fill_loads
 
   !> Default spectral radius at high frequency: released ties excite the highest frequencies of the mesh, softening laws
@@ -265,6 +267,7 @@ contains
     type(deck_t), intent(inout) :: deck
 
     call fill_equilibrium(deck%settings, deck%stepping%equilibrium)
+    call fill_controls(deck%settings, deck%stepping)
     call fill_linear_solver(deck%settings, deck%linear_solver)
     call fill_output(deck%settings, deck%output)
     call fill_gauges(deck%settings, deck%gauges)

@@ -48,7 +48,7 @@ contains
 
     if (is_explicit(deck%stepping)) then
       clause = ', '//to_text(deck%stepping%central%step_factor)//' of the stable step'
-    else if (deck%has_static) then
+    else if (deck%is_static()) then
       clause = ', '//to_text(deck%stepping%static_steps)//' load step(s)'
     else
       clause = ', steps of '//to_text(deck%stepping%time%step)

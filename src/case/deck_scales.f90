@@ -8,7 +8,7 @@ module deck_scales
   use kinds, only: wp
   use mesh_deck, only: mesh_group, key_core, key_elements, key_patch
   use setup_elastic_impacts, only: expected_scales_of
-  use setup_scales, only: setup_scales_t, scales_of, has_impact_velocity
+  use setup_scales, only: setup_scales_t, scales_of
   use short_numbers, only: short_text
   use stepping_parameters, only: is_explicit, expected_response_t
   use time_deck, only: time_group, key_step
@@ -39,7 +39,7 @@ contains
 
     if (problems%errors() > 0) return
     scales = scales_of(deck%setup_t)
-    if (has_impact_velocity(deck%setup_t) .and. .not. deck%has_static) then
+    if (deck%is_impact()) then
       step = deck%stepping%time%step
       if (is_explicit(deck%stepping)) step = max(step, scales%contact_time/fine_steps)
       deck%expected = expected_scales_of(deck%setup_t, scales, step, deck%stepping%time%end, &

@@ -47,7 +47,7 @@ contains
     !> The deck
     type(deck_t), intent(in) :: deck
 
-    is_pressed = deck%has_static .and. deck%impactor%travel > 0
+    is_pressed = deck%presses_impactor() .and. deck%impactor%travel > 0
   end function is_pressed
 
   !> The keys to write.

@@ -3,6 +3,7 @@
 module deck_table
   use adapt_deck, only: adapt_group_row, adapt_rows
   use case_deck, only: case_group_row, case_rows
+  use controls_deck, only: controls_group_row, controls_rows
   use deck_vocabulary, only: vocabulary_t, load_vocabulary, group_row_length, key_row_length
   use delamination_deck, only: delamination_group_row, delamination_rows
   use element_deck, only: element_rows, kinematics_rows
@@ -33,7 +34,8 @@ module deck_table
     case_group_row, plate_group_row, support_group_row, mesh_group_row, material_group_row, laminate_group_row, &
     impactor_group_row, indentation_group_row, pressure_group_row, line_group_row, thermal_group_row, &
     initial_state_group_row, static_group_row, ply_damage_group_row, &
-    delamination_group_row, time_group_row, adapt_group_row, solver_group_row, gauge_group_row, output_group_row]
+    delamination_group_row, time_group_row, adapt_group_row, solver_group_row, gauge_group_row, output_group_row, &
+    controls_group_row]
 
   !> Keys, those of a group together.
   character(len=*), parameter :: key_rows(*) = [character(len=key_row_length) :: &
@@ -41,7 +43,7 @@ module deck_table
     impactor_rows, indentation_rows, pressure_rows, line_rows, thermal_rows, initial_state_rows, static_rows, &
     ply_damage_rows, &
     delamination_rows, time_rows, &
-    adapt_rows, equilibrium_rows, linear_solver_rows, gauge_rows, output_rows]
+    adapt_rows, equilibrium_rows, linear_solver_rows, gauge_rows, output_rows, controls_rows]
 
 contains
 

@@ -73,8 +73,8 @@ contains
       if (fits == '') cycle
       call report_unit(deck, problems, list(i), system, 'is odd', fits)
     end do
-    if (deck%has_time .and. .not. deck%has_static) call check_times(deck, system, problems)
-    if (deck%has_impactor .and. .not. deck%has_static) call check_ball(deck, system, problems)
+    if (deck%has_time .and. .not. deck%is_static()) call check_times(deck, system, problems)
+    if (deck%moves_impactor()) call check_ball(deck, system, problems)
   end subroutine check_units
 
   !> Adds a warning.
@@ -124,7 +124,7 @@ contains
       end if
     end do
     if (.not. deck%has_impactor) return
-    if (.not. deck%has_static) then
+    if (deck%moves_impactor()) then
       call add(of_mass, deck%impactor%mass, impactor_group, key_mass, 1)
       call add(of_velocity, deck%impactor%velocity, impactor_group, key_velocity, 1)
     end if

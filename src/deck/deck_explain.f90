@@ -53,6 +53,7 @@ contains
     call append(lines, 'A deck is a file of Fortran namelists. Its groups:')
     do i = 1, size(vocabulary%groups)
       associate (group => vocabulary%groups(i))
+        if (group%presence == 'hidden') cycle
         call append(lines, '  &'//group%name//repeat(' ', max(1, 14 - len(group%name)))//'('// &
                     presence_in_words(group)//') '//group%meaning)
       end associate

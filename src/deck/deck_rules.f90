@@ -185,7 +185,7 @@ contains
       if (place > 0) return
       if (entry%presence == 'settings') then
         call resolve_keys(scan, 0, 1, vocabulary, entry%name, settings, problems)
-      else if (all(entry%presence /= [character(len=8) :: 'optional', 'several']) .and. &
+      else if (all(entry%presence /= [character(len=8) :: 'optional', 'several', 'hidden']) .and. &
                .not. problems%concern(entry%name)) then
         ! Without any group the deck was already reported to have none.
         if (size(scan%blocks) > 0) call problems%error(0, entry%name, '', &

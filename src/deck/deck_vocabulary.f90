@@ -13,7 +13,8 @@ module deck_vocabulary
     !> Name without &
     character(len=:), allocatable :: name
     !> required; repeatable: required and may come again; settings: in effect even if left out; optional: physics that
-    !> is only modelled if the group is there; several: optional and may come again
+    !> is only modelled if the group is there; several: optional and may come again; hidden: optional, for studies, and
+    !> in no list of groups
     character(len=:), allocatable :: presence
     !> One sentence
     character(len=:), allocatable :: meaning
@@ -135,7 +136,7 @@ contains
 
     allocate (names(0))
     do i = 1, size(self%groups)
-      call append(names, self%groups(i)%name)
+      if (self%groups(i)%presence /= 'hidden') call append(names, self%groups(i)%name)
     end do
   end function group_names
 

@@ -6,9 +6,22 @@ module benzeggagh_kenane
   use kinds, only: wp
   implicit none
   private
-  public :: critical_release_rate, release_ratio
+  public :: toughness_gain, critical_release_rate, release_ratio
 
 contains
+
+  !> Toughness of a mixture of modes less that of opening, (G_IIc - G_Ic) B**eta. Fronts and cohesive laws have it from
+  !> here.
+  elemental real(wp) function toughness_gain(opening, shear, exponent, share) result(gain)
+    !> Toughness of pure opening and of pure shear
+    real(wp), intent(in) :: opening, shear
+    !> Exponent eta
+    real(wp), intent(in) :: exponent
+    !> Share B of shear in the energy
+    real(wp), intent(in) :: share
+
+    gain = share**exponent*(shear - opening)
+  end function toughness_gain
 
   !> Critical energy release rate of a mixture of modes: G_c, or G_Ic + (G_IIc - G_Ic) (G_shear/G)**eta.
   pure real(wp) function critical_release_rate(delamination, modes) result(critical)
@@ -23,8 +36,9 @@ contains
     if (critical > 0) return
     shear = 0
     if (sum(modes) > 0) shear = sum(modes(2:3))/sum(modes)
-    critical = delamination%toughness_opening + &
-               (delamination%toughness_shear - delamination%toughness_opening)*shear**delamination%mixing_exponent
+    associate (d => delamination)
+      critical = d%toughness_opening + toughness_gain(d%toughness_opening, d%toughness_shear, d%mixing_exponent, shear)
+    end associate
   end function critical_release_rate
 
   !> Energy release rate over the critical one: growth above 1.

@@ -3,6 +3,7 @@
 !> Jumps, tractions and stiffnesses stand in the order: two shears along the interface, opening. Closing faces are
 !> left to contact: a negative opening counts as none. Jumps of any finite size are met without overflow.
 module cohesive_points
+  use benzeggagh_kenane, only: toughness_gain
   use cohesive_laws, only: cohesive_law_t, stiffness_of
   use face_friction, only: sliding_t
   use kinds, only: wp
@@ -88,7 +89,8 @@ contains
     share = shear/energy
     ! A power takes longer than all the rest.
     if (share > 0 .and. abs(law%toughness_shear - law%toughness_opening) > 0) &
-      toughness = toughness*(1 + (law%toughness_shear/law%toughness_opening - 1)*share**law%mixing_exponent)
+      toughness = toughness*(1 + toughness_gain(1.0_wp, law%toughness_shear/law%toughness_opening, &
+                                                law%mixing_exponent, share))
     unit_ratio = sqrt(law%failure_ratio*energy/toughness)
     separation%size = size
     separation%unit = [s1, s2, n]

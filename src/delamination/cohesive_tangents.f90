@@ -1,6 +1,7 @@
 !> Stiffness of a point of a cohesive interface: the derivative of its traction, and the diagonal that a factored
 !> operator holds for it.
 module cohesive_tangents
+  use benzeggagh_kenane, only: toughness_gain
   use cohesive_laws, only: cohesive_law_t, stiffness_of
   use cohesive_points, only: cohesive_point_t, separation_t, separation_of, grown_damage, point_class, &
                              share_growth, point_growing, point_failed
@@ -96,7 +97,7 @@ contains
 
     slopes = 0
     if (.not. separation%shear_share > 0) return
-    mixture = separation%shear_share**law%mixing_exponent*(law%toughness_shear - law%toughness_opening)
+    mixture = toughness_gain(law%toughness_opening, law%toughness_shear, law%mixing_exponent, separation%shear_share)
     strengthening = separation%toughness/(law%toughness_opening + mixture)
     slopes = -stiffness_of(law)*separation%unit
     slopes(1:2) = slopes(1:2) + law%stiffness_shear*separation%unit(1:2)/separation%shear_share

@@ -6,13 +6,12 @@ module dynamic_steps
   use errors, only: error_t, exit_convergence
   use impactor_integrators, only: advance
   use tan_sun_indentation, only: commit_indentation
-  use stepping_parameters, only: equilibrium_t
   use newmark_integrators, only: plate_integrator_t
   use models, only: model_t
+  use newton_iterations, only: newton_iteration_t
   use states, only: state_t
   use step_problems, only: step_problem_t
   use impact_coupling, only: impact_coupling_t, begin_coupling
-  use tangent_operators, only: tangent_operator_t
   use residual_norms, only: relative_residual
   use dynamic_tangents, only: find_tangent, add_force_slope, is_exact
   use krylov_corrections, only: find_krylov_correction
@@ -81,39 +80,36 @@ contains
   !> Predictor. With an exact operator any predictor will do; the displacement is kept, which saves element loops.
   !> Otherwise the velocity is kept: a predictor by the acceleration adds energy where contact is stiff. Closed contacts
   !> stay closed, and tied jumps keep their values.
-  subroutine begin(self, model, operator, old, new)
+  subroutine begin(self, at)
     !> The problem
     class(dynamic_step_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
-    !> The factored operator, with its record of iterations
-    type(tangent_operator_t), intent(inout) :: operator
-    !> State at the start
-    type(state_t), intent(in) :: old
-    !> State at the end
-    type(state_t), intent(inout) :: new
+    !> The iteration, before its first residual
+    type(newton_iteration_t), intent(inout) :: at
 
-    new%time = old%time + self%step
-    new%load_factor = new%time/model%setup%ramp_time
-    call new%interfaces%ties%ramp_down(model, self%step)
-    self%patch_square = sum((model%patch(model%patch_points)/model%mesh%multiplicity)**2)
-    if (model%setup%has_impactor) self%coupling = begin_coupling(model, self%integrator, old, self%step)
-    self%keeps_velocity = model%setup%has_impactor .and. .not. (allocated(self%guess) .or. model%has_bonds)
-    self%keeps_displacement = self%keeps_velocity &
-      .and. is_exact(model, operator, self%integrator%mass_factor(self%step))
-    self%skips_elements = self%keeps_displacement .and. modulo(old%step + 1, between_checks) > 0 &
-      .and. .not. (model%map%layered .or. &
-      allocated(model%rig%held_by) .or. allocated(model%pressure) .or. size(model%lines) > 0)
-    if (self%skips_elements) self%skips_elements = self%coupling%forces_agree() &
-      .and. .not. any(operator%numbering%leader > 0)
-    call predict(self, model, old, new)
-    if (.not. self%keeps_velocity) call self%complete(old, new)
-    new%iterations = 0
-    new%force_iterations = 0
-    new%contact_iterations = 0
-    self%correction_is_costly = .false.
-    self%uses_element_tangents = .false.
-    self%searches_lines = allocated(new%interfaces%cohesive%cohesive)
-    if (.not. self%keeps_displacement) call self%find_force(model, old, new)
+    associate (model => at%model, operator => at%operator, old => at%old, new => at%new)
+      new%time = old%time + self%step
+      new%load_factor = new%time/model%setup%ramp_time
+      call new%interfaces%ties%ramp_down(model, self%step)
+      self%patch_square = sum((model%contact%weights(model%contact%points)/model%mesh%multiplicity)**2)
+      if (model%setup%has_impactor) self%coupling = begin_coupling(model, self%integrator, old, self%step)
+      self%keeps_velocity = model%setup%has_impactor .and. .not. (allocated(self%guess) .or. model%has_bonds)
+      self%keeps_displacement = self%keeps_velocity &
+        .and. is_exact(model, operator, self%integrator%mass_factor(self%step))
+      self%skips_elements = self%keeps_displacement .and. modulo(old%step + 1, between_checks) > 0 &
+        .and. .not. (model%map%layered .or. &
+        allocated(model%rig%held_by) .or. allocated(model%pressure) .or. size(model%lines) > 0)
+      if (self%skips_elements) self%skips_elements = self%coupling%forces_agree() &
+        .and. .not. any(operator%numbering%leader > 0)
+      call predict(self, model, old, new)
+      if (.not. self%keeps_velocity) call self%complete(at)
+      new%iterations = 0
+      new%force_iterations = 0
+      new%contact_iterations = 0
+      self%correction_is_costly = .false.
+      self%uses_element_tangents = .false.
+      self%searches_lines = allocated(new%interfaces%cohesive%cohesive)
+      if (.not. self%keeps_displacement) call self%find_force(at)
+    end associate
   end subroutine begin
 
   !> Predictor of the displacement.
@@ -139,56 +135,51 @@ contains
   end subroutine predict
 
   !> Residual of the equation of motion (Eq. 1 with the exact internal force).
-  subroutine find_residual(self, model, old, new, residual, energy)
+  subroutine find_residual(self, at)
     !> The problem
     class(dynamic_step_t), intent(in) :: self
-    type(model_t), intent(in) :: model
-    !> State at the start
-    type(state_t), intent(in) :: old
-    !> State at the end; receives internal and inertia forces
-    type(state_t), intent(inout) :: new
-    !> Residual at the owned points, (5, points)
-    real(wp), intent(inout) :: residual(:, :)
-    !> Strain energy of this rank's elements
-    real(wp), intent(out) :: energy
+    !> The iteration; receives residual and energy
+    type(newton_iteration_t), intent(inout) :: at
     real(wp), allocatable :: lines(:, :), lines_before(:, :)
     real(wp) :: amplitude
 
-    associate (m => self%integrator%alpha_m, f => self%integrator%alpha_f)
-      if (self%keeps_displacement .and. new%iterations == 0) then
-        energy = 0
-        call weight_start_forces(size(residual), [(1 - m)/(self%integrator%beta*self%step), &
-          (1 - m)*0.5_wp/self%integrator%beta - 1], old%motion%momentum, old%motion%inertia, old%motion%internal, &
-                         residual)
-      else if (self%skips_elements .and. new%iterations == 1) then
-        call find_internal_from_motion(self, model, old, new, energy)
-        residual = 0
-        return
-      else
-        call new%find_internal(model, old, energy)
-        if (self%keeps_velocity .and. new%iterations == 0) then
-          ! Newmark's acceleration with the velocity of the start.
-          new%motion%inertia = (1 - 0.5_wp/self%integrator%beta)*old%motion%inertia
+    associate (model => at%model, old => at%old, new => at%new, residual => at%residual)
+      associate (m => self%integrator%alpha_m, f => self%integrator%alpha_f)
+        if (self%keeps_displacement .and. new%iterations == 0) then
+          at%energy = 0
+          call weight_start_forces(size(residual), [(1 - m)/(self%integrator%beta*self%step), &
+            (1 - m)*0.5_wp/self%integrator%beta - 1], old%motion%momentum, old%motion%inertia, old%motion%internal, &
+                           residual)
+        else if (self%skips_elements .and. new%iterations == 1) then
+          call find_internal_from_motion(self, model, old, new, at%energy)
+          residual = 0
+          return
         else
-          call model%inertia(new%motion%acceleration, new%motion%inertia)
+          call new%find_internal(model, old, at%energy)
+          if (self%keeps_velocity .and. new%iterations == 0) then
+            ! Newmark's acceleration with the velocity of the start.
+            new%motion%inertia = (1 - 0.5_wp/self%integrator%beta)*old%motion%inertia
+          else
+            call model%inertia(new%motion%acceleration, new%motion%inertia)
+          end if
+          call weight_forces(size(residual), [1 - m, m, 1 - f, f], new%motion%inertia, old%motion%inertia, &
+                             new%motion%internal, &
+                     old%motion%internal, residual)
         end if
-        call weight_forces(size(residual), [1 - m, m, 1 - f, f], new%motion%inertia, old%motion%inertia, &
-                           new%motion%internal, &
-                   old%motion%internal, residual)
-      end if
-      call model%add_contact_force(self%coupling%load(), residual)
-      if (size(model%lines) > 0) then
-        allocate (lines, lines_before, mold=residual)
-        call model%line_forces(new%motion%displacement, new%load_factor, lines, prescribed=.false.)
-        call model%line_forces(old%motion%displacement, old%load_factor, lines_before, prescribed=.false.)
-        residual = residual + (1 - f)*lines + f*lines_before
-        ! Prescribed lines act with a constant force over the step.
-        call model%line_forces(new%motion%displacement, new%load_factor, lines, prescribed=.true.)
-        residual = residual + lines
-      end if
-      if (.not. allocated(model%pressure)) return
-      amplitude = (1 - f)*model%setup%pressure%amplitude(new%time) + f*model%setup%pressure%amplitude(old%time)
-      residual(3, :) = residual(3, :) + amplitude*model%pressure(3, :)
+        call model%add_contact_force(self%coupling%load(), residual)
+        if (size(model%lines) > 0) then
+          allocate (lines, lines_before, mold=residual)
+          call model%line_forces(new%motion%displacement, new%load_factor, lines, prescribed=.false.)
+          call model%line_forces(old%motion%displacement, old%load_factor, lines_before, prescribed=.false.)
+          residual = residual + (1 - f)*lines + f*lines_before
+          ! Prescribed lines act with a constant force over the step.
+          call model%line_forces(new%motion%displacement, new%load_factor, lines, prescribed=.true.)
+          residual = residual + lines
+        end if
+        if (.not. allocated(model%pressure)) return
+        amplitude = (1 - f)*model%setup%pressure%amplitude(new%time) + f*model%setup%pressure%amplitude(old%time)
+        residual(3, :) = residual(3, :) + amplitude*model%pressure(3, :)
+      end associate
     end associate
   end subroutine find_residual
 
@@ -216,151 +207,128 @@ contains
   end subroutine find_internal_from_motion
 
   !> Residual relative to internal, inertia and impact forces.
-  real(wp) function residual_norm(self, model, equilibrium, operator, residual, new)
+  real(wp) function residual_norm(self, at)
     !> The problem
     class(dynamic_step_t), intent(in) :: self
-    type(model_t), intent(in) :: model
-    !> Required convergence
-    type(equilibrium_t), intent(in) :: equilibrium
-    !> The factored operator
-    type(tangent_operator_t), intent(in) :: operator
-    !> Residual at the owned points, (5, points)
-    real(wp), intent(in) :: residual(:, :)
-    !> State at the end; stores its largest forces
-    type(state_t), intent(inout) :: new
+    !> The iteration; its state stores its largest forces
+    type(newton_iteration_t), intent(inout) :: at
 
-    if (self%keeps_displacement .and. new%iterations == 0) then
-      ! At least one iteration is needed.
-      residual_norm = huge(residual_norm)
-      return
-    else if (self%skips_elements .and. new%iterations == 1) then
-      residual_norm = 0
-      return
-    end if
-    residual_norm = relative_residual(model%communicator, operator%numbering, residual, new%motion%internal, &
-                                      new%motion%inertia, self%patch_square*self%coupling%load()**2, &
-                                      operator%diagonal, new%motion%displacement, &
-                                      self%may_stop(model, new, .false.), equilibrium%tolerance, model%thickness, &
-                                      new%largest_forces)
+    associate (model => at%model, operator => at%operator, new => at%new, equilibrium => at%equilibrium)
+      if (self%keeps_displacement .and. new%iterations == 0) then
+        ! At least one iteration is needed.
+        residual_norm = huge(residual_norm)
+        return
+      else if (self%skips_elements .and. new%iterations == 1) then
+        residual_norm = 0
+        return
+      end if
+      residual_norm = relative_residual(model%communicator, operator%numbering, at%residual, new%motion%internal, &
+                                        new%motion%inertia, self%patch_square*self%coupling%load()**2, &
+                                        operator%diagonal, new%motion%displacement, &
+                                        self%may_stop(at), equilibrium%tolerance, model%thickness, &
+                                        equilibrium%controls, new%largest_forces)
+    end associate
   end function residual_norm
 
   !> The force depends on the motion only within an iteration, so an impact needs one.
-  pure logical function may_stop(self, model, new, pressures_new)
+  pure logical function may_stop(self, at)
     !> The problem
     class(dynamic_step_t), intent(in) :: self
-    type(model_t), intent(in) :: model
-    !> State at the end
-    type(state_t), intent(in) :: new
-    !> True: contact has taken new pressures since the last correction
-    logical, intent(in) :: pressures_new
+    !> The iteration
+    type(newton_iteration_t), intent(in) :: at
 
-    may_stop = new%iterations > 0 .or. .not. model%setup%has_impactor
+    may_stop = at%new%iterations > 0 .or. .not. at%model%setup%has_impactor
   end function may_stop
 
   !> Solves for a correction by the tangent, and for the impactor's force.
-  subroutine find_correction(self, model, operator, old, new, residual, tolerance, correction, negative_curvature, &
-                             error)
+  subroutine find_correction(self, at, tolerance, error)
     !> The problem
     class(dynamic_step_t), intent(inout) :: self
-    !> Mesh, numbering and interfaces of the plate
-    type(model_t), target, intent(in) :: model
-    !> The factored operator
-    type(tangent_operator_t), target, intent(inout) :: operator
-    !> State at the start
-    type(state_t), intent(in) :: old
-    !> State at the end, before the correction
-    type(state_t), target, intent(inout) :: new
-    !> The residual at the owned points, (5, points)
-    real(wp), intent(in) :: residual(:, :)
+    !> The iteration; receives the correction
+    type(newton_iteration_t), intent(inout) :: at
     !> Required reduction of the residual
     real(wp), intent(in) :: tolerance
-    !> Correction of the displacement, (5, points)
-    real(wp), intent(inout) :: correction(:, :)
-    !> True: it is a direction of negative curvature of the tangent
-    logical, intent(out) :: negative_curvature
     !> Set if a solve fails or numbers are not finite
     type(error_t), allocatable, intent(inout) :: error
     type(tangent_product_t) :: tangent
     real(wp), allocatable :: diagonal(:, :)
     logical :: converged
 
-    negative_curvature = .false.
-    call find_tangent(model, operator, old, new, [self%integrator%stiffness_factor(), &
-                      self%integrator%mass_factor(self%step)], self%correction_is_costly, self%renewal, &
-                        self%uses_element_tangents, tangent, &
-                      diagonal, error)
-    if (allocated(error)) return
-    if (model%setup%has_impactor .and. .not. tangent%is_factored()) &
-      call add_force_slope(model, operator, self%coupling, old, new, tangent)
-    call find_krylov_correction(operator, model, tangent, diagonal, residual, tolerance, correction, error, &
-                                negative_curvature, converged)
-    if (allocated(error)) return
-    self%correction_is_costly = .not. converged
-    if (model%setup%has_impactor) &
-      call self%coupling%solve(model, operator, old, new, tangent%is_factored(), correction, error)
-    if (allocated(error)) error%code = exit_convergence
-    call new%interfaces%faces%hold(model, correction)
+    at%negative_curvature = .false.
+    associate (model => at%model, operator => at%operator, old => at%old, new => at%new)
+      call find_tangent(model, operator, old, new, [self%integrator%stiffness_factor(), &
+                        self%integrator%mass_factor(self%step)], self%correction_is_costly, self%renewal, &
+                          self%uses_element_tangents, tangent, &
+                        diagonal, error)
+      if (allocated(error)) return
+      if (model%setup%has_impactor .and. .not. tangent%is_factored()) &
+        call add_force_slope(model, operator, self%coupling, old, new, tangent)
+      call find_krylov_correction(operator, model, tangent, diagonal, at%residual, tolerance, at%correction, error, &
+                                  at%negative_curvature, converged)
+      if (allocated(error)) return
+      self%correction_is_costly = .not. converged
+      if (model%setup%has_impactor) &
+        call self%coupling%solve(model, operator, old, new, tangent%is_factored(), at%correction, error)
+      if (allocated(error)) error%code = exit_convergence
+      call new%interfaces%faces%hold(model, at%correction)
+    end associate
   end subroutine find_correction
 
   !> Finds the impactor's force for a displacement.
-  subroutine find_force(self, model, old, new)
+  subroutine find_force(self, at)
     !> The problem
     class(dynamic_step_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
-    !> State at the start
-    type(state_t), intent(in) :: old
-    !> State at the end, its displacement known
-    type(state_t), intent(inout) :: new
+    !> The iteration, the displacement of its state known
+    type(newton_iteration_t), intent(inout) :: at
     type(error_t), allocatable :: error
     integer :: iterations
 
-    if (.not. model%setup%has_impactor) return
-    new%patch_mean = model%contact_deflection(new%motion%displacement)
-    call self%coupling%find_force(model%setup%indentation, old%indentation, new%patch_mean, 0.0_wp, iterations, error)
-    new%force_iterations = new%force_iterations + iterations
+    associate (model => at%model, old => at%old, new => at%new)
+      if (.not. model%setup%has_impactor) return
+      new%patch_mean = model%contact_deflection(new%motion%displacement)
+      call self%coupling%find_force(model%setup%indentation, old%indentation, new%patch_mean, 0.0_wp, iterations, error)
+      new%force_iterations = new%force_iterations + iterations
+    end associate
   end subroutine find_force
 
   !> Velocity and acceleration at the end of the step.
-  subroutine complete(self, old, new)
+  subroutine complete(self, at)
     !> The problem
     class(dynamic_step_t), intent(in) :: self
-    !> State at the start
-    type(state_t), intent(in) :: old
-    !> State at the end
-    type(state_t), intent(inout) :: new
+    !> The iteration
+    type(newton_iteration_t), intent(inout) :: at
 
-    call self%integrator%complete(self%step, old%motion, new%motion%displacement, new%motion%velocity, &
-                                  new%motion%acceleration)
+    associate (old => at%old, new => at%new)
+      call self%integrator%complete(self%step, old%motion, new%motion%displacement, new%motion%velocity, &
+                                    new%motion%acceleration)
+    end associate
   end subroutine complete
 
   !> Completes an accepted step: impactor, indentation and ledger.
-  subroutine finish(self, model, old, energy, new)
+  subroutine finish(self, at)
     !> The problem
     class(dynamic_step_t), intent(in) :: self
-    type(model_t), intent(in) :: model
-    !> State at the start
-    type(state_t), intent(in) :: old
-    !> Strain energy of this rank's elements
-    real(wp), intent(in) :: energy
-    !> State at the end
-    type(state_t), intent(inout) :: new
+    !> The iteration; its state is completed
+    type(newton_iteration_t), intent(inout) :: at
     real(wp) :: work
 
-    call new%count_step(old)
-    new%deflection = model%deflection(new%motion%displacement)
-    new%patch_mean = model%contact_deflection(new%motion%displacement)
-    if (model%setup%has_impactor) then
-      new%impactor = advance(model%setup%impactor, old%impactor, self%step, self%coupling%unknown, &
-                             self%coupling%force_end)
-      new%force = self%coupling%force_end
-      call commit_indentation(model%setup%indentation, new%indentation, new%impactor%displacement - new%patch_mean)
-    end if
-    call model%profile%enter('energy ledger')
-    call book_step(model, self%integrator, old, self%step, self%coupling%load(), energy, new)
-    call model%profile%leave()
-    if (.not. has_moved_lines(model)) return
-    call move_lines(model, new%interfaces, new%time, new%motion, work)
-    new%ledger%kinetic = new%ledger%kinetic + work
-    new%ledger%external_work = new%ledger%external_work + work
+    associate (model => at%model, old => at%old, new => at%new)
+      call new%count_step(old)
+      new%deflection = model%deflection(new%motion%displacement)
+      new%patch_mean = model%contact_deflection(new%motion%displacement)
+      if (model%setup%has_impactor) then
+        new%impactor = advance(model%setup%impactor, old%impactor, self%step, self%coupling%unknown, &
+                               self%coupling%force_end)
+        new%force = self%coupling%force_end
+        call commit_indentation(model%setup%indentation, new%indentation, new%impactor%displacement - new%patch_mean)
+      end if
+      call model%profile%enter('energy ledger')
+      call book_step(model, self%integrator, old, self%step, self%coupling%load(), at%energy, new)
+      call model%profile%leave()
+      if (.not. has_moved_lines(model)) return
+      call move_lines(model, new%interfaces, new%time, new%motion, work)
+      new%ledger%kinetic = new%ledger%kinetic + work
+      new%ledger%external_work = new%ledger%external_work + work
+    end associate
   end subroutine finish
 end module dynamic_steps

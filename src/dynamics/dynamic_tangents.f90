@@ -102,8 +102,8 @@ contains
     type(tangent_product_t), intent(inout) :: tangent
     real(wp), allocatable :: push(:, :)
 
-    allocate (push(5, size(model%patch)), source=0.0_wp)
-    push(3, :) = model%patch/model%mesh%multiplicity
+    allocate (push(5, size(model%contact%weights)), source=0.0_wp)
+    push(3, :) = model%contact%weights/model%mesh%multiplicity
     allocate (tangent%pattern(operator%numbering%rows))
     call operator%numbering%gather(push, tangent%pattern)
     tangent%force_slope = coupling%slope(model%setup%indentation, old%indentation, &

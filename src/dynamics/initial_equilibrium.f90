@@ -11,6 +11,7 @@ module initial_equilibrium
   use line_motions, only: has_moved_lines, prescribe_lines, line_displacement, move_lines
   use models, only: model_t
   use residual_norms, only: relative_residual
+  use solution_controls, only: newton_controls_t
   use states, only: state_t
   use tangent_operators, only: tangent_operator_t
   implicit none
@@ -45,7 +46,7 @@ contains
       state%ledger%initial = state%ledger%initial + energy
       state%ledger%residual = energy
     end if
-    if (model%setup%has_static .or. .not. lines_precede(model)) return
+    if (.not. lines_precede(model)) return
     call equilibrate(model, operator, .true., state, error)
     if (allocated(error)) return
     state%ledger%external_work = state%ledger%strain + state%ledger%ply_damage - energy
@@ -63,7 +64,7 @@ contains
     type(model_t), intent(in) :: model
     integer :: i
 
-    lines_precede = any([(model%lines(i)%load%precedes(), i=1, size(model%lines))])
+    lines_precede = model%setup%has_inertia() .and. any([(model%lines(i)%load%precedes(), i=1, size(model%lines))])
   end function lines_precede
 
   !> Brings a plate at rest into equilibrium. Collective.
@@ -101,7 +102,7 @@ contains
       if (iteration == 0) suppressing = state%motion%internal
       if (relative_residual(model%communicator, operator%numbering, residual, suppressing, suppressing, force_square, &
                             operator%diagonal, state%motion%displacement, .true., tolerance, model%thickness, &
-                            largest) <= tolerance) exit
+                            newton_controls_t(), largest) <= tolerance) exit
       if (iteration == max_iterations) call fail(error, exit_convergence, &
         'No equilibrium at the start, under the residual stresses of &thermal or &line of history = ''fixed''.')
       if (.not. allocated(error)) call operator%renew(model, state%plies%stiffness, state%interfaces, &
@@ -173,7 +174,7 @@ contains
     type(model_t), intent(in) :: model
 
     factor = 0
-    if (model%setup%has_static) return
+    if (.not. model%setup%has_inertia()) return
     factor = negligible_mass*min(model%section%stiffness(13), model%section%stiffness(16))/model%section%mass(1) &
              *(pi/maxval(model%setup%plate%length))**4
   end function mass_factor

@@ -57,10 +57,12 @@ contains
     fields = 0
     associate (share => model%distribution)
       do i = 1, share%owned
-        if (allocated(model%nose)) then
-          fields(1:3, share%points(i)) = [model%nose%under(i), model%nose%beside(i), model%nose%rise(i)]
+        if (allocated(model%contact%nose)) then
+          associate (nose => model%contact%nose)
+            fields(1:3, share%points(i)) = [nose%under(i), nose%beside(i), nose%rise(i)]
+          end associate
         else
-          fields(1, share%points(i)) = model%patch(i)
+          fields(1, share%points(i)) = model%contact%weights(i)
         end if
         fields(4, share%points(i)) = i
       end do
@@ -79,8 +81,8 @@ contains
     self%beside = fields(2, reached)
     self%rise = fields(3, reached)
     self%weights = self%under
-    self%follows = allocated(model%nose)
-    if (self%follows) self%area = model%nose%area
+    self%follows = allocated(model%contact%nose)
+    if (self%follows) self%area = model%contact%nose%area
   end function create_struck_patch
 
   !> Deflections of the points and that of the struck point, the same on every rank: one message. Collective.

@@ -73,7 +73,7 @@ contains
     allocate (self%points(size(model%zone)))
     allocate (self%strength(size(model%zone)), source=1.0_wp)
     allocate (self%stiffness(3, size(model%zone)), source=0.0_wp)
-    if (model%setup%has_static) allocate (self%tangents(3, 3, size(model%zone)), source=0.0_wp)
+    if (.not. model%setup%has_inertia()) allocate (self%tangents(3, 3, size(model%zone)), source=0.0_wp)
     do i = 1, size(model%zone)
       if (model%zone(i) == 0) cycle
       self%cohesive(i) = model%setup%delaminations(model%zone(i))%law == law_cohesive

@@ -43,7 +43,7 @@ contains
         before = limit
       end associate
     end do
-    if (.not. model%setup%has_static) return
+    if (model%setup%has_inertia()) return
     call model%communicator%maximum(largest)
     converged = converged .and. largest(2) <= limit_tolerance*largest(1)
     updates = updates + merge(1, 0, largest(2) > 0)

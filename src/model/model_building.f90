@@ -102,7 +102,7 @@ contains
     logical :: unrestrained(3)
     integer :: i
 
-    unrestrained = setup%has_static .and. setup%plate%symmetry /= symmetry_quarter .and. &
+    unrestrained = .not. setup%has_inertia() .and. setup%plate%symmetry /= symmetry_quarter .and. &
              (.not. setup%plate%in_plane_fixed .or. all(setup%plate%edges == edge_free))
     if (allocated(setup%supports)) then
       do i = 1, size(setup%supports)
@@ -232,7 +232,7 @@ contains
       self%rig_area = nodal_areas(self, pack([(i, i=1, self%elements%elements)], &
                                              self%mesh%element_plies(1, share%elements) == 1))
       self%rig_law = create_contact_law(contact_augmented_lagrangian, 1.0_wp, last%elasticity%e2/self%thickness, &
-                                        self%thickness, moving=.not. self%setup%has_static)
+                                        self%thickness, moving=self%setup%has_inertia())
     end associate
   end subroutine build_rigs
 
@@ -263,7 +263,7 @@ contains
                           self%plies(size(self%plies))%z_bottom - self%plies(below)%z_bottom)
           self%contact_laws(zone) = create_contact_law(interface%contact, interface%contact_exponent, &
                                                        self%plies(below)%elasticity%e2/thickness, thickness, &
-                                                       moving=.not. self%setup%has_static)
+                                                       moving=self%setup%has_inertia())
           if (interface%law == law_cohesive) &
             self%cohesive_laws(zone) = create_cohesive_law(toughnesses(interface), interface%mixing_exponent, &
                                                            [interface%strength_opening, interface%strength_shear], &

@@ -55,11 +55,7 @@ contains
     if (area > 0) weights = weights/area
     call self%spread_force(weights, 0.0_wp)
     if (self%setup%impactor%spreads) call build_nose(self, area)
-    if (self%setup%has_pressure) then
-      call build_pressure(self)
-    else if (self%setup%has_static) then
-      allocate (self%pressure(5, size(self%distribution%points)), source=0.0_wp)
-    end if
+    if (self%setup%has_pressure) call build_pressure(self)
     if (allocated(self%lumped)) then
       allocate (mass(3, self%borders%columns), source=0.0_wp)
       call add_lumped_mass(self%elements, mass)
@@ -93,9 +89,10 @@ contains
     integer :: i
 
     associate (mesh => self%mesh, points => self%distribution%points, struck => self%setup%mesh%struck)
-      self%nose = new_contact_area(self%patch, area, nodal_areas(self, patch_elements(self, .false.)), &
-                                   [(norm2(mesh%node_coordinates(:, mesh%point_node(points(i))) - struck), &
-                                     i=1, size(points))], self%setup%impactor%radius)
+      self%contact%nose = &
+        new_contact_area(self%contact%weights, area, nodal_areas(self, patch_elements(self, .false.)), &
+                         [(norm2(mesh%node_coordinates(:, mesh%point_node(points(i))) - struck), i=1, size(points))], &
+                         self%setup%impactor%radius)
     end associate
   end subroutine build_nose
 

@@ -15,7 +15,7 @@ module setup_scales
   use threshold_forces, only: effective_bending_stiffness, threshold_force
   implicit none
   private
-  public :: setup_scales_t, scales_of, plate_modes, contact_side, free_span, has_impact_velocity
+  public :: setup_scales_t, scales_of, plate_modes, contact_side, free_span
 
   !> Scales of a setup. It has many components because each is one line of the table that users read.
   type :: setup_scales_t
@@ -71,7 +71,7 @@ contains
     if (allocated(setup%delaminations)) &
       scales%threshold = growth_threshold(setup, effective_bending_stiffness(section%stiffness))
     scales%onset = onset_force(setup)
-    if (.not. has_impact_velocity(setup)) return
+    if (.not. setup%is_impact()) return
     associate (m => setup%impactor%mass, v => setup%impactor%velocity, k => setup%indentation%k)
       scales%energy = m*v**2/2
       ! The plate responds to waves like a dashpot of 8 sqrt(D rho h) (Boussinesq; Olsson 1992).
@@ -80,15 +80,6 @@ contains
       scales%wave_length = 2*pi*(scales%bending/scales%area_mass)**0.25_wp*sqrt(scales%contact_time/pi)
     end associate
   end function scales_of
-
-  !> True: an impactor comes with a velocity.
-  pure logical function has_impact_velocity(setup)
-    !> The setup
-    type(setup_t), intent(in) :: setup
-
-    has_impact_velocity = setup%has_impactor .and. setup%impactor%mass > 0 .and. setup%impactor%velocity > 0 .and. &
-               setup%indentation%k > 0
-  end function has_impact_velocity
 
   !> Section of the laminate as it bends where its plane is free to stretch: D - B inverse(A) B (Reissner and Stavsky).
   pure function bending_section(setup) result(section)

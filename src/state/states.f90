@@ -94,8 +94,8 @@ contains
     ! Clamps that press are in equilibrium with the frame from the start.
     energy = 0
     call self%interfaces%rig%add_springs(model, self%motion%displacement, self%motion%internal, energy)
-    if (allocated(model%nose)) self%patch = model%patch
-    if (.not. model%setup%has_impactor .or. model%setup%has_static) return
+    if (allocated(model%contact%nose)) self%patch = model%contact%weights
+    if (.not. model%setup%moves_impactor()) return
     self%impactor = new_impactor(model%setup%impactor)
     self%ledger%impactor = impactor_energy(model%setup%impactor, self%impactor)
     self%ledger%initial = self%ledger%impactor

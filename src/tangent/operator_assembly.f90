@@ -21,8 +21,8 @@ contains
   pure logical function is_positive_definite(model) result(positive)
     type(model_t), intent(in) :: model
 
-    positive = .not. model%setup%has_static .or. model%setup%kinematics == kinematics_linear
-    if (model%setup%has_static .and. model%map%layered) &
+    positive = model%setup%has_inertia() .or. model%setup%kinematics == kinematics_linear
+    if (.not. model%setup%has_inertia() .and. model%map%layered) &
       positive = positive .and. .not. any(model%setup%delaminations%law == law_cohesive)
   end function is_positive_definite
 

@@ -166,7 +166,7 @@ contains
 
     allocate (force, mold=self%response)
     force = 0
-    force(3, :) = model%patch/model%mesh%multiplicity
+    force(3, :) = model%contact%weights/model%mesh%multiplicity
     call solve_field(self, model, force, self%response_rows, self%response, error)
     if (.not. allocated(error)) self%compliance = model%patch_mean(self%response)
   end subroutine find_response

@@ -18,7 +18,7 @@ import numpy as np
 
 HERE = pathlib.Path(__file__).resolve().parent
 INPUT = HERE.parents[1]/'input'
-sys.path[:0] = [str(HERE), str(HERE.parent/'regress')]
+sys.path[:0] = [str(HERE), str(HERE.parent/'studies'), str(HERE.parent/'regress')]
 import breaking_models
 import cohesive_study
 import damaging_models

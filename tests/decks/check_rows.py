@@ -36,12 +36,15 @@ OTHERS = (
     ("interfaces/interface_ties.f90", "zone", "an item of a checkpoint"),
     ("linalg/petsc_session.f90", "petsc_options", "PETSc's own variable of the environment"),
     ("mesh/support_deck.f90", "face", "what bears the plate, a choice of its bearing"),
+    ("model/load_cases.f90", "time", "what grows from step to step, in messages"),
     ("model/motion_fields.f90", "velocity", "a field in NAME.h5, which users read"),
     ("results/fields_file_xdmf.f90", "cell", "XDMF's word for a field on elements"),
     ("results/output_parameters.f90", "displacement rotation velocity delamination energy_release ply_damage stress",
      "fields, which users choose by these words"),
     ("tangent/tangent_operators.f90", "factorization", "a timer"),
 )
+# Groups that `implam explain` explains on request only.
+HIDDEN = ("controls",)
 
 
 def explained(program):
@@ -50,7 +53,7 @@ def explained(program):
         return subprocess.run([program, "explain", *words], stdout=subprocess.PIPE, timeout=60, check=True,
                               text=True).stdout
 
-    groups = re.findall(r"^  &(\w+)", ask(), re.MULTILINE)
+    groups = re.findall(r"^  &(\w+)", ask(), re.MULTILINE) + list(HIDDEN)
     keys = [(group, key) for group in groups
             for key in re.findall(r"^  (\w+) .*\n +allowed: ", ask(group), re.MULTILINE)]
     return groups, keys

@@ -71,7 +71,7 @@ class StudyPlanTest(unittest.TestCase):
 
     def test_studies_of_the_manual(self) -> None:
         """Their files can be read, and every deck of theirs is another one."""
-        paths = sorted((ROOT / "tests" / "bench" / "studies").glob("*.toml"))
+        paths = sorted((ROOT / "tests" / "studies" / "plans").glob("*.toml"))
         self.assertGreaterEqual(len(paths), 6)
         for path in paths:
             first = [trial.runs[0].key for trial in read_study(path).trials]

@@ -123,7 +123,7 @@ class ScatterPlanTest(unittest.TestCase):
 
     def test_sweeps_of_the_panels(self) -> None:
         """Their files can be read, and each variant has decks of its own, but for those that set what it has."""
-        paths = sorted((ROOT / "tests/bench/scatter").glob("*.toml"))
+        paths = sorted((ROOT / "tests/studies/scatter").glob("*.toml"))
         self.assertGreaterEqual(len(paths), 3)
         for path in paths:
             plan = read_plan(path)

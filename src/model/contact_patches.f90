@@ -1,0 +1,75 @@
+!> Where the impactor presses on the plate: the one part of a model that changes from step to step.
+module contact_patches
+  use communicators, only: communicator_t
+  use contact_areas, only: contact_area_t
+  use kinds, only: wp
+  use rank_totals, only: total_of
+  implicit none
+  private
+  public :: contact_patch_t
+
+  !> The patch under the impactor.
+  type :: contact_patch_t
+    !> Weights whose product with w is the mean deflection of the patch, (local points); ghosts zero
+    real(wp), allocatable :: weights(:)
+    !> Points that have one
+    integer, allocatable :: points(:)
+    !> Nose that determines the patch in each step; unallocated: a constant patch
+    type(contact_area_t), allocatable :: nose
+    !> Difference of the mean deflection between successive patches, so that it is continuous
+    real(wp) :: offset = 0
+  contains
+    !> Mean deflection.
+    procedure :: mean
+    !> Takes other weights.
+    procedure :: spread
+    !> Adds the nodal forces of a force.
+    procedure :: add_force
+  end type contact_patch_t
+
+contains
+
+  !> Mean of a deflection over the patch, the same on every rank.
+  real(wp) function mean(self, communicator, displacement)
+    !> The patch
+    class(contact_patch_t), intent(in) :: self
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> Displacement, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+
+    mean = total_of(communicator, self%weights(self%points)*displacement(3, self%points))
+  end function mean
+
+  !> Takes other weights.
+  pure subroutine spread(self, weights, offset)
+    !> The patch
+    class(contact_patch_t), intent(inout) :: self
+    !> Weights, (local points); ghosts zero
+    real(wp), intent(in) :: weights(:)
+    !> Difference of the mean deflection from the patch before
+    real(wp), intent(in) :: offset
+    integer :: point
+
+    self%weights = weights
+    self%points = pack([(point, point=1, size(weights))], abs(weights) > 0)
+    self%offset = offset
+  end subroutine spread
+
+  !> Adds the nodal forces of a force.
+  pure subroutine add_force(self, force, forces)
+    !> The patch
+    class(contact_patch_t), intent(in) :: self
+    !> The force on the modelled part
+    real(wp), intent(in) :: force
+    !> Forces on the unknowns, (5, points)
+    real(wp), intent(inout) :: forces(:, :)
+    integer :: i
+
+    do i = 1, size(self%points)
+      associate (point => self%points(i))
+        forces(3, point) = forces(3, point) + force*self%weights(point)
+      end associate
+    end do
+  end subroutine add_force
+end module contact_patches

@@ -1,0 +1,166 @@
+!> A load case: what holds, loads or strikes the plate, and whether the plate moves in time or follows its loads in
+!> equilibrium.
+module load_cases
+  use impact_parameters, only: impactor_parameters_t, indentation_law_t
+  use kinds, only: wp
+  use line_loads, only: line_load_t
+  use pressure_loads, only: pressure_t
+  use smooth_starts, only: smooth_step
+  use support_parameters, only: support_t
+  implicit none
+  private
+  public :: load_case_t
+
+  !> Kinds of analysis: motion in time, or load steps, each an equilibrium without inertia.
+  integer, parameter, public :: analysis_in_time = 1, analysis_by_load_steps = 2
+
+  !> A load case. Callers ask its procedures rather than for the kind of analysis.
+  type :: load_case_t
+    !> analysis_in_time or analysis_by_load_steps
+    integer :: analysis = analysis_in_time
+    !> Rigs under the plate; unallocated: none
+    type(support_t), allocatable :: supports(:)
+    !> Which loads there are
+    logical :: has_impactor = .false., has_indentation = .false., has_pressure = .false., has_thermal = .false.
+    !> Impactor
+    type(impactor_parameters_t) :: impactor
+    !> Indentation law
+    type(indentation_law_t) :: indentation
+    !> Pressure
+    type(pressure_t) :: pressure
+    !> Temperature less that at which the plies were joined without stress
+    real(wp) :: temperature_change = 0
+    !> Lines across the plate; unallocated: none
+    type(line_load_t), allocatable :: lines(:)
+    !> True: the plate begins in the state that another run has left
+    logical :: inherits = .false.
+    !> Time at which lines begin to load, and in which their ramps then reach their full value; load steps do not use
+    !> them
+    real(wp) :: load_start = 0, ramp_time = 1
+  contains
+    !> True: the analysis takes load steps.
+    procedure :: is_static
+    !> True: inertia forces act.
+    procedure :: has_inertia
+    !> True: an impactor moves and strikes, or load steps press one into the plate.
+    procedure :: moves_impactor
+    procedure :: presses_impactor
+    !> True: an impactor comes with a velocity.
+    procedure :: is_impact
+    !> Name of what grows from step to step.
+    procedure :: progress_name
+    !> Pressure over its full value.
+    procedure :: pressure_factor
+    !> Loads over those at the end.
+    procedure :: load_level
+    !> Ramps of lines over their full values at a time.
+    procedure :: load_factor_at
+    !> Factor of initial deformations that supports and lines do not have.
+    procedure :: offset_left
+  end type load_case_t
+
+contains
+
+  !> True: the analysis takes load steps.
+  elemental logical function is_static(self)
+    !> The load case
+    class(load_case_t), intent(in) :: self
+
+    is_static = self%analysis == analysis_by_load_steps
+  end function is_static
+
+  !> True: inertia forces act. Without them rigid motions must be held, and a softening plate has an indefinite tangent.
+  elemental logical function has_inertia(self)
+    !> The load case
+    class(load_case_t), intent(in) :: self
+
+    has_inertia = self%analysis == analysis_in_time
+  end function has_inertia
+
+  !> True: an impactor moves freely or with a prescribed travel in time.
+  elemental logical function moves_impactor(self)
+    !> The load case
+    class(load_case_t), intent(in) :: self
+
+    moves_impactor = self%has_impactor .and. self%has_inertia()
+  end function moves_impactor
+
+  !> True: load steps press an impactor into the plate.
+  elemental logical function presses_impactor(self)
+    !> The load case
+    class(load_case_t), intent(in) :: self
+
+    presses_impactor = self%has_impactor .and. self%is_static()
+  end function presses_impactor
+
+  !> True: an impactor of known mass and contact stiffness comes with a velocity.
+  elemental logical function is_impact(self)
+    !> The load case
+    class(load_case_t), intent(in) :: self
+
+    is_impact = self%moves_impactor() .and. self%impactor%mass > 0 .and. self%impactor%velocity > 0 .and. &
+                self%indentation%k > 0
+  end function is_impact
+
+  !> Name of what grows from step to step.
+  pure function progress_name(self) result(name)
+    !> The load case
+    class(load_case_t), intent(in) :: self
+    !> The name
+    character(len=:), allocatable :: name
+
+    name = 'time'
+    if (self%is_static()) name = 'load factor'
+  end function progress_name
+
+  !> Pressure over its full value.
+  elemental real(wp) function pressure_factor(self, time, load_factor)
+    !> The load case
+    class(load_case_t), intent(in) :: self
+    !> Time of a motion, factor of all loads in load steps
+    real(wp), intent(in) :: time, load_factor
+
+    if (self%is_static()) then
+      pressure_factor = load_factor
+    else
+      pressure_factor = self%pressure%amplitude(time)
+    end if
+  end function pressure_factor
+
+  !> Loads over those at the end; an impact is a full load from its start.
+  elemental real(wp) function load_level(self, time)
+    !> The load case
+    class(load_case_t), intent(in) :: self
+    !> Time, or progress of load steps from 0 to 1
+    real(wp), intent(in) :: time
+
+    load_level = 1
+    if (self%is_static()) then
+      load_level = time
+    else if (self%has_pressure .and. .not. self%has_impactor) then
+      load_level = self%pressure%amplitude(time)
+    end if
+  end function load_level
+
+  !> Ramps of lines over their full values at a time of a run by central differences.
+  pure real(wp) function load_factor_at(self, time) result(load_factor)
+    !> The load case
+    class(load_case_t), intent(in) :: self
+    !> The time
+    real(wp), intent(in) :: time
+
+    load_factor = max(0.0_wp, time - self%load_start)/self%ramp_time
+  end function load_factor_at
+
+  !> Factor at a time of initial deformations that supports and lines do not have: it decreases smoothly to zero until
+  !> these begin to load, and is constant without time for that.
+  pure real(wp) function offset_left(self, time) result(left)
+    !> The load case
+    class(load_case_t), intent(in) :: self
+    !> The time
+    real(wp), intent(in) :: time
+
+    left = 1
+    if (self%load_start > 0) left = 1 - smooth_step(time/self%load_start, 0)
+  end function offset_left
+end module load_cases

@@ -1,0 +1,97 @@
+!> What holds and loads the plate at its points: pressure, lines, rigs. A run does not change it.
+module plate_loads
+  use discretizations, only: discretization_t
+  use face_contact, only: contact_law_t
+  use kinds, only: wp
+  use placed_lines, only: placed_line_t
+  use rig_models, only: rig_model_t
+  implicit none
+  private
+  public :: loaded_plate_t
+
+  !> A discretization with its supports and loads.
+  type, extends(discretization_t) :: loaded_plate_t
+    !> Nodal forces of the deck's pressure, (5, local points); ghosts zero. Allocated only with a pressure
+    real(wp), allocatable :: pressure(:, :)
+    !> Lines that fix, move or load; empty: none
+    type(placed_line_t), allocatable :: lines(:)
+    !> How rigs hold the plate
+    type(rig_model_t) :: rig
+    !> Area that belongs to each node, (local points); allocated only if the plate may lift off a frame
+    real(wp), allocatable :: rig_area(:)
+    !> Contact with that frame
+    type(contact_law_t) :: rig_law
+  contains
+    !> Forces of the lines, loads of a static analysis, and their change with the load factor.
+    procedure :: line_forces
+    procedure :: add_holding_lines
+    procedure :: static_loads
+    procedure :: load_slopes
+  end type loaded_plate_t
+
+contains
+
+  !> Nodal forces of the lines at the owned points, of all of them or of those that are prescribed or not.
+  pure subroutine line_forces(self, displacement, load_factor, forces, prescribed)
+    class(loaded_plate_t), intent(in) :: self
+    !> Displacement, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> Ramps over their full values
+    real(wp), intent(in) :: load_factor
+    !> Forces on the unknowns, (5, points); ghosts zero
+    real(wp), intent(out) :: forces(:, :)
+    !> Whether the lines are prescribed; left out: all of them
+    logical, intent(in), optional :: prescribed
+    integer :: i
+
+    forces = 0
+    do i = 1, size(self%lines)
+      if (present(prescribed)) then
+        if (self%lines(i)%load%prescribed .neqv. prescribed) cycle
+      end if
+      call self%lines(i)%add_forces(displacement, load_factor, forces)
+    end do
+  end subroutine line_forces
+
+  !> Adds the nodal forces of the lines that support the plate before any load or motion.
+  pure subroutine add_holding_lines(self, displacement, forces)
+    class(loaded_plate_t), intent(in) :: self
+    !> Displacement, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> Forces on the unknowns of the owned points, (5, points)
+    real(wp), intent(inout) :: forces(:, :)
+    integer :: i
+
+    do i = 1, size(self%lines)
+      call self%lines(i)%add_holding_forces(displacement, forces)
+    end do
+  end subroutine add_holding_lines
+
+  !> Nodal loads of a static analysis: pressure and lines, at the owned points.
+  pure subroutine static_loads(self, displacement, load_factor, loads)
+    class(loaded_plate_t), intent(in) :: self
+    !> Displacement, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> Ramps over their full values
+    real(wp), intent(in) :: load_factor
+    !> Forces on the unknowns, (5, points); ghosts zero
+    real(wp), intent(out) :: loads(:, :)
+
+    call self%line_forces(displacement, load_factor, loads)
+    if (allocated(self%pressure)) loads = loads + load_factor*self%pressure
+  end subroutine static_loads
+
+  !> Change of these loads with the load factor.
+  pure subroutine load_slopes(self, loads)
+    class(loaded_plate_t), intent(in) :: self
+    !> Forces on the unknowns, (5, points); ghosts zero
+    real(wp), intent(out) :: loads(:, :)
+    integer :: i
+
+    loads = 0
+    if (allocated(self%pressure)) loads = self%pressure
+    do i = 1, size(self%lines)
+      call self%lines(i)%add_slopes(loads)
+    end do
+  end subroutine load_slopes
+end module plate_loads

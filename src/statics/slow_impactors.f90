@@ -1,0 +1,102 @@
+!> An impactor that moves slowly, as under a testing machine: load steps by its travel. Its force presses on the patch
+!> as the indentation law has it.
+module slow_impactors
+  use kinds, only: wp
+  use errors, only: error_t
+  use impact_force, only: solve_impact_force
+  use tan_sun_indentation, only: commit_indentation, indentation_force, indentation_of
+  use models, only: model_t
+  use krylov_corrections, only: solve_load_tangent
+  use states, only: state_t
+  use tangent_operators, only: tangent_operator_t
+  implicit none
+  private
+  public :: add_impactor_force, find_force_change, force_mismatch, travel_for, move_slow_impactor
+
+contains
+
+  !> Adds the impactor's force to loads.
+  pure subroutine add_impactor_force(model, force, loads)
+    type(model_t), intent(in) :: model
+    !> The force, of the whole impactor
+    real(wp), intent(in) :: force
+    !> Forces on the unknowns at the owned points, (5, points)
+    real(wp), intent(inout) :: loads(:, :)
+
+    if (model%setup%has_impactor) loads(3, :) = loads(3, :) + force/model%mesh%multiplicity*model%contact%weights
+  end subroutine add_impactor_force
+
+  !> Finds the force that goes with the travel and with the plate's response to it, and adds this response to a
+  !> correction.
+  subroutine find_force_change(model, operator, part, new, correction, error)
+    !> Mesh, numbering and interfaces of the plate
+    type(model_t), target, intent(in) :: model
+    !> The factored operator
+    type(tangent_operator_t), target, intent(inout) :: operator
+    !> Part of the correction that will be taken
+    real(wp), intent(in) :: part
+    !> State at this load, before the correction; receives the force
+    type(state_t), intent(inout) :: new
+    !> Correction with the force as it is on entry, (5, points)
+    real(wp), intent(inout) :: correction(:, :)
+    !> Set if a solve fails or numbers are not finite
+    type(error_t), allocatable, intent(inout) :: error
+    real(wp), allocatable :: response(:, :), push(:, :)
+    real(wp) :: compliance, mean, force, alpha, force_end
+    integer :: iterations
+
+    allocate (push, response, mold=correction)
+    push = 0
+    response = 0
+    call add_impactor_force(model, 1.0_wp, push)
+    call solve_load_tangent(operator, model, new%interfaces%cohesive, push, response, error)
+    if (allocated(error)) return
+    compliance = model%patch_mean(response)
+    mean = model%contact_deflection(new%motion%displacement) + model%patch_mean(correction)
+    ! A plate that gives way backwards would pull at the impactor: this step is for a shorter one.
+    call solve_impact_force(model%setup%indentation, new%indentation, new%indentation%alpha, &
+                            new%load_factor*model%setup%impactor%travel - mean + new%force*compliance, compliance, &
+                            .false., force, alpha, force_end, iterations, error)
+    if (allocated(error)) return
+    new%force_iterations = new%force_iterations + iterations
+    correction = correction + (force - new%force)*response
+    new%force = new%force + part*(force - new%force)
+  end subroutine find_force_change
+
+  !> How far the force is from that of the indentation, over the larger of them.
+  real(wp) function force_mismatch(model, new) result(mismatch)
+    type(model_t), intent(in) :: model
+    !> State at this load
+    type(state_t), intent(in) :: new
+    real(wp) :: force
+
+    force = indentation_force(model%setup%indentation, new%indentation, new%load_factor*model%setup%impactor%travel - &
+                              model%contact_deflection(new%motion%displacement))
+    mismatch = abs(force - new%force)/max(force, new%force, tiny(force))
+  end function force_mismatch
+
+  !> Travel at which the impactor presses with the force of a state.
+  real(wp) function travel_for(model, new) result(travel)
+    type(model_t), intent(in) :: model
+    !> The state
+    type(state_t), intent(in) :: new
+
+    travel = indentation_of(model%setup%indentation, new%indentation, new%force) + &
+             model%contact_deflection(new%motion%displacement)
+  end function travel_for
+
+  !> Completes an accepted load step: the impactor's place, the indentation, and the work of what moves it.
+  subroutine move_slow_impactor(model, old, new)
+    type(model_t), intent(in) :: model
+    !> State at the load before
+    type(state_t), intent(in) :: old
+    !> State at this load, its deflections known
+    type(state_t), intent(inout) :: new
+
+    new%impactor%displacement = new%load_factor*model%setup%impactor%travel
+    call commit_indentation(model%setup%indentation, new%indentation, new%impactor%displacement - new%patch_mean)
+    new%ledger%indentation = new%indentation%work
+    new%ledger%external_work = new%ledger%external_work + new%indentation%work - old%indentation%work + &
+                               (old%force + new%force)/2*(new%patch_mean - old%patch_mean)
+  end subroutine move_slow_impactor
+end module slow_impactors

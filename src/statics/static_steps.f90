@@ -1,0 +1,276 @@
+!> A load step of a static analysis: full Newton iterations, within those of the augmented Lagrangian.
+module static_steps
+  use kinds, only: wp
+  use errors, only: error_t, exit_convergence
+  use plate_options, only: kinematics_linear
+  use delamination_parameters, only: contact_none, law_cohesive
+  use models, only: model_t
+  use newton_iterations, only: newton_iteration_t
+  use states, only: state_t
+  use step_problems, only: step_problem_t
+  use residual_norms, only: relative_residual
+  use slow_impactors, only: add_impactor_force, find_force_change, force_mismatch, move_slow_impactor
+  use krylov_corrections, only: solve_load_tangent
+  implicit none
+  private
+  public :: static_step_t, new_static_step
+
+  !> A load step.
+  type, extends(step_problem_t) :: static_step_t
+    !> Time at the end of the step: the progress of the run
+    real(wp) :: time = 0
+    !> Load over the full load
+    real(wp) :: load_factor = 0
+  contains
+    procedure :: begin
+    procedure :: find_residual
+    procedure :: residual_norm
+    procedure :: may_stop
+    procedure :: find_correction
+    !> Completes a correction at the load before: impactor, or change of the load.
+    procedure :: complete_correction
+    !> Factor of a correction.
+    procedure :: correction_factor
+    procedure :: complete
+    procedure :: finish
+  end type static_step_t
+
+contains
+
+  !> The step to a load.
+  pure function new_static_step(model, time, load_factor) result(self)
+    type(model_t), intent(in) :: model
+    !> Time at the end of the step
+    real(wp), intent(in) :: time
+    !> Load over the full load
+    real(wp), intent(in) :: load_factor
+    !> The problem
+    type(static_step_t) :: self
+
+    self%retries_shorter = model%setup%kinematics /= kinematics_linear
+    self%time = time
+    self%load_factor = load_factor
+  end function new_static_step
+
+  !> Predictor: the previous state.
+  subroutine begin(self, at)
+    !> The problem
+    class(static_step_t), intent(inout) :: self
+    !> The iteration, before its first residual
+    type(newton_iteration_t), intent(inout) :: at
+
+    associate (new => at%new)
+      new%time = self%time
+      new%load_factor = self%load_factor
+      new%iterations = 0
+      new%contact_iterations = 0
+    end associate
+  end subroutine begin
+
+  !> Load less internal forces.
+  subroutine find_residual(self, at)
+    !> The problem
+    class(static_step_t), intent(in) :: self
+    !> The iteration; receives residual and energy
+    type(newton_iteration_t), intent(inout) :: at
+
+    associate (model => at%model, old => at%old, new => at%new, residual => at%residual)
+      call new%find_internal(model, old, at%energy)
+      call model%static_loads(new%motion%displacement, new%load_factor, residual)
+      call add_impactor_force(model, new%force, residual)
+      residual = residual - new%motion%internal
+    end associate
+  end subroutine find_residual
+
+  !> Residual relative to internal forces and load.
+  real(wp) function residual_norm(self, at)
+    !> The problem
+    class(static_step_t), intent(in) :: self
+    !> The iteration; its state stores its largest forces
+    type(newton_iteration_t), intent(inout) :: at
+    real(wp), allocatable :: loads(:, :)
+
+    associate (model => at%model, operator => at%operator, new => at%new, equilibrium => at%equilibrium, &
+               residual => at%residual)
+      allocate (loads, mold=residual)
+      call model%static_loads(new%motion%displacement, new%load_factor, loads)
+      call add_impactor_force(model, new%force, loads)
+      ! A second iteration removes the round-off of the first, so it is required.
+      residual_norm = relative_residual(model%communicator, operator%numbering, residual, new%motion%internal, loads, &
+                                        0.0_wp, operator%diagonal, new%motion%displacement, new%iterations > 1, &
+                                        equilibrium%tolerance, model%thickness, equilibrium%controls, &
+                                        new%largest_forces)
+      if (model%setup%has_impactor) residual_norm = max(residual_norm, force_mismatch(model, new))
+    end associate
+  end function residual_norm
+
+  !> A change of multipliers may be below the tolerance of the residual; it needs a correction nevertheless.
+  pure logical function may_stop(self, at)
+    !> The problem
+    class(static_step_t), intent(in) :: self
+    !> The iteration
+    type(newton_iteration_t), intent(in) :: at
+
+    may_stop = .not. at%pressures_new
+  end function may_stop
+
+  !> Solves for a correction, by a new tangent if it may have changed.
+  subroutine find_correction(self, at, tolerance, error)
+    !> The problem
+    class(static_step_t), intent(inout) :: self
+    !> The iteration; receives the correction
+    type(newton_iteration_t), intent(inout) :: at
+    !> Required reduction of the residual
+    real(wp), intent(in) :: tolerance
+    !> Set if a solve fails or numbers are not finite
+    type(error_t), allocatable, intent(inout) :: error
+
+    at%negative_curvature = .false.
+    associate (model => at%model, operator => at%operator, new => at%new)
+      if (.not. operator%ready .or. tangent_changes(model, new%iterations)) &
+        call operator%renew(model, new%plies%stiffness, new%interfaces, new%motion%displacement, 1.0_wp, 0.0_wp, error)
+      if (.not. allocated(error)) &
+        call solve_load_tangent(operator, model, new%interfaces%cohesive, at%residual, at%correction, error)
+      if (.not. allocated(error)) call self%complete_correction(at, error)
+      if (.not. allocated(error)) call new%interfaces%faces%hold(model, at%correction)
+    end associate
+  end subroutine find_correction
+
+  !> Adds the response to the change of the impactor's force, and scales the correction.
+  subroutine complete_correction(self, at, error)
+    !> The problem
+    class(static_step_t), intent(inout) :: self
+    !> The iteration; receives the correction
+    type(newton_iteration_t), intent(inout) :: at
+    !> Set if a solve fails
+    type(error_t), allocatable, intent(inout) :: error
+
+    associate (model => at%model, operator => at%operator, new => at%new, correction => at%correction)
+      if (model%setup%has_impactor) &
+        call find_force_change(model, operator, self%correction_factor(new%iterations), new, correction, error)
+      if (allocated(error)) error%code = exit_convergence
+      correction = self%correction_factor(new%iterations)*correction
+    end associate
+  end subroutine complete_correction
+
+  !> True if the tangent may differ from that of the previous iteration.
+  pure logical function tangent_changes(model, iterations)
+    type(model_t), intent(in) :: model
+    !> Iterations of this step so far
+    integer, intent(in) :: iterations
+
+    tangent_changes = model%setup%kinematics /= kinematics_linear .or. model%rig%unilateral
+    if (model%map%layered) tangent_changes = tangent_changes .or. any(model%setup%delaminations%law == law_cohesive)
+    ! Plies may have failed since the step before; later only contacts change.
+    if (.not. tangent_changes) tangent_changes = iterations == 0 .and. (model%setup%has_ply_damage &
+                                                                        .or. model%map%layered)
+    tangent_changes = tangent_changes .or. model%setup%has_crack_bands()
+    if (tangent_changes .or. .not. model%map%layered) return
+    tangent_changes = any(model%setup%delaminations%contact /= contact_none)
+  end function tangent_changes
+
+  !> Factor of a correction. Newton iterations may alternate between two sets of points whose damage grows;
+  !> halving every other correction, once there have been more than it takes to converge, ends that.
+  elemental real(wp) function correction_factor(self, iterations) result(part)
+    !> The problem
+    class(static_step_t), intent(in) :: self
+    !> Iterations of the step so far
+    integer, intent(in) :: iterations
+
+    part = 1
+    if (iterations >= self%controls%alternating_iterations .and. modulo(iterations, 2) == 0) part = 0.5_wp
+  end function correction_factor
+
+  !> Nothing moves.
+  subroutine complete(self, at)
+    !> The problem
+    class(static_step_t), intent(in) :: self
+    !> The iteration
+    type(newton_iteration_t), intent(inout) :: at
+  end subroutine complete
+
+  !> Completes an accepted load step.
+  subroutine finish(self, at)
+    !> The problem
+    class(static_step_t), intent(in) :: self
+    !> The iteration; its state is completed
+    type(newton_iteration_t), intent(inout) :: at
+    real(wp) :: sums(6), faces, fracture, heat, damage, excess
+    real(wp), allocatable :: change(:, :), loads(:, :), loads_before(:, :)
+
+    associate (model => at%model, old => at%old, new => at%new)
+      allocate (loads, loads_before, mold=old%motion%internal)
+      call model%static_loads(new%motion%displacement, new%load_factor, loads)
+      call loads_carried(model, old, loads_before)
+      change = new%motion%displacement - old%motion%displacement
+      sums(1) = at%energy
+      sums(2) = model%product(change, new%motion%internal + old%motion%internal)/2
+      sums(3) = model%product(change, loads + loads_before)/2
+      sums(4:5) = 0
+      if (model%has_bonds) then
+        faces = old%interfaces%contact_work(model, old%motion%displacement, change)
+        sums(4) = (faces + new%interfaces%contact_work(model, new%motion%displacement, change))/2
+        sums(5) = faces/2
+      end if
+      sums(6) = model%product(change, loads - loads_before)/2
+      ! Failed plies and a changed contact area leave the previous state out of equilibrium; the energy released would
+      ! become kinetic.
+      call add_impactor_force(model, old%force, loads_before)
+      sums(5) = sums(5) + model%product(change, loads_before - old%motion%internal)/2
+      if (.not. (model%setup%has_ply_damage .or. allocated(model%contact%nose))) sums(5) = 0
+      call model%communicator%sum(sums)
+      sums = sums*model%mesh%multiplicity
+      call new%count_step(old)
+      new%deflection = model%deflection(new%motion%displacement)
+      new%patch_mean = model%contact_deflection(new%motion%displacement)
+      new%ledger%strain = sums(1)
+      new%ledger%external_work = old%ledger%external_work + sums(3)
+      new%ledger%contact = old%ledger%contact - sums(4)
+      fracture = new%interfaces%cohesive%dissipation(model, old%interfaces%cohesive)
+      heat = new%interfaces%friction_heat(model, old%interfaces)
+      new%ledger%friction = old%ledger%friction + heat
+      if (model%setup%has_impactor) call move_slow_impactor(model, old, new)
+      sums(6) = sums(6) + (new%force - old%force)*(new%patch_mean - old%patch_mean)/2
+      call new%plies%book(model, damage)
+      new%ledger%ply_damage = old%ledger%ply_damage + damage
+      new%ledger%delamination = old%ledger%delamination + fracture
+      excess = sums(1) - old%ledger%strain - sums(2)
+      if (.not. allocated(model%contact%nose) .and. fracture + heat + new%ledger%ply_damage <= 0) &
+        call correct_work(excess, sums(6), new%ledger%external_work)
+      new%ledger%algorithmic = old%ledger%algorithmic - excess + sums(5) - fracture - heat - damage
+    end associate
+  end subroutine finish
+
+  !> Where nothing dissipates, the strain energy is the work of the loads along the equilibrium path, which the
+  !> trapezoidal rule over a step only approximates. A load that grows or falls steadily does work between those of its
+  !> values before and after the step. Outside these bounds the plate has jumped to another equilibrium, and the energy
+  !> that it would have as kinetic energy stays dissipated by the load step.
+  pure subroutine correct_work(excess, margin, work)
+    !> Change of the strain energy less its trapezoidal rule; on return what the work does not account for
+    real(wp), intent(inout) :: excess
+    !> Half the product of the changes of load and displacement
+    real(wp), intent(in) :: margin
+    !> Work of the loads by the trapezoidal rule; receives its error
+    real(wp), intent(inout) :: work
+
+    if (abs(excess) > abs(margin)) return
+    work = work + excess
+    excess = 0
+  end subroutine correct_work
+
+  !> Loads of an accepted state without the impactor's force. Before the first step only lines that hold the plate act.
+  subroutine loads_carried(model, state, loads)
+    type(model_t), intent(in) :: model
+    !> The state
+    type(state_t), intent(in) :: state
+    !> Forces on the unknowns, (5, points)
+    real(wp), intent(inout) :: loads(:, :)
+
+    if (state%step > 0) then
+      call model%static_loads(state%motion%displacement, state%load_factor, loads)
+    else
+      loads = 0
+      call model%add_holding_lines(state%motion%displacement, loads)
+    end if
+  end subroutine loads_carried
+end module static_steps

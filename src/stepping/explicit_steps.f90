@@ -1,0 +1,111 @@
+!> Steps by central differences with what belongs to them: an equilibrium before the first, failures of plies, flaws of
+!> interfaces, and the ledger when output or a check is due.
+module explicit_steps
+  use central_difference_energies, only: book_energies
+  use central_differences, only: central_difference_t
+  use crack_flaws, only: note_flaws
+  use damped_motions, only: damp_motion
+  use errors, only: error_t
+  use initial_equilibrium, only: find_initial_equilibrium
+  use kinds, only: wp
+  use linear_solver_parameters, only: linear_solver_parameters_t
+  use models, only: model_t
+  use rig_reactions, only: reactions_of
+  use states, only: state_t
+  use struck_stresses, only: struck_stress
+  use tangent_operators, only: tangent_operator_t
+  use unstable_motions, only: refuse_instability
+  implicit none
+  private
+  public :: advance_explicit, complete_step, equilibrate_initial_stresses
+
+  !> Steps between two looks for cracks that are flaws of interfaces. Cracks run at about the speed of shear waves, a
+  !> third of that of the fibres' waves, which pass at most a cell in two steps; so none passes more than a cell or two
+  !> meanwhile.
+  integer, parameter :: between_flaws = 8
+
+contains
+
+  !> Brings a plate into equilibrium with its residual stresses and with lines that have moved it before the run, so
+  !> that nothing rings. Collective.
+  subroutine equilibrate_initial_stresses(operator, model, linear_solver, now, error)
+    !> The factored operator; released afterwards
+    type(tangent_operator_t), intent(inout) :: operator
+    type(model_t), intent(in) :: model
+    !> The linear solver
+    type(linear_solver_parameters_t), intent(in) :: linear_solver
+    !> The state
+    type(state_t), intent(inout) :: now
+    !> Set if there is no equilibrium
+    type(error_t), allocatable, intent(out) :: error
+
+    call operator%create(model, linear_solver%factorization, error)
+    if (.not. allocated(error)) call find_initial_equilibrium(model, operator, now, error)
+    call operator%release()
+  end subroutine equilibrate_initial_stresses
+
+  !> Takes one step. Collective.
+  subroutine advance_explicit(method, model, event, now)
+    !> Central differences
+    type(central_difference_t), intent(inout) :: method
+    type(model_t), intent(in) :: model
+    !> Time not to be passed
+    real(wp), intent(in) :: event
+    !> The state
+    type(state_t), intent(inout) :: now
+
+    if (comes_to_rest(method, model, now)) call damp_motion(method, model, now, method%parameters%settle)
+    call method%advance(model, event, now)
+    if (model%setup%has_ply_damage .and. .not. allocated(now%plies%bands)) then
+      call model%profile%enter('ply criteria')
+      call now%plies%grow(model, now%motion%displacement)
+      call model%profile%leave()
+      if (now%plies%softened) call method%book_failures(model, now)
+    end if
+    if (modulo(now%step, between_flaws) > 0) return
+    call model%profile%enter('flaws')
+    call note_flaws(model, now%plies, now%motion%displacement, now%interfaces)
+    if (model%map%layered) call method%stacks%find_onsets(model, now%interfaces%cohesive)
+    call model%profile%leave()
+  end subroutine advance_explicit
+
+  !> True while damping brings the plate to rest: before lines begin to load it, or once the impactor has left, moves
+  !> away and presses no more.
+  pure logical function comes_to_rest(method, model, now)
+    !> Central differences
+    type(central_difference_t), intent(in) :: method
+    type(model_t), intent(in) :: model
+    !> The state
+    type(state_t), intent(in) :: now
+
+    comes_to_rest = .false.
+    if (.not. method%parameters%settle > 0) return
+    if (model%setup%has_impactor) then
+      comes_to_rest = now%time > 0 .and. .not. now%force > 0 .and. now%impactor%velocity < 0
+    else
+      comes_to_rest = now%time < model%setup%load_start
+    end if
+  end function comes_to_rest
+
+  !> Completes what a step leaves until output or a check is due: energies, reactions and stress. Collective.
+  subroutine complete_step(method, model, now, error)
+    !> Central differences
+    type(central_difference_t), intent(in) :: method
+    !> Receives how the impactor's force is spread
+    type(model_t), intent(inout) :: model
+    !> The state
+    type(state_t), intent(inout) :: now
+    !> Set if the motion has become unstable
+    type(error_t), allocatable, intent(out) :: error
+
+    if (allocated(model%contact%nose)) &
+      call model%spread_force(method%impact%patch%local_weights(size(model%contact%weights)), &
+                              method%impact%patch%offset)
+    call book_energies(method, model, now)
+    now%interfaces%rig%found = reactions_of(method, model, now)
+    if (size(model%lines) > 0) now%line_reactions = method%lines%totals(model)
+    now%stress = struck_stress(model, now%motion%displacement)
+    now%largest_stress = max(now%largest_stress, now%stress)
+    call refuse_instability(model, now, error)
+  end subroutine complete_step
+end module explicit_steps

@@ -1,0 +1,280 @@
+!> Layers appear where a plate was one: the model is built again with larger zones, and all that evolves is carried
+!> over.
+!>
+!> The new layers move as the plate did, without jumps and with its rotations, so that displacement, velocity and
+!> acceleration of every ply stay what they are, and with them strains and energies. What the energies differ by is
+!> booked: rounding, or with an energy-consistent shear correction that of the sections.
+module layer_switches
+  use contact_updates, only: update_contact_area, set_contact_area
+  use errors, only: error_t
+  use kinds, only: wp
+  use required_zones, only: required_extents
+  use layer_transfers, only: layer_transfer_t
+  use layered_meshes, only: layered_mesh_t
+  use linear_solver_parameters, only: linear_solver_parameters_t
+  use model_building, only: create_model
+  use models, only: model_t
+  use profiles, only: profile_t
+  use setups, only: setup_t
+  use states, only: state_t
+  use step_memories, only: save_state, step_memory_t
+  use stepping_parameters, only: stepping_t
+  use time_stepping, only: time_stepper_t
+  use timers, only: timer_set_t
+  implicit none
+  private
+  public :: advance_with_layers, move_with_plate
+
+  !> Steps of central differences between two checks of the layers that damage asks for.
+  integer, parameter :: steps_between_zone_checks = 16
+
+contains
+
+  !> Takes a step, and gives the plate the layers that its damage then needs. A step in which damage has come to the
+  !> border of a zone that could be larger is taken again with more layers. Collective.
+  subroutine advance_with_layers(model, stepper, linear_solver, event, switched, error)
+    !> The model; receives larger zones
+    type(model_t), intent(inout) :: model
+    !> What evolves
+    type(time_stepper_t), intent(inout) :: stepper
+    !> The linear solver
+    type(linear_solver_parameters_t), intent(in) :: linear_solver
+    !> Time, or load factor, not to be passed
+    real(wp), intent(in) :: event
+    !> True if layers have appeared
+    logical, intent(out) :: switched
+    !> Set if the smallest step fails or the model cannot be built
+    type(error_t), allocatable, intent(out) :: error
+    type(step_memory_t) :: memory
+    real(wp) :: extents(2, size(model%mesh%zones))
+    logical :: again, more
+
+    switched = .false.
+    if (allocated(stepper%explicit)) then
+      call advance_explicit(model, stepper, linear_solver, event, switched, error)
+      return
+    end if
+    again = follows(model)
+    if (.not. again) call stepper%advance(model, event, error)
+    do while (again)
+      memory = save_state(stepper)
+      call stepper%advance(model, event, error)
+      if (allocated(error)) return
+      call model%profile%enter('layers')
+      associate (now => stepper%now)
+        extents = required_extents(model, now%plies%stiffness, now%interfaces, now%motion%displacement)
+        more = any(extents > present_extents(model%setup))
+        again = more .and. any(now%interfaces%border_reached .and. model%setup%delaminations%follows)
+      end associate
+      if (again) call memory%restore_state(stepper)
+      if (more) call switch(model, stepper, linear_solver, extents, error)
+      switched = switched .or. more
+      call model%profile%leave()
+      if (allocated(error)) return
+    end do
+    if (.not. allocated(error)) call update_contact_area(model, stepper%now, stepper%operator, error)
+  end subroutine advance_with_layers
+
+  !> Takes a step by central differences, and looks from time to time whether the plate needs more layers. Damage
+  !> moves on by less than a cell in a step, so that it does not cross the cells ahead of it meanwhile. Collective.
+  subroutine advance_explicit(model, stepper, linear_solver, event, switched, error)
+    !> The model; receives larger zones
+    type(model_t), intent(inout) :: model
+    !> What evolves
+    type(time_stepper_t), intent(inout) :: stepper
+    !> The linear solver
+    type(linear_solver_parameters_t), intent(in) :: linear_solver
+    !> Time not to be passed
+    real(wp), intent(in) :: event
+    !> True if layers have appeared
+    logical, intent(out) :: switched
+    !> Set if the model cannot be built
+    type(error_t), allocatable, intent(out) :: error
+    real(wp) :: extents(2, size(model%mesh%zones))
+
+    switched = .false.
+    call stepper%advance(model, event, error)
+    if (allocated(error) .or. .not. follows(model)) return
+    if (modulo(stepper%now%step, steps_between_zone_checks) > 0) return
+    call model%profile%enter('layers')
+    associate (now => stepper%now)
+      extents = required_extents(model, now%plies%stiffness, now%interfaces, now%motion%displacement)
+    end associate
+    switched = any(extents > present_extents(model%setup))
+    if (switched) call switch(model, stepper, linear_solver, extents, error)
+    call model%profile%leave()
+  end subroutine advance_explicit
+
+  !> True if there are adaptive layers.
+  pure logical function follows(model)
+    type(model_t), intent(in) :: model
+
+    follows = model%map%layered
+    if (follows) follows = any(model%setup%delaminations%follows)
+  end function follows
+
+  !> Extents of the zones.
+  pure function present_extents(setup) result(extents)
+    !> The setup
+    type(setup_t), intent(in) :: setup
+    !> Full extents along x and y, (2, zones)
+    real(wp) :: extents(2, size(setup%delaminations))
+    integer :: zone
+
+    do zone = 1, size(extents, 2)
+      extents(:, zone) = setup%delaminations(zone)%zone
+    end do
+  end function present_extents
+
+  !> Builds the model with larger zones and carries all that evolves over to it.
+  subroutine switch(model, stepper, linear_solver, extents, error)
+    !> The model
+    type(model_t), intent(inout) :: model
+    !> What evolves
+    type(time_stepper_t), intent(inout) :: stepper
+    !> The linear solver
+    type(linear_solver_parameters_t), intent(in) :: linear_solver
+    !> Full extents of the zones along x and y, (2, zones)
+    real(wp), intent(in) :: extents(:, :)
+    !> Set if the model cannot be built
+    type(error_t), allocatable, intent(out) :: error
+    type(layer_transfer_t) :: transfer
+    type(timer_set_t) :: timers
+    type(profile_t) :: profile
+    type(layered_mesh_t) :: mesh
+    type(setup_t) :: setup
+    type(stepping_t) :: stepping
+    integer :: zone
+
+    transfer%communicator = model%communicator
+    call stepper%complete_state(model, error)
+    if (allocated(error)) return
+    stepper%operator%ready = .false.
+    call stepper%visit(transfer, model, error)
+    if (allocated(error)) return
+    timers = stepper%operator%timers
+    call stepper%operator%release()
+    setup = model%setup
+    do zone = 1, size(extents, 2)
+      setup%delaminations(zone)%zone = extents(:, zone)
+    end do
+    mesh = model%mesh
+    profile = model%profile
+    call create_model(setup, transfer%communicator, model, error)
+    model%profile = profile
+    if (allocated(error)) return
+    stepping = stepper%stepping
+    call stepper%start(model, stepping, linear_solver, .true., error)
+    if (allocated(error)) return
+    call transfer%turn_to(mesh, model%mesh)
+    call stepper%visit(transfer, model, error)
+    if (.not. (allocated(error) .or. allocated(stepper%explicit))) &
+      call set_contact_area(model, stepper%now, stepper%operator, error)
+    if (allocated(error)) return
+    stepper%operator%timers = timers
+    if (allocated(stepper%explicit)) then
+      call transfer_explicit_state(model, transfer, stepper, error)
+      return
+    end if
+    call transfer_state(model, transfer, stepper%now)
+    if (allocated(stepper%now%path%change)) call move_with_plate(model, transfer, stepper%now%path%change)
+  end subroutine switch
+
+  !> Lets the new layers move with the plate that they were, and finds forces and energies anew.
+  subroutine transfer_state(model, transfer, now)
+    type(model_t), intent(in) :: model
+    !> Where points and elements come from
+    type(layer_transfer_t), intent(in) :: transfer
+    !> The state, loaded
+    type(state_t), intent(inout) :: now
+    type(state_t), allocatable :: before
+    real(wp) :: energies(2)
+
+    associate (motion => now%motion)
+      call move_with_plate(model, transfer, motion%displacement)
+      call move_with_plate(model, transfer, motion%velocity)
+      call move_with_plate(model, transfer, motion%acceleration)
+      call now%plies%restack(model, transfer%is_split(model%distribution%elements))
+      allocate (before, source=now)
+      now%plies%lagging = allocated(now%plies%bands)
+      call now%find_internal(model, before, energies(1))
+      now%plies%lagging = .false.
+      now%interfaces%cohesive%points = before%interfaces%cohesive%points
+      call model%inertia(motion%acceleration, motion%inertia)
+      call model%inertia(motion%velocity, motion%momentum)
+      energies(2) = model%product(motion%velocity, motion%momentum)/2
+      call model%communicator%sum(energies)
+      energies = energies*model%mesh%multiplicity
+      if (.not. model%setup%has_inertia()) energies(2) = now%ledger%kinetic
+      now%ledger%layers = now%ledger%layers + now%ledger%strain + now%ledger%kinetic - sum(energies)
+      now%ledger%strain = energies(1)
+      now%ledger%kinetic = energies(2)
+      if (model%setup%has_inertia()) call balance_new_layers(model, transfer, now)
+    end associate
+  end subroutine transfer_state
+
+  !> Lets the new layers move with the plate that they were, and finds their forces. Collective.
+  subroutine transfer_explicit_state(model, transfer, stepper, error)
+    !> The model; receives how the impactor's force is spread
+    type(model_t), intent(inout) :: model
+    !> Where points and elements come from
+    type(layer_transfer_t), intent(in) :: transfer
+    !> What evolves, loaded
+    type(time_stepper_t), intent(inout) :: stepper
+    !> Set if the motion has become unstable
+    type(error_t), allocatable, intent(out) :: error
+    real(wp) :: before
+
+    associate (now => stepper%now, explicit => stepper%explicit)
+      before = now%ledger%kinetic + now%ledger%strain
+      call move_with_plate(model, transfer, now%motion%displacement)
+      call move_with_plate(model, transfer, now%motion%velocity)
+      call now%plies%restack(model, transfer%is_split(model%distribution%elements))
+      call explicit%resume(model, now)
+      call explicit%renew_forces(model, now)
+      call stepper%complete_state(model, error)
+      now%ledger%layers = now%ledger%layers + before - now%ledger%kinetic - now%ledger%strain
+    end associate
+  end subroutine transfer_explicit_state
+
+  !> Gives the new layers the rotations of the layer above, and no jumps.
+  subroutine move_with_plate(model, transfer, field)
+    type(model_t), intent(in) :: model
+    !> Where points come from
+    type(layer_transfer_t), intent(in) :: transfer
+    !> Displacement or a rate of it, (5, points)
+    real(wp), intent(inout) :: field(:, :)
+    integer :: i
+
+    do i = 1, model%distribution%owned
+      if (transfer%point_origin(model%distribution%points(i)) > 0) cycle
+      field(1:3, i) = 0
+      field(4:5, i) = field(4:5, model%map%above(i))
+    end do
+    call model%halo%update(field)
+  end subroutine move_with_plate
+
+  !> Adds to the internal forces those that held the new layers together: the plate was in equilibrium with them. They
+  !> are gone at the end of the next step, and without a blow: with the internal forces alone, an integrator that weighs
+  !> the old ones would throw the jumps to 1 + alpha_f/(1 - alpha_f) of what they settle at.
+  pure subroutine balance_new_layers(model, transfer, now)
+    type(model_t), intent(in) :: model
+    !> Where points come from
+    type(layer_transfer_t), intent(in) :: transfer
+    !> The state
+    type(state_t), intent(inout) :: now
+    real(wp) :: held(5)
+    integer :: i
+
+    associate (internal => now%motion%internal)
+      do i = model%distribution%owned, 1, -1
+        if (transfer%point_origin(model%distribution%points(i)) > 0) cycle
+        held = -(internal(:, i) + now%motion%inertia(:, i))
+        internal(:, i) = internal(:, i) + held
+        associate (above => internal(:, model%map%above(i)))
+          above(4:5) = above(4:5) - held(4:5)
+        end associate
+      end do
+    end associate
+  end subroutine balance_new_layers
+end module layer_switches

@@ -1,0 +1,174 @@
+!> Load steps: by the load, or by the energy that each is to dissipate.
+module load_steps
+  use dissipation_steps, only: dissipation_step_t, new_dissipation_step
+  use errors, only: error_t, fail, exit_convergence
+  use front_growth, only: find_release_ratio
+  use kinds, only: wp
+  use models, only: model_t
+  use static_steps, only: static_step_t, new_static_step
+  use step_acceptance, only: accept_step
+  use step_problems, only: solve_step
+  use steppers, only: stepper_t, step_kind_t
+  use stepping_parameters, only: stepping_t
+  use text, only: rounded_text
+  implicit none
+  private
+  public :: load_steps_t
+
+  !> Load steps.
+  type, extends(step_kind_t) :: load_steps_t
+  contains
+    procedure :: start
+    procedure :: try
+    procedure :: follows_error
+    procedure :: note_state
+    procedure :: choose_next
+    procedure :: equilibrate
+    procedure :: smallest_step
+  end type load_steps_t
+
+contains
+
+  !> The first step is one of those that the deck asks for.
+  subroutine start(self, stepper, model, error)
+    !> The kind
+    class(load_steps_t), intent(in) :: self
+    !> The stepper, its state in equilibrium
+    class(stepper_t), intent(inout) :: stepper
+    type(model_t), intent(in) :: model
+    !> Not set
+    type(error_t), allocatable, intent(inout) :: error
+
+    stepper%controller%target = 1.0_wp/stepper%stepping%static_steps
+  end subroutine start
+
+  !> Tries one load step.
+  subroutine try(self, stepper, model, event, step, converged, error)
+    !> The kind
+    class(load_steps_t), intent(in) :: self
+    !> The stepper
+    class(stepper_t), intent(inout) :: stepper
+    type(model_t), intent(in) :: model
+    !> Load factor not to be passed
+    real(wp), intent(in) :: event
+    !> Step tried
+    real(wp), intent(out) :: step
+    !> True if equilibrium was reached
+    logical, intent(out) :: converged
+    !> Set if the solver fails for good
+    type(error_t), allocatable, intent(out) :: error
+    type(static_step_t) :: by_load
+
+    associate (now => stepper%now)
+      step = stepper%controller%propose((event - now%time)/stepper%step_scale(), huge(step))*stepper%step_scale()
+      if (now%path%by_dissipation) then
+        call try_dissipation(stepper, model, step, converged, error)
+      else
+        by_load = new_static_step(model, now%time + step, now%load_factor + step)
+        call solve_step(by_load, model, stepper%stepping%equilibrium, stepper%operator, now, stepper%trial, converged, &
+                        error)
+      end if
+    end associate
+  end subroutine try
+
+  !> Tries a step that dissipates a given energy.
+  subroutine try_dissipation(stepper, model, step, converged, error)
+    !> The stepper
+    class(stepper_t), intent(inout) :: stepper
+    type(model_t), intent(in) :: model
+    !> Step proposed, and tried
+    real(wp), intent(inout) :: step
+    !> True if equilibrium was reached
+    logical, intent(out) :: converged
+    !> Set if the solver fails for good
+    type(error_t), allocatable, intent(out) :: error
+    type(dissipation_step_t) :: by_dissipation
+    real(wp) :: target
+
+    associate (now => stepper%now, max_growth => stepper%stepping%controls%dissipation_growth)
+      target = stepper%energy_rate()*step
+      if (target > max_growth*now%path%dissipated) step = step*max_growth*now%path%dissipated/target
+      by_dissipation = new_dissipation_step(model, now%time + step, stepper%energy_rate()*step, &
+                                            1.0_wp/stepper%stepping%static_steps)
+      call solve_step(by_dissipation, model, stepper%stepping%equilibrium, stepper%operator, now, stepper%trial, &
+                      converged, error)
+      ! Farther away there are other branches of equilibrium, which no path leads to.
+      if (converged) converged = abs(stepper%trial%load_factor - now%load_factor) <= by_dissipation%max_load_change
+    end associate
+  end subroutine try_dissipation
+
+  !> Without time there is no error of a step.
+  pure logical function follows_error(self, stepping)
+    !> The kind
+    class(load_steps_t), intent(in) :: self
+    !> How steps are taken
+    type(stepping_t), intent(in) :: stepping
+
+    follows_error = .false.
+  end function follows_error
+
+  !> Finds how near fronts are to growth; under load steps they do not grow.
+  subroutine note_state(self, stepper, model)
+    !> The kind
+    class(load_steps_t), intent(in) :: self
+    !> The stepper
+    class(stepper_t), intent(inout) :: stepper
+    type(model_t), intent(in) :: model
+
+    associate (trial => stepper%trial)
+      call find_release_ratio(model, trial%plies%stiffness, trial%motion, trial%interfaces)
+    end associate
+  end subroutine note_state
+
+  !> Each step is tried with the length that the deck asks for.
+  subroutine choose_next(self, stepper, model, step, change, extended)
+    !> The kind
+    class(load_steps_t), intent(in) :: self
+    !> The stepper, the step accepted
+    class(stepper_t), intent(inout) :: stepper
+    type(model_t), intent(in) :: model
+    !> Step taken
+    real(wp), intent(in) :: step
+    !> Change of the struck point's stress over the largest so far
+    real(wp), intent(in) :: change
+    !> True: delaminations have grown
+    logical, intent(in) :: extended
+
+    stepper%controller%target = 1.0_wp/stepper%stepping%static_steps
+  end subroutine choose_next
+
+  !> Brings a plate whose plies have failed under a load back into equilibrium with it, until no more of them fail.
+  subroutine equilibrate(self, stepper, model, error)
+    !> The kind
+    class(load_steps_t), intent(in) :: self
+    !> The stepper, the step accepted
+    class(stepper_t), intent(inout) :: stepper
+    type(model_t), intent(in) :: model
+    !> Set if what is left of the plate does not bear the load
+    type(error_t), allocatable, intent(inout) :: error
+    type(static_step_t) :: problem
+    logical :: converged
+
+    do while (stepper%now%plies%softened)
+      problem = new_static_step(model, stepper%now%time, stepper%now%load_factor)
+      call solve_step(problem, model, stepper%stepping%equilibrium, stepper%operator, stepper%now, stepper%trial, &
+                      converged, error)
+      if (.not. (allocated(error) .or. converged)) &
+        call fail(error, exit_convergence, 'No equilibrium at '//rounded_text(stepper%now%time)// &
+                  ' of the load: what is left of the plate after failures of plies does not bear it.')
+      if (allocated(error)) return
+      stepper%trial%step = stepper%now%step
+      call accept_step(stepper, model, 0.0_wp)
+    end do
+  end subroutine equilibrate
+
+  !> Smallest part of a load step.
+  pure real(wp) function smallest_step(self, stepping)
+    !> The kind
+    class(load_steps_t), intent(in) :: self
+    !> How steps are taken
+    type(stepping_t), intent(in) :: stepping
+
+    smallest_step = 1.0_wp/(stepping%controls%load_step_parts*stepping%static_steps)
+  end function smallest_step
+end module load_steps

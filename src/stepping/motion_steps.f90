@@ -1,0 +1,185 @@
+!> Steps in time: trial, error and length.
+module motion_steps
+  use dynamic_steps, only: dynamic_step_t, new_dynamic_step
+  use errors, only: error_t
+  use growth_in_steps, only: grow_in_step, grows_by_steps
+  use initial_equilibrium, only: find_acceleration
+  use kinds, only: wp
+  use models, only: model_t
+  use newmark_integrators, only: plate_integrator
+  use plate_options, only: kinematics_von_karman
+  use step_limits, only: impactor_limit, growth_limit, has_gear
+  use step_problems, only: solve_step
+  use steppers, only: stepper_t, step_kind_t
+  use stepping_parameters, only: stepping_t, is_error_controlled
+  implicit none
+  private
+  public :: motion_steps_t
+
+  !> Steps in time.
+  type, extends(step_kind_t) :: motion_steps_t
+  contains
+    procedure :: start
+    procedure :: try
+    procedure :: follows_error
+    procedure :: note_state
+    procedure :: choose_next
+    procedure :: equilibrate
+    procedure :: smallest_step
+  end type motion_steps_t
+
+contains
+
+  !> Integrator, first step, and the acceleration under loads that are there from the start.
+  subroutine start(self, stepper, model, error)
+    !> The kind
+    class(motion_steps_t), intent(in) :: self
+    !> The stepper, its state in equilibrium
+    class(stepper_t), intent(inout) :: stepper
+    type(model_t), intent(in) :: model
+    !> Set if the mass matrix is singular
+    type(error_t), allocatable, intent(inout) :: error
+
+    associate (time => stepper%stepping%time)
+      stepper%integrator = plate_integrator(time)
+      stepper%controller%target = time%step
+      if (self%follows_error(stepper%stepping)) call stepper%step_error%start(model, time%step)
+      if (allocated(model%pressure) .or. size(model%lines) > 0) &
+        call find_acceleration(model, stepper%operator, stepper%integrator%mass_factor(time%step), stepper%now, error)
+    end associate
+  end subroutine start
+
+  !> Tries one time step.
+  subroutine try(self, stepper, model, event, step, converged, error)
+    !> The kind
+    class(motion_steps_t), intent(in) :: self
+    !> The stepper
+    class(stepper_t), intent(inout) :: stepper
+    type(model_t), intent(in) :: model
+    !> Time not to be passed
+    real(wp), intent(in) :: event
+    !> Step tried
+    real(wp), intent(out) :: step
+    !> True if equilibrium was reached
+    logical, intent(out) :: converged
+    !> Set if the solver fails for good
+    type(error_t), allocatable, intent(out) :: error
+    type(dynamic_step_t) :: problem
+
+    converged = .false.
+    associate (now => stepper%now, controller => stepper%controller, stepping => stepper%stepping)
+      step = controller%propose(event - now%time, impactor_limit(model, now, controller%target), &
+                                growth_limit(model, stepping, controller))
+      call renew_if_due(stepper, model, stepper%integrator%mass_factor(step), error)
+      if (allocated(error)) return
+      problem = new_dynamic_step(stepper%integrator, step, stepping%adapt%iterations)
+      call solve_step(problem, model, stepping%equilibrium, stepper%operator, now, stepper%trial, converged, error)
+      if (converged .and. model%map%layered) &
+        call grow_in_step(problem, model, stepping%equilibrium, stepper%operator, now, stepper%trial, converged, error)
+      stepper%damage_lag = stepper%trial%plies%damage_lag
+      if (converged .and. stepper%damage_lag > 1) &
+        converged = .not. step > self%smallest_step(stepping)*(1 + 1.0e-9_wp)
+    end associate
+  end subroutine try
+
+  !> Factors the operator again where that is due.
+  subroutine renew_if_due(stepper, model, mass_factor, error)
+    !> The stepper
+    class(stepper_t), intent(inout) :: stepper
+    type(model_t), intent(in) :: model
+    !> Factor of the mass in the step
+    real(wp), intent(in) :: mass_factor
+    !> Set if there is no factor
+    type(error_t), allocatable, intent(inout) :: error
+    logical :: due
+
+    associate (now => stepper%now, operator => stepper%operator)
+      due = .not. operator%ready
+      if (.not. due) &
+        due = stepper%controller%renewal_due(stepper%stepping, model%setup%kinematics == kinematics_von_karman, &
+          mass_factor/operator%mass_factor, now%deflection - operator%deflection, model%thickness)
+      if (due) then
+        call operator%renew(model, now%plies%stiffness, now%interfaces, now%motion%displacement, &
+                            stepper%integrator%stiffness_factor(), mass_factor, error)
+        if (allocated(error)) return
+        call stepper%controller%renewed()
+      end if
+      stepper%factorizations_at_start = operator%factorizations
+      stepper%solves_at_start = operator%solves
+    end associate
+  end subroutine renew_if_due
+
+  !> True if the deck has steps follow the error of each.
+  pure logical function follows_error(self, stepping)
+    !> The kind
+    class(motion_steps_t), intent(in) :: self
+    !> How steps are taken
+    type(stepping_t), intent(in) :: stepping
+
+    follows_error = is_error_controlled(stepping%adapt)
+  end function follows_error
+
+  !> Notes where an impactor that moves back has left the faces glued.
+  subroutine note_state(self, stepper, model)
+    !> The kind
+    class(motion_steps_t), intent(in) :: self
+    !> The stepper
+    class(stepper_t), intent(inout) :: stepper
+    type(model_t), intent(in) :: model
+
+    associate (trial => stepper%trial)
+      trial%interfaces%faces%glued = trial%interfaces%faces%glued .or. model%setup%has_impactor &
+        .and. trial%impactor%velocity <= 0 .and. trial%force < stepper%now%force
+    end associate
+  end subroutine note_state
+
+  !> Length of the next step by iterations, error, damage and growth.
+  subroutine choose_next(self, stepper, model, step, change, extended)
+    !> The kind
+    class(motion_steps_t), intent(in) :: self
+    !> The stepper, the step accepted
+    class(stepper_t), intent(inout) :: stepper
+    type(model_t), intent(in) :: model
+    !> Step taken
+    real(wp), intent(in) :: step
+    !> Change of the struck point's stress over the largest so far
+    real(wp), intent(in) :: change
+    !> True: delaminations have grown
+    logical, intent(in) :: extended
+    integer :: lag_iterations
+
+    associate (now => stepper%now, controller => stepper%controller, stepping => stepper%stepping)
+      lag_iterations = stepper%operator%solves - stepper%solves_at_start
+      call controller%accept(stepping, step, now%iterations, lag_iterations, change)
+      if (model%setup%has_crack_bands()) call controller%limit_by_ply_damage(stepping, stepper%damage_lag)
+      if (self%follows_error(stepping)) &
+        call controller%adapt_to_error(stepping, step, stepper%error, stepping%time%end - now%time, &
+          .not. model%setup%has_impactor .or. stepper%step_error%impact_is_over(stepping%expected, now), &
+                                       has_gear(model), now%has_failures())
+      ! What a step took until it renewed the operator itself does not speak against the new one.
+      if (stepper%operator%factorizations /= stepper%factorizations_at_start) call controller%renewed()
+      if (grows_by_steps(model)) call controller%limit_by_fronts(stepping, now%interfaces%growth_ratio, extended)
+    end associate
+  end subroutine choose_next
+
+  !> Failures take effect in the next step.
+  subroutine equilibrate(self, stepper, model, error)
+    !> The kind
+    class(motion_steps_t), intent(in) :: self
+    !> The stepper, the step accepted
+    class(stepper_t), intent(inout) :: stepper
+    type(model_t), intent(in) :: model
+    !> Not set
+    type(error_t), allocatable, intent(inout) :: error
+  end subroutine equilibrate
+
+  !> Smallest step of the deck.
+  pure real(wp) function smallest_step(self, stepping)
+    !> The kind
+    class(motion_steps_t), intent(in) :: self
+    !> How steps are taken
+    type(stepping_t), intent(in) :: stepping
+
+    smallest_step = stepping%time%step_min
+  end function smallest_step
+end module motion_steps

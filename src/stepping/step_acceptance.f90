@@ -1,0 +1,103 @@
+!> Accepts a step tried, or rejects it; the length of the next one.
+module step_acceptance
+  use kinds, only: wp
+  use crack_flaws, only: note_flaws
+  use energy_balance, only: book_failures
+  use errors, only: error_t, fail, exit_convergence
+  use models, only: model_t
+  use states, only: state_t
+  use steppers, only: stepper_t
+  use struck_stresses, only: struck_stress
+  use text, only: rounded_text
+  implicit none
+  private
+  public :: accept_step, reject_step, assess_error
+
+contains
+
+  !> Makes the state tried the state reached.
+  subroutine accept_step(self, model, step)
+    !> The time stepper
+    class(stepper_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> Step taken
+    real(wp), intent(in) :: step
+    type(state_t), allocatable :: before
+    real(wp) :: change
+    logical :: extended
+
+    if (self%stepping%dissipation > 0 .and. step > 0) call self%trial%note_path(self%now, self%stepping%dissipation)
+    self%trial%stress = struck_stress(model, self%trial%motion%displacement)
+    self%trial%largest_stress = max(self%now%largest_stress, self%trial%stress)
+    change = 0
+    if (self%trial%largest_stress > 0) change = abs(self%trial%stress - self%now%stress)/self%trial%largest_stress
+    call note_damage(self, model)
+    extended = self%trial%ledger%delamination > self%now%ledger%delamination
+    if (self%kind%follows_error(self%stepping)) then
+      call self%step_error%note(model, self%now, self%trial)
+      if (extended .or. self%trial%plies%softened) call self%step_error%reset()
+    end if
+    call move_alloc(self%now, before)
+    call move_alloc(self%trial, self%now)
+    call move_alloc(before, self%trial)
+    call self%kind%choose_next(self, model, step, change, extended)
+  end subroutine accept_step
+
+  !> Plies that fail and interfaces that have changed in the step tried.
+  subroutine note_damage(self, model)
+    !> The time stepper
+    class(stepper_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+
+    call model%profile%enter('ply criteria')
+    call self%trial%plies%grow(model, self%trial%motion%displacement)
+    call model%profile%leave()
+    if (self%trial%plies%softened) call book_failures(model, self%now, self%trial)
+    call note_flaws(model, self%trial%plies, self%trial%motion%displacement, self%trial%interfaces)
+    call self%kind%note_state(self, model)
+    associate (interfaces => self%trial%interfaces)
+      interfaces%border_reached = interfaces%border_reached .or. interfaces%cohesive%border_reached(model)
+    end associate
+  end subroutine note_damage
+
+  !> Estimates the error of the step tried; one too large is to be tried again shorter.
+  subroutine assess_error(self, model, step, shortest, accurate)
+    !> The time stepper
+    class(stepper_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> Step tried
+    real(wp), intent(in) :: step
+    !> Shortest step that the error may ask for
+    real(wp), intent(out) :: shortest
+    !> False: the step is too long
+    logical, intent(out) :: accurate
+
+    call self%step_error%estimate(model, self%integrator, self%stepping%expected, self%now, self%trial, self%error)
+    self%error = self%error/self%stepping%adapt%tolerance
+    shortest = self%controller%shortest(self%stepping, self%now%has_failures())
+    accurate = self%error <= self%stepping%controls%rejection_error .or. step <= shortest*(1 + 1.0e-9_wp)
+    if (accurate) return
+    self%rejected = self%rejected + 1
+    call self%controller%shorten(self%stepping%controls, step, self%error, shortest)
+  end subroutine assess_error
+
+  !> Prepares a shorter step after one that has not converged.
+  subroutine reject_step(self, model, step, error)
+    !> The time stepper
+    class(stepper_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> Step tried
+    real(wp), intent(in) :: step
+    !> Set if it was the smallest one
+    type(error_t), allocatable, intent(inout) :: error
+
+    self%rejected = self%rejected + 1
+    call self%controller%reject(step/self%step_scale())
+    self%operator%ready = .false.
+    if (self%stepping%dissipation > 0) self%now%path%by_dissipation = self%now%path%dissipated > 0
+    if (step <= self%smallest_step()*self%step_scale()*(1 + 1.0e-9_wp)) &
+      call fail(error, exit_convergence, 'No equilibrium from '// &
+                model%setup%progress_name()//' '//rounded_text(self%now%time)// &
+                ' on with the smallest step, '//rounded_text(step)//'.')
+  end subroutine reject_step
+end module step_acceptance

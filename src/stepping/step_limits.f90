@@ -1,0 +1,54 @@
+!> How long a step the integrators bear, and how much longer than the one before.
+module step_limits
+  use gear_integrator, only: largest_growth_ratio
+  use impact_parameters, only: integrator_gear4
+  use impactor_integrators, only: largest_safe_step
+  use kinds, only: wp
+  use models, only: model_t
+  use states, only: state_t
+  use step_controllers, only: step_controller_t
+  use stepping_parameters, only: stepping_t, is_error_controlled
+  implicit none
+  private
+  public :: impactor_limit, growth_limit, has_gear
+
+contains
+
+  !> Longest step that the impactor's integrator bears now, as a binary fraction of the step wanted so that
+  !> the factored operator need not follow every small change.
+  pure real(wp) function impactor_limit(model, now, wanted) result(limit)
+    type(model_t), intent(in) :: model
+    !> The state reached
+    type(state_t), intent(in) :: now
+    !> Step wanted
+    real(wp), intent(in) :: wanted
+
+    limit = huge(limit)
+    if (.not. model%setup%has_impactor) return
+    limit = largest_safe_step(model%setup%impactor, model%setup%indentation, now%indentation, now%indentation%alpha, &
+                              now%impactor%velocity)
+    if (limit < wanted) limit = wanted*2.0_wp**floor(log(limit/wanted)/log(2.0_wp))
+  end function impactor_limit
+
+  !> Largest ratio of a step to the one before that the integrators bear.
+  pure real(wp) function growth_limit(model, stepping, controller) result(ratio)
+    type(model_t), intent(in) :: model
+    !> How steps are taken
+    type(stepping_t), intent(in) :: stepping
+    !> The step controller
+    type(step_controller_t), intent(in) :: controller
+
+    ratio = largest_growth_ratio
+    if (.not. (is_error_controlled(stepping%adapt) .or. &
+               model%setup%has_crack_bands() .and. .not. stepping%adapt%on)) return
+    ratio = 1024
+    if (has_gear(model)) ratio = merge(2, 1, controller%equal_steps >= stepping%controls%equal_of_gear)
+  end function growth_limit
+
+  !> True: Gear's method moves the impactor.
+  pure logical function has_gear(model)
+    type(model_t), intent(in) :: model
+
+    has_gear = model%setup%has_impactor .and. model%setup%impactor%integrator == integrator_gear4
+  end function has_gear
+end module step_limits

@@ -1,0 +1,191 @@
+!> What a stepper through time or load keeps from step to step, and what kinds of stepping have in common.
+module steppers
+  use central_differences, only: central_difference_t
+  use errors, only: error_t
+  use kinds, only: wp
+  use models, only: model_t
+  use newmark_integrators, only: plate_integrator_t
+  use states, only: state_t
+  use step_controllers, only: step_controller_t
+  use step_errors, only: step_error_t
+  use stepping_parameters, only: stepping_t
+  use tangent_operators, only: tangent_operator_t
+  implicit none
+  private
+  public :: stepper_t, step_kind_t
+
+  !> A kind of implicit steps: in time or by load. It has no data of its own; all that evolves is the stepper's.
+  type, abstract :: step_kind_t
+  contains
+    !> Prepares the first step.
+    procedure(start_steps), deferred :: start
+    !> Tries a step.
+    procedure(try_one_step), deferred :: try
+    !> True if the length of steps follows the error of each.
+    procedure(follows_the_error), deferred :: follows_error
+    !> Completes the state tried before it is accepted.
+    procedure(note_state_tried), deferred :: note_state
+    !> Chooses the length of the next step.
+    procedure(choose_length), deferred :: choose_next
+    !> Completes the state accepted.
+    procedure(equilibrate_state), deferred :: equilibrate
+    !> Smallest step worth trying.
+    procedure(smallest), deferred :: smallest_step
+  end type step_kind_t
+
+  !> All that evolves during a run, and how steps are taken. It has many components because each part of the control of
+  !> steps stores its own.
+  type :: stepper_t
+    !> The state reached
+    type(state_t), allocatable :: now
+    !> The factored operator
+    type(tangent_operator_t) :: operator
+    !> The step controller
+    type(step_controller_t) :: controller
+    !> Error estimate of steps
+    type(step_error_t) :: step_error
+    !> Last error relative to its tolerance, and the lag of damage in the last step relative to its limit
+    real(wp) :: error = 0, damage_lag = 0
+    !> True: the error of the last step exceeds the tolerance at the shortest step
+    logical :: errs = .false.
+    !> Integrator of the plate
+    type(plate_integrator_t) :: integrator
+    !> How steps are taken
+    type(stepping_t) :: stepping
+    !> Steps in time or by load; unallocated: central differences
+    class(step_kind_t), allocatable :: kind
+    !> Factorizations and solves when the present step was begun
+    integer :: factorizations_at_start = 0, solves_at_start = 0
+    !> Rejected steps
+    integer :: rejected = 0
+    !> Number of unconstrained unknowns
+    integer :: unknowns = 0
+    !> The trial state
+    type(state_t), allocatable :: trial
+    !> Central differences; unallocated: steps are implicit
+    type(central_difference_t), allocatable :: explicit
+  contains
+    !> Smallest step worth trying.
+    procedure :: smallest_step
+    !> Energy to be dissipated per time.
+    procedure :: energy_rate
+    !> Time of a step by dissipation over that of one by load.
+    procedure :: step_scale
+  end type stepper_t
+
+  abstract interface
+    !> Prepares the first step from the initial equilibrium. Collective.
+    subroutine start_steps(self, stepper, model, error)
+      import :: step_kind_t, stepper_t, model_t, error_t
+      !> The kind
+      class(step_kind_t), intent(in) :: self
+      !> The stepper, its state in equilibrium
+      class(stepper_t), intent(inout) :: stepper
+      type(model_t), intent(in) :: model
+      !> Set if there is no factor
+      type(error_t), allocatable, intent(inout) :: error
+    end subroutine start_steps
+
+    !> Tries a step, at most to an event. Collective.
+    subroutine try_one_step(self, stepper, model, event, step, converged, error)
+      import :: step_kind_t, stepper_t, model_t, error_t, wp
+      !> The kind
+      class(step_kind_t), intent(in) :: self
+      !> The stepper; its trial state is that at the end of the step
+      class(stepper_t), intent(inout) :: stepper
+      type(model_t), intent(in) :: model
+      !> Time, or load factor, not to be passed
+      real(wp), intent(in) :: event
+      !> Step tried
+      real(wp), intent(out) :: step
+      !> True if equilibrium was reached
+      logical, intent(out) :: converged
+      !> Set if the solver fails for good
+      type(error_t), allocatable, intent(out) :: error
+    end subroutine try_one_step
+
+    !> True if the length of steps follows the error of each.
+    pure logical function follows_the_error(self, stepping)
+      import :: step_kind_t, stepping_t
+      !> The kind
+      class(step_kind_t), intent(in) :: self
+      !> How steps are taken
+      type(stepping_t), intent(in) :: stepping
+    end function follows_the_error
+
+    !> Completes the state tried before it is accepted. Collective.
+    subroutine note_state_tried(self, stepper, model)
+      import :: step_kind_t, stepper_t, model_t
+      !> The kind
+      class(step_kind_t), intent(in) :: self
+      !> The stepper, the failures of the step tried noted
+      class(stepper_t), intent(inout) :: stepper
+      type(model_t), intent(in) :: model
+    end subroutine note_state_tried
+
+    !> Chooses the length of the next step.
+    subroutine choose_length(self, stepper, model, step, change, extended)
+      import :: step_kind_t, stepper_t, model_t, wp
+      !> The kind
+      class(step_kind_t), intent(in) :: self
+      !> The stepper, the step accepted
+      class(stepper_t), intent(inout) :: stepper
+      type(model_t), intent(in) :: model
+      !> Step taken
+      real(wp), intent(in) :: step
+      !> Change of the struck point's stress over the largest so far
+      real(wp), intent(in) :: change
+      !> True: delaminations have grown
+      logical, intent(in) :: extended
+    end subroutine choose_length
+
+    !> Completes the state accepted, where failures have changed its equilibrium. Collective.
+    subroutine equilibrate_state(self, stepper, model, error)
+      import :: step_kind_t, stepper_t, model_t, error_t
+      !> The kind
+      class(step_kind_t), intent(in) :: self
+      !> The stepper, the step accepted
+      class(stepper_t), intent(inout) :: stepper
+      type(model_t), intent(in) :: model
+      !> Set if there is no equilibrium
+      type(error_t), allocatable, intent(inout) :: error
+    end subroutine equilibrate_state
+
+    !> Smallest step worth trying.
+    pure real(wp) function smallest(self, stepping)
+      import :: step_kind_t, stepping_t, wp
+      !> The kind
+      class(step_kind_t), intent(in) :: self
+      !> How steps are taken
+      type(stepping_t), intent(in) :: stepping
+    end function smallest
+  end interface
+
+contains
+
+  !> Smallest step worth trying.
+  pure real(wp) function smallest_step(self) result(step)
+    !> The stepper
+    class(stepper_t), intent(in) :: self
+
+    step = self%stepping%time%step_min
+    if (allocated(self%kind)) step = self%kind%smallest_step(self%stepping)
+  end function smallest_step
+
+  !> Energy that is to be dissipated per time from now on, so that at the end it is what the deck asks for.
+  pure real(wp) function energy_rate(self)
+    !> The stepper
+    class(stepper_t), intent(in) :: self
+
+    energy_rate = max(0.0_wp, self%stepping%dissipation - self%now%ledger%delamination)/(1 - self%now%time)
+  end function energy_rate
+
+  !> Time of a step that dissipates its part of the energy asked for, over that of a step taken by load; 1 for these.
+  pure real(wp) function step_scale(self)
+    !> The stepper
+    class(stepper_t), intent(in) :: self
+
+    step_scale = 1
+    if (self%now%path%by_dissipation) step_scale = self%stepping%dissipation/self%energy_rate()
+  end function step_scale
+end module steppers

@@ -1,0 +1,29 @@
+!> Forcing terms of the inexact Newton method: how far the linear system of each correction is solved (S. C. Eisenstat,
+!> H. F. Walker, SIAM J. Sci. Comput. 17 (1996) 16-32, choice 2).
+module forcing_terms
+  use kinds, only: wp
+  use solution_controls, only: newton_controls_t
+  implicit none
+  private
+  public :: forcing_term
+
+contains
+
+  !> Forcing term: reduction of the residual required of the next correction.
+  pure real(wp) function forcing_term(controls, tolerance, norm, before) result(left)
+    !> Constants of Newton's method
+    type(newton_controls_t), intent(in) :: controls
+    !> Residual of equilibrium accepted, relative to the reference force
+    real(wp), intent(in) :: tolerance
+    !> Norm of the residual, and of that before the last correction; 0: there was none
+    real(wp), intent(in) :: norm, before
+
+    ! After a correction that closes contacts their forces may be a thousand times the reference force.
+    left = controls%max_forcing_term/max(1.0_wp, norm)
+    if (norm < before) left = min(left, controls%forcing_factor*(norm/before)**2)
+    ! A residual within the tolerance may be left whole; it can be zero.
+    associate (enough => controls%forcing_margin*tolerance)
+      left = min(max(left, enough/max(norm, enough)), controls%forcing_factor)
+    end associate
+  end function forcing_term
+end module forcing_terms

@@ -1,0 +1,141 @@
+!> Norm of a residual relative to the reference force, separately for translations and rotations, as their units
+!> differ.
+module residual_norms
+  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_positive_inf
+  use kinds, only: wp
+  use communicators, only: communicator_t
+  use numberings, only: numbering_t
+  use solution_controls, only: newton_controls_t
+  implicit none
+  private
+  public :: relative_residual
+
+  !> Points whose squares are summed together
+  integer, parameter :: block_length = 8
+
+contains
+
+  !> Residual over the largest reference force, the larger of translations and rotations; infinite if a number is not
+  !> finite. The same on every rank.
+  real(wp) function relative_residual(communicator, numbering, residual, first, second, load, diagonal, displacement, &
+                                      may_end, tolerance, length, controls, largest) result(norm)
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> Knows which unknowns are constrained
+    type(numbering_t), intent(in) :: numbering
+    !> Residual at the owned points, (5, points)
+    real(wp), contiguous, intent(in) :: residual(:, :)
+    !> Two kinds of reference forces, (5, points)
+    real(wp), contiguous, intent(in) :: first(:, :), second(:, :)
+    !> This rank's share of the square of a further load on w
+    real(wp), intent(in) :: load
+    !> Diagonal of the operator, and the unknowns: the residual cannot fall below the last digit of their products,
+    !> however exact the solution, (5, points): a thin plate's shear forces are small differences of large numbers
+    real(wp), intent(in) :: diagonal(:, :), displacement(:, :)
+    !> False: the iteration continues for any residual, so that limit is not needed
+    logical, intent(in) :: may_end
+    !> Tolerance of the relative residual
+    real(wp), intent(in) :: tolerance
+    !> Lever arm that makes moments of forces, the laminate's thickness: moments balance among themselves, so
+    !> those left over say nothing of the reference moments
+    real(wp), intent(in) :: length
+    !> Constants of Newton's method
+    type(newton_controls_t), intent(in) :: controls
+    !> Largest forces so far, translations and rotations: used as the reference once forces have become small
+    real(wp), intent(inout) :: largest(2)
+    real(wp) :: squares(8), limits(2), scale(2)
+
+    squares = [sums_of_squares(numbering, residual), sums_of_squares(numbering, first), &
+               sums_of_squares(numbering, second), load, 0.0_wp]
+    call communicator%sum(squares)
+    norm = ieee_value(norm, ieee_positive_inf)
+    if (.not. all(squares <= huge(norm))) return
+    squares = sqrt(squares)
+    scale = max(squares(3:4), squares(5:6), squares(7:8), controls%force_floor*largest)
+    scale(2) = max(scale(2), length*scale(1))
+    largest = max(largest, scale)
+    scale = max(scale, tiny(norm))
+    norm = maxval(squares(1:2)/scale)
+    if (norm <= tolerance .or. .not. may_end) return
+    limits = sums_of_squares(numbering, forces_to_round(diagonal, displacement))
+    call communicator%sum(limits)
+    if (.not. all(limits <= huge(norm))) return
+    norm = maxval(squares(1:2)/max(scale, controls%last_digits*epsilon(norm)/tolerance*sqrt(limits)))
+  end function relative_residual
+
+  !> Forces whose last digit a residual can't fall below. A moment is a sum of what rotation and deflection give, and
+  !> the stiffness between the two is at most the root of the product of their own, as the operator is positive: long
+  !> elements of thin plates have moments that are small differences of what the deflection gives.
+  pure function forces_to_round(diagonal, displacement) result(forces)
+    !> Diagonal of the operator, (5, points)
+    real(wp), intent(in) :: diagonal(:, :)
+    !> Unknowns, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> The forces, (5, points)
+    real(wp), allocatable :: forces(:, :)
+    integer :: component
+
+    forces = diagonal*displacement
+    do component = 4, 5
+      forces(component, :) = abs(forces(component, :)) &
+                             + sqrt(abs(diagonal(component, :)*diagonal(3, :)))*abs(displacement(3, :))
+    end do
+  end function forces_to_round
+
+  !> Sums of squares over this rank's unconstrained unknowns.
+  pure function sums_of_squares(numbering, force) result(squares)
+    !> Knows which unknowns are constrained
+    type(numbering_t), intent(in) :: numbering
+    !> Nodal forces, (5, points)
+    real(wp), contiguous, intent(in) :: force(:, :)
+    !> Of u, v, w and of theta_x, theta_y
+    real(wp) :: squares(2)
+    real(wp), allocatable :: folded(:, :)
+
+    if (any(numbering%leader(:numbering%owned) > 0)) then
+      folded = force(:, :numbering%owned)
+      call numbering%fold(folded)
+      squares = plain_sums(numbering, folded)
+    else
+      squares = plain_sums(numbering, force)
+    end if
+  end function sums_of_squares
+
+  !> The same of points that give no other one its motion. Eight points at a time, each with its own sums, which the
+  !> processor takes together.
+  pure function plain_sums(numbering, force) result(squares)
+    !> Knows which unknowns are constrained
+    type(numbering_t), intent(in) :: numbering
+    !> Nodal forces, (5, points)
+    real(wp), contiguous, intent(in) :: force(:, :)
+    !> Of u, v, w and of theta_x, theta_y
+    real(wp) :: squares(2)
+    real(wp) :: sums(5, block_length)
+
+    sums = 0
+    call add_squares(5*numbering%owned, numbering%equation, force, sums)
+    squares = [sum(sums(1:3, :)), sum(sums(4:5, :))]
+  end function plain_sums
+
+  !> Adds squares of a row of numbers in turn to so many sums.
+  pure subroutine add_squares(number, equation, values, sums)
+    !> How many
+    integer, intent(in) :: number
+    !> Negative where a number does not count
+    integer, intent(in) :: equation(number)
+    !> The numbers
+    real(wp), intent(in) :: values(number)
+    !> The sums
+    real(wp), intent(inout) :: sums(5*block_length)
+    integer :: start, i
+
+    do start = 0, number - 5*block_length, 5*block_length
+      do i = 1, 5*block_length
+        sums(i) = sums(i) + merge(values(start + i)**2, 0.0_wp, equation(start + i) >= 0)
+      end do
+    end do
+    do i = 1, number - start
+      sums(i) = sums(i) + merge(values(start + i)**2, 0.0_wp, equation(start + i) >= 0)
+    end do
+  end subroutine add_squares
+end module residual_norms

@@ -1,0 +1,285 @@
+!> Equilibrium of a step: one nonlinear iteration for every kind of step, be it a step in time or a load step.
+!>
+!> A kind of step defines predictor, residual, operator and energy balance. The iteration around them is the paper's
+!> Fig. 7: residual, ties and contact, correction with a lagged operator; at equilibrium the contact pressures become
+!> the next multipliers, until they converge.
+module step_problems
+  use kinds, only: wp
+  use errors, only: error_t, exit_convergence
+  use forcing_terms, only: forcing_term
+  use line_searches, only: line_search_t
+  use models, only: model_t
+  use newton_iterations, only: newton_iteration_t, new_newton_iteration
+  use solution_controls, only: newton_controls_t
+  use states, only: state_t
+  use stepping_parameters, only: equilibrium_t
+  use tangent_operators, only: tangent_operator_t
+  implicit none
+  private
+  public :: step_problem_t, solve_step
+
+  !> One kind of step.
+  type, abstract :: step_problem_t
+    !> True: after a failure of the solver a shorter step may succeed
+    logical :: retries_shorter = .true.
+    !> True: element tangents are used, as the factored operator reduces the residual too little
+    logical :: uses_element_tangents = .false.
+    !> True: a line search follows each correction
+    logical :: searches_lines = .false.
+    !> Constants of Newton's method
+    type(newton_controls_t) :: controls
+  contains
+    !> Predictor of the state at the end of the step.
+    procedure(begin_step), deferred :: begin
+    !> Residual of equilibrium without ties and contact.
+    procedure(find_residual), deferred :: find_residual
+    !> Residual relative to the reference force.
+    procedure(residual_norm), deferred :: residual_norm
+    !> True if the iteration may end with a residual within the tolerance.
+    procedure(may_stop), deferred :: may_stop
+    !> Finds a correction by the tangent, renewing the operator where that is due.
+    procedure(find_correction), deferred :: find_correction
+    !> Finds the impactor's force for a displacement, where there is one.
+    procedure :: find_force
+    !> Completes the motion after a correction.
+    procedure(complete), deferred :: complete
+    !> Completes the state of a step that has converged, and its ledger.
+    procedure(finish), deferred :: finish
+  end type step_problem_t
+
+  abstract interface
+    !> Predictor of the state at the end of the step.
+    subroutine begin_step(self, at)
+      import :: step_problem_t, newton_iteration_t
+      !> The problem
+      class(step_problem_t), intent(inout) :: self
+      !> The iteration; receives the state at the end
+      type(newton_iteration_t), intent(inout) :: at
+    end subroutine begin_step
+
+    !> Residual of equilibrium without ties and contact.
+    subroutine find_residual(self, at)
+      import :: step_problem_t, newton_iteration_t
+      !> The problem
+      class(step_problem_t), intent(in) :: self
+      !> The iteration; receives residual and energy, and its state the forces
+      type(newton_iteration_t), intent(inout) :: at
+    end subroutine find_residual
+
+    !> Residual relative to the reference force; infinite if a number is not finite.
+    real(wp) function residual_norm(self, at)
+      import :: step_problem_t, newton_iteration_t, wp
+      !> The problem
+      class(step_problem_t), intent(in) :: self
+      !> The iteration; its state stores its largest forces
+      type(newton_iteration_t), intent(inout) :: at
+    end function residual_norm
+
+    !> True if the iteration may end with a residual within the tolerance.
+    pure logical function may_stop(self, at)
+      import :: step_problem_t, newton_iteration_t
+      !> The problem
+      class(step_problem_t), intent(in) :: self
+      !> The iteration
+      type(newton_iteration_t), intent(in) :: at
+    end function may_stop
+
+    !> Finds a correction by the tangent, renewing the operator where that is due.
+    subroutine find_correction(self, at, tolerance, error)
+      import :: step_problem_t, newton_iteration_t, error_t, wp
+      !> The problem
+      class(step_problem_t), intent(inout) :: self
+      !> The iteration; receives the correction and whether it is one of negative curvature
+      type(newton_iteration_t), intent(inout) :: at
+      !> Required reduction of the residual
+      real(wp), intent(in) :: tolerance
+      !> Set if a solve fails or numbers are not finite
+      type(error_t), allocatable, intent(inout) :: error
+    end subroutine find_correction
+
+    !> Completes the motion after a correction.
+    subroutine complete(self, at)
+      import :: step_problem_t, newton_iteration_t
+      !> The problem
+      class(step_problem_t), intent(in) :: self
+      !> The iteration; its state receives the motion
+      type(newton_iteration_t), intent(inout) :: at
+    end subroutine complete
+
+    !> Completes the state of a step that has converged, and its ledger.
+    subroutine finish(self, at)
+      import :: step_problem_t, newton_iteration_t
+      !> The problem
+      class(step_problem_t), intent(in) :: self
+      !> The iteration; completes its state
+      type(newton_iteration_t), intent(inout) :: at
+    end subroutine finish
+  end interface
+
+contains
+
+  !> There is no impactor.
+  subroutine find_force(self, at)
+    !> The problem
+    class(step_problem_t), intent(inout) :: self
+    !> The iteration, the displacement of its state known
+    type(newton_iteration_t), intent(inout) :: at
+  end subroutine find_force
+
+  !> Tries a step. If it has not converged, `new` is undefined on return.
+  subroutine solve_step(problem, model, equilibrium, operator, old, new, converged, error)
+    !> The kind of step
+    class(step_problem_t), intent(inout) :: problem
+    !> Mesh, numbering and interfaces of the plate
+    type(model_t), target, intent(in) :: model
+    !> Required convergence
+    type(equilibrium_t), intent(in) :: equilibrium
+    !> The factored operator; factorized again if convergence requires it
+    type(tangent_operator_t), target, intent(inout) :: operator
+    !> State at the start
+    type(state_t), target, intent(in) :: old
+    !> State at the end
+    type(state_t), target, intent(inout) :: new
+    !> True if equilibrium was reached
+    logical, intent(out) :: converged
+    !> Set if the solver fails for good
+    type(error_t), allocatable, intent(out) :: error
+    type(newton_iteration_t) :: at
+    type(line_search_t) :: search
+    logical :: ends
+
+    converged = .false.
+    call new%start_from(model, old)
+    at = new_newton_iteration(model, equilibrium, operator, old, new)
+    problem%controls = equilibrium%controls
+    search%controls = equilibrium%controls
+    call problem%begin(at)
+    do
+      call find_forces(problem, at)
+      at%norm = problem%residual_norm(at)
+      if (search%on .and. at%norm > equilibrium%tolerance) then
+        call try_fraction(problem, at, search, ends)
+        if (.not. ends) cycle
+      end if
+      search%on = .false.
+      call update_contact(problem, at, converged)
+      if (converged) exit
+      if (at%pressures_new .and. new%contact_iterations < equilibrium%max_iterations) cycle
+      if (.not. at%norm <= huge(at%norm) .or. new%iterations >= equilibrium%max_iterations) exit
+      problem%uses_element_tangents = problem%uses_element_tangents .or. at%before > 0 &
+        .and. at%norm > equilibrium%controls%element_reduction*at%before
+      call correct(problem, at, search, error)
+      if (allocated(error)) then
+        call forgive(problem, model, error)
+        return
+      end if
+      at%before = at%norm
+      new%motion%displacement = new%motion%displacement + at%correction
+      call problem%complete(at)
+      new%iterations = new%iterations + 1
+    end do
+    if (converged) call problem%finish(at)
+  end subroutine solve_step
+
+  !> Updates the multipliers of contact at equilibrium; the step has converged once they have.
+  subroutine update_contact(problem, at, converged)
+    !> The kind of step
+    class(step_problem_t), intent(in) :: problem
+    !> The iteration
+    type(newton_iteration_t), intent(inout) :: at
+    !> True: the step has converged
+    logical, intent(out) :: converged
+
+    converged = at%norm <= at%equilibrium%tolerance
+    if (converged) converged = problem%may_stop(at)
+    at%pressures_new = .false.
+    if (.not. converged) return
+    call update_multipliers(at, converged)
+    at%pressures_new = .not. converged
+    if (at%pressures_new) at%before = 0
+  end subroutine update_contact
+
+  !> Drops the error of a solver where a shorter step may succeed: divergence, or an operator that is not positive
+  !> definite.
+  pure subroutine forgive(problem, model, error)
+    !> The kind of step
+    class(step_problem_t), intent(in) :: problem
+    type(model_t), intent(in) :: model
+    !> The error
+    type(error_t), allocatable, intent(inout) :: error
+
+    if ((problem%retries_shorter .or. model%setup%has_impactor) .and. error%code == exit_convergence) deallocate (error)
+  end subroutine forgive
+
+  !> Accepts a fraction of the correction, or tries the next one.
+  subroutine try_fraction(problem, at, search, ends)
+    !> The kind of step
+    class(step_problem_t), intent(inout) :: problem
+    !> The iteration
+    type(newton_iteration_t), intent(inout) :: at
+    !> The search
+    type(line_search_t), intent(inout) :: search
+    !> True: the fraction is accepted
+    logical, intent(out) :: ends
+
+    call search%assess(at%model, at%smooth, ends)
+    if (ends) return
+    at%new%motion%displacement = search%start + search%fraction*search%direction
+    call problem%complete(at)
+    call problem%find_force(at)
+  end subroutine try_fraction
+
+  !> Residual with and without ties and contacts.
+  subroutine find_forces(problem, at)
+    !> The kind of step
+    class(step_problem_t), intent(inout) :: problem
+    !> The iteration
+    type(newton_iteration_t), intent(inout) :: at
+
+    call at%operator%timers%start('element forces')
+    call problem%find_residual(at)
+    if (problem%searches_lines) at%smooth = at%residual
+    call at%model%profile%enter('contact and ties')
+    call at%new%interfaces%act(at%model, at%new%motion%displacement, at%residual)
+    call at%model%profile%leave()
+    call at%operator%timers%stop('element forces')
+  end subroutine find_forces
+
+  !> Updates the multipliers of the augmented Lagrangian by the pressures found.
+  subroutine update_multipliers(at, converged)
+    !> The iteration
+    type(newton_iteration_t), intent(inout) :: at
+    !> True if they have converged
+    logical, intent(out) :: converged
+
+    call at%model%profile%enter('contact and ties')
+    associate (equilibrium => at%equilibrium, new => at%new)
+      call new%interfaces%update_contact(at%model, new%motion%displacement, &
+                                         equilibrium%controls%contact_share*equilibrium%tolerance, &
+                                         new%contact_iterations, converged)
+    end associate
+    call at%model%profile%leave()
+  end subroutine update_multipliers
+
+  !> Finds a correction, and starts the line search along it.
+  subroutine correct(problem, at, search, error)
+    !> The kind of step
+    class(step_problem_t), intent(inout) :: problem
+    !> The iteration
+    type(newton_iteration_t), intent(inout) :: at
+    !> The search
+    type(line_search_t), intent(inout) :: search
+    !> Set if a solve fails or numbers are not finite
+    type(error_t), allocatable, intent(inout) :: error
+    real(wp), allocatable :: stiffness(:, :)
+
+    call problem%find_correction(at, forcing_term(at%equilibrium%controls, at%equilibrium%tolerance, at%norm, &
+                                                  at%before), error)
+    if (allocated(error) .or. .not. problem%searches_lines) return
+    allocate (stiffness(3, size(at%correction, 2)))
+    call at%new%interfaces%faces%added_stiffness(at%model, at%operator%diagonal, stiffness)
+    call at%new%interfaces%rig%add_stiffness(at%model, 0.0_wp, stiffness)
+    call search%begin(at%model, at%new%motion%displacement, at%correction, at%residual, at%smooth, stiffness, &
+                      at%negative_curvature)
+  end subroutine correct
+end module step_problems

@@ -1,0 +1,138 @@
+!> Time integration of the plate, load steps, adaptivity and convergence of equilibrium, as the deck gives them.
+module stepping_parameters
+  use central_difference_parameters, only: central_difference_parameters_t
+  use kinds, only: wp
+  use solution_controls, only: newton_controls_t, step_controls_t
+  implicit none
+  private
+  public :: time_t, adapt_t, equilibrium_t, expected_response_t, stepping_t, is_error_controlled, is_explicit, &
+            end_of_run
+
+  !> Time integrators of the plate.
+  integer, parameter, public :: integrator_newmark = 1, integrator_generalized_alpha = 2, &
+                                integrator_central_difference = 3
+  !> Rules for renewing the factored operator.
+  integer, parameter, public :: refactor_deflection = 1, refactor_iterations = 2
+  !> What an adaptive step follows: the stress at the struck point (the paper's), or the error of each step.
+  integer, parameter, public :: rule_stress_rate = 1, rule_local_error = 2
+
+  !> Time from touch to the end of a run over that to the end of the contact.
+  real(wp), parameter, public :: past_contact = 1.25_wp
+  !> Longest run that follows the contact, over the end that was chosen for it: an impactor that is not gone by then
+  !> perforates the plate or rests on it.
+  real(wp), parameter :: max_followed = 4
+
+  !> Time integration of the plate.
+  type :: time_t
+    !> End of the run
+    real(wp) :: end = 0
+    !> True: the run goes on beyond its end until the impactor has left
+    logical :: follows_contact = .false.
+    !> First time step
+    real(wp) :: step = 0
+    !> Smallest step tried before giving up, and largest step taken
+    real(wp) :: step_min = 0, step_max = 0
+    !> One of the integrators above
+    integer :: integrator = integrator_generalized_alpha
+    !> Newmark's parameters
+    real(wp) :: beta = 0.25_wp, gamma = 0.5_wp
+    !> Wall-clock seconds after which the run ends with a checkpoint; 0: none
+    real(wp) :: wall_limit = 0
+    !> Spectral radius at infinite frequency of generalised-alpha, 0 (most damping) to 1 (none)
+    real(wp) :: rho_infinity = 1
+  end type time_t
+
+  !> Adaptive rules of the paper's section 3.4, and one that follows the error.
+  type :: adapt_t
+    !> True: the time step adapts
+    logical :: on = .false.
+    !> rule_stress_rate or rule_local_error
+    integer :: rule = rule_local_error
+    !> Error of a step aimed at, fraction of the largest force and of the largest deflection (rule_local_error)
+    real(wp) :: tolerance = 1.0e-3_wp
+    !> refactor_deflection (the paper's) or refactor_iterations
+    integer :: refactor = refactor_iterations
+    !> Growth of the struck point's deflection that renews the operator, fraction of the thickness
+    real(wp) :: stiffness_update = 0.003_wp
+    !> Change of the stress at the struck point wanted in one step, fraction of its largest value so far
+    real(wp) :: stress_change = 0.05_wp
+    !> Iterations of a step above which the operator is renewed (refactor_iterations)
+    integer :: iterations = 16
+    !> Smallest part of the step left to a delamination that grows one cell a step; 1: it takes whole steps
+    real(wp) :: growth_step = 0.25_wp
+  end type adapt_t
+
+  !> Convergence of equilibrium.
+  type :: equilibrium_t
+    !> Residual of equilibrium accepted, relative to the reference force
+    real(wp) :: tolerance = 1.0e-6_wp
+    !> Iterations of equilibrium before a step is tried again with half its length
+    integer :: max_iterations = 30
+    !> Constants of Newton's method
+    type(newton_controls_t) :: controls
+  end type equilibrium_t
+
+  !> What a run is expected to show, by a pilot calculation; 0: not known.
+  type :: expected_response_t
+    !> Time in which the force of first contact rises
+    real(wp) :: rise = 0
+    !> Largest force and deflection
+    real(wp) :: force = 0, deflection = 0
+    !> End of the last contact
+    real(wp) :: last_contact = 0
+  end type expected_response_t
+
+  !> All that steps are taken by.
+  type :: stepping_t
+    !> Time integration
+    type(time_t) :: time
+    !> Central differences
+    type(central_difference_parameters_t) :: central
+    !> Load steps of a static analysis
+    integer :: static_steps = 1
+    !> Energy dissipated at which a static analysis ends; 0: it is taken by load alone
+    real(wp) :: dissipation = 0
+    !> Adaptivity
+    type(adapt_t) :: adapt
+    !> What the run is expected to show
+    type(expected_response_t) :: expected
+    !> Convergence of equilibrium
+    type(equilibrium_t) :: equilibrium
+    !> Constants of the control of steps
+    type(step_controls_t) :: controls
+  end type stepping_t
+
+contains
+
+  !> True: central differences move the plate.
+  elemental logical function is_explicit(stepping)
+    !> How steps are taken
+    type(stepping_t), intent(in) :: stepping
+
+    is_explicit = stepping%time%integrator == integrator_central_difference
+  end function is_explicit
+
+  !> When a run ends whose contact, as far as it has come, ended or still went on at some time.
+  elemental real(wp) function end_of_run(stepping, contact_end)
+    !> How steps are taken
+    type(stepping_t), intent(in) :: stepping
+    !> When there was contact last
+    real(wp), intent(in) :: contact_end
+
+    associate (time => stepping%time, central => stepping%central)
+      end_of_run = time%end
+      if (time%follows_contact) end_of_run = min(max_followed*time%end, max(time%end, past_contact*contact_end))
+      ! The plate comes to rest from the end of the contact on.
+      if (contact_end > 0 .and. central%settle > 0) &
+        end_of_run = max(end_of_run, min(contact_end, max_followed*time%end) + central%settle)
+    end associate
+  end function end_of_run
+
+  !> True: steps follow the error that each makes.
+  elemental logical function is_error_controlled(adapt)
+    !> Adaptive rules
+    type(adapt_t), intent(in) :: adapt
+
+    is_error_controlled = adapt%on .and. adapt%rule == rule_local_error
+  end function is_error_controlled
+end module stepping_parameters

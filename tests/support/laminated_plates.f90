@@ -1,0 +1,89 @@
+!> Setups of small plates of carbon and epoxy, also with interfaces between all plies, for tests.
+module laminated_plates
+  use communicators, only: communicator_t
+  use delamination_parameters, only: law_cohesive
+  use errors, only: error_t
+  use kinds, only: wp
+  use material_parameters, only: material_t
+  use mesh_parameters, only: edge_free
+  use model_building, only: create_model
+  use models, only: model_t
+  use plate_options, only: kinematics_linear, mass_lumped
+  use setups, only: setup_t
+  implicit none
+  private
+  public :: laminated_plate, add_interfaces, scattered, build
+
+contains
+
+  !> A free plate of 40 mm by 30 mm of carbon and epoxy with linear strains.
+  pure function laminated_plate(angles, thickness, elements) result(setup)
+    !> Angles of the plies, degrees, and thickness of them all
+    real(wp), intent(in) :: angles(:), thickness
+    !> Elements along both sides
+    integer, intent(in) :: elements(2)
+    !> The setup
+    type(setup_t) :: setup
+    type(material_t) :: material
+
+    material%name = 'ply'
+    material%density = 1580
+    material%e1 = 139.0e9_wp
+    material%e2 = 9.4e9_wp
+    material%g12 = 4.5e9_wp
+    material%g13 = 4.5e9_wp
+    material%g23 = 2.98e9_wp
+    material%nu12 = 0.309_wp
+    setup%kinematics = kinematics_linear
+    setup%plate%length = [0.04_wp, 0.03_wp]
+    setup%plate%edges = edge_free
+    setup%plate%in_plane_fixed = .false.
+    setup%mesh%elements = elements
+    setup%mesh%mass = mass_lumped
+    setup%materials = [material]
+    allocate (setup%laminate%material(size(angles)), source=1)
+    allocate (setup%laminate%thickness(size(angles)), source=thickness/size(angles))
+    setup%laminate%angle = angles
+  end function laminated_plate
+
+  !> Holds all plies together by cohesive laws all over the plate.
+  pure subroutine add_interfaces(setup, strength, toughness)
+    !> The setup
+    type(setup_t), intent(inout) :: setup
+    !> Strength, and toughness of opening and of shear
+    real(wp), intent(in) :: strength, toughness(2)
+    integer :: i
+
+    allocate (setup%delaminations(size(setup%laminate%angle) - 1))
+    do i = 1, size(setup%delaminations)
+      setup%delaminations(i)%below_ply = i
+      setup%delaminations(i)%law = law_cohesive
+      setup%delaminations(i)%strength_opening = strength
+      setup%delaminations(i)%strength_shear = strength
+      setup%delaminations(i)%toughness_opening = toughness(1)
+      setup%delaminations(i)%toughness_shear = toughness(2)
+      setup%delaminations(i)%zone = 2*setup%plate%length
+    end do
+  end subroutine add_interfaces
+
+  !> A number between -1 and 1 that goes with another one.
+  elemental real(wp) function scattered(number)
+    !> The other number
+    integer, intent(in) :: number
+
+    scattered = sin(real(37*number, wp))
+  end function scattered
+
+  !> Builds the model of a setup.
+  subroutine build(setup, model)
+    !> The setup
+    type(setup_t), intent(in) :: setup
+    !> Its model on this rank alone
+    type(model_t), intent(out) :: model
+    type(communicator_t) :: alone
+    type(error_t), allocatable :: error
+
+    call create_model(setup, alone, model, error)
+    if (allocated(error)) error stop 'There is no such plate.'
+  end subroutine build
+end module laminated_plates
