@@ -34,7 +34,7 @@ contains
     steps = deck%stepping%time%end/deck%stepping%time%step*shortened(deck)
     step = deck%stepping%time%end/steps
     bound = ''
-    if (any(deck%delaminations%follows)) bound = 'at most '
+    if (model_size%at_most) bound = 'at most '
     sentence = 'About '//rounded_text(steps)//' steps of '//rounded_text(step)//' for '// &
                bound//rounded_text(model_size%elements)//' elements of all layers: '// &
                duration_text(seconds_of_element(deck)*steps*model_size%elements)//' of one processor.'

@@ -123,7 +123,7 @@ def elastic(program, options):
                 row(name, f'{steps or 0:.2g} steps, not run')
                 continue
             # A straight line between rows of a half wave errs by less than .1 % with 20 rows in its rise.
-            every = max(1, int(min(steps/2000, model.contact_time()/step/ROWS_IN_RISE)))
+            every = min(steps*step/2000, model.contact_time()/ROWS_IN_RISE)
             run = elastic_models.Run(program, f'{text}\n&output history_every={every} /', model.name, 7200)
             run_count += 1
             if run.code:
