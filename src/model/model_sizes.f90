@@ -138,7 +138,7 @@ contains
     !> One sentence
     character(len=:), allocatable :: words
 
-    words = trim(merge('At most', 'About  ', self%at_most))//' '//to_text(self%unknowns)//' unknowns and '//to_text(nint(self%megabytes_a_rank(1)))// &
-            ' MB of memory on one rank.'
+    words = trim(merge('At most', 'About  ', self%at_most))//' '//to_text(self%unknowns)//' unknowns and '// &
+            to_text(nint(self%megabytes_a_rank(1)))//' MB of memory on one rank.'
   end function sentence
 end module model_sizes
