@@ -24,9 +24,9 @@ module deck_accuracy
 
   !> Error of the history allowed over that of the peak: 3 % and 1 %. Mesh and step get half of both each.
   real(wp), parameter :: history_over_peak = 3, share = 0.5_wp
-  !> Most elements along one direction of the modelled part, twice that of a full plate, with factorizations and without:
-  !> more take hours. Central differences take .2 us an element and step (`explicit_costs`): 1e5 steps of 400 x 400
-  !> elements are an hour.
+  !> Most elements along one direction of the modelled part, twice that of a full plate, with factorizations and
+  !> without: more take hours. Central differences take .2 us an element and step (`explicit_costs`): 1e5 steps of
+  !> 400 x 400 elements are an hour.
   integer, parameter :: max_factored = 100, max_explicit = 400
   !> Waves of first contact on either side of the patch that have the required elements, where these are too many for
   !> the plate. On random model 9 of `tests/bench/elastic_models.py` the error of the first peak is 2.9 % without, 0.3 %

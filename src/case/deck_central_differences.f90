@@ -96,8 +96,8 @@ contains
 
     if (scales%wave_length > 0) then
       chosen = largest_scaling(deck%setup_t, scales, max_scaling, permitted_change)
-      call append(deck%reasons, 'Mass scaling '//short_text(chosen%scaling)//': it slows the bending waves of first '// &
-                  'contact, '//short_text(scales%wave_length)//' long, by '//short_text(100*chosen%slowed)// &
+      call append(deck%reasons, 'Mass scaling '//short_text(chosen%scaling)//': it slows the bending waves of '// &
+                  'first contact, '//short_text(scales%wave_length)//' long, by '//short_text(100*chosen%slowed)// &
                   ' %, and changes the force history of a preliminary elastic impact by '// &
                   short_text(100*chosen%change)//' %.')
     else

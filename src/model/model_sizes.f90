@@ -80,9 +80,9 @@ contains
     size_found%megabytes = 1.0e-6_wp*merge(bytes_layered, bytes_whole, size(zones) > 0)*25*pairs*log(nodes)/log(2.0_wp)
   end function size_of_model
 
-  !> The setup with the largest zones that adaptive layers may reach: with central differences all of the plate, as waves
-  !> of failing fibres may reach the strength of interfaces anywhere; with implicit steps the core, which is to contain
-  !> them.
+  !> The setup with the largest zones that adaptive layers may reach: with central differences all of the plate, as
+  !> waves of failing fibres may reach the strength of interfaces anywhere; with implicit steps the core, which is to
+  !> contain them.
   pure function with_largest_zones(setup, explicit) result(largest)
     !> The setup
     type(setup_t), intent(in) :: setup
