@@ -1,6 +1,7 @@
 !> Cost of a run by central differences: steps and processor time.
 module explicit_costs
   use deck_contents, only: deck_t
+  use element_steps, only: smallest_element_step
   use kinds, only: wp
   use mathematical_constants, only: pi
   use model_sizes, only: model_size_t
@@ -34,23 +35,23 @@ contains
     steps = deck%stepping%time%end/deck%stepping%time%step*shortened(deck)
     step = deck%stepping%time%end/steps
     bound = ''
-    if (any(deck%delaminations%follows)) bound = 'at most '
+    if (model_size%at_most) bound = 'at most '
     sentence = 'About '//rounded_text(steps)//' steps of '//rounded_text(step)//' for '// &
-               bound//rounded_text(model_size%elements)//' elements of all layers: '// &
+               bound//rounded_text(model_size%elements)//' elements of all layers: '//bound// &
                duration_text(seconds_of_element(deck)*steps*model_size%elements)//' of one processor.'
   end function explicit_sentence
 
-  !> Ratio of the stable step of the flat plate to that of the deflected one: slopes theta and the strain theta**2/4 of
-  !> a plate that deflects by half a sine add to an element's frequency as in `stable_steps`.
-  pure real(wp) function shortened(deck) result(ratio)
+  !> Ratio of the stable step of the flat plate to that of the deflected one, with the largest slope of half a sine.
+  real(wp) function shortened(deck) result(ratio)
     !> The deck
     type(deck_t), intent(in) :: deck
-    real(wp) :: slope
+    real(wp) :: slope, steep
 
     ratio = 1
     if (deck%kinematics /= kinematics_von_karman) return
     slope = pi*deck%stepping%expected%deflection/minval(free_span(deck%setup_t))
-    ratio = sqrt(1 + deck%stepping%central%mass_scaling*1.25_wp*slope**2)
+    steep = smallest_element_step(deck, deck%stepping%central%mass_scaling, slope)
+    if (steep > 0) ratio = smallest_element_step(deck, deck%stepping%central%mass_scaling)/steep
   end function shortened
 
   !> Seconds of one processor for an element of one layer in a step.

@@ -24,8 +24,10 @@ module deck_accuracy
 
   !> Error of the history allowed over that of the peak: 3 % and 1 %. Mesh and step get half of both each.
   real(wp), parameter :: history_over_peak = 3, share = 0.5_wp
-  !> Most elements along one direction of the modelled part, twice that of a full plate: more take hours.
-  integer, parameter :: max_along = 100
+  !> Most elements along one direction of the modelled part, twice that of a full plate, with factorizations and
+  !> without: more take hours. Central differences take .2 us an element and step (`explicit_costs`): 1e5 steps of
+  !> 400 x 400 elements are an hour.
+  integer, parameter :: max_factored = 100, max_explicit = 400
   !> Waves of first contact on either side of the patch that have the required elements, where these are too many for
   !> the plate. On random model 9 of `tests/bench/elastic_models.py` the error of the first peak is 2.9 % without, 0.3 %
   !> with one wave, 0.03 % with two.
@@ -187,10 +189,11 @@ contains
     !> Remarks are added
     type(problems_t), intent(inout) :: problems
     real(wp) :: half(2), cell
-    integer :: number(2), parts
+    integer :: number(2), parts, max_along
     type(line_t), allocatable :: words(:)
 
     parts = merge(1, 2, deck%plate%symmetry == symmetry_quarter)
+    max_along = merge(max_explicit, max_factored, deck%has_time .and. is_explicit(deck%stepping))
     half = deck%plate%length/2
     cell = side
     if (deck%settings%is_known(mesh_group, key_cell)) cell = max(cell, deck%mesh%cell)

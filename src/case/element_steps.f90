@@ -14,7 +14,7 @@ module element_steps
   use models, only: model_t
   use ply_failures, only: ply_failure_t, new_ply_failure
   use setups, only: setup_t
-  use stable_steps, only: highest_element_frequency
+  use stable_steps, only: highest_element_frequency, stiffened_frequency
   implicit none
   private
   public :: smallest_element_step
@@ -22,25 +22,55 @@ module element_steps
 contains
 
   !> Longest stable step; 0: none could be found.
-  real(wp) function smallest_element_step(deck, scaling) result(step)
+  real(wp) function smallest_element_step(deck, scaling, slope) result(step)
     !> The deck, its mesh checked
     type(deck_t), intent(in) :: deck
     !> Factor of in-plane and rotary inertia
     real(wp), intent(in) :: scaling
+    !> Slope of the plate; its membrane strain is the mean of half the squared slope of half a sine; 0 if absent
+    real(wp), intent(in), optional :: slope
     type(model_t) :: model
     type(ply_failure_t) :: plies
     type(communicator_t) :: alone
     type(error_t), allocatable :: error
+    real(wp), allocatable :: of_elements(:, :)
     real(wp) :: frequency
-    integer :: element
+    integer :: element, direction
 
     step = 0
     call create_model(small_setup(deck), alone, model, error)
     if (allocated(error)) return
     plies = new_ply_failure(model)
-    call highest_element_frequency(model, plies%stiffness, scaling, frequency, element)
+    call highest_element_frequency(model, plies%stiffness, scaling, frequency, element, of_elements)
+    if (present(slope)) then
+      do direction = 1, 2
+        frequency = max(frequency, stiffened_frequency(model, plies%stiffness, of_elements, &
+                                                       sloped_motion(model, slope, direction)))
+      end do
+    end if
     if (frequency > 0) step = 2/frequency
   end function smallest_element_step
+
+  !> Motion of a plate that is sloped along one direction and stretched by a quarter of the squared slope, of which the
+  !> slope itself gives half a square.
+  pure function sloped_motion(model, slope, direction) result(motion)
+    type(model_t), intent(in) :: model
+    !> The slope
+    real(wp), intent(in) :: slope
+    !> 1 for x, 2 for y
+    integer, intent(in) :: direction
+    !> (5, points)
+    real(wp) :: motion(5, model%mesh%points())
+    integer :: point
+
+    motion = 0
+    do point = 1, size(motion, 2)
+      associate (place => model%mesh%node_coordinates(direction, model%mesh%point_node(point)))
+        motion(3, point) = slope*place
+        motion(direction, point) = -slope**2/4*place
+      end associate
+    end do
+  end function sloped_motion
 
   !> A free plate of two by two of the smallest elements, layered wherever an interface may delaminate.
   pure function small_setup(deck) result(setup)

@@ -158,8 +158,7 @@ contains
     real(wp) :: square
 
     if (model%setup%kinematics == kinematics_von_karman .and. modulo(now%step, between_frequencies) == 0) then
-      square = stiffened_frequency(model, now%plies%stiffness, self%of_elements, self%parameters%mass_scaling, &
-                                   self%motion)
+      square = stiffened_frequency(model, now%plies%stiffness, self%of_elements, self%motion)
       if (square > self%stiffened .or. square < relaxed*self%stiffened) self%stiffened = stiffened_reserve*square
     end if
     square = self%stiffened**2

@@ -19,6 +19,9 @@ module stable_steps
 
   !> Products of the iterations. The estimate rises from below; after these it changes by less than 1e-3 a product.
   integer, parameter :: products = 40
+  !> Largest integral of the squared gradient of nine-node shapes over that of their square, lumped by Simpson's rule,
+  !> in an element of sides 2: 6 of the waves along one side, 1.2 of those along the other.
+  real(wp), parameter :: gradient = 7.2_wp
 
 contains
 
@@ -72,18 +75,17 @@ contains
   end subroutine highest_element_frequency
 
   !> Highest frequency with the slopes and the tension of a motion. Where the plate is sloped its membrane stiffness
-  !> acts on w too, whose mass is not scaled, and so does tension. With S the derivatives of the membrane strains by
-  !> grad w, G = S^T A S + N is what an area has against grad w, and frequencies grow to
-  !> omega**2 (1 + s g/a) at most: s the scaling, g the larger eigenvalue of G with what damage has left of A, a the
-  !> larger of A_xx and A_yy of the undamaged section. Collective.
-  real(wp) function stiffened_frequency(model, stiffness, of_elements, scaling, motion) result(omega)
+  !> acts on w too, whose mass is not scaled, and so does tension: with S the derivatives of the membrane strains by
+  !> grad w, grad w stores grad w^T G grad w / 2 per area, G = S^T A S + N with what damage has left of A. In the
+  !> element's own coordinates, of length 2, no w stores more than `gradient` times the larger eigenvalue of G there
+  !> times the integral of w**2 (`geometric_stiffness`). The energies of strains u and of slopes are at most
+  !> (omega_u |u| + omega_w |w|)**2, so the squares of both frequencies add up. Collective.
+  real(wp) function stiffened_frequency(model, stiffness, of_elements, motion) result(omega)
     type(model_t), intent(in) :: model
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), contiguous, intent(in) :: stiffness(:, :, :)
     !> Square of the highest frequency of each element without motion, (lanes, batches)
     real(wp), contiguous, intent(in) :: of_elements(:, :)
-    !> Factor of in-plane and rotary inertia
-    real(wp), intent(in) :: scaling
     !> Motion of the layers, ghosts up to date, (5, points)
     real(wp), contiguous, intent(in) :: motion(:, :)
     real(wp) :: r(lanes, 9, 5), strains(lanes, 9, 6), slopes(lanes, 9, 2), unused(lanes), added(lanes)
@@ -96,37 +98,41 @@ contains
       call gather(model%elements%points(:, :, b), motion, r)
       call strains_of_batch(model%elements, b, kinematics_von_karman, r, strains, slopes)
       call in_plane_resultants(stiffness(:, :, b), unit_area, strains, unused)
-      associate (whole => model%elements%stiffness(:, :, b))
-        added = geometric_stiffness(stiffness(:, :, b), slopes, strains)/max(tiny(added), whole(:, 1), whole(:, 4))
-        omega = max(omega, maxval(of_elements(:, b)*(1 + scaling*added)))
-      end associate
+      added = gradient*geometric_stiffness(stiffness(:, :, b), model%elements%inverse_jacobian(:, :, :, b), slopes, &
+                                           strains)/max(tiny(added)**0.25_wp, model%elements%mass(:, 1, b))
+      omega = max(omega, maxval(of_elements(:, b) + added))
     end do
     call model%communicator%maximum(omega)
     omega = sqrt(omega)
   end function stiffened_frequency
 
   !> Largest stiffness against slopes that membrane stiffness and membrane forces give the points of a batch, per area:
-  !> the larger eigenvalue of S^T A S + N.
-  pure function geometric_stiffness(c, slopes, forces) result(largest)
+  !> the larger eigenvalue of S^T A S + N in the coordinates of the element.
+  pure function geometric_stiffness(c, inverse, slopes, forces) result(largest)
     !> Section stiffness
     real(wp), intent(in) :: c(lanes, 21)
+    !> Derivatives xi,x eta,x xi,y eta,y at the Gauss points
+    real(wp), intent(in) :: inverse(lanes, 9, 4)
     !> w,x and w,y at the Gauss points
     real(wp), intent(in) :: slopes(lanes, 9, 2)
     !> Nxx, Nyy, Nxy there, and moments
     real(wp), intent(in) :: forces(lanes, 9, 6)
     !> (lane)
     real(wp) :: largest(lanes)
-    real(wp) :: xx(lanes), yy(lanes), xy(lanes)
+    real(wp) :: xx(lanes), yy(lanes), xy(lanes), along(lanes), across(lanes), both(lanes)
     integer :: g
 
     largest = 0
     do g = 1, 9
-      associate (x => slopes(:, g, 1), y => slopes(:, g, 2))
+      associate (x => slopes(:, g, 1), y => slopes(:, g, 2), p => inverse(:, g, :))
         xx = c(:, 1)*x*x + 2*c(:, 3)*x*y + c(:, 6)*y*y + forces(:, g, 1)
         yy = c(:, 4)*y*y + 2*c(:, 5)*x*y + c(:, 6)*x*x + forces(:, g, 2)
         xy = (c(:, 2) + c(:, 6))*x*y + c(:, 3)*x*x + c(:, 5)*y*y + forces(:, g, 3)
+        along = p(:, 1)*(p(:, 1)*xx + 2*p(:, 3)*xy) + p(:, 3)*p(:, 3)*yy
+        across = p(:, 2)*(p(:, 2)*xx + 2*p(:, 4)*xy) + p(:, 4)*p(:, 4)*yy
+        both = p(:, 1)*(p(:, 2)*xx + p(:, 4)*xy) + p(:, 3)*(p(:, 2)*xy + p(:, 4)*yy)
       end associate
-      largest = max(largest, (xx + yy)/2 + sqrt(((xx - yy)/2)**2 + xy**2))
+      largest = max(largest, (along + across)/2 + sqrt(((along - across)/2)**2 + both**2))
     end do
   end function geometric_stiffness
 

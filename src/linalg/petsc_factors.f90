@@ -289,6 +289,9 @@ contains
     integer :: counted, ierr
     logical :: found
 
+    entries = 0
+    megabytes = 0
+    if (.not. self%defined) return
     if (self%package == 'mumps') then
       counted = mumps_report(self%preconditioner, mumps_entries)
       ! MUMPS counts in millions, with a negative sign, what an integer can't hold.

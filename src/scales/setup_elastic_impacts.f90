@@ -10,8 +10,8 @@ module setup_elastic_impacts
   use setups, only: setup_t
   implicit none
   private
-  public :: setup_elastic_impact_t, expected_scales_t, start_elastic_impact, contact_end, largest_step, largest_cell, &
-            expected_scales_of
+  public :: setup_elastic_impact_t, expected_scales_t, start_elastic_impact, run_of, contact_end, largest_step, &
+            largest_cell, expected_scales_of
 
   !> A setup prepared for preliminary elastic impacts.
   type :: setup_elastic_impact_t

@@ -98,16 +98,19 @@ contains
   end function bending_section
 
   !> Modes of the setup's plate up to a frequency.
-  pure function plate_modes(setup, cutoff) result(plate)
+  pure function plate_modes(setup, cutoff, scaling) result(plate)
     !> The setup
     type(setup_t), intent(in) :: setup
     !> Circular frequency
     real(wp), intent(in) :: cutoff
+    !> Factor of rotary inertia, 1 if absent
+    real(wp), intent(in), optional :: scaling
     !> The modes
     type(modal_plate_t) :: plate
     type(section_t) :: section
 
     section = bending_section(setup)
+    if (present(scaling)) section%mass(3) = scaling*section%mass(3)
     plate = modal_plate_of(free_span(setup), free_edges(setup), section%stiffness, section%mass, &
                            loaded_side(setup), cutoff)
   end function plate_modes

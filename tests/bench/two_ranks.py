@@ -7,9 +7,12 @@ import pathlib
 import re
 import statistics
 import subprocess
+import sys
 import tempfile
 
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1]/'regress'))
 from bench import DECK, ENVIRONMENT, PHASE
+from solver_runs import change_deck
 
 PANEL = pathlib.Path(__file__).parents[2]/'input/experiments/t700_m21_25J.nml'
 
@@ -19,7 +22,7 @@ def decks(steps):
     for kinematics, elements in (('linear', 131), ('von_karman', 100)):
         yield kinematics, DECK.format(kinematics=kinematics, elements=elements, step=1e-6, end=steps*1e-6,
                                       more='&solver /')
-    yield 'panel', re.sub(r'end=\S+', 'end=3.6e-4', PANEL.read_text())
+    yield 'panel', change_deck(PANEL.read_text(), ['time%end=3.6e-4'])
 
 
 def phases_of(program, ranks, text):
