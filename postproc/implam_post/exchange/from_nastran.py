@@ -7,7 +7,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from implam_post.exchange.bulk_data import KNOWN, BulkData, ranges, read_bulk_data
+from implam_post.exchange.bulk_cards import KNOWN
+from implam_post.exchange.bulk_data import BulkData, ranges, read_bulk_data
 from implam_post.exchange.bulk_laminate import read_laminate
 from implam_post.exchange.bulk_shape import Shape, read_grids, read_shape
 from implam_post.exchange.bulk_supports import read_supports
