@@ -126,6 +126,8 @@ def read_bulk_data(path: Path) -> BulkData:
         text = path.read_bytes().removeprefix(codecs.BOM_UTF8).decode("latin-1")
     except OSError as error:
         raise FileError(f"{path} cannot be read ({error}).") from None
+    if "\0" in text:
+        raise FileError(f"{path} is no text: bulk data are wanted, as a file .bdf or .dat.")
     return BulkData(path, text)
 
 

@@ -169,6 +169,8 @@ def _orthotropic(bulk: BulkData, card: BulkCard, remarks: Remarks, shear_23: flo
         raise bulk.error(card, "E1, E2, G12, G1Z and G2Z need to be greater than zero.")
     if found.nu12**2 * found.e22 >= found.e11:
         raise bulk.error(card, "NU12 squared must be smaller than E1/E2.")
+    if card.fields.field(4) is None:
+        remarks.add(card, "NU12 is blank: 0 is taken for it")
     remarks.untaken(card, _UNTAKEN["MAT8"] | (_MAT8_STRENGTHS if card.given(19) else {}))
     strengths = () if card.given(19) else tuple(
         (key, abs(bulk.real(card, number))) for number, key in _MAT8_STRENGTHS.items() if card.given(number))

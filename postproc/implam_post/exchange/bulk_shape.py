@@ -1,5 +1,7 @@
 """The rectangle that the quadrilaterals of bulk data make up, and its axes."""
 
+import contextlib
+import io
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -145,20 +147,41 @@ def _grid_defaults(bulk: BulkData) -> dict[str, tuple[int, Any]]:
 def _systems(bulk: BulkData) -> dict[int, Any]:
     """Return the basic system and those of CORD2R cards, ready to transform."""
     from pyNastran.bdf.bdf import BDF
-    from pyNastran.bdf.cards.coordinate_systems import CORD2R
     model = BDF(debug=None)
     cards = list(bulk.named("CORD2R"))
     for card in cards:
-        system = bulk.read(card, CORD2R)
+        system = _system(bulk, card)
         model.coords[system.cid] = system
     for card in cards:
         system = model.coords[bulk.integer(card, 1)]
         if system.rid not in model.coords:
             raise _no_system(bulk, card, system.rid)
+        if not _ends_in_basic(system, model.coords):
+            raise bulk.error(card, f"system {system.cid} refers to itself by way of system {system.rid}.")
         system.cross_reference(model)
     for system in model.coords.values():
         system.setup()
     return dict(model.coords)
+
+
+def _system(bulk: BulkData, card: BulkCard) -> Any:
+    """Return the system of a CORD2R."""
+    from pyNastran.bdf.cards.coordinate_systems import CORD2R
+    try:
+        # It prints the vectors of points on one line.
+        with contextlib.redirect_stdout(io.StringIO()):
+            return bulk.read(card, CORD2R)
+    except DeckError as error:
+        raise bulk.error(card, "its points A, B and C lie on one line.") if "norm(v)" in str(error) else error from None
+
+
+def _ends_in_basic(system: Any, systems: Mapping[int, Any]) -> bool:
+    """Return whether the systems that a system refers to lead to the basic one."""
+    for _ in systems:
+        if not system.rid:
+            return True
+        system = systems.get(system.rid, system)
+    return False
 
 
 def _no_system(bulk: BulkData, user: BulkCard, number: int) -> DeckError:

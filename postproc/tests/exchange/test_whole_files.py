@@ -101,6 +101,10 @@ REFUSED = {
     "cylinder": (whole(grids="CORD2C" + SYSTEM[6:] + free_grids(system="7")), "13: CORD2C", "needs to be a CORD2R"),
     "system of grids": (whole(grids="CORD1R,7,1,2,6\n" + free_grids(), elements=free_elements(more=",7")),
                         "13: CORD1R", "needs to be a CORD2R"),
+    "system of itself": (whole(grids="CORD2R,8,7" + SYSTEM[9:] + "CORD2R,7,8" + SYSTEM[9:] + free_grids(system="8")),
+                         "13: CORD2R", "refers to itself by way of system 7"),
+    "system on a line": (whole(grids=SYSTEM.replace(",1.,1.,0.", ",0.,0.,5.") + free_grids(system="7")),
+                         "13: CORD2R", "lie on one line"),
     "turned": (whole(grids=SYSTEM + free_grids(system="7")), "CQUAD4", "45 degrees", "in the axes of the edges"),
     "hole": (whole(elements=re.sub(r"CQUAD4,6,.*\n", "", free_elements())), "CQUAD4", "no holes"),
     "both sides": (whole(elements=re.sub(r"(CQUAD4,9,1),(\d+),(\d+),(\d+),(\d+)", r"\1,\2,\5,\4,\3", free_elements())),
@@ -146,6 +150,12 @@ class WholeFilesTest(ImportTest):
         for name, text in {**SAME, "named continuations": with_marks(whole())}.items():
             with self.subTest(name):
                 self.assertEqual(list(self.groups(text)), expected)
+
+    def test_no_text(self) -> None:
+        """Results, say, instead of bulk data."""
+        code, printed = self.run_command("\0\1" + whole())
+        self.assertEqual((code, printed.count("\n")), (4, 1), printed)
+        self.assertIn("is no text", printed)
 
     def test_refused(self) -> None:
         """One sentence with the card and what to change."""
