@@ -2,7 +2,7 @@
 
 import contextlib
 import io
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -86,7 +86,7 @@ def _no_rectangle(bulk: BulkData, quads: Sequence[_Quadrilateral], axes: np.ndar
                   ) -> DeckError:
     """Return an error about elements that cover no rectangle along the axes; one in other axes is reported as such."""
     side = axes @ (quads[0].corners[1] - quads[0].corners[0])
-    turned = np.array([side[:2], [-side[1], side[0]]]) / np.linalg.norm(side)
+    turned = np.array([side[:2], [-side[1], side[0]]]) / max(np.linalg.norm(side), np.finfo(float).tiny)
     places = np.concatenate([quad.corners for quad in quads]) @ axes[:2].T @ turned.T
     if abs(area - np.prod(np.ptp(places, axis=0))) < _NEAR * area:
         return bulk.error(quads[0].card, f"its first side is at {_plain(np.degrees(np.arctan2(side[1], side[0]))):.6g} "
@@ -159,19 +159,23 @@ def _systems(bulk: BulkData) -> dict[int, Any]:
         if not _ends_in_basic(system, model.coords):
             raise bulk.error(card, f"system {system.cid} refers to itself by way of system {system.rid}.")
         system.cross_reference(model)
-    for system in model.coords.values():
-        system.setup()
+    for card in cards:
+        _without_prints(model.coords[bulk.integer(card, 1)].setup, bulk, card)
     return dict(model.coords)
 
 
 def _system(bulk: BulkData, card: BulkCard) -> Any:
     """Return the system of a CORD2R."""
     from pyNastran.bdf.cards.coordinate_systems import CORD2R
+    return _without_prints(lambda: bulk.read(card, CORD2R), bulk, card)
+
+
+def _without_prints(define: Callable[[], Any], bulk: BulkData, card: BulkCard) -> Any:
+    """Return what defines the axes of a system, without the vectors that pyNastran prints of points on one line."""
     try:
-        # It prints the vectors of points on one line.
         with contextlib.redirect_stdout(io.StringIO()):
-            return bulk.read(card, CORD2R)
-    except DeckError as error:
+            return define()
+    except (DeckError, RuntimeError) as error:
         raise bulk.error(card, "its points A, B and C lie on one line.") if "norm(v)" in str(error) else error from None
 
 

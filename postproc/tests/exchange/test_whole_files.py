@@ -105,6 +105,8 @@ REFUSED = {
                          "13: CORD2R", "refers to itself by way of system 7"),
     "system on a line": (whole(grids=SYSTEM.replace(",1.,1.,0.", ",0.,0.,5.") + free_grids(system="7")),
                          "13: CORD2R", "lie on one line"),
+    "system on a line of another": (whole(grids="CORD2R,8,7" + SYSTEM[9:].replace(",1.,1.,0.", ",0.,0.,5.") + SYSTEM
+                                          + free_grids(system="8")), "13: CORD2R", "lie on one line"),
     "turned": (whole(grids=SYSTEM + free_grids(system="7")), "CQUAD4", "45 degrees", "in the axes of the edges"),
     "hole": (whole(elements=re.sub(r"CQUAD4,6,.*\n", "", free_elements())), "CQUAD4", "no holes"),
     "both sides": (whole(elements=re.sub(r"(CQUAD4,9,1),(\d+),(\d+),(\d+),(\d+)", r"\1,\2,\5,\4,\3", free_elements())),
