@@ -105,8 +105,9 @@ contains
     type(process_zone_t), intent(in) :: zone
     !> It lies below this ply
     integer, intent(in) :: below_ply
-    !> Unit of lengths with a blank before it, or nothing for that of the deck, and how much of the latter it is
+    !> Unit of lengths with a blank before it, or nothing for that of the deck
     character(len=*), intent(in) :: unit
+    !> That unit in the deck's own
     real(wp), intent(in) :: size_of_unit
     !> Two sentences, or nothing
     character(len=:), allocatable :: warning

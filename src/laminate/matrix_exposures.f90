@@ -15,10 +15,6 @@ module matrix_exposures
   real(wp), parameter :: inclination_tension = 0.35_wp, inclination_compression = 0.30_wp
   !> Planes that are looked at, a degree apart: between two of them the exposure is larger by less than 2e-4.
   integer, parameter :: planes = 180
-  integer :: plane
-  !> Cosines and sines of their angles.
-  real(wp), parameter :: cosines(planes) = [(cos(pi*plane/planes), plane=1, planes)], &
-                         sines(planes) = [(sin(pi*plane/planes), plane=1, planes)]
 
   !> Strengths for the matrix criteria.
   type :: matrix_strengths_t
@@ -113,6 +109,9 @@ contains
     real(wp), intent(in), optional :: enough
     real(wp) :: c, s, normal, along, across, strength_across, limit
     integer :: i
+    ! Of the angles of the planes.
+    real(wp), parameter :: cosines(planes) = [(cos(pi*i/planes), i=1, planes)], &
+                           sines(planes) = [(sin(pi*i/planes), i=1, planes)]
 
     limit = huge(limit)
     if (present(enough)) limit = enough
