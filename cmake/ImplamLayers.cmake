@@ -21,6 +21,7 @@ function(implam_add_layers)
     add_library(implam_${layer} OBJECT ${sources})
     set_target_properties(implam_${layer} PROPERTIES
       Fortran_MODULE_DIRECTORY ${CMAKE_BINARY_DIR}/modules/${layer})
+    implam_remove_old_modules(${layer} ${sources})
     foreach(name IN LISTS lower)
       target_include_directories(implam_${layer} PRIVATE ${CMAKE_BINARY_DIR}/modules/${name})
       add_dependencies(implam_${layer} implam_${name})
@@ -40,6 +41,19 @@ function(implam_add_layers)
   implam_give_library(linalg PkgConfig::PETSC MPI::MPI_Fortran)
   implam_give_library(results hdf5::hdf5_fortran MPI::MPI_Fortran)
   target_include_directories(implam_results PRIVATE ${HDF5_Fortran_INCLUDE_DIRS})
+endfunction()
+
+# implam_remove_old_modules(<layer> <source>...): removes modules in the build whose source has left the layer. The
+# compiler would find them before those of the layer that has the source.
+function(implam_remove_old_modules layer)
+  file(GLOB modules ${CMAKE_BINARY_DIR}/modules/${layer}/*.mod)
+  foreach(module IN LISTS modules)
+    get_filename_component(name ${module} NAME_WE)
+    if(NOT name STREQUAL "build_information" AND NOT "${ARGN}" MATCHES "/${name}[.][fF]90")
+      message(STATUS "Removing ${module}, whose source has left src/${layer}")
+      file(REMOVE ${module})
+    endif()
+  endforeach()
 endfunction()
 
 # implam_give_library(<layer> <library>...): the only layer that may use a library sees it.

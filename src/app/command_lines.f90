@@ -198,9 +198,11 @@ contains
     !> Set (usage)
     type(error_t), allocatable, intent(inout) :: error
     type(line_t), allocatable :: known(:), terms(:)
-    character(len=:), allocatable :: nearest
+    character(len=:), allocatable :: nearest, verb
     integer :: i, j
 
+    verb = ''
+    if (index(word, '--') == 1) verb = meant_verb(word(3:))
     allocate (known(0))
     do i = 1, size(option_rows, 2)
       terms = words_of(trim(option_rows(1, i)), ' ')
@@ -213,6 +215,8 @@ contains
       call fail(error, exit_usage, word//' takes no value.')
     else if (nearest /= '') then
       call fail(error, exit_usage, 'Unknown option "'//word//'"; did you mean '//nearest//'?')
+    else if (verb /= '') then
+      call fail(error, exit_usage, 'Unknown option "'//word//'"; did you mean implam '//verb//'?')
     else
       call fail(error, exit_usage, 'Unknown option "'//word//'"; see implam help.')
     end if

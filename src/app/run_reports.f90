@@ -123,8 +123,12 @@ contains
     type(log_t), intent(inout) :: log
     real(wp) :: factor_entries, megabytes
     integer :: matrix_entries, i
+    logical :: has_factor
 
-    if (allocated(operator%solver)) then
+    has_factor = .false.
+    ! Central differences free the factor of the equilibrium before the first step.
+    if (allocated(operator%solver)) has_factor = operator%solver%has_factor()
+    if (has_factor) then
       call operator%solver%statistics(factor_entries, megabytes)
       matrix_entries = operator%numbering%row_start(operator%numbering%rows + 1) - 1
       call log%detail('Factor: '//to_text(factor_entries)//' numbers, '//to_text(megabytes)//' MB; matrix: '// &

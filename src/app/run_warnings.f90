@@ -225,7 +225,7 @@ contains
       text = energy_text('created', 'take smaller steps, &impactor integrator=''conserving'', or more damping '// &
                          '(rho_inf) with delamination.', 'take a smaller step_factor.')
     case (warning_loss)
-      text = energy_text('taken', 'take smaller steps, or less damping (rho_inf).', 'take a smaller step_factor.')
+      text = energy_text('taken', 'take smaller steps, or less damping (rho_inf).', loss_cure(deck))
     case (warning_ledger)
       text = 'More than '//short_text(100*energy_tolerance)//' % of the energy is not accounted for since '//at// &
              ' (energy_error): take a smaller '//trim(merge('step_factor.         ', 'tolerance of &solver.', &
@@ -281,6 +281,19 @@ contains
       end if
     end function energy_text
   end function warning_text
+
+  !> Remedy for what central differences take. The layers that a growing zone separates relax; what that releases is
+  !> damped.
+  pure function loss_cure(deck) result(cure)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> End of a sentence
+    character(len=:), allocatable :: cure
+
+    cure = 'take a smaller step_factor.'
+    if (any(deck%delaminations%follows)) &
+      cure = 'take a smaller step_factor or, as zones that grow release energy, a larger zone of &delamination.'
+  end function loss_cure
 
   !> All warnings of a run, with those before a restart.
   function warnings_given(record, deck) result(lines)

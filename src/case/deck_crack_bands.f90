@@ -14,6 +14,7 @@ module deck_crack_bands
   use ply_blocks, only: block_of
   use ply_damage_deck, only: ply_damage_group, key_closure, key_in_situ, key_permanent, keys_of_sudden_failure
   use short_numbers, only: short_text
+  use scale_tables, only: length_text
   use stacking, only: stacked_plies
   use stepping_parameters, only: is_explicit
   use text, only: line_t, append, joined, rounded_text
@@ -159,16 +160,18 @@ contains
     if (deck%mesh%cell > 0) usual = deck%mesh%cell
     allocate (limits(0), excesses(0))
     do mode = 1, size(toughness_keys)
-      if (longest(mode) < present(2)) call append(limits, toughness_keys(mode)//' '//short_text(longest(mode)))
+      if (longest(mode) < present(2)) call append(limits, toughness_keys(mode)//' '// &
+                                                      length_text(deck, longest(mode)))
       if (usual > noted*longest(mode)) call append(excesses, rounded_text(usual/longest(mode), 2)//' times '// &
                                              toughness_keys(mode))
     end do
     if (size(limits) == 0) return
     excess = ''
-    if (size(excesses) > 0) excess = ' A side of '//short_text(usual)//' dissipates '//joined(excesses, ', ')//'.'
-    call remark(deck%settings, problems, material_group, '', 'elements of '//short_text(present(1))//' to '// &
-      short_text(present(2))//' dissipate more than the fracture energy; the longest sides that do not are '// &
-      joined(limits, ', ')//'. Use shorter ones where plies fail.'//excess, place)
+    if (size(excesses) > 0) excess = ' A side of '//length_text(deck, usual)//' dissipates '// &
+                                      joined(excesses, ', ')//'.'
+    call remark(deck%settings, problems, material_group, '', 'elements of '//length_text(deck, present(1))// &
+      ' to '//length_text(deck, present(2))//' dissipate more than the fracture energy; the longest sides that do '// &
+      'not are '//joined(limits, ', ')//'. Use shorter ones where plies fail.'//excess, place)
   end subroutine check_lengths
 
   !> Longest elements that take no more than the fracture energies, in every block of a material. Strengths in place are

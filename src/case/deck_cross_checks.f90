@@ -4,6 +4,7 @@ module deck_cross_checks
   use adapt_deck, only: adapt_group, key_growth_step
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
+  use deck_line_supports, only: check_line_supports, check_moved_lines
   use deck_symmetries, only: check_symmetry
   use deck_remarks, only: report, remark, remark_idle, are_clear
   use interface_places, only: delamination_group, key_below_ply
@@ -14,16 +15,15 @@ module deck_cross_checks
   use indentation_deck, only: indentation_group, key_k
   use kinds, only: wp
   use line_deck, only: line_group, key_rise
-  use line_loads, only: line_load_t, along_x, along_y
+  use line_loads, only: line_load_t
   use material_deck, only: material_group, require_densities
   use mesh_deck, only: mesh_group, key_patch
-  use mesh_parameters, only: is_mirrored, edge_clamped, edge_free
   use output_deck, only: check_intervals, remark_idle_fields
   use plies, only: ply_t, material_objection
   use plate_deck, only: plate_group, check_edges
   use pressure_deck, only: pressure_group, key_history
   use stepping_parameters, only: is_explicit
-  use support_deck, only: check_static_rigs
+  use support_deck, only: check_static_rigs, support_group
   use short_numbers, only: short_text
   use static_deck, only: static_group, key_dissipation
   use stepping_parameters, only: is_explicit
@@ -48,6 +48,8 @@ contains
     else
       call check_transient(deck, problems)
     end if
+    if (.not. (problems%concern(line_group) .or. problems%concern(support_group) .or. problems%concern(plate_group))) &
+      call check_moved_lines(deck, problems)
     call check_symmetry(deck, problems)
     call check_impact(deck, problems)
     call check_interfaces(deck, problems)
@@ -149,34 +151,6 @@ contains
       call remark(deck%settings, problems, static_group, key_dissipation, &
                   'has no effect without a cohesive interface.')
   end subroutine check_static
-
-  !> Lines and edges that together support the plate: its deflection, and its tilt along x and along y.
-  subroutine check_line_supports(deck, problems)
-    !> The deck
-    type(deck_t), intent(in) :: deck
-    !> Faults found are added
-    type(problems_t), intent(inout) :: problems
-    type(line_load_t), allocatable :: held(:)
-    logical, allocatable :: across(:)
-    logical :: tilts(2), edges(4)
-    integer :: along, n
-
-    if (any(deck%plate%edges == edge_clamped)) return
-    held = pack(deck%lines, deck%lines%prescribed)
-    edges = deck%plate%edges /= edge_free
-    do along = 1, 2
-      ! Two lines or edges across this direction stop the tilt, or one that runs along it.
-      across = held%component == 3 .and. held%direction == merge(along_y, along_x, along == 1)
-      n = count(edges(2*along - 1:2*along))
-      if (any(across)) n = n + merge(2, 1, minval(held%at, mask=across) < maxval(held%at, mask=across))
-      tilts(along) = n > 1 .or. any(edges(5 - 2*along:6 - 2*along)) .or. any(held%component == 3 + along) .or. &
-                     any(held%component == 3 .and. .not. across)
-    end do
-    tilts = tilts .or. is_mirrored(deck%plate%symmetry)
-    if (all(tilts) .and. (any(held%component == 3) .or. any(edges))) return
-    call report(deck%settings, problems, line_group, '', 'lines and edges leave the plate free to move or to tilt '// &
-              'in a static analysis; support another line.', 1)
-  end subroutine check_line_supports
 
   !> Keys that a run in time needs, and keys without effect in it.
   subroutine check_transient(deck, problems)

@@ -15,7 +15,7 @@ module deck_extents
   use kinds, only: wp
   use line_deck, only: line_group, line_key_at => key_at
   use line_loads, only: along_x
-  use placed_lines, only: node_line, place_of_node
+  use nodal_lines, only: node_line, place_of_node
   use laminate_deck, only: laminate_group, key_thicknesses
   use mesh_deck, only: mesh_group, key_elements, key_patch, key_core, key_cell, max_elements
   use mesh_parameters, only: is_halved, is_mirrored

@@ -16,6 +16,7 @@ module deck_process_zones
   use matrix_exposures, only: shear_across_strength
   use plies, only: ply_t
   use process_zones, only: process_zone_t, process_zone_warning, resolved_part
+  use scale_tables, only: length_unit, length_unit_size
   use stacking, only: stacked_plies, section_stiffness
   implicit none
   private
@@ -35,7 +36,8 @@ contains
     if (problems%errors() > 0) return
     do i = 1, size(deck%delaminations)
       if (deck%delaminations(i)%law /= law_cohesive) cycle
-      warning = process_zone_warning(process_zone(deck, deck%delaminations(i)), deck%delaminations(i)%below_ply)
+      warning = process_zone_warning(process_zone(deck, deck%delaminations(i)), deck%delaminations(i)%below_ply, &
+                                     length_unit(deck), length_unit_size(deck))
       if (warning /= '') call remark(deck%settings, problems, delamination_group, '', warning, &
                                      deck%delaminations(i)%group)
     end do

@@ -14,7 +14,7 @@ module scale_tables
   use unit_systems, only: base_units, system_named
   implicit none
   private
-  public :: scale_lines, strength_lines
+  public :: scale_lines, strength_lines, length_unit, length_unit_size, length_text
 
   !> Characters before the values, and of a value.
   integer, parameter :: name_width = 56, value_width = 12
@@ -169,6 +169,43 @@ contains
     digits = short_text(value)
     if (system > 0) digits = short_text(value*product(base_units(system)**dimension%exponents)/dimension%size)
   end function read_as
+
+  !> Unit of lengths behind a blank; empty where the deck does not name its units.
+  pure function length_unit(deck) result(unit)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Such as ' mm'
+    character(len=:), allocatable :: unit
+
+    unit = ''
+    if (system_named(deck%units) > 0) unit = ' '//trim(length%unit)
+  end function length_unit
+
+  !> That unit in the deck's own.
+  pure real(wp) function length_unit_size(deck) result(its_size)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    real(wp) :: base(3)
+    integer :: system
+
+    its_size = 1
+    system = system_named(deck%units)
+    if (system == 0) return
+    base = base_units(system)
+    its_size = length%size/base(1)
+  end function length_unit_size
+
+  !> A length to three digits with its unit.
+  pure function length_text(deck, value) result(words)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> The length, in its units
+    real(wp), intent(in) :: value
+    !> Such as 0.0823 mm
+    character(len=:), allocatable :: words
+
+    words = read_as(deck, value, length)//length_unit(deck)
+  end function length_text
 
   !> Unit of a value, or its dimension where the deck does not name its units.
   pure function unit_of(deck, dimension) result(unit)

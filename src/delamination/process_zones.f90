@@ -99,12 +99,16 @@ contains
   end function is_resolved
 
   !> What the check says of an interface, or an empty text if its process zone is resolved. Numbers have the units of
-  !> the deck.
-  pure function process_zone_warning(zone, below_ply) result(warning)
+  !> the deck, lengths the given one.
+  pure function process_zone_warning(zone, below_ply, unit, size_of_unit) result(warning)
     !> The interface
     type(process_zone_t), intent(in) :: zone
     !> It lies below this ply
     integer, intent(in) :: below_ply
+    !> Unit of lengths with a blank before it, or nothing for that of the deck
+    character(len=*), intent(in) :: unit
+    !> That unit in the deck's own
+    real(wp), intent(in) :: size_of_unit
     !> Two sentences, or nothing
     character(len=:), allocatable :: warning
     real(wp) :: shear, opening
@@ -113,11 +117,13 @@ contains
     if (is_resolved(zone)) return
     shear = shear_zone_length(zone)
     opening = opening_zone_length(zone)
-    warning = 'delamination below ply '//to_text(below_ply)//': the process zone is '//short_text(shear)// &
-              ' long in shear ('//short_text(opening)//' in opening), that is '//in_cells(shear, zone%cell)//' ('// &
+    warning = 'delamination below ply '//to_text(below_ply)//': the process zone is '// &
+              short_text(shear/size_of_unit)//unit//' long in shear ('//short_text(opening/size_of_unit)//unit// &
+              ' in opening), that is '//in_cells(shear, zone%cell)//' ('// &
               in_cells(opening, zone%cell)//') cells; below 2.5 cells the load at growth comes out too high '// &
-              '(4 % at 1.7, 33 % at 0.9). Take cells of at most '//text_at_most(resolving_cell(zone))// &
-              ', or strength_shear <= '//text_at_most(resolved_shear_strength(zone))// &
+              '(4 % at 1.7, 33 % at 0.9). Take cells of at most '// &
+              text_at_most(resolving_cell(zone)/size_of_unit)//unit//', or strength_shear <= '// &
+              text_at_most(resolved_shear_strength(zone))// &
               ' (strength_opening <= '//text_at_most(resolved_opening_strength(zone))//').'
   end function process_zone_warning
 

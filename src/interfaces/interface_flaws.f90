@@ -10,7 +10,7 @@ module interface_flaws
   use models, only: model_t
   implicit none
   private
-  public :: may_weaken, weaken_beside, visit_flaws
+  public :: reachable_cells, weaken_beside, visit_flaws
 
   !> So that cells as far away as the reach count on every machine.
   real(wp), parameter :: rounding_factor = 1 + 1.0e-9_wp
@@ -97,27 +97,33 @@ contains
     lines(2) = 2*min(size(edges) - 1, count(edges < ends(2) + rounding_factor*reach))
   end function lines_within
 
-  !> True if a crack in a cell can weaken points of a zone.
-  pure logical function may_weaken(mesh, zone, cell, reach)
+  !> Cells of the mesh that lie so near to a zone that a crack in them weakens its interface.
+  pure function reachable_cells(mesh, zone, reach) result(reachable)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
-    !> Index of the zone, and the cell
-    integer, intent(in) :: zone, cell
+    !> Index of the zone
+    integer, intent(in) :: zone
     !> Distance from a crack that is weakened, length
     real(wp), intent(in) :: reach
-    integer :: place(2)
+    !> (cells)
+    logical :: reachable(product(mesh%cells))
+    logical :: near(mesh%cells(1)), beside_cut(mesh%cells(1))
+    real(wp) :: distance
+    integer :: row, first
 
-    place = mesh%place_of(cell)
+    distance = rounding_factor*reach
     associate (columns => mesh%zones(zone)%columns, rows => mesh%zones(zone)%rows, x => mesh%x_edges, y => mesh%y_edges)
-      may_weaken = x(place(1) + 1) + rounding_factor*reach >= x(columns(1)) .and. x(place(1)) &
-        - rounding_factor*reach <= x(columns(2) + 1) &
-                   .and. y(place(2) + 1) + rounding_factor*reach >= y(rows(1)) .and. y(place(2)) &
-                     - rounding_factor*reach <= y(rows(2) + 1)
+      near = x(2:) + distance >= x(columns(1)) .and. x(:size(near)) - distance <= x(columns(2) + 1)
+      ! The image of a cell in a turned plate lies beside the cut only.
+      beside_cut = mesh%halved(1) .and. .not. mesh%mirrored(1) .and. x(:size(near)) <= distance
+      do row = 1, mesh%cells(2)
+        first = (row - 1)*size(near)
+        reachable(first + 1:first + size(near)) = beside_cut
+        if (y(row + 1) + distance >= y(rows(1)) .and. y(row) - distance <= y(rows(2) + 1)) &
+          reachable(first + 1:first + size(near)) = near .or. beside_cut
+      end do
     end associate
-    ! The image of a cell in a turned plate lies beside the cut only.
-    if (mesh%halved(1) .and. .not. mesh%mirrored(1)) may_weaken = may_weaken &
-      .or. mesh%x_edges(place(1)) <= rounding_factor*reach
-  end function may_weaken
+  end function reachable_cells
 
   !> Distance of a coordinate from an interval.
   pure real(wp) function distance(x, ends)

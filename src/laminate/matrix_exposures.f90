@@ -100,20 +100,28 @@ contains
   !> Exposure after Puck with transverse shear: the largest of all planes along the fibres (Puck, Schuermann, 1998). The
   !> inclination over the strength is the same for shear along and across the fibres, as in modes A, B and C, which
   !> it finds again without transverse shear.
-  pure real(wp) function plane_exposure(strengths, stress) result(exposure)
+  pure real(wp) function plane_exposure(strengths, stress, enough) result(exposure)
     !> Strengths
     type(matrix_strengths_t), intent(in) :: strengths
     !> s11, s22, s12, s13, s23
     real(wp), intent(in) :: stress(5)
-    real(wp) :: c, s, normal, along, across, strength_across
+    !> Exposure from which on planes are looked at no further; absent: all are
+    real(wp), intent(in), optional :: enough
+    real(wp) :: c, s, normal, along, across, strength_across, limit
     integer :: i
+    ! Of the angles of the planes.
+    real(wp), parameter :: cosines(planes) = [(cos(pi*i/planes), i=1, planes)], &
+                           sines(planes) = [(sin(pi*i/planes), i=1, planes)]
 
+    limit = huge(limit)
+    if (present(enough)) limit = enough
     exposure = 0
     strength_across = action_plane(strengths)*strengths%shear
     associate (s22 => stress(2), s23 => stress(5))
       do i = 1, planes
-        c = cos(pi*i/planes)
-        s = sin(pi*i/planes)
+        if (exposure >= limit) exit
+        c = cosines(i)
+        s = sines(i)
         normal = s22*c**2 + 2*s23*s*c
         across = (s23*(c - s)*(c + s) - s22*s*c)/strength_across
         along = (stress(3)*c + stress(4)*s)/strengths%shear
@@ -132,7 +140,7 @@ contains
     associate (s => strengths%shear, s22 => stress(2), s23 => abs(stress(5)))
       cracks = (max(0.0_wp, s22) + s23)/strengths%tension + (abs(s22)/2 + s23)/(action_plane(strengths)*s) + &
                (abs(stress(3)) + abs(stress(4)))/s >= 1
-      if (cracks) cracks = plane_exposure(strengths, stress) >= 1
+      if (cracks) cracks = plane_exposure(strengths, stress, 1.0_wp) >= 1
     end associate
   end function cracks_on_a_plane
 

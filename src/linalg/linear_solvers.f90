@@ -60,6 +60,8 @@ module linear_solvers
     procedure :: multiply
     !> Size of the factor, the same on every rank.
     procedure :: statistics
+    !> Whether there is a factor.
+    procedure :: has_factor
     !> Name of what factors the matrix, and how often something else had to.
     procedure :: package_used
     !> Frees matrix and factor.
@@ -234,6 +236,13 @@ contains
     call fail(error, exit_convergence, 'The linear equations have no finite solution.')
     call self%communicator%agree(error)
   end subroutine finish_solve
+
+  !> True between the first factorization and `release`.
+  pure logical function has_factor(self)
+    class(linear_solver_t), intent(in) :: self
+
+    has_factor = self%factors(self%current)%defined
+  end function has_factor
 
   !> Size of the factor, the same on every rank.
   subroutine statistics(self, factor_entries, megabytes)

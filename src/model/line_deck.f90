@@ -13,7 +13,7 @@ module line_deck
 
   !> Names that checks across groups use.
   character(len=*), parameter, public :: line_group = 'line', key_at = 'at', key_layer = 'layer', &
-                                         key_rise = 'rise'
+                                         key_rise = 'rise', key_displacement = 'displacement'
   !> The keys of a value, those of displacements first.
   character(len=*), parameter :: value_keys(4) = [character(len=12) :: 'force', 'displacement', 'moment', 'rotation']
   !> Row of the group.

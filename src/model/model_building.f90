@@ -170,8 +170,8 @@ contains
 
     allocate (self%lines(0))
     if (.not. allocated(self%setup%lines)) return
-    self%lines = [(place_line(self%setup%lines(i), self%mesh, self%distribution, self%map, self%plies, self%section, &
-                              self%setup%plate%symmetry), i=1, size(self%setup%lines))]
+    self%lines = [(place_line(self%setup%lines(i), self%mesh, self%distribution, self%map, self%held, self%plies, &
+                              self%section, self%setup%plate%symmetry), i=1, size(self%setup%lines))]
   end subroutine build_lines
 
   !> Finds the struck node's first point if this rank owns it, and the elements around it.

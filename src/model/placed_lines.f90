@@ -13,9 +13,10 @@ module placed_lines
   use layer_maps, only: layer_map_t
   use distributions, only: distribution_t
   use line_loads, only: line_load_t, along_x, all_layers
+  use nodal_lines, only: edges_of, node_line, simpson_weight
   implicit none
   private
-  public :: placed_line_t, place_line, node_line, place_of_node
+  public :: placed_line_t, place_line
 
   !> Total stiffness of a line's springs over that of the section. The plate is mostly more compliant than its section,
   !> so that the relative error of the displacement is 1e-5 at most; round-off of the force decreases with the
@@ -40,6 +41,8 @@ module placed_lines
     integer, allocatable :: point(:)
     !> Weights of their unknowns in the motion of the node, (5, points)
     real(wp), allocatable :: coefficient(:, :)
+    !> Parts of this rank's nodes that supports hold where the line prescribes a motion: it does not act on them
+    real(wp), allocatable :: left_out(:)
   contains
     !> Motion of a node of the line.
     procedure :: motion_at
@@ -60,7 +63,7 @@ module placed_lines
 contains
 
   !> Puts a line on the mesh.
-  pure function place_line(load, mesh, distribution, map, plies, section, symmetry) result(self)
+  pure function place_line(load, mesh, distribution, map, held, plies, section, symmetry) result(self)
     !> The line
     type(line_load_t), intent(in) :: load
     !> The mesh
@@ -69,6 +72,8 @@ contains
     type(distribution_t), intent(in) :: distribution
     !> Motion from unknowns
     type(layer_map_t), intent(in) :: map
+    !> Unknowns that supports hold, (5, points)
+    logical, intent(in) :: held(:, :)
     !> Plies of the laminate
     type(ply_t), intent(in) :: plies(:)
     !> Section of the laminate
@@ -98,7 +103,35 @@ contains
                         simpson_weight(edges_of(mesh, along), lines(along)))
       end associate
     end do
+    call leave_out_held(self, held)
   end function place_line
+
+  !> Leaves out the nodes whose motion supports hold, if the line prescribes it: its springs would pull at the supports.
+  pure subroutine leave_out_held(self, held)
+    !> The line
+    type(placed_line_t), intent(inout) :: self
+    !> Unknowns that supports hold, (5, points)
+    logical, intent(in) :: held(:, :)
+    logical :: acts(size(self%weight)), kept(size(self%point))
+    integer :: node, k
+
+    acts = .true.
+    kept = .true.
+    do node = 1, size(acts)
+      if (.not. self%load%prescribed) exit
+      acts(node) = any([(any(abs(self%coefficient(:, k)) > 0 .and. .not. held(:, self%point(k))), &
+                         k=self%first(node), self%first(node + 1) - 1)])
+      kept(self%first(node):self%first(node + 1) - 1) = acts(node)
+    end do
+    self%left_out = pack(self%weight, .not. acts)
+    if (all(acts)) return
+    self%first = [1, (1 + count(kept(:self%first(node + 1) - 1)), node=1, size(acts))]
+    self%first = [self%first(1), pack(self%first(2:), acts)]
+    self%weight = pack(self%weight, acts)
+    self%height = pack(self%height, acts)
+    self%coefficient = self%coefficient(:, pack([(k, k=1, size(kept))], kept))
+    self%point = pack(self%point, kept)
+  end subroutine leave_out_held
 
   !> Stiffness of a section that a component of the motion is measured by.
   pure real(wp) function section_scale(section, component) result(scale)
@@ -116,63 +149,6 @@ contains
       scale = maxval(abs(section%stiffness(13:18)))
     end select
   end function section_scale
-
-  !> Edges of the cells along x or y.
-  pure function edges_of(mesh, direction) result(edges)
-    !> The mesh
-    type(layered_mesh_t), intent(in) :: mesh
-    !> 1 for x, 2 for y
-    integer, intent(in) :: direction
-    !> Ascending
-    real(wp), allocatable :: edges(:)
-
-    if (direction == 1) then
-      edges = mesh%x_edges
-    else
-      edges = mesh%y_edges
-    end if
-  end function edges_of
-
-  !> Line of nodes next to a coordinate, from 0.
-  pure integer function node_line(edges, at) result(line)
-    !> Edges of the cells
-    real(wp), intent(in) :: edges(:)
-    !> The coordinate
-    real(wp), intent(in) :: at
-    integer :: k
-
-    line = minloc([(abs(place_of_node(edges, k) - at), k=0, 2*size(edges) - 2)], dim=1) - 1
-  end function node_line
-
-  !> Coordinate of a line of nodes.
-  pure real(wp) function place_of_node(edges, line) result(place)
-    !> Edges of the cells
-    real(wp), intent(in) :: edges(:)
-    !> Which line, from 0
-    integer, intent(in) :: line
-
-    place = (edges(line/2 + 1) + edges((line + 1)/2 + 1))/2
-  end function place_of_node
-
-  !> Part of a line of nodes that belongs to one of them.
-  pure real(wp) function simpson_weight(edges, line) result(weight)
-    !> Edges of the cells along it
-    real(wp), intent(in) :: edges(:)
-    !> Which node, from 0
-    integer, intent(in) :: line
-    integer :: cell, cells
-
-    cells = size(edges) - 1
-    cell = line/2
-    weight = 0
-    if (modulo(line, 2) == 1) then
-      weight = 4*(edges(cell + 2) - edges(cell + 1))
-    else
-      if (cell > 0) weight = edges(cell + 1) - edges(cell)
-      if (cell < cells) weight = weight + edges(cell + 2) - edges(cell + 1)
-    end if
-    weight = weight/(6*(edges(cells + 1) - edges(1)))
-  end function simpson_weight
 
   !> Adds a node with the layers of it that the line acts on, each with its part of the thickness.
   pure subroutine add_layers(self, mesh, map, plies, first_point, local, weight)
@@ -358,13 +334,16 @@ contains
     real(wp), intent(in) :: displacement(:, :)
     !> Ramps over their full values
     real(wp), intent(in) :: load_factor
-    !> Force of the full plate's line, mean motion
-    type(exact_sum_t) :: totals(2)
+    !> Force of the full plate's line, mean motion of its nodes times their part, and the part of those left out
+    type(exact_sum_t) :: totals(3)
     integer :: node
 
     do node = 1, size(self%weight)
       call totals(1)%add(self%weight(node)*self%force_at(node, displacement, load_factor))
       call totals(2)%add(self%weight(node)*self%motion_at(node, displacement))
+    end do
+    do node = 1, size(self%left_out)
+      call totals(3)%add(self%left_out(node))
     end do
   end function totals
 end module placed_lines

@@ -3,7 +3,7 @@ module crack_flaws
   use delamination_parameters, only: law_cohesive
   use element_stresses, only: element_strains, has_ply, stress_of_ply
   use in_situ_strengths, only: crack_strengths
-  use interface_flaws, only: may_weaken, weaken_beside
+  use interface_flaws, only: reachable_cells, weaken_beside
   use interface_states, only: interface_state_t
   use kinds, only: wp
   use matrix_exposures, only: matrix_strengths_t, cracks_on_a_plane, shear_across_strength
@@ -93,12 +93,13 @@ contains
     type(matrix_strengths_t), intent(in) :: strengths
     !> (cells of the mesh)
     logical, allocatable :: cracked(:)
-    logical :: cracks(size(strains, 2))
+    logical :: cracks(size(strains, 2)), reachable(product(model%mesh%cells))
     type(elasticity_t) :: left
     integer :: i
 
+    reachable = reachable_cells(model%mesh, zone, reach)
     do i = 1, size(cracks)
-      cracks(i) = may_weaken(model%mesh, zone, model%mesh%element_cell(model%distribution%elements(i)), reach)
+      cracks(i) = reachable(model%mesh%element_cell(model%distribution%elements(i)))
       if (cracks(i)) cracks(i) = has_ply(model, ply, i)
       if (.not. cracks(i)) cycle
       left = plies%elasticity(model, ply, i)

@@ -35,12 +35,17 @@ contains
     type(state_t), intent(in) :: now
     !> One value per column, the same on every rank; none without lines
     real(wp), allocatable :: values(:)
+    real(wp), allocatable :: totals(:)
     integer :: i
 
     allocate (values(0))
     if (size(model%lines) == 0) return
-    values = totals_of(model%communicator, [(model%lines(i)%totals(now%motion%displacement, now%load_factor), &
+    totals = totals_of(model%communicator, [(model%lines(i)%totals(now%motion%displacement, now%load_factor), &
                                              i=1, size(model%lines))])
+    do i = 1, size(totals), 3
+      ! Supports that hold the entire line hold its mean, too.
+      values = [values, totals(i), totals(i + 1)/max(1 - totals(i + 2), tiny(1.0_wp))]
+    end do
     if (allocated(now%line_reactions)) then
       do i = 1, size(model%lines)
         if (model%lines(i)%load%prescribed) values(2*i - 1) = now%line_reactions(i)

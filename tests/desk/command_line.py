@@ -63,7 +63,8 @@ def check_slips(implam, folder):
     for word in ("version", "-v"):
         require(output_of(implam, word) == version, f"{word} doesn't print the version.")
     for words, meant in ((["chek", deck], "did you mean check?"), (["exlpain"], "did you mean explain?"),
-                         (["--ouput", "x", deck], "did you mean --output?"), (["explain", "lnegth"], "mean length?"),
+                         (["--ouput", "x", deck], "did you mean --output?"),
+                         (["--check", deck], "did you mean implam check?"), (["explain", "lnegth"], "mean length?"),
                          (["--verify=1", deck], "takes no value"), (["--wall-limit=", deck], "number of seconds"),
                          (["--no-such=5", deck], "see implam help"),
                          (["nothing", "else"], "one deck")):

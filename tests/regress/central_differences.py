@@ -168,12 +168,12 @@ CANTILEVER = """&case name='cantilever' kinematics='linear' /
 def check_lines(implam, folder, _):
     """A cantilever is moved at once, smoothly, and in load steps."""
     end, held = 4e-3, 1e-4
-    groups = {"static": "&static steps=1 /", "ramp": f"&time {EXPLICIT[5:]} end={end} /",
-              "smooth": f"&time {EXPLICIT[5:]} end={end} /"}
+    groups = {"static": "&static steps=1 /", "cooled": f"&thermal delta_T=-100 /\n&time {EXPLICIT[5:]} end={end} /",
+              **dict.fromkeys(("ramp", "smooth", "fixed"), f"&time {EXPLICIT[5:]} end={end} /")}
     found = {}
     for name, group in groups.items():
         deck = write_deck(folder / name, "karas.nml")
-        rise = f"rise={0.5 * end}" if name == "smooth" else ""
+        rise = {"smooth": f"rise={0.5 * end}", "fixed": "history='fixed'"}.get(name, "")
         deck.write_text(f"{CANTILEVER}&line at=0.05 displacement={held} {rise} /\n{group}\n", encoding="utf-8")
         found[name] = read_history(run_deck(implam, deck))
         error = max(map(abs, found[name]["energy_error"]))/max(map(abs, found[name]["work_external"]))
@@ -182,6 +182,9 @@ def check_lines(implam, folder, _):
         require(abs(found[name]["line_displacement_1"][-1]/held - 1) < 1e-9, f"{name}: the line is elsewhere.")
     for moment, place in zip(found["ramp"]["time"], found["ramp"]["line_displacement_1"], strict=True):
         require(abs(place - held*moment/end) < 1e-9*held, "The line is not where the ramp is.")
+    worst = max(abs(force/found["static"]["line_force_1"][-1] - 1) for force in found["fixed"]["line_force_1"])
+    print(f"Held from the start, the force differs by {worst:.2g} from that in load steps")
+    require(worst < 1e-3, "The force of a fixed line is not that of load steps.")
     force = found["smooth"]["line_force_1"][-1]/found["static"]["line_force_1"][-1]
     print(f"Moved smoothly, the force is {force:.4f} of that in load steps")
     require(abs(force - 1) < 0.05, "The force is not that of load steps.")

@@ -1,13 +1,16 @@
 """Lines on quarters of plates, in time, on ranks and across restarts.
-Usage: lines.py quarter|time|ranks|restart IMPLAM FOLDER [LAUNCHER...]
+Usage: lines.py quarter|time|edges|ranks|restart IMPLAM FOLDER [LAUNCHER...]
 (LAUNCHER takes the number of ranks as its last word)
 
 quarter  a strip and the quarter or half that stands for it: deflection and forces to 1e-9
 time     prescribed lines are held exactly, with the force of equilibrium: fixed as in load steps, ramps and smooth
          starts the same with half the steps, the ledger closed; also beside a pressure, with two integrators
+edges    a line that runs to edges which hold the plate: its work is half its force times its way, in load steps, in
+         time and by central differences; held nodes are none of its own
 ranks    a notched strip that is taken by what it dissipates, on 1 and 2 ranks: to 1e-6
 restart  the same from a checkpoint while damage grows: bitwise"""
 
+import re
 import sys
 from pathlib import Path
 
@@ -94,6 +97,30 @@ def check_time(implam, folder, _):
             require(difference < SAME_FORCE[kind], f"{name}: the force is not the same with half the steps.")
 
 
+# Nodes at the ends of the line are held by the edges.
+BETWEEN_EDGES = CANTILEVER.replace("'clamped','free','free','free'", "{}").replace("0.1, 0.02", "0.1, 0.06")
+
+
+def check_edges(implam, folder, _):
+    """Clamped, simple and one edge free; deflection, and a displacement along the line."""
+    for edges, line in (("'clamped'", ""), ("'simple'", "direction='x'"), ("'clamped','free','free','clamped'", ""),
+                        ("'clamped'", "component='u'")):
+        found = {}
+        for name, end in (("static", "&static steps=1 /"), ("time", "&time end=1e-4 step=1e-5 /"),
+                          ("explicit", "&time end=1e-5 integrator='central_difference' /")):
+            case = folder / re.sub(r"\W+", "_", f"{edges}{line}{name}")
+            case.mkdir(parents=True, exist_ok=True)
+            (case / "deck.nml").write_text(f"{BETWEEN_EDGES.format(edges)}&line at=0 displacement={HELD} "
+                                           f"history='fixed' {line} /\n{end}\n", encoding="utf-8")
+            history = read_history(run_deck(implam, case / "deck.nml"))
+            force, place, work = (history[column][-1] for column in ("line_force_1", "line_displacement_1",
+                                                                     "work_external"))
+            found[name] = force
+            require(abs(place/HELD - 1) < 1e-3, f"{case.name}: the line is at {place!r}.")
+            require(abs(force*HELD/2/work - 1) < 1e-3, f"{case.name}: a force of {force!r} did a work of {work!r}.")
+        require(max(found.values())/min(found.values()) < 1.001, f"{edges} {line}: the forces are {found}.")
+
+
 def rms(values):
     """Return the root of the mean of the squares."""
     squares = [value*value for value in values]
@@ -118,7 +145,8 @@ def check_restart(implam, folder, _):
 
 def trial(kind, implam, folder, *launcher):
     """One of them."""
-    checks = {"quarter": check_quarter, "time": check_time, "ranks": check_ranks, "restart": check_restart}
+    checks = {"quarter": check_quarter, "time": check_time, "edges": check_edges, "ranks": check_ranks,
+              "restart": check_restart}
     require((DECKS / "enf.nml").exists(), "The decks are missing.")
     checks[kind](implam, Path(folder), launcher)
 

@@ -5,7 +5,8 @@ from dataclasses import replace
 from itertools import zip_longest
 from typing import Any
 
-from implam_post.exchange.bulk_data import BulkCard, BulkData
+from implam_post.exchange.bulk_cards import BulkCard
+from implam_post.exchange.bulk_data import BulkData
 from implam_post.exchange.remarks import Remarks
 from implam_post.laminate.sections import Material, Ply
 
@@ -17,6 +18,8 @@ _UNTAKEN = {
     "PCOMPG": {4: "SB", 5: "FT", 7: "GE"},
 }
 _NEAR = 0.01
+# Number of the field in which the first ply of a PCOMP or PCOMPG begins.
+_FIRST_PLY = 9
 
 
 def read_laminate(bulk: BulkData, properties: Iterable[int], remarks: Remarks, shear_23: float | None = None
@@ -58,6 +61,8 @@ def _plies(bulk: BulkData, card: BulkCard, remarks: Remarks, shear_23: float | N
     if card.name == "PSHELL":
         return [_only_ply(bulk, card, remarks, shear_23)]
     from pyNastran.bdf.cards.properties.shell import PCOMP, PCOMPG
+    if len(card.fields) < _FIRST_PLY + 1:
+        raise bulk.error(card, "it has no plies: they follow in continuations, from the second field on.")
     laminate = bulk.read(card, PCOMP if card.name == "PCOMP" else PCOMPG)
     symmetric = (laminate.lam or "") == "SYM" and card.name == "PCOMP"
     if laminate.lam and not symmetric:
@@ -84,8 +89,10 @@ def _only_ply(bulk: BulkData, card: BulkCard, remarks: Remarks, shear_23: float 
     shell = bulk.read(card, PSHELL)
     first = shell.mid1
     if first is None or shell.mid2 != first or shell.mid3 not in (None, first) or shell.mid4 is not None:
-        raise bulk.error(card, "MID1, MID2 and MID3 need to be one material and MID4 blank: give other sections as a "
-                               "PCOMP.")
+        raise bulk.error(card, ("MID2 is blank: Nastran takes a membrane without bending; give MID2 = MID1."
+                                if first is not None and shell.mid2 is None else
+                                "MID1, MID2 and MID3 need to be one material and MID4 blank: give other sections as a "
+                                "PCOMP."))
     if abs(shell.twelveIt3 - 1) > 1e-6:
         raise bulk.error(card, "12I/T**3 isn't 1: give the plies that make the section up as a PCOMP.")
     if shell.t is None or shell.t <= 0:
@@ -113,10 +120,13 @@ def _with_nonstructural_mass(bulk: BulkData, card: BulkCard, plies: list[Ply], t
 def _materials(bulk: BulkData, numbers: Iterable[int], user: BulkCard, remarks: Remarks, shear_23: float | None
                ) -> dict[int, Material]:
     """Return the materials of these numbers."""
-    cards = _unique(bulk, "MAT1", "MAT8", "MAT2", "MAT9")
+    cards = _unique(bulk, "MAT1", "MAT8", "MAT2", "MAT3", "MAT9", "MAT11", "MATORT")
     for number in numbers:
-        if number not in cards or cards[number].name not in ("MAT1", "MAT8"):
+        if number not in cards:
             raise bulk.error(user, f"material {number} isn't there as a MAT1 or MAT8.")
+        if cards[number].name not in ("MAT1", "MAT8"):
+            raise bulk.error(cards[number], f"a ply can't be made of it, as the {user.name} in line {user.line} needs: "
+                                            "give E1, E2, NU12, G12, G1Z and G2Z as a MAT8.")
     return {number: _isotropic(bulk, cards[number], remarks) if cards[number].name == "MAT1"
             else _orthotropic(bulk, cards[number], remarks, shear_23) for number in numbers}
 
@@ -159,6 +169,8 @@ def _orthotropic(bulk: BulkData, card: BulkCard, remarks: Remarks, shear_23: flo
         raise bulk.error(card, "E1, E2, G12, G1Z and G2Z need to be greater than zero.")
     if found.nu12**2 * found.e22 >= found.e11:
         raise bulk.error(card, "NU12 squared must be smaller than E1/E2.")
+    if card.fields.field(4) is None:
+        remarks.add(card, "NU12 is blank: 0 is taken for it")
     remarks.untaken(card, _UNTAKEN["MAT8"] | (_MAT8_STRENGTHS if card.given(19) else {}))
     strengths = () if card.given(19) else tuple(
         (key, abs(bulk.real(card, number))) for number, key in _MAT8_STRENGTHS.items() if card.given(number))

@@ -1,13 +1,17 @@
 """The rectangle that the quadrilaterals of bulk data make up, and its axes."""
 
-from collections.abc import Mapping, Sequence
+import contextlib
+import io
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from implam_post.exchange.bulk_data import BulkCard, BulkData, ranges
+from implam_post.exchange.bulk_cards import BulkCard
+from implam_post.exchange.bulk_data import BulkData, ranges
 from implam_post.exchange.remarks import Remarks
+from implam_post.io.errors import DeckError
 
 _NEAR = 1e-6
 _UNTAKEN = {"CQUAD4": {8: "ZOFFS", 11: "T1", 12: "T2", 13: "T3", 14: "T4"},
@@ -52,10 +56,14 @@ def read_shape(bulk: BulkData, grids: Mapping[int, tuple[BulkCard, Any]], struck
     quads = _quadrilaterals(bulk, points, remarks)
     normal = quads[0].normal
     for quad in quads:
+        if quad.normal @ normal < _NEAR - 1:
+            raise bulk.error(quad.card, "its corners are numbered the other way round than those of the element in "
+                                        f"line {quads[0].card.line}, so that plies are counted from both sides: number "
+                                        "all alike.")
         if quad.normal @ normal < 1 - _NEAR:
             raise bulk.error(quad.card, f"its normal isn't that of the element in line {quads[0].card.line}: the panel "
-                                        "isn't flat, or its plies are counted from both sides.")
-    axes = _axes(bulk, normal, struck_last)
+                                        "isn't flat.")
+    axes = _axes(quads[0], struck_last)
     used = {number for quad in quads for number in quad.read.nodes if number}
     local = {number: axes @ points[number] for number in used}
     low, high = (limit(list(local.values()), axis=0) for limit in (np.min, np.max))
@@ -65,14 +73,28 @@ def read_shape(bulk: BulkData, grids: Mapping[int, tuple[BulkCard, Any]], struck
     area = sum(np.linalg.norm(np.cross(quad.corners[2] - quad.corners[0], quad.corners[3] - quad.corners[1])) / 2
                for quad in quads)
     if abs(area - lengths[0] * lengths[1]) > _NEAR * area:
-        raise bulk.missing(f"the CQUAD4 and CQUAD8 don't make up a rectangle: they cover {area:.6g} of the "
-                           f"{lengths[0]:.6g} by {lengths[1]:.6g} around them.{_other_elements(bulk)}")
+        raise _no_rectangle(bulk, quads, axes, area, lengths)
     _refuse_cuts(bulk, local, max(lengths))
     middle = (low + high) / 2
     return Shape((_plain(lengths[0]), _plain(lengths[1])), axes.T @ middle, axes,
                  {number: (place - middle)[:2] for number, place in local.items()}, _elements(quads, axes, lengths),
                  _material_angle(bulk, quads, axes, systems), -1 if struck_last else 1,
                  {quad.read.pid for quad in quads})
+
+
+def _no_rectangle(bulk: BulkData, quads: Sequence[_Quadrilateral], axes: np.ndarray, area: float, lengths: np.ndarray
+                  ) -> DeckError:
+    """Return an error about elements that cover no rectangle along the axes; one in other axes is reported as such."""
+    side = axes @ (quads[0].corners[1] - quads[0].corners[0])
+    turned = np.array([side[:2], [-side[1], side[0]]]) / max(np.linalg.norm(side), np.finfo(float).tiny)
+    places = np.concatenate([quad.corners for quad in quads]) @ axes[:2].T @ turned.T
+    if abs(area - np.prod(np.ptp(places, axis=0))) < _NEAR * area:
+        return bulk.error(quads[0].card, f"its first side is at {_plain(np.degrees(np.arctan2(side[1], side[0]))):.6g} "
+                                         "degrees to the basic system, to which the panel's edges need to be parallel: "
+                                         "give the grids in the axes of the edges.")
+    others = _other_elements(bulk) or " A panel has no holes, notches or skew edges."
+    return bulk.missing(f"the CQUAD4 and CQUAD8 don't make up a rectangle: they cover {area:.6g} of the "
+                        f"{lengths[0]:.6g} by {lengths[1]:.6g} around them.{others}")
 
 
 def _other_elements(bulk: BulkData) -> str:
@@ -125,35 +147,74 @@ def _grid_defaults(bulk: BulkData) -> dict[str, tuple[int, Any]]:
 def _systems(bulk: BulkData) -> dict[int, Any]:
     """Return the basic system and those of CORD2R cards, ready to transform."""
     from pyNastran.bdf.bdf import BDF
-    from pyNastran.bdf.cards.coordinate_systems import CORD2R
     model = BDF(debug=None)
     cards = list(bulk.named("CORD2R"))
     for card in cards:
-        system = bulk.read(card, CORD2R)
+        system = _system(bulk, card)
         model.coords[system.cid] = system
     for card in cards:
         system = model.coords[bulk.integer(card, 1)]
         if system.rid not in model.coords:
-            raise bulk.error(card, f"coordinate system {system.rid}, which it refers to, isn't there as a CORD2R.")
+            raise _no_system(bulk, card, system.rid)
+        if not _ends_in_basic(system, model.coords):
+            raise bulk.error(card, f"system {system.cid} refers to itself by way of system {system.rid}.")
         system.cross_reference(model)
-    for system in model.coords.values():
-        system.setup()
+    for card in cards:
+        _without_prints(model.coords[bulk.integer(card, 1)].setup, bulk, card)
     return dict(model.coords)
+
+
+def _system(bulk: BulkData, card: BulkCard) -> Any:
+    """Return the system of a CORD2R."""
+    from pyNastran.bdf.cards.coordinate_systems import CORD2R
+    return _without_prints(lambda: bulk.read(card, CORD2R), bulk, card)
+
+
+def _without_prints(define: Callable[[], Any], bulk: BulkData, card: BulkCard) -> Any:
+    """Return what defines the axes of a system, without the vectors that pyNastran prints of points on one line."""
+    try:
+        with contextlib.redirect_stdout(io.StringIO()):
+            return define()
+    except (DeckError, RuntimeError) as error:
+        raise bulk.error(card, "its points A, B and C lie on one line.") if "norm(v)" in str(error) else error from None
+
+
+def _ends_in_basic(system: Any, systems: Mapping[int, Any]) -> bool:
+    """Return whether the systems that a system refers to lead to the basic one."""
+    for _ in systems:
+        if not system.rid:
+            return True
+        system = systems.get(system.rid, system)
+    return False
+
+
+def _no_system(bulk: BulkData, user: BulkCard, number: int) -> DeckError:
+    """Return an error about a coordinate system that isn't there as a CORD2R."""
+    for card in bulk.cards:
+        # A CORD1R or its like may define two systems, in fields 1 and 5.
+        fields = (1, 5) if card.name.startswith("CORD1") else (1,)
+        if card.name.startswith("CORD") and str(number) in [str(card.fields.field(field) or "") for field in fields]:
+            return bulk.error(card, f"coordinate system {number}, which the {user.name} in line {user.line} takes, "
+                                    "needs to be a CORD2R, rectangular and given by points.")
+    return bulk.error(user, f"coordinate system {number} isn't there as a CORD2R.")
 
 
 def _position(bulk: BulkData, systems: Mapping[int, Any], card: BulkCard, grid: Any) -> np.ndarray:
     """Return the place of a grid in the basic system."""
     if grid.cp not in systems:
-        raise bulk.error(card, f"coordinate system {grid.cp} isn't there as a CORD2R.")
+        raise _no_system(bulk, card, grid.cp)
     return np.array(systems[grid.cp].transform_node_to_global(grid.xyz))
 
 
 def _quadrilaterals(bulk: BulkData, points: Mapping[int, np.ndarray], remarks: Remarks) -> list[_Quadrilateral]:
     """Return the elements."""
     from pyNastran.bdf.cards.elements.shell import CQUAD4, CQUAD8
-    quads = []
+    quads: list[_Quadrilateral] = []
+    first: dict[int, BulkCard] = {}
     for card in bulk.named("CQUAD4", "CQUAD8"):
         read = bulk.read(card, CQUAD4 if card.name == "CQUAD4" else CQUAD8)
+        if (other := first.setdefault(read.eid, card)) is not card:
+            raise bulk.error(card, f"number {read.eid} is taken by the {other.name} in line {other.line}.")
         for place, number in enumerate(read.nodes):
             if number not in points and (number or place < 4):
                 raise bulk.error(card, f"grid {number or 0} isn't there.")
@@ -168,11 +229,13 @@ def _quadrilaterals(bulk: BulkData, points: Mapping[int, np.ndarray], remarks: R
     return quads
 
 
-def _axes(bulk: BulkData, normal: np.ndarray, struck_last: bool) -> np.ndarray:
+def _axes(quad: _Quadrilateral, struck_last: bool) -> np.ndarray:
     """Return the panel's axes: z along the plies from the struck face on, x the first basic axis in the plane."""
+    normal = quad.normal
     along = int(np.argmax(np.abs(normal)))
     if abs(normal[along]) < 1 - _NEAR:
-        raise bulk.missing("the panel isn't parallel to a plane of the basic coordinate system.")
+        raise quad.card.error("the panel isn't parallel to a plane of the basic coordinate system: give the grids in "
+                              "axes of the panel.")
     z = np.zeros(3)
     z[along] = np.sign(normal[along]) * (-1 if struck_last else 1)
     x = np.eye(3)[1 if along == 0 else 0]
@@ -210,7 +273,7 @@ def _angle(bulk: BulkData, quad: _Quadrilateral, axes: np.ndarray, systems: Mapp
     elif given in systems:
         direction = systems[given].i
     else:
-        raise bulk.error(quad.card, f"coordinate system {given} isn't there as a CORD2R.")
+        raise _no_system(bulk, quad.card, given)
     x, y, _ = axes @ direction
     if np.hypot(x, y) < _NEAR * np.linalg.norm(direction):
         raise bulk.error(quad.card, f"the x axis of coordinate system {given} is normal to the panel.")

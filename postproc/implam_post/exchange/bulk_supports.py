@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from implam_post.exchange.bulk_data import BulkCard, BulkData
+from implam_post.exchange.bulk_cards import BulkCard
+from implam_post.exchange.bulk_data import BulkData
 from implam_post.exchange.bulk_shape import Shape
 from implam_post.exchange.remarks import Remarks
 
@@ -35,12 +36,13 @@ def read_supports(bulk: BulkData, grids: Mapping[int, tuple[BulkCard, Any]], sha
     common = [_common(bulk, held, [grid for grid, edges in on_edges.items() if edges == [number]], number)
               for number in range(4)]
     in_plane = [{1, 2} & components for components in common]
-    kinds = tuple(_kind(bulk, components, number, remarks) for number, components in enumerate(common))
+    kinds = tuple(_kind(components, number, _card_on(held, on_edges, number), remarks)
+                  for number, components in enumerate(common))
     fixed, lines = _in_plane(kinds, in_plane)
     pins = _pins(bulk, held, on_edges, common, remarks)
     if pins and (fixed or len(pins) > _RIGID_MOTIONS):
         card, grid = pins[0]
-        raise bulk.error(card, f"it holds grid {grid} in the panel's plane, which isn't the support of a entire edge.")
+        raise bulk.error(card, f"it holds grid {grid} in the panel's plane, which isn't the support of an entire edge.")
     for card, _ in pins:
         remarks.add(card, "some of it holds rigid motion in the plane; Implam does so by itself")
     for number in sorted({edge for edge, _ in lines}):
@@ -77,7 +79,8 @@ def _sets(bulk: BulkData, chosen: int | None) -> set[int]:
         card = added[wanted]
         sets = {bulk.integer(card, number) for number in range(2, len(card.fields))}
     if absent := sets - there:
-        raise bulk.missing(f"there are no supports with the number {min(absent)}.")
+        origin = "of the case control" if chosen is None else "by --spc"
+        raise bulk.missing(f"SPC = {wanted} {origin} needs an SPC1 or SPC of set {min(absent)}, which isn't there.")
     return sets
 
 
@@ -104,9 +107,9 @@ def _hold(bulk: BulkData, held: Held, card: BulkCard, numbers: Iterable[int], co
     for number in numbers:
         if number not in shape.places:
             continue
-        if components.strip("06 ") and grids[number][1].cd:
-            raise bulk.error(card, f"grid {number} has displacements in coordinate system {grids[number][1].cd}: "
-                                   "supports count in the basic one only.")
+        if components.strip("06 ") and grids[number][1].cd and not set("12345") <= set(components):
+            raise bulk.error(grids[number][0], f"its CD is {grids[number][1].cd}: components of the {card.name} in "
+                                               f"line {card.line} count in the basic system only; leave CD blank.")
         for component in components:
             turns, axis = divmod(int(component) - 1, 3) if component in "123456" else (0, None)
             if axis is not None:
@@ -135,14 +138,20 @@ def _common(bulk: BulkData, held: Held, along: list[int], number: int) -> set[in
     return common
 
 
-def _kind(bulk: BulkData, components: set[int], number: int, remarks: Remarks) -> str:
+def _card_on(held: Held, on_edges: Mapping[int, list[int]], number: int) -> BulkCard | None:
+    """Return a card that holds an edge, if there is one."""
+    return next((next(iter(held[grid].values())) for grid, edges in on_edges.items() if edges == [number]
+                 and held.get(grid)), None)
+
+
+def _kind(components: set[int], number: int, card: BulkCard | None, remarks: Remarks) -> str:
     """Return the kind of an edge; a simple support holds the rotation along the edge, a clamp the other one too."""
     along, about_normal = (4, 5) if number < 2 else (5, 4)
     turns = components & {4, 5}
     if 3 not in components:
-        if components:
-            raise bulk.missing(f"the edge {EDGES[number]} is held, but not against deflection: it is neither clamped "
-                               "nor simple nor free, nor are lines of symmetry taken.")
+        if components and card:
+            raise card.error(f"the edge {EDGES[number]} is held, but not against deflection, component 3: it is "
+                             "neither clamped nor simple nor free. Of a line of symmetry mesh the panel on both sides.")
         return "free"
     kind = "clamped" if about_normal in turns else "simple"
     if along not in turns:
@@ -167,8 +176,10 @@ def _pins(bulk: BulkData, held: Held, on_edges: Mapping[int, list[int]], common:
         there = held.get(grid, {})
         missing = expected - set(there)
         if missing & {1, 2, 3}:
-            raise bulk.missing(f"the corner grid {grid} doesn't hold component {min(missing)} (in the panel's axes) as "
-                               f"its edges do: only entire edges can be supported.")
+            card = _card_on(held, on_edges, edges[0]) or _card_on(held, on_edges, edges[-1])
+            sentence = (f"the corner grid {grid} doesn't hold component {min(missing)} (in the panel's axes) as its "
+                        "edges do: only entire edges can be supported.")
+            raise card.error(sentence) if card else bulk.missing(sentence)
         if missing:
             remarks.edge(" and ".join(EDGES[number] for number in edges),
                          f"the corner grid {grid} turns freely in the file, Implam holds it as its edges")

@@ -3,7 +3,8 @@
 from collections.abc import Collection, Iterable
 from typing import NamedTuple
 
-from implam_post.exchange.bulk_data import BulkCard, BulkData
+from implam_post.exchange.bulk_cards import BulkCard
+from implam_post.exchange.bulk_data import BulkData
 from implam_post.exchange.remarks import Remarks
 from implam_post.laminate.sections import Ply
 

@@ -3,11 +3,13 @@
 import argparse
 import math
 import re
+import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from implam_post.exchange.bulk_data import KNOWN, BulkData, ranges, read_bulk_data
+from implam_post.exchange.bulk_cards import KNOWN
+from implam_post.exchange.bulk_data import BulkData, ranges, read_bulk_data
 from implam_post.exchange.bulk_laminate import read_laminate
 from implam_post.exchange.bulk_shape import Shape, read_grids, read_shape
 from implam_post.exchange.bulk_supports import read_supports
@@ -81,9 +83,11 @@ def _command(options: argparse.Namespace) -> int:
     output = options.output or options.bulk.with_suffix(".nml")
     if options.output is None and output.exists():
         raise FileError(f"{output} is already there: name another deck by -o, or this one to replace it.")
-    bulk = read_bulk_data(options.bulk)
-    text, remarks = deck_of(bulk, re.sub(r"[^\w.-]", "_", output.stem, flags=re.ASCII), impact,
-                            options.struck == "last", options.spc, options.g2z)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)  # pyNastran's, beside the error that it raises
+        bulk = read_bulk_data(options.bulk)
+        text, remarks = deck_of(bulk, re.sub(r"[^\w.-]", "_", output.stem, flags=re.ASCII), impact,
+                                options.struck == "last", options.spc, options.g2z)
     try:
         output.write_text(text, encoding="utf-8")
     except OSError as error:

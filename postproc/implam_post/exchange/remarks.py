@@ -2,7 +2,8 @@
 
 from collections.abc import Mapping
 
-from implam_post.exchange.bulk_data import BulkCard, BulkData, ranges
+from implam_post.exchange.bulk_cards import BulkCard
+from implam_post.exchange.bulk_data import BulkData, ranges
 
 
 class Remarks:

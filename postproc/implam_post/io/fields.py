@@ -207,11 +207,21 @@ def read_fields(path: Path | str) -> Fields:
     return Fields(str(path), part, snapshots)
 
 
+_CHECKPOINT = "_restart"
+
+
 @contextmanager
 def opened(path: Path) -> Iterator[h5py.File]:
     """Open an HDF5 file; whatever is wrong with it becomes one sentence."""
+    if not path.is_file():
+        raise FileError(f"{path} is a folder; give the fields NAME.h5 in it." if path.is_dir() else
+                        f"the fields {path} cannot be read (there is no such file).")
+    if not h5py.is_hdf5(path):
+        raise FileError(f"{path} isn't a file of fields written by implam; give NAME.h5.")
     try:
         with h5py.File(path, "r") as file:
+            if "meshes" not in file and _CHECKPOINT in path.name:
+                raise FileError(f"{path} is a checkpoint; give the fields, {path.name.replace(_CHECKPOINT, '')}.")
             yield file
     except OSError as error:
         raise FileError(f"the fields {path} cannot be read ({_reason(error)}).") from None

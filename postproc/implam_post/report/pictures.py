@@ -22,6 +22,7 @@ from implam_post.plot.plan_frame import draw_plate
 from implam_post.plot.style import PictureStyle
 
 _SPACE = 0.12  # free part of the picture beside the plies
+_ENTRY = 0.22  # inches that a small line of a legend takes
 
 
 def layup_figure(summary: Mapping[str, Any]) -> Figure:
@@ -131,7 +132,7 @@ def _curve(history: History, against: str, column: str, style: PictureStyle,
 
 def _curves(history: History, columns: Mapping[str, str], label: str, dimension: str, style: PictureStyle) -> Figure:
     """Draw several columns, each with its name, against time."""
-    figure = Figure(figsize=(7, 3.4), layout="constrained")
+    figure = Figure(figsize=(7, max(3.4, _ENTRY * (len(columns) + 2))), layout="constrained")
     axes = figure.subplots()
     along = style.axis("time", "time", history.time)
     up = style.axis(label, dimension, np.concatenate([[0.0], *(history[column] for column in columns)]))

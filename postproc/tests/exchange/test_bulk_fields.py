@@ -184,7 +184,7 @@ class DefaultsTest(ImportTest):
     def test_grdset(self) -> None:
         """Its components, and its system where the grid gives none."""
         bulk = Bulk(edges=("34", "34", "35", "35"), more=[("GRDSET", None, None, None, None, None, None, 126)])
-        self.refused(bulk, "in the panel's plane, which isn't the support of a entire edge")
+        self.refused(bulk, "in the panel's plane, which isn't the support of an entire edge")
         bulk.more = [("GRDSET", None, None, None, None, None, None, 6)]
         self.assertEqual(self.deck(bulk).edges(), 4 * ["simple"])
         bulk.more = [("GRDSET", None, 4, None, None, None, None, 6), ("CORD2R", 4, None, *3 * [0.0], 0.0, 0.0, 1.0,

@@ -1,0 +1,195 @@
+"""Lines of Nastran's bulk data put together to cards, each with its line; pyNastran reads the fields."""
+
+import contextlib
+import math
+import re
+from collections.abc import Sequence, Set
+from functools import cached_property
+from typing import Any
+
+from implam_post.io.errors import DeckError
+
+# What pyNastran raises about fields that it can't read.
+READING_ERRORS = (SyntaxError, RuntimeError, AssertionError, ValueError, TypeError, LookupError, AttributeError)
+# Cards that a deck is made from. A line that begins with blanks and one of these names is a card and no continuation.
+KNOWN = ("GRID", "GRDSET", "CORD2R", "CQUAD4", "CQUAD8", "PCOMP", "PCOMPG", "PSHELL", "MAT1", "MAT8", "SPC1", "SPC",
+         "SPCADD", "TEMPD")
+# Columns of a small field.
+_FIELD = 8
+# Columns of the field that names the continuation, and the number of that field in lines with commas.
+_MARK = slice(72, 80)
+_MARK_FIELD = {False: 9, True: 5}
+# Words of pyNastran's messages, and what is printed instead.
+_WORDS = (("(field #", "(field "), (" on card must be", " must be"), ("a float", "a real number with a decimal point"),
+          (" (not an integer)", ""))
+
+
+class BulkCard:
+    """A card: its name in capitals, the line it begins on, its text, and the name of its file."""
+
+    def __init__(self, name: str, line: int, text: str, file: str) -> None:
+        """Begin with the first line of the text."""
+        self.name, self.line, self.lines, self.file = name, line, [text], file
+
+    @cached_property
+    def fields(self) -> Any:
+        """Fields as pyNastran has them, the name being number 0."""
+        from pyNastran.bdf.bdf_interface.bdf_card import BDFCard
+        from pyNastran.bdf.bdf_interface.utils import to_fields
+        try:
+            card = BDFCard([field.strip() for field in to_fields(self.lines, self.name)])
+        except READING_ERRORS as error:
+            raise self.unread(error) from None
+        for text in filter(None, card.card[1:]):
+            if _is_infinite(text):
+                raise self.error(f"{text} isn't a finite number.")
+        return card
+
+    def error(self, sentence: str) -> DeckError:
+        """Return an error that names file, line and card."""
+        return DeckError(f"{self.file}:{self.line}: {self.name}: {sentence}")
+
+    def unread(self, error: Exception) -> DeckError:
+        """Return an error with the first line of one of pyNastran's, after that which repeats the card's name."""
+        lines = [line.strip() for line in str(error).splitlines() if line.strip() and "card_name=" not in line]
+        sentence = (lines or [type(error).__name__])[0].rstrip(".")
+        if match := re.match(r"invalid literal for int\(\) with base 10: ('.*')$", sentence):
+            sentence = f"{match[1]} isn't an integer"
+        for word, plain in _WORDS:
+            sentence = sentence.replace(word, plain)
+        return self.error(f"{sentence}.")
+
+    def given(self, number: int) -> bool:
+        """Return whether a field is there and isn't zero."""
+        text = self.fields.field(number)
+        return text is not None and re.fullmatch(r"[-+]?0*\.?0*([-+DdEe]+\d+)?", text.strip()) is None
+
+
+class _Splitter:
+    """Cards found so far, and those whose last line names a continuation."""
+
+    def __init__(self, file: str, named: Set[str]) -> None:
+        """Begin with none; `named` are the continuations that any line names."""
+        self.file, self.named = file, named
+        self.cards: list[BulkCard] = []
+        self.early: list[tuple[str, str, int]] = []
+        self._continued: dict[str, BulkCard] = {}
+        self._left_open = ""
+
+    def error(self, number: int, sentence: str) -> DeckError:
+        """Return an error that names file and line."""
+        return DeckError(f"{self.file}:{number}: {sentence}")
+
+    def begin(self, name: str, number: int, line: str) -> None:
+        """Begin a card."""
+        if name.startswith("="):
+            raise self.error(number, f"{name}: replicated cards aren't read: write each card out, as ECHO = SORT "
+                                     "prints them.")
+        if not name[0].isalpha():
+            raise self.error(number, f"{name}: no card begins like this; a continuation has blanks, + or * in columns "
+                                     f"1 to {_FIELD}.")
+        self.cards.append(BulkCard(name, number, line, self.file))
+        self._note(self.cards[-1], line)
+
+    def carry_on(self, number: int, line: str) -> None:
+        """Add a continuation to the card that names it, wherever that is, or else to the card before."""
+        mark = _first_field(line).lstrip("+*").strip().upper()
+        if mark in self._continued:
+            self._add(self._continued.pop(mark), line)
+        elif mark in self.named:
+            self.early.append((mark, line, number))
+        elif mark and self._left_open:
+            raise self._unnamed(mark, number)
+        elif not self.cards:
+            raise self.error(number, "a continuation without a card.")
+        else:
+            self._add(self.cards[-1], line)
+
+    def carry_on_early(self) -> None:
+        """Add continuations that stood before the line which names them."""
+        while self.early:
+            there = [entry for entry in self.early if entry[0] in self._continued]
+            if not there:
+                raise self._unnamed(self.early[0][0], self.early[0][2])
+            for entry in there:
+                self.early.remove(entry)
+                self._add(self._continued.pop(entry[0]), entry[1])
+
+    def _unnamed(self, mark: str, number: int) -> DeckError:
+        """Return an error about a continuation that is left."""
+        return self.error(number, f"+{mark}: no card names this continuation in its tenth field.")
+
+    def _add(self, card: BulkCard, line: str) -> None:
+        """Add a line to a card."""
+        card.lines.append(line)
+        self._note(card, line)
+
+    def _note(self, card: BulkCard, line: str) -> None:
+        """Note which continuation the line names."""
+        self._left_open = _named_continuation(line)
+        if self._left_open:
+            self._continued[self._left_open] = card
+
+
+def read_cards(lines: Sequence[str], first: int, file: str) -> list[BulkCard]:
+    """Return the cards up to ENDDATA; `first` is the number of the first line."""
+    bare = [line.split("$")[0].rstrip() for line in lines]
+    found = _Splitter(file, set(map(_named_continuation, bare)) - {""})
+    for number, bare_line in enumerate(bare, first):
+        if not bare_line.strip():
+            continue
+        line = _name_first(bare_line, number, file)
+        name = re.split(r"[,*\s]", line.expandtabs()[:8 if "," not in line else None], maxsplit=1)[0].upper()
+        if name == "ENDDATA":
+            break
+        if line[0] in "+*" or not name:
+            found.carry_on(number, line)
+        else:
+            found.begin(name, number, line)
+    found.carry_on_early()
+    return found.cards
+
+
+def _named_continuation(line: str) -> str:
+    """Return the continuation that a line names in its last field; empty if it names none."""
+    if "," in line:
+        fields = line.split(",")
+        place = _MARK_FIELD["*" in fields[0]]
+        text = fields[place] if len(fields) > place else ""
+    else:
+        text = line.expandtabs()[_MARK]
+    text = text.strip()
+    return text.lstrip("+*").strip().upper() if text[:1] in ("+", "*") else ""
+
+
+def _first_field(line: str) -> str:
+    """Return the first field of a line."""
+    return line.split(",")[0] if "," in line else line.expandtabs()[:_FIELD]
+
+
+def _name_first(line: str, number: int, file: str) -> str:
+    """Return a line whose first field begins with its name, as Nastran reads a name anywhere in that field."""
+    if not line[0].isspace():
+        return line
+    word = re.split(r"[,*\s]", line.strip(), maxsplit=1)[0].upper()
+    if "," in line:
+        return line.lstrip() if line.split(",")[0].strip() else line
+    line = line.expandtabs()
+    indent = len(line) - len(line.lstrip())
+    if word in KNOWN and indent + len(word) > _FIELD:
+        raise DeckError(f"{file}:{number}: {word}: it begins in column {indent + 1}; the name of a card stands in "
+                        f"columns 1 to {_FIELD}.")
+    first = line[:_FIELD].strip()
+    return first.ljust(_FIELD) + line[_FIELD:] if first else line
+
+
+def _is_infinite(text: str) -> bool:
+    """Return whether a field is no number by name, or one too large."""
+    with contextlib.suppress(ValueError):
+        return not math.isfinite(float(with_exponent(text)))
+    return False
+
+
+def with_exponent(text: str) -> str:
+    """Return a number of bulk data with the letter of its exponent."""
+    return re.sub(r"(?<=[\d.])[DE]?([-+]\d+)$", r"E\1", text.upper())

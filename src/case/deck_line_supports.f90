@@ -1,0 +1,107 @@
+!> Lines and what supports the plate: whether they hold it, and whether a line moves what a support holds.
+module deck_line_supports
+  use deck_contents, only: deck_t
+  use deck_problems, only: problems_t
+  use deck_remarks, only: report, remark
+  use kinds, only: wp
+  use line_deck, only: line_group, key_displacement
+  use line_loads, only: line_load_t, along_x, along_y
+  use mesh_parameters, only: is_mirrored, edge_clamped, edge_elastic, edge_free
+  use support_parameters, only: support_t, bearing_face, window_none, window_circle
+  implicit none
+  private
+  public :: check_line_supports, check_moved_lines
+
+  !> Difference of lengths, relative to them, that is none.
+  real(wp), parameter :: rounding = 1.0e-9_wp
+
+contains
+
+  !> Lines and edges that together support the plate: its deflection, and its tilt along x and along y.
+  subroutine check_line_supports(deck, problems)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    type(line_load_t), allocatable :: held(:)
+    logical, allocatable :: across(:)
+    logical :: tilts(2), edges(4)
+    integer :: along, n
+
+    if (any(deck%plate%edges == edge_clamped)) return
+    held = pack(deck%lines, deck%lines%prescribed)
+    edges = deck%plate%edges /= edge_free
+    do along = 1, 2
+      ! Two lines or edges across this direction stop the tilt, or one that runs along it.
+      across = held%component == 3 .and. held%direction == merge(along_y, along_x, along == 1)
+      n = count(edges(2*along - 1:2*along))
+      if (any(across)) n = n + merge(2, 1, minval(held%at, mask=across) < maxval(held%at, mask=across))
+      tilts(along) = n > 1 .or. any(edges(5 - 2*along:6 - 2*along)) .or. any(held%component == 3 + along) .or. &
+                     any(held%component == 3 .and. .not. across)
+    end do
+    tilts = tilts .or. is_mirrored(deck%plate%symmetry)
+    if (all(tilts) .and. (any(held%component == 3) .or. any(edges))) return
+    call report(deck%settings, problems, line_group, '', 'lines and edges leave the plate free to move or to tilt '// &
+              'in a static analysis; support another line.', 1)
+  end subroutine check_line_supports
+
+  !> Lines whose deflection is prescribed where supports hold the plate.
+  subroutine check_moved_lines(deck, problems)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Faults and remarks are added
+    type(problems_t), intent(inout) :: problems
+    integer :: line, along, i
+
+    do line = 1, size(deck%lines)
+      associate (l => deck%lines(line), plate => deck%plate)
+        if (.not. (l%prescribed .and. l%component == 3 .and. abs(l%value) > 0)) cycle
+        along = merge(1, 2, l%direction == along_x)
+        if (any([(resists(deck%supports(i), l, along, plate%length), i=1, size(deck%supports))])) then
+          call report(deck%settings, problems, line_group, key_displacement, 'the line runs from edge to edge of '// &
+                    'the plate, over the frame of &support, which holds the deflection there; load by '// &
+                    '&impactor travel or by a force, or open the window to the edges at its ends.', line)
+        else if (any(holds(plate%edges(2*along - 1:2*along), plate%edge_stiffness(1)))) then
+          call remark(deck%settings, problems, line_group, key_displacement, 'the line runs to edges that hold the '// &
+                    'deflection; its force depends on the size of the cells there.', line)
+        end if
+      end associate
+    end do
+  end subroutine check_moved_lines
+
+  !> True: an edge holds the deflection.
+  elemental logical function holds(edge, stiffness)
+    !> Kind of the edge
+    integer, intent(in) :: edge
+    !> Stiffness of elastic edges against deflection; 0: rigid
+    real(wp), intent(in) :: stiffness
+
+    holds = edge /= edge_free .and. .not. (edge == edge_elastic .and. stiffness > 0)
+  end function holds
+
+  !> True: the frame of a rig resists the motion of a line. The plate may lift off a unilateral frame.
+  pure logical function resists(support, line, along, lengths)
+    !> The rig
+    type(support_t), intent(in) :: support
+    !> The line
+    type(line_load_t), intent(in) :: line
+    !> Direction that it runs along, 1 for x, 2 for y
+    integer, intent(in) :: along
+    !> Lengths of the plate
+    real(wp), intent(in) :: lengths(2)
+    real(wp) :: half(2)
+    integer :: bearing
+
+    resists = .false.
+    if (support%shape == window_none .or. (support%unilateral .and. line%value < 0)) return
+    half = support%window/2
+    if (support%shape == window_circle) half = [support%radius, support%radius]
+    if (abs(line%at) > half(3 - along)) then
+      bearing = merge(support%bearing, support%sides, along == 2 .or. support%shape == window_circle)
+      resists = bearing == bearing_face
+      return
+    end if
+    if (support%shape == window_circle) half(along) = sqrt(support%radius**2 - line%at**2)
+    resists = half(along) < lengths(along)/2*(1 - rounding)
+  end function resists
+end module deck_line_supports
