@@ -107,8 +107,8 @@ contains
 
     objection = ''
     if (deck%has_ply_damage .and. .not. deck%has_crack_bands()) &
-      objection = 'its mesh differs, and plies without fracture energies (&material G_ft, G_fc, G_mt, G_mc) have failed '// &
-                  'or not, of which there is no mean; give the same &mesh in both decks'
+      objection = 'its mesh differs, and plies without fracture energies (&material G_ft, G_fc, G_mt, G_mc) have '// &
+                  'failed or not, of which there is no mean; give the same &mesh in both decks'
   end function mapping_objection
 
   !> First difference of plies and materials.
