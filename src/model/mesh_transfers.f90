@@ -21,6 +21,8 @@ module mesh_transfers
   type, extends(layer_transfer_t) :: mesh_transfer_t
     !> The mesh saved, and the one to load
     type(layered_mesh_t), private :: old, new
+    !> Plies of the laminate
+    integer, private :: plies = 0
     !> What nodes and cells of the new mesh have in common with those of the old one along x and y
     type(line_overlap_t), allocatable, private :: nodes_x(:), nodes_y(:), cells_x(:), cells_y(:)
   contains
@@ -41,6 +43,7 @@ contains
     self%loading = .true.
     self%old = old
     self%new = new
+    self%plies = maxval(new%element_plies)
     allocate (self%point_origin(new%points()), source=1)
     allocate (self%element_origin(new%elements()), source=1)
     allocate (self%is_split(new%elements()), source=.true.)
@@ -223,7 +226,7 @@ contains
 
     cell = self%new%place_of(self%new%element_cell(element))
     rows = size(values)
-    if (index(name, ply_group) == 1 .and. name /= section_field) rows = size(values)/maxval(self%new%element_plies)
+    if (index(name, ply_group) == 1 .and. name /= section_field) rows = size(values)/self%plies
     associate (x => self%cells_x(cell(1)), y => self%cells_y(cell(2)), old => self%old, &
                range => self%new%element_plies(:, element))
       allocate (terms(size(values), size(x%length)*size(y%length)), weights(size(x%length)*size(y%length)))

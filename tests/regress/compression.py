@@ -176,7 +176,7 @@ def check_unfolded(implam, folder, half):
     line = re.search(r"&line .*/", text).group()
     other = line.replace("at=30e-3", "at=-30e-3").replace("-0.35e-3", "0.35e-3")
     text = text.replace("symmetry='point'", "symmetry='none'").replace("elements=14", "elements=28")
-    text = text.replace("end=0.4e-3", "end=0.1e-3")
+    text = text.replace("end=0.4e-3", "end=0.2e-3")
     (folder / f"{COMPRESSION}.nml").write_text(text.replace(line, f"{line}\n{other}"), encoding="utf-8")
     run([implam, f"{COMPRESSION}.nml"], folder=folder)
     whole = json.loads((folder / f"{COMPRESSION}_summary.json").read_text(encoding="utf-8"))["mapping"]
@@ -213,6 +213,7 @@ def check_refused(implam, folder, _):
     damaged = bytearray((folder / CHECKPOINT).read_bytes())
     damaged[len(damaged) // 2] ^= 1
     (folder / "damaged.h5").write_bytes(damaged)
+    (folder / "newer.h5").write_bytes((folder / CHECKPOINT).read_bytes().replace(b"format 2", b"format 3", 1))
     cases = [
         (["laminate%ply_thickness=0.7e-3"], ["0.0006", "0.0007"], EXIT_DECK),
         (["laminate%stacking='[0/90/0]'"], ["0 90 90 0", "0 90 0"], EXIT_DECK),
@@ -230,6 +231,7 @@ def check_refused(implam, folder, _):
         (["initial_state%from='nowhere_restart.h5'"], ["nowhere_restart.h5"], EXIT_FILES),
         (["initial_state%from='strange.h5'"], ["not a checkpoint"], EXIT_FILES),
         (["initial_state%from='damaged.h5'"], ["damaged"], EXIT_FILES),
+        (["initial_state%from='newer.h5'"], ["another version"], EXIT_FILES),
     ]
     for settings, words, code in cases:
         said = run([implam, deck_of(folder, COMPRESSION, settings)], code, folder)
