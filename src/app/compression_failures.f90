@@ -1,5 +1,5 @@
 !> Where a plate whose ends were pressed together has failed: interfaces and plies that went across its width, and the
-!> three-place code of ASTM D7137 as far as these give it.
+!> three-place code of ASTM D7137 as far as these give it. Its letters are not compared with the standard's text.
 module compression_failures
   use compressed_damage, only: compressed_damage_t, figure_area, figure_mean, figure_reach, figure_width
   use kinds, only: wp

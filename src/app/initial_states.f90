@@ -2,9 +2,10 @@
 !> transferred to the model.
 module initial_states
   use checkpoints, only: checkpoint_archive_t
+  use cell_grids, only: cell_edges
   use communicators, only: communicator_t
   use deck_contents, only: deck_t
-  use deck_initial_states, only: inheritance_objection
+  use deck_initial_states, only: inheritance_objection, is_mapped
   use deck_problems, only: problems_t
   use deck_reader, only: read_deck_text
   use errors, only: error_t, exit_deck, exit_files, fail
@@ -13,7 +14,14 @@ module initial_states
   use inherited_states, only: visit_inheritance
   use initial_state_deck, only: initial_state_group
   use adaptive_zones, only: visit_zones
+  use delaminated_regions, only: extent_of_cells
+  use delamination_deck, only: key_zone
+  use kinds, only: wp
+  use layer_extents, only: widened_extent
   use layer_transfers, only: layer_transfer_t
+  use mapped_figures, only: after_mapping, before_mapping, mapped_figures_t
+  use mapped_interfaces, only: put_shares, take_shares, take_slips
+  use mesh_transfers, only: mesh_transfer_t
   use logger, only: log_t
   use model_building, only: create_model
   use models, only: model_t
@@ -53,16 +61,49 @@ contains
     if (allocated(error)) return
     objection = inheritance_objection(deck, old)
     if (objection /= '') then
-      call fail(error, exit_deck, deck%source//':'// &
-                to_text(deck%settings%line_of_group(initial_state_group))//': &'//initial_state_group//' from='''// &
-                deck%initial%from//''': the plate there is another one, '//objection//'.')
+      call refuse(deck, 'the plate there is another one, '//objection, error)
       return
     end if
     do i = 1, size(deck%delaminations)
-      if (deck%delaminations(i)%follows) &
-        deck%delaminations(i)%zone = max(deck%delaminations(i)%zone, old%delaminations(i)%zone)
+      if (.not. deck%delaminations(i)%follows) cycle
+      if (is_mapped(deck, old)) old%delaminations(i)%zone = covering_extents(deck, old, i)
+      deck%delaminations(i)%zone = max(deck%delaminations(i)%zone, old%delaminations(i)%zone)
     end do
   end subroutine fit_initial_state
+
+  !> Refuses the checkpoint that a deck begins from.
+  subroutine refuse(deck, reason, error)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> A clause
+    character(len=*), intent(in) :: reason
+    !> Set
+    type(error_t), allocatable, intent(inout) :: error
+
+    call fail(error, exit_deck, deck%source//':'//to_text(deck%settings%line_of_group(initial_state_group))//': &'// &
+              initial_state_group//' from='''//deck%initial%from//''': '//reason//'.')
+  end subroutine refuse
+
+  !> Extents of a zone that reach over the cells of the other run's zone, and over one more, as nodes on the border of a
+  !> zone have no interface.
+  pure function covering_extents(deck, old, zone) result(extents)
+    !> The deck, and that of the other run with the zones at its end
+    type(deck_t), intent(in) :: deck, old
+    !> Index of the zone
+    integer, intent(in) :: zone
+    !> Full extents along x and y
+    real(wp) :: extents(2)
+    integer :: direction
+
+    do direction = 1, 2
+      associate (before => cell_edges(old%plate, old%mesh, direction) - old%mesh%struck(direction))
+        extents(direction) = extent_of_cells(before, old%delaminations(zone)%zone(direction)) + &
+                             2*abs(deck%mesh%struck(direction) - old%mesh%struck(direction))
+      end associate
+      extents(direction) = widened_extent(cell_edges(deck%plate, deck%mesh, direction) - deck%mesh%struck(direction), &
+                                          extents(direction), 1)
+    end do
+  end function covering_extents
 
   !> Opens a checkpoint and reads its deck, with the zones at its end. Collective.
   subroutine open_checkpoint(path, communicator, archive, old, error)
@@ -90,20 +131,57 @@ contains
   end subroutine open_checkpoint
 
   !> Transfers the end of the other run to this one. Collective.
-  subroutine take_initial_state(deck, model, stepper, log, error)
+  subroutine take_initial_state(deck, model, stepper, mapping, log, error)
     !> The deck
     type(deck_t), intent(in) :: deck
     !> The model
     type(model_t), intent(inout) :: model
     !> The time stepper at its start
     type(time_stepper_t), intent(inout) :: stepper
+    !> Receives what mapping to another mesh has kept
+    type(mapped_figures_t), intent(inout) :: mapping
     !> Receives a note
     type(log_t), intent(inout) :: log
+    !> Set if the checkpoint can't be read, or has damage where the deck has no interface
+    type(error_t), allocatable, intent(inout) :: error
+    class(layer_transfer_t), allocatable :: transfer
+    type(deck_t) :: old
+
+    call load_transfer(deck, model, stepper, transfer, mapping, old, error)
+    if (allocated(error)) return
+    call log%note('The plate begins as '//deck%initial%from//' has left it.')
+    call begin_inherited(model, transfer, deck%initial%motion, stepper, error)
+    if (allocated(error)) return
+    if (is_mapped(deck, old)) then
+      call mapping%note(model, stepper%now, after_mapping)
+      call log%note(mapping%line(deck%delaminations%below_ply))
+      if (mapping%loser() > 0) then
+        call refuse(deck, 'the interface below ply '//to_text(deck%delaminations(mapping%loser())%below_ply)// &
+                    ' has delaminated beyond the '//key_zone//' that it has here', error)
+        return
+      end if
+    end if
+    call log%note('It holds '//rounded_text(stepper%now%ledger%initial)// &
+                  ' of energy, most of it dissipated: the ledger begins with that.')
+  end subroutine take_initial_state
+
+  !> Loads the state of the other run, on its mesh, and transfers it to this one's. Collective.
+  subroutine load_transfer(deck, model, stepper, transfer, mapping, old, error)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> The model
+    type(model_t), intent(in) :: model
+    !> The time stepper; receives what it takes over
+    type(time_stepper_t), intent(inout) :: stepper
+    !> Receives where points and elements come from
+    class(layer_transfer_t), allocatable, intent(out) :: transfer
+    !> Receives what there is on the other mesh if this one differs
+    type(mapped_figures_t), intent(inout) :: mapping
+    !> Receives the other run's deck
+    type(deck_t), intent(out) :: old
     !> Set if the checkpoint can't be read
     type(error_t), allocatable, intent(inout) :: error
     type(checkpoint_archive_t) :: archive
-    type(layer_transfer_t) :: transfer
-    type(deck_t) :: old
     type(model_t), allocatable :: old_model
     type(state_t), allocatable :: state
 
@@ -116,14 +194,21 @@ contains
     call visit_inheritance(state, archive, old_model)
     call archive%close(error)
     if (allocated(error)) return
+    if (is_mapped(deck, old)) then
+      allocate (mesh_transfer_t :: transfer)
+      call mapping%note(old_model, state, before_mapping)
+      call put_shares(state%interfaces%cohesive, old_model)
+    else
+      allocate (layer_transfer_t :: transfer)
+    end if
     transfer%communicator = model%communicator
     call visit_inheritance(state, transfer, old_model)
     call transfer%turn_to(old_model%mesh, model%mesh)
     call visit_inheritance(stepper%now, transfer, model)
-    call log%note('The plate begins as '//deck%initial%from//' has left it.')
-    deallocate (state, old_model)
-    call begin_inherited(model, transfer, deck%initial%motion, stepper, error)
-    if (.not. allocated(error)) call log%note('It holds '//rounded_text(stepper%now%ledger%initial)// &
-                                              ' of energy, most of it dissipated: the ledger begins with that.')
-  end subroutine take_initial_state
+    if (.not. is_mapped(deck, old)) return
+    associate (now => stepper%now)
+      call take_shares(now%interfaces%cohesive, model)
+      call take_slips(now%interfaces%cohesive, model, now%motion%displacement)
+    end associate
+  end subroutine load_transfer
 end module initial_states

@@ -6,6 +6,7 @@ module run_records
   use force_filters, only: force_filter_t
   use interface_figures, only: stage_damaged, stage_grown, stage_intact, stages_of
   use kinds, only: wp
+  use mapped_figures, only: mapped_figures_t
   use line_columns, only: end_values, line_values, pressed_axis
   use models, only: model_t
   use output_clocks, only: shown_time
@@ -48,6 +49,8 @@ module run_records
     type(compression_record_t) :: compression
     !> What was damaged before they were pressed
     type(compressed_damage_t) :: before
+    !> What mapping to this mesh has kept
+    type(mapped_figures_t) :: mapping
     !> Largest kinetic energy in motions whose inertia is scaled, and largest energy of the run
     real(wp) :: scaled_energy = 0, energy = 0
     !> Warnings given: their kinds, and the zones that they concern or 0
@@ -245,6 +248,7 @@ contains
     call archive%item('record/stage', self%stage)
     call self%compression%visit(archive)
     call self%before%visit('record/before', archive)
+    call self%mapping%visit(archive)
     call archive%item('record/onset', self%onset)
     call archive%item('record/growth', self%growth)
     call archive%item('record/scaled_energy', self%scaled_energy)

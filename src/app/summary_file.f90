@@ -66,6 +66,7 @@ contains
     if (deck%moves_impactor()) call put_impact(json, stepper%now, record, figures)
     call json%put('largest_deflection', record%deflection)
     call json%put('largest_deflection_at', shown_time(record%deflection_time))
+    call record%mapping%put(json, deck%delaminations%below_ply)
     if (record%compression%strength > 0) then
       call put_compression(json, record%compression, deck%gauges)
       call put_collapse(json, record, figures, deck%delaminations%below_ply)

@@ -22,7 +22,7 @@ module deck_initial_states
   use time_deck, only: key_settle, time_group
   implicit none
   private
-  public :: check_initial_state, inheritance_objection
+  public :: check_initial_state, inheritance_objection, is_mapped
 
   !> Digits of numbers in a list: numbers contradict each other from a relative difference of 1e-9 on.
   integer, parameter :: digits = 10
@@ -87,9 +87,29 @@ contains
     if (objection == '') objection = laminate_objection(deck, old)
     if (objection == '') objection = damage_objection(deck, old)
     if (objection == '') objection = interface_objection(deck, old)
-    if (objection == '') objection = mesh_objection(deck, old, 1)
-    if (objection == '') objection = mesh_objection(deck, old, 2)
+    if (objection == '' .and. is_mapped(deck, old)) objection = mapping_objection(deck)
   end function inheritance_objection
+
+  !> True if the meshes differ, so that the state is mapped.
+  pure logical function is_mapped(deck, old)
+    !> The deck, and that of the other run
+    type(deck_t), intent(in) :: deck, old
+
+    is_mapped = .not. (has_same_lines(deck, old, 1) .and. has_same_lines(deck, old, 2))
+  end function is_mapped
+
+  !> What cannot be mapped.
+  pure function mapping_objection(deck) result(objection)
+    !> The deck, with the plate and the damage of the other run
+    type(deck_t), intent(in) :: deck
+    !> One clause; empty: nothing
+    character(len=:), allocatable :: objection
+
+    objection = ''
+    if (deck%has_ply_damage .and. .not. deck%has_crack_bands()) &
+      objection = 'its mesh differs, and plies without fracture energies (&material G_ft, G_fc, G_mt, G_mc) have '// &
+                  'failed or not, of which there is no mean; give the same &mesh in both decks'
+  end function mapping_objection
 
   !> First difference of plies and materials.
   function laminate_objection(deck, old) result(objection)
@@ -188,18 +208,15 @@ contains
     end associate
   end function interface_objection
 
-  !> First difference of mesh lines along one direction.
-  function mesh_objection(deck, old, direction) result(objection)
+  !> True if the mesh has the same lines along one direction.
+  pure logical function has_same_lines(deck, old, direction) result(same)
     !> The deck, and that of the other run
     type(deck_t), intent(in) :: deck, old
     !> 1: along x, 2: along y
     integer, intent(in) :: direction
-    !> One clause; empty: no difference
-    character(len=:), allocatable :: objection
     real(wp), allocatable :: here(:), there(:)
-    logical :: halved(2), halved_before(2), same
+    logical :: halved(2), halved_before(2)
 
-    objection = ''
     here = cell_edges(deck%plate, deck%mesh, direction)
     there = cell_edges(old%plate, old%mesh, direction)
     halved = is_halved(deck%plate%symmetry)
@@ -207,10 +224,7 @@ contains
     if (halved_before(direction) .and. .not. halved(direction)) there = [-there(size(there):2:-1), there]
     same = size(here) == size(there)
     if (same) same = all(abs(here - there) <= 1.0e-9_wp*deck%plate%length(direction))
-    if (.not. same) objection = both('lines of the mesh along '//merge('x', 'y', direction == 1), short_list(here), &
-                                     short_list(there))//'; give the same &mesh in both decks, and the lines of '// &
-                                'rigs that only one of them has in the other''s lines_x and lines_y'
-  end function mesh_objection
+  end function has_same_lines
 
   !> Name of a part of the plate.
   pure function part_name(symmetry) result(name)

@@ -10,7 +10,7 @@ module cohesive_points
   implicit none
   private
   public :: cohesive_point_t, separation_t, cohesive_traction, separation_of, grown_damage, point_class, opened, &
-            undamaged_energy, stored_energy, mode_mixity, dissipated_share, share_growth
+            undamaged_energy, stored_energy, mode_mixity, dissipated_share, share_growth, damage_at_share
 
   !> Classes of points: without damage, damaged and not growing, growing in this state, without traction for good.
   integer, parameter, public :: point_intact = 0, point_damaged = 1, point_growing = 2, point_failed = 3
@@ -190,6 +190,16 @@ contains
 
     share = damage/(law%failure_ratio*(1 - damage) + damage)
   end function dissipated_share
+
+  !> Damage that has dissipated a part of the toughness: d = 1 - (1 - phi)/(1 + (N - 1) phi).
+  pure real(wp) function damage_at_share(law, share) result(damage)
+    !> The law
+    type(cohesive_law_t), intent(in) :: law
+    !> phi, from 0 to 1
+    real(wp), intent(in) :: share
+
+    damage = 1 - (1 - share)/(1 + (law%failure_ratio - 1)*share)
+  end function damage_at_share
 
   !> phi(d) - phi(d_old), free of cancellation however little the damage has grown.
   pure real(wp) function share_growth(law, damage_from, damage_to) result(growth)

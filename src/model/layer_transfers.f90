@@ -26,11 +26,11 @@ module layer_transfers
     !> True for elements of the mesh loaded that have fewer plies than their origin
     logical, allocatable :: is_split(:)
     !> Signs that the motion of each point takes where its origin is its image, (5, points)
-    real(wp), allocatable, private :: signs(:, :)
+    real(wp), allocatable :: signs(:, :)
     !> The items, the first ones of the list
-    type(stored_item_t), allocatable, private :: kept(:)
+    type(stored_item_t), allocatable :: kept(:)
     !> Their number
-    integer, private :: items = 0
+    integer :: items = 0
   contains
     !> Turns from saving to loading.
     procedure :: turn_to
@@ -41,8 +41,11 @@ module layer_transfers
     procedure :: integers_item
     procedure :: table_item
     procedure :: field
-    procedure, private :: keep
-    procedure, private :: find
+    !> Keeps an item, and finds it.
+    procedure :: keep
+    procedure :: find
+    !> Keeps a field of all ranks.
+    procedure :: keep_field
   end type layer_transfer_t
 
 contains
@@ -244,7 +247,6 @@ contains
     integer, intent(in) :: global_columns
     !> The field
     real(wp), intent(inout) :: value(:, :)
-    real(wp), allocatable :: list(:), whole(:, :)
     integer, allocatable :: origins(:)
     integer :: i, item, rows
 
@@ -262,11 +264,28 @@ contains
         end do
       end associate
     else
-      allocate (whole(size(value, 1), global_columns), source=0.0_wp)
-      whole(:, columns) = value(:, :size(columns))
-      list = reshape(whole, [size(whole)])
-      call self%communicator%sum(list)
-      call self%keep(name, reshape(list, shape(whole)))
+      call self%keep_field(name, columns, global_columns, value)
     end if
   end subroutine field
+
+  !> Keeps a field of all ranks. Collective.
+  subroutine keep_field(self, name, columns, global_columns, value)
+    !> The archive
+    class(layer_transfer_t), intent(inout) :: self
+    !> Its name
+    character(len=*), intent(in) :: name
+    !> Global columns of the leading columns of `value`, which this rank owns
+    integer, intent(in) :: columns(:)
+    !> Number of columns of the whole field
+    integer, intent(in) :: global_columns
+    !> The field
+    real(wp), intent(in) :: value(:, :)
+    real(wp), allocatable :: list(:), whole(:, :)
+
+    allocate (whole(size(value, 1), global_columns), source=0.0_wp)
+    whole(:, columns) = value(:, :size(columns))
+    list = reshape(whole, [size(whole)])
+    call self%communicator%sum(list)
+    call self%keep(name, reshape(list, shape(whole)))
+  end subroutine keep_field
 end module layer_transfers

@@ -19,7 +19,7 @@ contains
     !> The model; receives how an impactor's force would be spread
     type(model_t), intent(inout) :: model
     !> Where points and elements come from
-    type(layer_transfer_t), intent(in) :: transfer
+    class(layer_transfer_t), intent(in) :: transfer
     !> motion_rest or motion_kept
     integer, intent(in) :: motion
     !> What evolves, the state loaded

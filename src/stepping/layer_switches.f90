@@ -241,7 +241,7 @@ contains
   subroutine move_with_plate(model, transfer, field)
     type(model_t), intent(in) :: model
     !> Where points come from
-    type(layer_transfer_t), intent(in) :: transfer
+    class(layer_transfer_t), intent(in) :: transfer
     !> Displacement or a rate of it, (5, points)
     real(wp), intent(inout) :: field(:, :)
     integer :: i

@@ -1,0 +1,181 @@
+!> What mapping to another mesh keeps: areas and energies of interfaces, damage and energy of plies, before and after.
+module mapped_figures
+  use archives, only: archive_t
+  use exact_sums, only: exact_sum_t
+  use json_text, only: json_t
+  use kinds, only: wp
+  use models, only: model_t
+  use rank_totals, only: totals_of
+  use states, only: state_t
+  use text, only: rounded_text, to_text
+  implicit none
+  private
+  public :: mapped_figures_t
+
+  !> Before the mapping and after it.
+  integer, parameter, public :: before_mapping = 1, after_mapping = 2
+  !> Part of an area or an energy by which mapping changes it at most.
+  real(wp), parameter :: tolerance = 1.0e-6_wp
+
+  !> The figures, of the full plate, the same on every rank; unallocated: nothing has been mapped.
+  type :: mapped_figures_t
+    !> Area and energy dissipated of each interface, (zones, before and after)
+    real(wp), allocatable :: area(:, :), energy(:, :)
+    !> Areas of all plies times the damage of fibres and of the matrix, and energy of plies, (3, before and after)
+    real(wp), allocatable :: plies(:, :)
+  contains
+    !> Notes the figures of a state.
+    procedure :: note
+    !> First interface that has lost some of its area or energy; 0: none.
+    procedure :: loser
+    !> One line for the log.
+    procedure :: line
+    !> Puts them into the summary.
+    procedure :: put
+    !> Saves or loads.
+    procedure :: visit
+  end type mapped_figures_t
+
+contains
+
+  !> Notes the figures of a state. Collective.
+  subroutine note(self, model, state, moment)
+    !> The figures
+    class(mapped_figures_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> The state
+    type(state_t), intent(inout) :: state
+    !> before_mapping or after_mapping
+    integer, intent(in) :: moment
+
+    if (.not. allocated(self%plies)) then
+      allocate (self%area(size(model%mesh%zones), 2), self%energy(size(model%mesh%zones), 2), self%plies(3, 2), &
+                source=0.0_wp)
+    end if
+    self%area(:, moment) = state%interfaces%cohesive%area(model)
+    self%energy(:, moment) = state%interfaces%cohesive%energy(model)
+    if (.not. allocated(state%plies%bands)) return
+    self%plies(:2, moment) = damage_of_plies(model, state)
+    call state%plies%total_dissipation(model)
+    self%plies(3, moment) = sum(state%plies%dissipated) + state%plies%permanent_shear
+  end subroutine note
+
+  !> Areas of all plies times the damage of fibres and of the matrix, of the full plate. Collective.
+  function damage_of_plies(model, state) result(areas)
+    type(model_t), intent(in) :: model
+    !> The state
+    type(state_t), intent(in) :: state
+    !> Of fibres and of the matrix
+    real(wp) :: areas(2)
+    type(exact_sum_t) :: sums(2)
+    integer :: i, ply, part
+
+    do i = 1, model%elements%elements
+      associate (element => model%distribution%elements(i))
+        associate (range => model%mesh%element_plies(:, element), &
+                   area => model%mesh%cell_area(model%mesh%place_of(model%mesh%element_cell(element))))
+          do ply = range(1), range(2)
+            do part = 1, 2
+              call sums(part)%add(area*state%plies%bands%accepted(ply, i)%damage(part))
+            end do
+          end do
+        end associate
+      end associate
+    end do
+    areas = totals_of(model%communicator, sums)*model%mesh%multiplicity
+  end function damage_of_plies
+
+  !> First interface that has lost some of its area or energy, as its zone is too small for it; 0: none.
+  pure integer function loser(self)
+    !> The figures
+    class(mapped_figures_t), intent(in) :: self
+
+    loser = findloc(self%area(:, 2) < (1 - tolerance)*self%area(:, 1) .or. &
+                    self%energy(:, 2) < (1 - tolerance)*self%energy(:, 1), .true., dim=1)
+  end function loser
+
+  !> One line for the log.
+  pure function line(self, below_plies)
+    !> The figures
+    class(mapped_figures_t), intent(in) :: self
+    !> Ply above each interface
+    integer, intent(in) :: below_plies(:)
+    !> Before and after
+    character(len=:), allocatable :: line
+    integer :: i
+
+    line = ''
+    do i = 1, size(below_plies)
+      line = line//'below ply '//to_text(below_plies(i))//' area '//both(self%area(i, :))//', energy '// &
+             both(self%energy(i, :))//'; '
+    end do
+    line = 'Mapped to another mesh, before -> after: '//line//'plies: damage of fibres times area '// &
+           both(self%plies(1, :))//', of the matrix '//both(self%plies(2, :))//', energy '//both(self%plies(3, :))//'.'
+  end function line
+
+  !> Both values.
+  pure function both(values) result(text)
+    !> Before and after
+    real(wp), intent(in) :: values(2)
+    !> The text
+    character(len=:), allocatable :: text
+
+    text = rounded_text(values(1))//' -> '//rounded_text(values(2))
+  end function both
+
+  !> Puts them into the summary.
+  subroutine put(self, json, below_plies)
+    !> The figures
+    class(mapped_figures_t), intent(in) :: self
+    !> The summary
+    type(json_t), intent(inout) :: json
+    !> Ply above each interface
+    integer, intent(in) :: below_plies(:)
+    integer :: i
+
+    if (.not. allocated(self%plies)) return
+    call json%open_object('mapping')
+    call json%open_list('interfaces')
+    do i = 1, size(below_plies)
+      call json%open_object('')
+      call json%put('ply_above', below_plies(i))
+      call put_both('area', self%area(i, :))
+      call put_both('energy', self%energy(i, :))
+      call json%close()
+    end do
+    call json%close()
+    call put_both('fibre_damage_area', self%plies(1, :))
+    call put_both('matrix_damage_area', self%plies(2, :))
+    call put_both('energy_ply_damage', self%plies(3, :))
+    call json%close()
+
+  contains
+
+    !> Puts both values.
+    subroutine put_both(name, values)
+      !> What they are
+      character(len=*), intent(in) :: name
+      !> Before and after
+      real(wp), intent(in) :: values(2)
+
+      call json%put(name//'_before', values(1))
+      call json%put(name//'_after', values(2))
+    end subroutine put_both
+  end subroutine put
+
+  !> Saves or loads the figures.
+  subroutine visit(self, archive)
+    !> The figures
+    class(mapped_figures_t), intent(inout) :: self
+    !> Archive of the checkpoint
+    class(archive_t), intent(inout) :: archive
+    logical :: known
+
+    known = allocated(self%plies)
+    call archive%item('mapping/known', known)
+    if (.not. known) return
+    call archive%item('mapping/area', self%area)
+    call archive%item('mapping/energy', self%energy)
+    call archive%item('mapping/plies', self%plies)
+  end subroutine visit
+end module mapped_figures

@@ -1,0 +1,65 @@
+!> Cohesive interfaces on the way to another mesh, where a point has a share of each old point beside it: shares of the
+!> toughness dissipated have a mean with a meaning, the area that they stand for, and damage has none.
+module mapped_interfaces
+  use cohesive_interfaces, only: cohesive_interfaces_t
+  use cohesive_laws, only: stiffness_of
+  use cohesive_points, only: damage_at_share
+  use face_friction, only: friction_traction, sliding_t
+  use kinds, only: wp
+  use models, only: model_t
+  implicit none
+  private
+  public :: put_shares, take_shares, take_slips
+
+contains
+
+  !> Puts the share of the toughness dissipated in the place of the damage.
+  pure subroutine put_shares(interfaces, model)
+    !> The interfaces
+    type(cohesive_interfaces_t), intent(inout) :: interfaces
+    type(model_t), intent(in) :: model
+
+    if (allocated(interfaces%cohesive)) interfaces%points%damage = interfaces%shares(model)
+  end subroutine put_shares
+
+  !> Takes the damage that has dissipated these shares.
+  pure subroutine take_shares(interfaces, model)
+    !> The interfaces
+    type(cohesive_interfaces_t), intent(inout) :: interfaces
+    type(model_t), intent(in) :: model
+    integer :: i
+
+    if (.not. allocated(interfaces%cohesive)) return
+    do i = 1, size(interfaces%points)
+      if (.not. interfaces%cohesive(i)) cycle
+      associate (point => interfaces%points(i))
+        point%damage = damage_at_share(interfaces%law_at(model, i), point%damage)
+        interfaces%stiffness(:, i) = (1 - point%damage)*model%contact_area(i)* &
+                                     stiffness_of(model%cohesive_laws(model%zone(i)))
+      end associate
+    end do
+  end subroutine take_shares
+
+  !> Moves slips to jumps that friction bears: means of slips do not go with jumps between nodes, and what friction
+  !> would have stored beyond its limit was never work.
+  pure subroutine take_slips(interfaces, model, displacement)
+    !> The interfaces
+    type(cohesive_interfaces_t), intent(inout) :: interfaces
+    type(model_t), intent(in) :: model
+    !> Unknowns, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    type(sliding_t) :: new
+    real(wp) :: traction(2)
+    integer :: i
+
+    if (.not. allocated(interfaces%cohesive)) return
+    do i = 1, model%distribution%owned
+      if (.not. interfaces%cohesive(i)) cycle
+      if (.not. model%setup%delaminations(model%zone(i))%friction > 0) cycle
+      associate (sliding => interfaces%points(i)%sliding, law => model%cohesive_laws(model%zone(i)))
+        call friction_traction(law%stiffness_shear, displacement(1:2, i), sliding, traction, new)
+        sliding%slip = new%slip
+      end associate
+    end do
+  end subroutine take_slips
+end module mapped_interfaces

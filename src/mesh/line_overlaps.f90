@@ -1,0 +1,83 @@
+!> Lengths that intervals of one line have in common with those of another: cells, or the parts of cells that belong to
+!> their nodes. Lines of a halved model continue on the other side of the cut by their images.
+module line_overlaps
+  use kinds, only: wp
+  implicit none
+  private
+  public :: line_overlap_t, node_bounds, overlaps_of, unfolded
+
+  !> Intervals of a line that an interval of another has a length in common with.
+  type :: line_overlap_t
+    !> Their numbers, from 1
+    integer, allocatable :: interval(:)
+    !> True: it is the image of that interval
+    logical, allocatable :: turned(:)
+    !> Lengths in common
+    real(wp), allocatable :: length(:)
+  end type line_overlap_t
+
+  !> Part of a cell's side that belongs to the nodes at its ends, each: the integral of their quadratic.
+  real(wp), parameter :: end_part = 1.0_wp/6.0_wp
+  !> Part of an interval by which rounding may move a bound.
+  real(wp), parameter :: rounded_off = 1.0e-9_wp
+
+contains
+
+  !> Bounds of the parts of a line that belong to its nodes, (nodes + 1). A line that begins on a cut begins with the
+  !> whole part of the node there.
+  pure function node_bounds(edges, halved) result(bounds)
+    !> Edges of the cells, ascending
+    real(wp), intent(in) :: edges(:)
+    !> True: the line begins on a cut at 0
+    logical, intent(in) :: halved
+    !> Ascending
+    real(wp) :: bounds(2*size(edges))
+    real(wp) :: ends(size(edges) - 1)
+
+    associate (low => edges(:size(edges) - 1), high => edges(2:))
+      ends = end_part*(high - low)
+      bounds(1) = edges(1)
+      bounds(2:2*size(ends):2) = low + ends
+      bounds(3:2*size(ends) + 1:2) = high - ends
+      bounds(size(bounds)) = edges(size(edges))
+    end associate
+    if (halved) bounds(1) = -bounds(2)
+  end function node_bounds
+
+  !> Bounds of a line and of its image.
+  pure function unfolded(bounds, halved) result(whole)
+    !> Ascending bounds of intervals, from 0 if halved
+    real(wp), intent(in) :: bounds(:)
+    !> True: the line begins on a cut at 0
+    logical, intent(in) :: halved
+    !> Those of the whole line
+    real(wp), allocatable :: whole(:)
+
+    whole = bounds
+    if (halved) whole = [-bounds(size(bounds):2:-1), 0.0_wp, bounds(2:)]
+  end function unfolded
+
+  !> What each interval of a line has in common with those of another.
+  pure function overlaps_of(bounds, others, halved) result(overlaps)
+    !> Ascending bounds of the intervals, and of those of the other line; the latter from 0 if halved
+    real(wp), intent(in) :: bounds(:), others(:)
+    !> True: the other line begins on a cut at 0 and continues by its image
+    logical, intent(in) :: halved
+    !> (intervals)
+    type(line_overlap_t) :: overlaps(size(bounds) - 1)
+    real(wp), allocatable :: whole(:)
+    integer, allocatable :: numbers(:)
+    integer :: i, k, images
+
+    whole = unfolded(others, halved)
+    images = merge(size(others) - 1, 0, halved)
+    do i = 1, size(overlaps)
+      associate (common => min(bounds(i + 1), whole(2:)) - max(bounds(i), whole(:size(whole) - 1)))
+        numbers = pack([(k, k=1, size(common))], common > rounded_off*(bounds(i + 1) - bounds(i)))
+        overlaps(i)%length = common(numbers)
+      end associate
+      overlaps(i)%turned = numbers <= images
+      overlaps(i)%interval = merge(images + 1 - numbers, numbers - images, overlaps(i)%turned)
+    end do
+  end function overlaps_of
+end module line_overlaps

@@ -1,0 +1,287 @@
+!> Carries what a plate has become to another mesh of it: an archive in memory, whose fields are mapped.
+!>
+!> Motion has the values of the old elements at the new nodes. What nodes and cells have per area or per volume becomes
+!> the mean over the area that belongs to the new node or cell, so that integrals over the plate stay what they are:
+!> each node of nine-node cells has a rectangle, whose sides are the integrals of its quadratics.
+module mesh_transfers
+  use kinds, only: wp
+  use lagrange9, only: line_values
+  use layer_transfers, only: layer_transfer_t
+  use layered_meshes, only: layered_mesh_t
+  use line_overlaps, only: line_overlap_t, node_bounds, overlaps_of
+  implicit none
+  private
+  public :: mesh_transfer_t
+
+  !> Beginnings of the names of motion, and of what each ply of an element has; the field that elements have as a whole.
+  character(len=*), parameter :: motion_group = 'motion/', ply_group = 'ply_failure/', &
+                                 section_field = 'ply_failure/stiffness', slip_field = 'cohesive/sliding'
+
+  !> The archive: saved to, then turned to another mesh and loaded from.
+  type, extends(layer_transfer_t) :: mesh_transfer_t
+    !> The mesh saved, and the one to load
+    type(layered_mesh_t), private :: old, new
+    !> Plies of the laminate
+    integer, private :: plies = 0
+    !> What nodes and cells of the new mesh have in common with those of the old one along x and y
+    type(line_overlap_t), allocatable, private :: nodes_x(:), nodes_y(:), cells_x(:), cells_y(:)
+  contains
+    procedure :: turn_to
+    procedure :: field
+  end type mesh_transfer_t
+
+contains
+
+  !> Turns from saving to loading, and finds what both meshes have in common. All sections of elements are new ones, all
+  !> points have a motion.
+  subroutine turn_to(self, old, new)
+    !> The archive
+    class(mesh_transfer_t), intent(inout) :: self
+    !> The mesh saved, and the one to load
+    type(layered_mesh_t), intent(in) :: old, new
+
+    self%loading = .true.
+    self%old = old
+    self%new = new
+    self%plies = maxval(new%element_plies)
+    allocate (self%point_origin(new%points()), source=1)
+    allocate (self%element_origin(new%elements()), source=1)
+    allocate (self%is_split(new%elements()), source=.true.)
+    self%cells_x = overlaps_of(new%x_edges, old%x_edges, old%halved(1))
+    self%cells_y = overlaps_of(new%y_edges, old%y_edges, old%halved(2))
+    self%nodes_x = overlaps_of(node_bounds(new%x_edges, new%halved(1)), from_cut(old%x_edges, old%halved(1)), &
+                               old%halved(1))
+    self%nodes_y = overlaps_of(node_bounds(new%y_edges, new%halved(2)), from_cut(old%y_edges, old%halved(2)), &
+                               old%halved(2))
+  end subroutine turn_to
+
+  !> Bounds of the parts of nodes that begin at the cut.
+  pure function from_cut(edges, halved) result(bounds)
+    !> Edges of the cells, ascending
+    real(wp), intent(in) :: edges(:)
+    !> True: the line begins on a cut at 0
+    logical, intent(in) :: halved
+    !> Ascending
+    real(wp), allocatable :: bounds(:)
+
+    bounds = node_bounds(edges, halved)
+    bounds(1) = edges(1)
+  end function from_cut
+
+  !> Visits a field over points or elements; its length shows which, as there are always more points. Collective
+  !> when saving.
+  subroutine field(self, name, columns, global_columns, value)
+    class(mesh_transfer_t), intent(inout) :: self
+    !> Its name
+    character(len=*), intent(in) :: name
+    !> Global columns of the leading columns of `value`, which this rank owns
+    integer, intent(in) :: columns(:)
+    !> Number of columns of the whole field
+    integer, intent(in) :: global_columns
+    !> The field
+    real(wp), intent(inout) :: value(:, :)
+    integer :: i
+
+    if (.not. self%loading) then
+      call self%keep_field(name, columns, global_columns, value)
+      return
+    end if
+    associate (saved => self%kept(self%find(name))%values)
+      do i = 1, size(columns)
+        if (global_columns /= self%new%points()) then
+          call find_in_cells(self, saved, columns(i), name, value(:, i))
+        else if (index(name, motion_group) == 1) then
+          value(:, i) = motion_at(self, saved, columns(i))
+        else
+          call find_at_node(self, saved, columns(i), name, value(:, i))
+        end if
+      end do
+    end associate
+  end subroutine field
+
+  !> Motion of the old elements at a point.
+  pure function motion_at(self, saved, point) result(motion)
+    !> The archive
+    class(mesh_transfer_t), intent(in) :: self
+    !> Unknowns of the old points, (5, points)
+    real(wp), intent(in) :: saved(:, :)
+    !> Point of the new mesh
+    integer, intent(in) :: point
+    !> Its unknowns
+    real(wp) :: motion(5)
+    real(wp) :: at(2), shapes(3, 2)
+    integer :: place(2), i, j
+    logical :: turned(2)
+
+    associate (old => self%old)
+      at = self%new%node_coordinates(:, self%new%point_node(point))
+      turned = old%halved .and. at < 0
+      if (turned(1) .and. .not. old%mirrored(1)) turned(2) = .true.
+      where (turned) at = -at
+      call locate(old%x_edges, at(1), place(1), shapes(:, 1))
+      call locate(old%y_edges, at(2), place(2), shapes(:, 2))
+      motion = 0
+      do j = 1, 3
+        do i = 1, 3
+          motion = motion + shapes(i, 1)*shapes(j, 2)* &
+                   unknowns_at(old, saved, old%node_at(2*place(1) + i - 3, 2*place(2) + j - 3), &
+                               self%new%point_zone(point))
+        end do
+      end do
+    end associate
+    if (turned(1)) motion([1, 4]) = -motion([1, 4])
+    if (turned(2)) motion([2, 5]) = -motion([2, 5])
+  end function motion_at
+
+  !> Unknowns of the layer below a zone at a node; where layers are joined there are no jumps.
+  pure function unknowns_at(mesh, saved, node, zone) result(unknowns)
+    !> The mesh
+    type(layered_mesh_t), intent(in) :: mesh
+    !> Unknowns of all points, (5, points)
+    real(wp), intent(in) :: saved(:, :)
+    !> Node, and zone; 0: the first layer
+    integer, intent(in) :: node, zone
+    !> They
+    real(wp) :: unknowns(5)
+    integer :: above
+
+    unknowns = saved(:, mesh%first_point(node))
+    do above = zone, 1, -1
+      if (mesh%lower_point(node, above) == 0) cycle
+      unknowns = saved(:, mesh%lower_point(node, above))
+      exit
+    end do
+    if (above /= zone) unknowns(1:3) = 0
+  end function unknowns_at
+
+  !> Cell along a line that a coordinate lies in, and the quadratics of its nodes there.
+  pure subroutine locate(edges, coordinate, cell, shapes)
+    !> Edges of the cells, ascending
+    real(wp), intent(in) :: edges(:)
+    !> The coordinate
+    real(wp), intent(in) :: coordinate
+    !> The cell, from 1
+    integer, intent(out) :: cell
+    !> One value a node
+    real(wp), intent(out) :: shapes(3)
+
+    cell = max(1, min(size(edges) - 1, count(edges <= coordinate)))
+    shapes = line_values((2*coordinate - edges(cell) - edges(cell + 1))/(edges(cell + 1) - edges(cell)))
+  end subroutine locate
+
+  !> Means over the area of a node; where the old mesh has no such layer, what is there already counts.
+  pure subroutine find_at_node(self, saved, point, name, values)
+    !> The archive
+    class(mesh_transfer_t), intent(in) :: self
+    !> Values of the old points, (rows, points)
+    real(wp), intent(in) :: saved(:, :)
+    !> Point of the new mesh
+    integer, intent(in) :: point
+    !> Name of the field
+    character(len=*), intent(in) :: name
+    !> Its values
+    real(wp), intent(inout) :: values(:)
+    real(wp), allocatable :: terms(:, :), weights(:)
+    integer :: lines(2), place(2), i, j, n, from
+    logical :: turned(2)
+
+    lines = self%new%lines_of(self%new%point_node(point)) + 1
+    associate (x => self%nodes_x(lines(1)), y => self%nodes_y(lines(2)), old => self%old, &
+               zone => self%new%point_zone(point))
+      allocate (terms(size(values), size(x%length)*size(y%length)), weights(size(x%length)*size(y%length)))
+      n = 0
+      do j = 1, size(y%length)
+        do i = 1, size(x%length)
+          n = n + 1
+          call find_image(self, x, y, i, j, 2*old%cells + 1, place, turned)
+          weights(n) = x%length(i)*y%length(j)
+          terms(:, n) = values
+          associate (node => old%node_at(place(1) - 1, place(2) - 1))
+            from = old%first_point(node)
+            if (zone > 0) from = old%lower_point(node, zone)
+          end associate
+          if (from > 0) terms(:, n) = saved(:, from)
+          if (name == slip_field) terms(:2, n) = merge(-terms(:2, n), terms(:2, n), turned .and. from > 0)
+        end do
+      end do
+    end associate
+    values = mean_of(terms, weights)
+  end subroutine find_at_node
+
+  !> Means over the area of a cell; what plies have each on its own, also where layers have been divided.
+  pure subroutine find_in_cells(self, saved, element, name, values)
+    !> The archive
+    class(mesh_transfer_t), intent(in) :: self
+    !> Values of the old elements, (rows, elements)
+    real(wp), intent(in) :: saved(:, :)
+    !> Element of the new mesh
+    integer, intent(in) :: element
+    !> Name of the field
+    character(len=*), intent(in) :: name
+    !> Its values
+    real(wp), intent(inout) :: values(:)
+    real(wp), allocatable :: terms(:, :), weights(:)
+    integer :: cell(2), place(2), i, j, n, ply, rows
+    logical :: turned(2)
+
+    cell = self%new%place_of(self%new%element_cell(element))
+    rows = size(values)
+    if (index(name, ply_group) == 1 .and. name /= section_field) rows = size(values)/self%plies
+    associate (x => self%cells_x(cell(1)), y => self%cells_y(cell(2)), old => self%old, &
+               range => self%new%element_plies(:, element))
+      allocate (terms(size(values), size(x%length)*size(y%length)), weights(size(x%length)*size(y%length)))
+      n = 0
+      do j = 1, size(y%length)
+        do i = 1, size(x%length)
+          n = n + 1
+          call find_image(self, x, y, i, j, old%cells, place, turned)
+          weights(n) = x%length(i)*y%length(j)
+          terms(:, n) = saved(:, old%element_at(old%cell_at(place(1), place(2)), range(1)))
+          if (rows == size(values)) cycle
+          do ply = range(1), range(2)
+            terms((ply - 1)*rows + 1:ply*rows, n) = &
+              saved((ply - 1)*rows + 1:ply*rows, old%element_at(old%cell_at(place(1), place(2)), ply))
+          end do
+        end do
+      end do
+    end associate
+    values = mean_of(terms, weights)
+  end subroutine find_in_cells
+
+  !> Place of an interval of x and one of y in the part of the plate that the old mesh models.
+  pure subroutine find_image(self, x, y, i, j, intervals, place, turned)
+    !> The archive
+    class(mesh_transfer_t), intent(in) :: self
+    !> What an interval has in common with those of the old mesh along x and y
+    type(line_overlap_t), intent(in) :: x, y
+    !> Which of them
+    integer, intent(in) :: i, j
+    !> Number of intervals of the old mesh along x and y
+    integer, intent(in) :: intervals(2)
+    !> The place, from 1
+    integer, intent(out) :: place(2)
+    !> Directions that have the other sign there
+    logical, intent(out) :: turned(2)
+
+    place = [x%interval(i), y%interval(j)]
+    turned = [x%turned(i), y%turned(j)]
+    if (.not. turned(1) .or. self%old%mirrored(1)) return
+    ! Half of a plate that a turn leaves as it is.
+    turned(2) = .true.
+    place(2) = intervals(2) + 1 - place(2)
+  end subroutine find_image
+
+  !> Weighted means, within the range of the terms: those of equal terms are these.
+  pure function mean_of(terms, weights) result(means)
+    !> The terms, (rows, terms)
+    real(wp), intent(in) :: terms(:, :)
+    !> Their weights
+    real(wp), intent(in) :: weights(:)
+    !> (rows)
+    real(wp) :: means(size(terms, 1))
+
+    associate (least => minval(terms, 2))
+      means = min(maxval(terms, 2), least + matmul(terms - spread(least, 2, size(weights)), weights)/sum(weights))
+    end associate
+  end function mean_of
+end module mesh_transfers
