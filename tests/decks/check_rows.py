@@ -26,6 +26,7 @@ OTHERS = (
     ("app/summary_lines.f90", "dent", "a label of the summary"),
     ("app/summary_provenance.f90", "library", "a name in NAME_summary.json"),
     ("app/summary_file.f90", "energy", "a name in NAME_summary.json"),
+    ("app/mapped_figures.f90", "energy", "a name in NAME_summary.json"),
     ("base/text.f90", "e", "the exponent of a number"),
     ("case/scale_tables.f90", "length mass time force energy pressure", "dimensions"),
     ("case/deck_library.f90", "e", "the exponent of a number"),
