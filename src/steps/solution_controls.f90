@@ -1,6 +1,6 @@
 !> Constants that steer Newton's method and the length of steps. They change the cost of a run and, with its sequence of
-!> steps, figures within the error of the steps; doc/studies/solution_controls.md has what each changes. The group &controls of a deck sets them for studies, so
-!> that none edits sources.
+!> steps, figures within the error of the steps; doc/studies/solution_controls.md has what each changes. The group
+!> &controls of a deck sets them for studies, so that none edits sources.
 module solution_controls
   use kinds, only: wp
   implicit none
