@@ -123,13 +123,11 @@ contains
     type(log_t), intent(inout) :: log
     real(wp) :: factor_entries, megabytes
     integer :: matrix_entries, i
-    logical :: has_factor
 
-    has_factor = .false.
+    factor_entries = 0
     ! Central differences free the factor of the equilibrium before the first step.
-    if (allocated(operator%solver)) has_factor = operator%solver%has_factor()
-    if (has_factor) then
-      call operator%solver%statistics(factor_entries, megabytes)
+    if (allocated(operator%solver)) call operator%solver%statistics(factor_entries, megabytes)
+    if (factor_entries > 0) then
       matrix_entries = operator%numbering%row_start(operator%numbering%rows + 1) - 1
       call log%detail('Factor: '//to_text(factor_entries)//' numbers, '//to_text(megabytes)//' MB; matrix: '// &
                       to_text(matrix_entries)//' numbers on this rank.')

@@ -257,7 +257,7 @@ contains
     real(wp) :: event, closest, begun
 
     call self%timers%stop('set-up')
-    closest = self%stepper%smallest_step()
+    closest = self%stepper%smallest_step
     do while (self%stepper%now%time < end_of(self))
       event = next_event([self%history_clock, self%fields_clock, self%checkpoint_clock], end_of(self), closest)
       begun = wall_time()
@@ -314,7 +314,7 @@ contains
     fields_due = .false.
     checkpoint_due = .false.
     if (at_event) then
-      closest = self%stepper%smallest_step()
+      closest = self%stepper%smallest_step
       if (self%history_clock%strikes_at(self%stepper%now%time, closest)) row_due = .true.
       fields_due = self%fields_clock%strikes_at(self%stepper%now%time, closest)
       ! The last fields are those of the state that the summary is about.

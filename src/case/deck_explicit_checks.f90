@@ -7,7 +7,7 @@ module deck_explicit_checks
   use deck_remarks, only: are_clear, remark, remark_idle, report
   use delamination_deck, only: key_law
   use delamination_parameters, only: law_front
-  use equilibrium_deck, only: solver_group
+  use solver_deck, only: solver_group
   use impact_parameters, only: integrator_central
   use impactor_deck, only: impactor_group, key_integrator
   use interface_places, only: delamination_group

@@ -33,7 +33,6 @@ module deck_reader
   use delamination_deck, only: fill_delaminations, check_delaminations
   use interface_places, only: interfaces_between, remark_left_out
   use element_deck, only: fill_kinematics, fill_element
-  use equilibrium_deck, only: fill_equilibrium
   use errors, only: error_t
   use files, only: read_whole_file
   use gauge_deck, only: check_gauges, fill_gauges
@@ -45,7 +44,7 @@ module deck_reader
   use load_cases, only: analysis_by_load_steps
   use line_deck, only: fill_lines, check_lines
   use delamination_parameters, only: law_cohesive, law_front
-  use linear_solver_deck, only: check_petsc_options, fill_linear_solver
+  use solver_deck, only: check_petsc_options, fill_equilibrium, fill_linear_solver
   use material_deck, only: fill_materials, normal_compliance
   use material_parameters, only: first_alike
   use mesh_deck, only: fill_mesh, check_mesh

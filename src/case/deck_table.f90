@@ -7,14 +7,13 @@ module deck_table
   use deck_vocabulary, only: vocabulary_t, load_vocabulary, group_row_length, key_row_length
   use delamination_deck, only: delamination_group_row, delamination_rows
   use element_deck, only: element_rows, kinematics_rows
-  use equilibrium_deck, only: solver_group_row, equilibrium_rows
   use gauge_deck, only: gauge_group_row, gauge_rows
   use impactor_deck, only: impactor_group_row, impactor_rows
   use indentation_deck, only: indentation_group_row, indentation_rows
   use initial_state_deck, only: initial_state_group_row, initial_state_rows
   use laminate_deck, only: laminate_group_row, laminate_rows
   use line_deck, only: line_group_row, line_rows
-  use linear_solver_deck, only: linear_solver_rows
+  use solver_deck, only: solver_group_row, solver_rows
   use material_deck, only: material_group_row, material_rows
   use mesh_deck, only: mesh_group_row, mesh_rows
   use output_deck, only: output_group_row, output_rows
@@ -43,7 +42,7 @@ module deck_table
     impactor_rows, indentation_rows, pressure_rows, line_rows, thermal_rows, initial_state_rows, static_rows, &
     ply_damage_rows, &
     delamination_rows, time_rows, &
-    adapt_rows, equilibrium_rows, linear_solver_rows, gauge_rows, output_rows, controls_rows]
+    adapt_rows, solver_rows, gauge_rows, output_rows, controls_rows]
 
 contains
 

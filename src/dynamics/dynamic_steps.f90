@@ -102,9 +102,6 @@ contains
         .and. .not. any(operator%numbering%leader > 0)
       call predict(self, model, old, new)
       if (.not. self%keeps_velocity) call self%complete(at)
-      new%iterations = 0
-      new%force_iterations = 0
-      new%contact_iterations = 0
       self%correction_is_costly = .false.
       self%uses_element_tangents = .false.
       self%searches_lines = allocated(new%interfaces%cohesive%cohesive)
@@ -251,20 +248,18 @@ contains
     !> Set if a solve fails or numbers are not finite
     type(error_t), allocatable, intent(inout) :: error
     type(tangent_product_t) :: tangent
-    real(wp), allocatable :: diagonal(:, :)
     logical :: converged
 
     at%negative_curvature = .false.
     associate (model => at%model, operator => at%operator, old => at%old, new => at%new)
       call find_tangent(model, operator, old, new, [self%integrator%stiffness_factor(), &
                         self%integrator%mass_factor(self%step)], self%correction_is_costly, self%renewal, &
-                          self%uses_element_tangents, tangent, &
-                        diagonal, error)
+                        self%uses_element_tangents, tangent, error)
       if (allocated(error)) return
       if (model%setup%has_impactor .and. .not. tangent%is_factored()) &
         call add_force_slope(model, operator, self%coupling, old, new, tangent)
-      call find_krylov_correction(operator, model, tangent, diagonal, at%residual, tolerance, at%correction, error, &
-                                  at%negative_curvature, converged)
+      call find_krylov_correction(tangent, at%residual, tolerance, at%correction, error, at%negative_curvature, &
+                                  converged)
       if (allocated(error)) return
       self%correction_is_costly = .not. converged
       if (model%setup%has_impactor) &

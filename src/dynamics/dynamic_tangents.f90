@@ -20,7 +20,6 @@ contains
   !> The tangent without the impactor's force. The operator is factorized again if required, or if ties and contacts
   !> differ too much from it.
   subroutine find_tangent(model, operator, old, new, factors, required, max_changes, uses_element_tangents, tangent, &
-                          diagonal, &
                           error)
     !> Mesh, numbering and interfaces of the plate
     type(model_t), target, intent(in) :: model
@@ -40,8 +39,6 @@ contains
     logical, intent(in) :: uses_element_tangents
     !> The tangent
     type(tangent_product_t), intent(out) :: tangent
-    !> Its diagonal, (5, points); unallocated: the tangent is the factored operator
-    real(wp), allocatable, intent(out) :: diagonal(:, :)
     !> Set if the operator is singular
     type(error_t), allocatable, intent(inout) :: error
     real(wp), allocatable :: current_stiffness(:, :)
@@ -72,8 +69,8 @@ contains
       call tangent%set_jump_stiffness(operator%added, current_stiffness, new%interfaces%cohesive%cohesive, factors(1)* &
         new%interfaces%cohesive%tangents_at(model, old%interfaces%cohesive, new%motion%displacement))
     if (tangent%is_factored()) return
-    diagonal = operator%diagonal
-    if (model%has_bonds) diagonal(:3, :) = diagonal(:3, :) + current_stiffness
+    tangent%diagonal = operator%diagonal
+    if (model%has_bonds) tangent%diagonal(:3, :) = tangent%diagonal(:3, :) + current_stiffness
   end subroutine find_tangent
 
   !> True: all forces but the impactor's are linear, and the operator is their tangent, so one correction finds

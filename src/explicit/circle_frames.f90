@@ -2,7 +2,7 @@
 !> sides of cells, a mean of three nodes each. The forces that hold all of these points are found together, from a
 !> matrix that stays what it is.
 module circle_frames
-  use dense_systems, only: positive_factor_t
+  use dense_systems, only: invert_dense
   use kinds, only: wp
   use models, only: model_t
   use rigs, only: crossing_t, circle_crossings
@@ -21,8 +21,8 @@ module circle_frames
     integer, allocatable :: rig(:)
     !> Inverse inertia of w at the nodes, (3, crossings)
     real(wp), allocatable, private :: inverse(:, :)
-    !> The factored matrix
-    type(positive_factor_t), private :: factor
+    !> Forces at the points per deflection, (crossings, crossings)
+    real(wp), allocatable, private :: stiffness(:, :)
     !> Forces of the last step
     real(wp), allocatable :: forces(:)
   contains
@@ -87,7 +87,7 @@ contains
       ! A point whose nodes are all held needs no force.
       if (.not. matrix(j, j) > 0) matrix(j, j) = 1
     end do
-    call self%factor%factorize(matrix)
+    self%stiffness = invert_dense(matrix)
   end subroutine prepare
 
   !> Values at the nodes of all points, the same on every rank. Collective.
@@ -125,9 +125,8 @@ contains
     real(wp) :: change
     integer :: i, k
 
-    if (size(self%rig) == 0 .or. .not. self%factor%positive) return
-    self%forces = sum(self%weights*gathered(self, model, w), 1)/(steps%now*steps%mean())
-    call self%factor%solve(self%forces)
+    if (size(self%rig) == 0) return
+    self%forces = matmul(self%stiffness, sum(self%weights*gathered(self, model, w), 1))/(steps%now*steps%mean())
     do i = 1, size(self%rig)
       do k = 1, 3
         if (self%local(k, i) == 0) cycle

@@ -1,25 +1,12 @@
-!> Small dense systems.
+!> Small dense systems, by elimination with pivoting.
 module dense_systems
   use kinds, only: wp
   implicit none
   private
-  public :: positive_factor_t, solve_dense
-
-  !> A small symmetric matrix, factored if it is positive definite.
-  type :: positive_factor_t
-    !> True: it is, and there are factors
-    logical :: positive = .false.
-    !> Its lower factor, (n, n)
-    real(wp), allocatable, private :: factors(:, :)
-  contains
-    !> Factors a matrix.
-    procedure :: factorize => factorize_positive
-    !> Solves with the factors.
-    procedure :: solve => solve_positive
-  end type positive_factor_t
+  public :: solve_dense, invert_dense
 
   interface
-    !> LAPACK: solves with a general matrix by elimination with pivoting.
+    !> LAPACK: solves with a general matrix.
     subroutine dgesv(n, columns, a, lda, pivots, b, ldb, info)
       import :: wp
       !> Order, right-hand sides, leading dimensions
@@ -33,63 +20,9 @@ module dense_systems
       !> Greater than 0: singular
       integer, intent(out) :: info
     end subroutine dgesv
-
-    !> LAPACK: factors a symmetric matrix that is positive definite.
-    subroutine dpotrf(uplo, n, a, lda, info)
-      import :: wp
-      !> 'L': its lower triangle is given
-      character, intent(in) :: uplo
-      !> Order, leading dimension
-      integer, intent(in) :: n, lda
-      !> Matrix, overwritten by its factor
-      real(wp), intent(inout) :: a(lda, *)
-      !> Greater than 0: not positive definite
-      integer, intent(out) :: info
-    end subroutine dpotrf
-
-    !> LAPACK: solves with the factor of dpotrf.
-    subroutine dpotrs(uplo, n, columns, a, lda, b, ldb, info)
-      import :: wp
-      !> 'L': the lower factor
-      character, intent(in) :: uplo
-      !> Order, right-hand sides, leading dimensions
-      integer, intent(in) :: n, columns, lda, ldb
-      !> Factor
-      real(wp), intent(in) :: a(lda, *)
-      !> Right-hand sides, overwritten by the solution
-      real(wp), intent(inout) :: b(ldb, *)
-      !> Not 0: an argument is wrong
-      integer, intent(out) :: info
-    end subroutine dpotrs
   end interface
 
 contains
-
-  !> Factors a symmetric matrix, or finds that it is not positive definite.
-  subroutine factorize_positive(self, matrix)
-    !> Receives the factor
-    class(positive_factor_t), intent(inout) :: self
-    !> Matrix, its lower triangle is read, (n, n)
-    real(wp), intent(in) :: matrix(:, :)
-    integer :: info
-
-    self%factors = matrix
-    self%positive = .true.
-    if (size(matrix) == 0) return
-    call dpotrf('L', size(matrix, 1), self%factors, size(matrix, 1), info)
-    self%positive = info == 0
-  end subroutine factorize_positive
-
-  !> Solves with the factor of a positive definite matrix.
-  subroutine solve_positive(self, x)
-    !> The factor
-    class(positive_factor_t), intent(in) :: self
-    !> Right-hand side on entry, solution on return, (n)
-    real(wp), intent(inout) :: x(:)
-    integer :: info
-
-    if (size(x) > 0) call dpotrs('L', size(x), 1, self%factors, size(x), x, size(x), info)
-  end subroutine solve_positive
 
   !> Solves a small dense system.
   subroutine solve_dense(matrix, x, singular)
@@ -97,7 +30,7 @@ contains
     real(wp), intent(in) :: matrix(:, :)
     !> Right-hand side on entry, solution on return, (n)
     real(wp), intent(inout) :: x(:)
-    !> True: there is no solution, x is what it was
+    !> True: there is no solution, x is unchanged
     logical, intent(out) :: singular
     real(wp) :: factors(size(x), size(x)), solution(size(x))
     integer :: pivots(size(x)), info
@@ -109,4 +42,25 @@ contains
     singular = info /= 0
     if (.not. singular) x = solution
   end subroutine solve_dense
+
+  !> Inverse of a dense matrix; zero if it is singular.
+  function invert_dense(matrix) result(inverse)
+    !> Matrix, (n, n)
+    real(wp), intent(in) :: matrix(:, :)
+    !> Its inverse, (n, n)
+    real(wp) :: inverse(size(matrix, 1), size(matrix, 1))
+    real(wp) :: factors(size(matrix, 1), size(matrix, 1))
+    integer :: pivots(size(matrix, 1)), info, i
+
+    factors = matrix
+    inverse = 0
+    do i = 1, size(matrix, 1)
+      inverse(i, i) = 1
+    end do
+    info = 0
+    associate (n => size(matrix, 1))
+      if (n > 0) call dgesv(n, n, factors, n, pivots, inverse, n, info)
+    end associate
+    if (info /= 0) inverse = 0
+  end function invert_dense
 end module dense_systems

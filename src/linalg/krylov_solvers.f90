@@ -8,17 +8,38 @@ module krylov_solvers
   use communicators, only: communicator_t
   use errors, only: error_t
   use kinds, only: wp
-  use linear_maps, only: linear_map_t
   use petsc_matrices, only: put, take
   use petsc_session, only: report_petsc
   implicit none
   private
-  public :: krylov_solver_t
+  public :: krylov_solver_t, linear_system_t
 
   !> Largest dimension of the Krylov space: as many solves take about as long as a factorization.
   integer, parameter :: max_dimension = 30
-  !> PETSC_ERR_NOT_CONVERGED, by which a map that fails ends the iteration
-  integer, parameter :: map_failed = 82
+  !> PETSC_ERR_NOT_CONVERGED, by which a product that fails ends the iteration
+  integer, parameter :: product_failed = 82
+
+  !> Equations known by the products of their matrix and of a preconditioner.
+  type, abstract :: linear_system_t
+  contains
+    !> Product of the matrix, and of the preconditioner.
+    procedure(find_product), deferred :: multiply, precondition
+  end type linear_system_t
+
+  abstract interface
+    !> Product with a vector. Collective.
+    subroutine find_product(self, vector, product, error)
+      import :: linear_system_t, error_t, wp
+      !> The equations
+      class(linear_system_t), intent(inout) :: self
+      !> The vector, (rows of this rank)
+      real(wp), intent(in) :: vector(:)
+      !> The product, (rows of this rank)
+      real(wp), intent(out) :: product(:)
+      !> Set if it cannot be found
+      type(error_t), allocatable, intent(inout) :: error
+    end subroutine find_product
+  end interface
 
   !> The solver.
   type :: krylov_solver_t
@@ -45,8 +66,8 @@ module krylov_solvers
 
   !> What the products need to know during a solve.
   type :: products_t
-    !> Matrix and preconditioner
-    class(linear_map_t), pointer :: matrix => null(), preconditioner => null()
+    !> The equations
+    class(linear_system_t), pointer :: system => null()
     !> Factor of each row of the equations, (rows)
     real(wp), allocatable :: row_factors(:)
     !> Set if a product fails
@@ -112,12 +133,11 @@ contains
   end subroutine define
 
   !> Solves to a tolerance, or as far as the largest dimension of the space reaches. Collective.
-  subroutine solve(self, matrix, preconditioner, row_factors, right_hand_side, tolerance, solution, converged, &
-                   indefinite, error)
+  subroutine solve(self, system, row_factors, right_hand_side, tolerance, solution, converged, indefinite, error)
     !> The solver
     class(krylov_solver_t), intent(inout) :: self
-    !> Matrix, and a map close to its inverse
-    class(linear_map_t), target, intent(inout) :: matrix, preconditioner
+    !> The equations
+    class(linear_system_t), target, intent(inout) :: system
     !> Factors of the equations by which their residuals are comparable, (rows)
     real(wp), intent(in) :: row_factors(:)
     !> Right-hand side, (rows)
@@ -135,8 +155,7 @@ contains
     type(products_t), target :: products
     integer :: reason, ierr(7)
 
-    products%matrix => matrix
-    products%preconditioner => preconditioner
+    products%system => system
     products%row_factors = row_factors
     ierr(1) = int(set_matrix_context(int(self%matrix%v, c_intptr_t), c_loc(products)))
     call KSPSetTolerances(self%solver, tolerance, tiny(tolerance), PETSC_DEFAULT_REAL, max_dimension, ierr(2))
@@ -183,9 +202,9 @@ contains
     if (ierr /= 0) return
     allocate (values, results, mold=products%row_factors)
     call take(vector, values, ierr)
-    call products%matrix%multiply(values, results, products%error)
+    call products%system%multiply(values, results, products%error)
     if (ierr == 0) call put(product, products%row_factors*results, ierr)
-    if (allocated(products%error)) ierr = map_failed
+    if (allocated(products%error)) ierr = product_failed
   end subroutine multiply_rows
 
   !> Product of the preconditioner with rows that were multiplied by their factors.
@@ -205,9 +224,9 @@ contains
     if (ierr /= 0) return
     allocate (values, results, mold=products%row_factors)
     call take(vector, values, ierr)
-    call products%preconditioner%multiply(values/products%row_factors, results, products%error)
+    call products%system%precondition(values/products%row_factors, results, products%error)
     if (ierr == 0) call put(product, results, ierr)
-    if (allocated(products%error)) ierr = map_failed
+    if (allocated(products%error)) ierr = product_failed
   end subroutine precondition_rows
 
   !> Frees the solver. Collective.

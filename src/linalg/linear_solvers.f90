@@ -1,23 +1,21 @@
 !> Direct solution of large symmetric linear equations by PETSc. Rows are shared out among the ranks in contiguous
 !> blocks; equations are numbered from 0 over all ranks.
 module linear_solvers
-  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_quiet_nan, ieee_value
+  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use communicators, only: communicator_t
   use errors, only: error_t, fail, exit_convergence, exit_internal, exit_usage
   use factor_packages, only: packages_for, why_not_factored, factor_made, factor_not_positive, factor_singular
-  use free_mechanisms, only: mechanism_t
+  use free_mechanisms, only: has_mechanism
   use kinds, only: wp
   use linear_solver_parameters, only: factorization_automatic, factorization_cholmod
   use petsc_factors, only: petsc_factor_t
-  use petsc_matrices, only: petsc_matrix_t, put, take
+  use petsc_matrices, only: petsc_matrix_t
   use petsc_session, only: report_petsc
   use text, only: to_text
   implicit none
   private
   public :: linear_solver_t
 
-  !> What is wrong with a solve that comes too early
-  character(len=*), parameter :: no_factor = 'The linear equations were to be solved before they were factored.'
   !> The two factors that a solver may have, and what options for each begin with
   integer, parameter :: definite = 1, indefinite = 2
   character(len=11), parameter :: prefixes(2) = [character(len=11) :: '', 'indefinite_']
@@ -35,8 +33,8 @@ module linear_solvers
     integer, private :: indefinite_matrices = 0
     !> All ranks
     type(communicator_t), private :: communicator
-    !> Number of rows that this rank owns, and of all
-    integer, private :: rows = 0, total_rows = 0
+    !> Number of rows of all ranks
+    integer, private :: total_rows = 0
     !> The matrix, which callers assemble
     type(petsc_matrix_t) :: matrix
     !> Its factor as a rule, and that of a matrix that broke its promise, set up when that happens
@@ -47,8 +45,8 @@ module linear_solvers
     logical, private :: factored = .false.
     !> True: the matrix is promised to be positive definite
     logical, private :: promised = .false.
-    !> Finds parts of the structure that can move freely
-    type(mechanism_t), private :: mechanism
+    !> Motion of least stiffness, by which mechanisms of the structure are found
+    real(wp), allocatable, private :: mode(:)
   contains
     !> Sets the pattern of the matrix, anew if there was one; called by all ranks together.
     procedure :: define
@@ -56,20 +54,14 @@ module linear_solvers
     procedure :: factorize
     !> Solves for one right-hand side with the factor; called by all ranks together.
     procedure :: solve
-    !> Product of the matrix with a vector; called by all ranks together.
-    procedure :: multiply
     !> Size of the factor, the same on every rank.
     procedure :: statistics
-    !> Whether there is a factor.
-    procedure :: has_factor
     !> Name of what factors the matrix, and how often something else had to.
     procedure :: package_used
     !> Frees matrix and factor.
     procedure :: release
     procedure, private :: set_up_factor
     procedure, private :: make_factor
-    procedure, private :: find_mechanism
-    procedure, private :: finish_solve
   end type linear_solver_t
 
 contains
@@ -94,7 +86,6 @@ contains
 
     call self%release()
     self%communicator = communicator
-    self%rows = size(row_start) - 1
     self%total_rows = total_rows
     self%promised = positive_definite
     if (self%factorization == factorization_cholmod .and. .not. positive_definite) &
@@ -154,31 +145,10 @@ contains
     type(error_t), allocatable, intent(inout) :: error
 
     call self%factors(self%current)%factorize(self%matrix%object, outcome, error)
-    if (outcome == factor_made .and. .not. allocated(error)) call self%find_mechanism(outcome)
+    if (outcome /= factor_made .or. allocated(error)) return
+    if (has_mechanism(self%communicator, self%factors(self%current)%solver, self%matrix, self%mode)) &
+      outcome = factor_singular
   end subroutine make_factor
-
-  !> Finds out whether a part of the structure can move freely.
-  subroutine find_mechanism(self, outcome)
-    class(linear_solver_t), intent(inout) :: self
-    !> Becomes factor_singular if it can
-    integer, intent(inout) :: outcome
-    real(wp), allocatable :: values(:)
-    logical :: found
-    integer :: ierr(3), pass
-
-    allocate (values(self%rows))
-    call self%matrix%diagonal(values, ierr(1))
-    call self%mechanism%begin(values)
-    do pass = 1, self%mechanism%passes
-      call put(self%matrix%right, self%mechanism%right_hand_side(), ierr(1))
-      call KSPSolve(self%factors(self%current)%solver, self%matrix%right, self%matrix%left, ierr(2))
-      call take(self%matrix%left, values, ierr(3))
-      if (any(ierr /= 0)) values = ieee_value(1.0_wp, ieee_quiet_nan)
-      call self%mechanism%assess(self%communicator, values, found)
-      if (found) outcome = factor_singular
-      if (found) return
-    end do
-  end subroutine find_mechanism
 
   !> Solves for one right-hand side with the factor; called by all ranks together.
   subroutine solve(self, right_hand_side, solution, error)
@@ -187,67 +157,28 @@ contains
     real(wp), intent(in) :: right_hand_side(:)
     !> Owned part of the solution
     real(wp), intent(out) :: solution(:)
-    !> Raised on all ranks when there is no finite solution
+    !> Raised on all ranks when there is no finite solution, which PETSc does not always say
     type(error_t), allocatable, intent(inout) :: error
-
-    integer :: ierr(3)
+    integer :: reason, ierr(4)
 
     solution = 0
-    if (.not. self%factored) call fail(error, exit_internal, no_factor)
+    if (.not. self%factored) call fail(error, exit_internal, 'Linear equations are solved before they are factored.')
     if (allocated(error)) return
-    call put(self%matrix%right, right_hand_side, ierr(1))
-    call KSPSolve(self%factors(self%current)%solver, self%matrix%right, self%matrix%left, ierr(2))
-    call take(self%matrix%left, solution, ierr(3))
-    call self%finish_solve(all(ieee_is_finite(solution)), ierr, error)
-  end subroutine solve
-
-  !> Product of the matrix as it was assembled last with a vector; called by all ranks together.
-  subroutine multiply(self, vector, product, error)
-    class(linear_solver_t), intent(inout) :: self
-    !> Owned part of the vector
-    real(wp), intent(in) :: vector(:)
-    !> Owned part of the product
-    real(wp), intent(out) :: product(:)
-    !> Raised when PETSc fails
-    type(error_t), allocatable, intent(inout) :: error
-    integer :: ierr(3)
-
-    call put(self%matrix%right, vector, ierr(1))
-    call MatMult(self%matrix%object, self%matrix%right, self%matrix%left, ierr(2))
-    call take(self%matrix%left, product, ierr(3))
-    call report_petsc(ierr, error)
-  end subroutine multiply
-
-  !> Counts solves and finds out whether they gave a solution, which PETSc does not always say.
-  subroutine finish_solve(self, finite, codes, error)
-    class(linear_solver_t), intent(inout) :: self
-    !> Whether this rank's part of the solution is finite
-    logical, intent(in) :: finite
-    !> Codes that PETSc returned
-    integer, intent(in) :: codes(:)
-    !> Raised on all ranks when there is no finite solution
-    type(error_t), allocatable, intent(inout) :: error
-    integer :: reason, ierr
-
     self%solves = self%solves + 1
-    call KSPGetConvergedReason(self%factors(self%current)%solver, reason, ierr)
-    if (self%communicator%all(finite .and. reason > 0 .and. all(codes == 0))) return
-    call report_petsc(codes, error)
+    associate (solver => self%factors(self%current)%solver)
+      call self%matrix%solve(solver, right_hand_side, solution, ierr(:3))
+      call KSPGetConvergedReason(solver, reason, ierr(4))
+    end associate
+    if (self%communicator%all(all(ieee_is_finite(solution)) .and. reason > 0 .and. all(ierr == 0))) return
+    call report_petsc(ierr, error)
     call fail(error, exit_convergence, 'The linear equations have no finite solution.')
     call self%communicator%agree(error)
-  end subroutine finish_solve
-
-  !> True between the first factorization and `release`.
-  pure logical function has_factor(self)
-    class(linear_solver_t), intent(in) :: self
-
-    has_factor = self%factors(self%current)%defined
-  end function has_factor
+  end subroutine solve
 
   !> Size of the factor, the same on every rank.
   subroutine statistics(self, factor_entries, megabytes)
     class(linear_solver_t), intent(in) :: self
-    !> Numbers stored in the factor
+    !> Numbers stored in the factor; 0: there is none
     real(wp), intent(out) :: factor_entries
     !> Memory of the factorization on all ranks, in MB
     real(wp), intent(out) :: megabytes
@@ -277,7 +208,7 @@ contains
       call self%factors(i)%release()
     end do
     call self%matrix%release()
-    call self%mechanism%reset()
+    if (allocated(self%mode)) deallocate (self%mode)
     self%factored = .false.
   end subroutine release
 end module linear_solvers

@@ -17,6 +17,9 @@ module petsc_factors
   !> PETSC_ERR_LIB, for lack of memory
   integer, parameter :: bad_pivot = 81, no_memory(*) = [55, 76]
 
+  !> Room beyond MUMPS' estimate in %: its own choice, and what is tried where that is not enough
+  integer, parameter :: usual_margin = -1, larger_margins(*) = [100, 400]
+
   !> A factor and what makes it.
   type :: petsc_factor_t
     !> True between `define` and `release`
@@ -33,8 +36,6 @@ module petsc_factors
     type(communicator_t), private :: communicator
     !> Whether the matrix is promised to be positive definite
     logical, private :: positive_definite = .true.
-    !> Room beyond MUMPS' estimate at first, in %, negative for its own choice
-    integer, private :: usual_memory_margin = -1
   contains
     !> Chooses the package.
     procedure :: define
@@ -76,8 +77,6 @@ contains
 
     self%communicator = communicator
     self%positive_definite = positive_definite
-    ! Without pivoting, and with nothing to share out, the factor is as large as MUMPS says beforehand.
-    self%usual_memory_margin = merge(0, -1, positive_definite .and. communicator%size == 1)
     call KSPCreate(communicator%handle(), self%solver, ierr(1))
     self%defined = ierr(1) == 0
     call KSPSetOptionsPrefix(self%solver, prefix, ierr(2))
@@ -88,7 +87,7 @@ contains
     call KSPSetFromOptions(self%solver, ierr(7))
     call report_petsc(ierr, error)
     if (.not. allocated(error)) call self%choose_package(matrix, packages, error)
-    if (.not. allocated(error)) call self%renew(matrix, self%usual_memory_margin, error)
+    if (.not. allocated(error)) call self%renew(matrix, usual_margin, error)
   end subroutine define
 
   !> Chooses the package, unless the user has.
@@ -199,12 +198,11 @@ contains
     type(error_t), allocatable, intent(inout) :: error
     integer :: ierr, attempt
     logical :: short
-    integer, parameter :: memory_margins(*) = [100, 400]
 
     call self%factorize_once(matrix, outcome, short, error)
-    do attempt = 1, size(memory_margins)
+    do attempt = 1, size(larger_margins)
       if (allocated(error) .or. .not. short) exit
-      call self%renew(matrix, memory_margins(attempt), error)
+      call self%renew(matrix, larger_margins(attempt), error)
       if (.not. allocated(error)) call self%factorize_once(matrix, outcome, short, error)
     end do
     call self%communicator%maximum(outcome)
@@ -215,7 +213,7 @@ contains
       call KSPSetReusePreconditioner(self%solver, PETSC_TRUE, ierr)
     else
       ! After a failure the packages refuse to go on with the factor that they have.
-      call self%renew(matrix, self%usual_memory_margin, error)
+      call self%renew(matrix, usual_margin, error)
     end if
   end subroutine factorize
 

@@ -1,6 +1,7 @@
 !> A symmetric sparse matrix of PETSc, with vectors to go with it.
 module petsc_matrices
-  use petscksp, only: tMat, tVec, PETSC_TRUE, ADD_VALUES, INSERT_VALUES, MAT_FINAL_ASSEMBLY, &
+  use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
+  use petscksp, only: tMat, tVec, tKSP, PETSC_TRUE, ADD_VALUES, INSERT_VALUES, MAT_FINAL_ASSEMBLY, &
                       MAT_IGNORE_LOWER_TRIANGULAR, MAT_NEW_NONZERO_LOCATION_ERR, MatSetValues, VecGetArrayF90, &
                       VecRestoreArrayF90, VecGetArrayReadF90, VecRestoreArrayReadF90
   use communicators, only: communicator_t
@@ -18,11 +19,13 @@ module petsc_matrices
     !> The matrix
     type(tMat) :: object
     !> Vectors of its rows: right-hand side and solution
-    type(tVec) :: right, left
+    type(tVec), private :: right, left
     !> All ranks
     type(communicator_t), private :: communicator
     !> True between `define` and `release`
     logical, private :: defined = .false.
+    !> Rows that this rank owns
+    integer, private :: rows = 0
     !> Places of the elements' matrices
     type(element_places_t), private :: places
     !> First code that PETSc returned for an added matrix, 0 for success
@@ -38,6 +41,10 @@ module petsc_matrices
     procedure :: finish_assembly
     !> The diagonal.
     procedure :: diagonal
+    !> Product with a vector.
+    procedure :: multiply
+    !> Solution of the matrix' equations by a solver of PETSc.
+    procedure :: solve
     !> Frees the matrix and its vectors.
     procedure :: release
   end type petsc_matrix_t
@@ -63,6 +70,7 @@ contains
     self%communicator = communicator
     self%defined = .true.
     rows = size(row_start) - 1
+    self%rows = rows
     do row = 1, rows
       associate (first => row_start(row), last => row_start(row + 1) - 1)
         is_inner(first:last) = columns(first:last) >= first_row + row - 1 .and. columns(first:last) < first_row + rows
@@ -148,17 +156,52 @@ contains
     call self%communicator%agree(error)
   end subroutine finish_assembly
 
-  !> The diagonal.
-  subroutine diagonal(self, values, ierr)
+  !> The diagonal, this rank's rows; not a number if PETSc fails. Collective.
+  function diagonal(self) result(values)
     class(petsc_matrix_t), intent(inout) :: self
-    !> Its owned part
-    real(wp), intent(out) :: values(:)
-    !> First code of PETSc that is not zero
-    integer, intent(out) :: ierr
+    !> (owned rows)
+    real(wp), allocatable :: values(:)
+    integer :: ierr(2)
 
-    call MatGetDiagonal(self%object, self%left, ierr)
-    if (ierr == 0) call take(self%left, values, ierr)
-  end subroutine diagonal
+    allocate (values(self%rows))
+    call MatGetDiagonal(self%object, self%left, ierr(1))
+    call take(self%left, values, ierr(2))
+    if (any(ierr /= 0)) values = ieee_value(1.0_wp, ieee_quiet_nan)
+  end function diagonal
+
+  !> Product of the matrix as it was assembled last with a vector. Collective.
+  subroutine multiply(self, vector, product, error)
+    class(petsc_matrix_t), intent(inout) :: self
+    !> Owned part of the vector
+    real(wp), intent(in) :: vector(:)
+    !> Owned part of the product
+    real(wp), intent(out) :: product(:)
+    !> Raised when PETSc fails
+    type(error_t), allocatable, intent(inout) :: error
+    integer :: ierr(3)
+
+    call put(self%right, vector, ierr(1))
+    call MatMult(self%object, self%right, self%left, ierr(2))
+    call take(self%left, product, ierr(3))
+    call report_petsc(ierr, error)
+  end subroutine multiply
+
+  !> Solution of the matrix' equations by a solver of PETSc. Collective.
+  subroutine solve(self, solver, right_hand_side, solution, ierr)
+    class(petsc_matrix_t), intent(inout) :: self
+    !> The solver
+    type(tKSP), intent(in) :: solver
+    !> Owned part of the right-hand side
+    real(wp), intent(in) :: right_hand_side(:)
+    !> Owned part of the solution
+    real(wp), intent(out) :: solution(:)
+    !> PETSc's codes
+    integer, intent(out) :: ierr(3)
+
+    call put(self%right, right_hand_side, ierr(1))
+    call KSPSolve(solver, self%right, self%left, ierr(2))
+    call take(self%left, solution, ierr(3))
+  end subroutine solve
 
   !> Frees the matrix and its vectors.
   subroutine release(self)

@@ -3,6 +3,7 @@ module petsc_session
   use, intrinsic :: iso_c_binding, only: c_int, c_ptr, c_null_ptr, c_char, c_null_char, c_funptr, c_funloc, &
                                          c_associated, c_f_pointer
   use communicators, only: communicator_t
+  use environment_variables, only: set_environment_variable
   use errors, only: error_t, fail, exit_usage, exit_internal
   implicit none
   private
@@ -40,17 +41,6 @@ module petsc_session
     integer(c_int) function quiet_handler() bind(c, name='PetscIgnoreErrorHandler')
       import :: c_int
     end function quiet_handler
-
-    !> Sets a variable of the environment.
-    integer(c_int) function set_environment_variable(name, value, overwrite) bind(c, name='setenv')
-      import :: c_int, c_char
-      !> Name, ended by a null character
-      character(kind=c_char), intent(in) :: name(*)
-      !> Value, ended by a null character
-      character(kind=c_char), intent(in) :: value(*)
-      !> 1 to replace a value that is there
-      integer(c_int), value :: overwrite
-    end function set_environment_variable
 
     !> OpenMP: how deep parallel regions may be nested; 0: none are parallel.
     subroutine limit_parallel_regions(levels) bind(c, name='omp_set_max_active_levels')
@@ -91,7 +81,7 @@ contains
     allocate (character(len=length) :: all_options)
     if (length > 0) call get_environment_variable('PETSC_OPTIONS', all_options)
     all_options = own_options//all_options//' '//trim(options)
-    ierr = set_environment_variable('PETSC_OPTIONS'//c_null_char, all_options//c_null_char, 1_c_int)
+    call set_environment_variable('PETSC_OPTIONS', all_options, overwrite=.true.)
     ierr = push_error_handler(c_funloc(quiet_handler), c_null_ptr)
     if (ierr == 0) ierr = initialize()
     if (ierr == 0) ierr = initialize_fortran()

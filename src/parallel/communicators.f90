@@ -4,6 +4,7 @@ module communicators
   use mpi_f08, only: MPI_COMM_WORLD, MPI_DOUBLE_PRECISION, MPI_INTEGER, MPI_LOGICAL, MPI_CHARACTER, MPI_Init, &
                      MPI_Initialized, MPI_Finalize, MPI_Comm_rank, MPI_Comm_size, MPI_Bcast, MPI_Allgather, &
                      MPI_Allgatherv
+  use environment_variables, only: set_environment_variable
   use errors, only: error_t
   use kinds, only: wp
   use rank_groups, only: rank_group_t
@@ -51,21 +52,8 @@ contains
   !>
   !> A run without mpirun starts no daemon for further processes, which took longer than the rest of MPI's start.
   subroutine set_open_mpi()
-    use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char
-    interface
-      !> C library: sets a variable of the environment.
-      integer(c_int) function setenv(name, value, overwrite) bind(c, name='setenv')
-        import :: c_char, c_int
-        !> Name and value
-        character(kind=c_char), intent(in) :: name(*), value(*)
-        !> 0: a variable that is set stays as it is
-        integer(c_int), value :: overwrite
-      end function setenv
-    end interface
-    integer(c_int) :: status
-
-    status = setenv('OMPI_MCA_sharedfp'//c_null_char, '^sm,lockedfile'//c_null_char, 0_c_int)
-    status = setenv('OMPI_MCA_ess_singleton_isolated'//c_null_char, '1'//c_null_char, 0_c_int)
+    call set_environment_variable('OMPI_MCA_sharedfp', '^sm,lockedfile', overwrite=.false.)
+    call set_environment_variable('OMPI_MCA_ess_singleton_isolated', '1', overwrite=.false.)
   end subroutine set_open_mpi
 
   !> Ends MPI if it was started; no communication is possible afterwards.

@@ -111,6 +111,9 @@ contains
     type(state_t), intent(in) :: old
 
     self%small_state_t = old%small_state_t
+    self%iterations = 0
+    self%force_iterations = 0
+    self%contact_iterations = 0
     self%motion%displacement = old%motion%displacement
     ! Without damage no step changes them.
     if (model%setup%has_ply_damage) self%plies = old%plies

@@ -62,8 +62,6 @@ contains
     associate (new => at%new)
       new%time = self%time
       new%load_factor = self%load_factor
-      new%iterations = 0
-      new%contact_iterations = 0
     end associate
   end subroutine begin
 

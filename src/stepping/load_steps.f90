@@ -9,7 +9,6 @@ module load_steps
   use step_acceptance, only: accept_step
   use step_problems, only: solve_step
   use steppers, only: stepper_t, step_kind_t
-  use stepping_parameters, only: stepping_t
   use text, only: rounded_text
   implicit none
   private
@@ -20,11 +19,9 @@ module load_steps
   contains
     procedure :: start
     procedure :: try
-    procedure :: follows_error
     procedure :: note_state
     procedure :: choose_next
     procedure :: equilibrate
-    procedure :: smallest_step
   end type load_steps_t
 
 contains
@@ -39,7 +36,10 @@ contains
     !> Not set
     type(error_t), allocatable, intent(inout) :: error
 
-    stepper%controller%target = 1.0_wp/stepper%stepping%static_steps
+    associate (stepping => stepper%stepping)
+      stepper%controller%target = 1.0_wp/stepping%static_steps
+      stepper%smallest_step = stepper%controller%target/stepping%controls%load_step_parts
+    end associate
   end subroutine start
 
   !> Tries one load step.
@@ -97,16 +97,6 @@ contains
     end associate
   end subroutine try_dissipation
 
-  !> Without time there is no error of a step.
-  pure logical function follows_error(self, stepping)
-    !> The kind
-    class(load_steps_t), intent(in) :: self
-    !> How steps are taken
-    type(stepping_t), intent(in) :: stepping
-
-    follows_error = .false.
-  end function follows_error
-
   !> Finds how near fronts are to growth; under load steps they do not grow.
   subroutine note_state(self, stepper, model)
     !> The kind
@@ -161,14 +151,4 @@ contains
       call accept_step(stepper, model, 0.0_wp)
     end do
   end subroutine equilibrate
-
-  !> Smallest part of a load step.
-  pure real(wp) function smallest_step(self, stepping)
-    !> The kind
-    class(load_steps_t), intent(in) :: self
-    !> How steps are taken
-    type(stepping_t), intent(in) :: stepping
-
-    smallest_step = 1.0_wp/(stepping%controls%load_step_parts*stepping%static_steps)
-  end function smallest_step
 end module load_steps

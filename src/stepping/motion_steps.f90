@@ -11,7 +11,7 @@ module motion_steps
   use step_limits, only: impactor_limit, growth_limit, has_gear
   use step_problems, only: solve_step
   use steppers, only: stepper_t, step_kind_t
-  use stepping_parameters, only: stepping_t, is_error_controlled
+  use stepping_parameters, only: is_error_controlled
   implicit none
   private
   public :: motion_steps_t
@@ -21,11 +21,8 @@ module motion_steps
   contains
     procedure :: start
     procedure :: try
-    procedure :: follows_error
     procedure :: note_state
     procedure :: choose_next
-    procedure :: equilibrate
-    procedure :: smallest_step
   end type motion_steps_t
 
 contains
@@ -43,7 +40,8 @@ contains
     associate (time => stepper%stepping%time)
       stepper%integrator = plate_integrator(time)
       stepper%controller%target = time%step
-      if (self%follows_error(stepper%stepping)) call stepper%step_error%start(model, time%step)
+      stepper%follows_error = is_error_controlled(stepper%stepping%adapt)
+      if (stepper%follows_error) call stepper%step_error%start(model, time%step)
       if (allocated(model%pressure) .or. size(model%lines) > 0) &
         call find_acceleration(model, stepper%operator, stepper%integrator%mass_factor(time%step), stepper%now, error)
     end associate
@@ -78,7 +76,7 @@ contains
         call grow_in_step(problem, model, stepping%equilibrium, stepper%operator, now, stepper%trial, converged, error)
       stepper%damage_lag = stepper%trial%plies%damage_lag
       if (converged .and. stepper%damage_lag > 1) &
-        converged = .not. step > self%smallest_step(stepping)*(1 + 1.0e-9_wp)
+        converged = .not. step > stepper%smallest_step*(1 + 1.0e-9_wp)
     end associate
   end subroutine try
 
@@ -108,16 +106,6 @@ contains
       stepper%solves_at_start = operator%solves
     end associate
   end subroutine renew_if_due
-
-  !> True if the deck has steps follow the error of each.
-  pure logical function follows_error(self, stepping)
-    !> The kind
-    class(motion_steps_t), intent(in) :: self
-    !> How steps are taken
-    type(stepping_t), intent(in) :: stepping
-
-    follows_error = is_error_controlled(stepping%adapt)
-  end function follows_error
 
   !> Notes where an impactor that moves back has left the faces glued.
   subroutine note_state(self, stepper, model)
@@ -152,7 +140,7 @@ contains
       lag_iterations = stepper%operator%solves - stepper%solves_at_start
       call controller%accept(stepping, step, now%iterations, lag_iterations, change)
       if (model%setup%has_crack_bands()) call controller%limit_by_ply_damage(stepping, stepper%damage_lag)
-      if (self%follows_error(stepping)) &
+      if (stepper%follows_error) &
         call controller%adapt_to_error(stepping, step, stepper%error, stepping%time%end - now%time, &
           .not. model%setup%has_impactor .or. stepper%step_error%impact_is_over(stepping%expected, now), &
                                        has_gear(model), now%has_failures())
@@ -161,25 +149,4 @@ contains
       if (grows_by_steps(model)) call controller%limit_by_fronts(stepping, now%interfaces%growth_ratio, extended)
     end associate
   end subroutine choose_next
-
-  !> Failures take effect in the next step.
-  subroutine equilibrate(self, stepper, model, error)
-    !> The kind
-    class(motion_steps_t), intent(in) :: self
-    !> The stepper, the step accepted
-    class(stepper_t), intent(inout) :: stepper
-    type(model_t), intent(in) :: model
-    !> Not set
-    type(error_t), allocatable, intent(inout) :: error
-  end subroutine equilibrate
-
-  !> Smallest step of the deck.
-  pure real(wp) function smallest_step(self, stepping)
-    !> The kind
-    class(motion_steps_t), intent(in) :: self
-    !> How steps are taken
-    type(stepping_t), intent(in) :: stepping
-
-    smallest_step = stepping%time%step_min
-  end function smallest_step
 end module motion_steps

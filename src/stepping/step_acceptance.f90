@@ -33,7 +33,7 @@ contains
     if (self%trial%largest_stress > 0) change = abs(self%trial%stress - self%now%stress)/self%trial%largest_stress
     call note_damage(self, model)
     extended = self%trial%ledger%delamination > self%now%ledger%delamination
-    if (self%kind%follows_error(self%stepping)) then
+    if (self%follows_error) then
       call self%step_error%note(model, self%now, self%trial)
       if (extended .or. self%trial%plies%softened) call self%step_error%reset()
     end if
@@ -95,7 +95,7 @@ contains
     call self%controller%reject(step/self%step_scale())
     self%operator%ready = .false.
     if (self%stepping%dissipation > 0) self%now%path%by_dissipation = self%now%path%dissipated > 0
-    if (step <= self%smallest_step()*self%step_scale()*(1 + 1.0e-9_wp)) &
+    if (step <= self%smallest_step*self%step_scale()*(1 + 1.0e-9_wp)) &
       call fail(error, exit_convergence, 'No equilibrium from '// &
                 model%setup%progress_name()//' '//rounded_text(self%now%time)// &
                 ' on with the smallest step, '//rounded_text(step)//'.')

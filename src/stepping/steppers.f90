@@ -21,16 +21,12 @@ module steppers
     procedure(start_steps), deferred :: start
     !> Tries a step.
     procedure(try_one_step), deferred :: try
-    !> True if the length of steps follows the error of each.
-    procedure(follows_the_error), deferred :: follows_error
     !> Completes the state tried before it is accepted.
     procedure(note_state_tried), deferred :: note_state
     !> Chooses the length of the next step.
     procedure(choose_length), deferred :: choose_next
-    !> Completes the state accepted.
-    procedure(equilibrate_state), deferred :: equilibrate
-    !> Smallest step worth trying.
-    procedure(smallest), deferred :: smallest_step
+    !> Completes the state accepted, where failures have changed its equilibrium.
+    procedure :: equilibrate
   end type step_kind_t
 
   !> All that evolves during a run, and how steps are taken. It has many components because each part of the control of
@@ -46,6 +42,10 @@ module steppers
     type(step_error_t) :: step_error
     !> Last error relative to its tolerance, and the lag of damage in the last step relative to its limit
     real(wp) :: error = 0, damage_lag = 0
+    !> True: the length of steps follows the error of each
+    logical :: follows_error = .false.
+    !> Smallest step worth trying
+    real(wp) :: smallest_step = 0
     !> True: the error of the last step exceeds the tolerance at the shortest step
     logical :: errs = .false.
     !> Integrator of the plate
@@ -65,8 +65,6 @@ module steppers
     !> Central differences; unallocated: steps are implicit
     type(central_difference_t), allocatable :: explicit
   contains
-    !> Smallest step worth trying.
-    procedure :: smallest_step
     !> Energy to be dissipated per time.
     procedure :: energy_rate
     !> Time of a step by dissipation over that of one by load.
@@ -104,15 +102,6 @@ module steppers
       type(error_t), allocatable, intent(out) :: error
     end subroutine try_one_step
 
-    !> True if the length of steps follows the error of each.
-    pure logical function follows_the_error(self, stepping)
-      import :: step_kind_t, stepping_t
-      !> The kind
-      class(step_kind_t), intent(in) :: self
-      !> How steps are taken
-      type(stepping_t), intent(in) :: stepping
-    end function follows_the_error
-
     !> Completes the state tried before it is accepted. Collective.
     subroutine note_state_tried(self, stepper, model)
       import :: step_kind_t, stepper_t, model_t
@@ -138,39 +127,20 @@ module steppers
       !> True: delaminations have grown
       logical, intent(in) :: extended
     end subroutine choose_length
-
-    !> Completes the state accepted, where failures have changed its equilibrium. Collective.
-    subroutine equilibrate_state(self, stepper, model, error)
-      import :: step_kind_t, stepper_t, model_t, error_t
-      !> The kind
-      class(step_kind_t), intent(in) :: self
-      !> The stepper, the step accepted
-      class(stepper_t), intent(inout) :: stepper
-      type(model_t), intent(in) :: model
-      !> Set if there is no equilibrium
-      type(error_t), allocatable, intent(inout) :: error
-    end subroutine equilibrate_state
-
-    !> Smallest step worth trying.
-    pure real(wp) function smallest(self, stepping)
-      import :: step_kind_t, stepping_t, wp
-      !> The kind
-      class(step_kind_t), intent(in) :: self
-      !> How steps are taken
-      type(stepping_t), intent(in) :: stepping
-    end function smallest
   end interface
 
 contains
 
-  !> Smallest step worth trying.
-  pure real(wp) function smallest_step(self) result(step)
-    !> The stepper
-    class(stepper_t), intent(in) :: self
-
-    step = self%stepping%time%step_min
-    if (allocated(self%kind)) step = self%kind%smallest_step(self%stepping)
-  end function smallest_step
+  !> Steps are accepted in equilibrium.
+  subroutine equilibrate(self, stepper, model, error)
+    !> The kind
+    class(step_kind_t), intent(in) :: self
+    !> The stepper, the step accepted
+    class(stepper_t), intent(inout) :: stepper
+    type(model_t), intent(in) :: model
+    !> Set if there is no equilibrium
+    type(error_t), allocatable, intent(inout) :: error
+  end subroutine equilibrate
 
   !> Energy that is to be dissipated per time from now on, so that at the end it is what the deck asks for.
   pure real(wp) function energy_rate(self)

@@ -11,7 +11,7 @@ module time_stepping
   use motion_steps, only: motion_steps_t
   use states, only: new_state
   use step_acceptance, only: accept_step, reject_step, assess_error
-  use steppers, only: stepper_t, step_kind_t
+  use steppers, only: stepper_t
   use stepping_parameters, only: stepping_t, is_explicit
   implicit none
   private
@@ -47,6 +47,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     self%stepping = stepping
+    self%smallest_step = stepping%time%step_min
     allocate (self%now, source=new_state(model))
     if (is_explicit(stepping)) then
       allocate (self%explicit)
@@ -57,26 +58,17 @@ contains
       return
     end if
     allocate (self%trial, source=self%now)
-    call choose_kind(model, self%kind)
+    if (model%setup%is_static()) then
+      allocate (load_steps_t :: self%kind)
+    else
+      allocate (motion_steps_t :: self%kind)
+    end if
     if (self%stepping%dissipation > 0) allocate (self%now%path%change, source=self%now%motion%displacement)
     call self%operator%create(model, linear_solver%factorization, error)
     self%unknowns = self%operator%numbering%total
     if (.not. allocated(error)) call find_initial_equilibrium(model, self%operator, self%now, error)
     if (.not. allocated(error)) call self%kind%start(self, model, error)
   end subroutine start
-
-  !> Chooses steps in time or by load.
-  subroutine choose_kind(model, kind)
-    type(model_t), intent(in) :: model
-    !> The kind
-    class(step_kind_t), allocatable, intent(out) :: kind
-
-    if (model%setup%is_static()) then
-      allocate (load_steps_t :: kind)
-    else
-      allocate (motion_steps_t :: kind)
-    end if
-  end subroutine choose_kind
 
   !> Takes one step, at most to the next event; the step is tried again with half its length until
   !> equilibrium is reached or the smallest step of the deck has failed.
@@ -89,32 +81,29 @@ contains
     !> Set if the smallest step failed
     type(error_t), allocatable, intent(out) :: error
     real(wp) :: step, shortest
-    logical :: follows
 
     if (allocated(self%explicit)) then
       call advance_explicit(self%explicit, model, event, self%now)
       self%controller%last = self%explicit%steps%now
       return
     end if
-    follows = self%kind%follows_error(self%stepping)
-    if (follows .and. self%now%step == 0) call self%controller%begin(self%stepping, event)
-    call find_step(self, model, event, follows, step, shortest, error)
+    if (self%follows_error .and. self%now%step == 0) call self%controller%begin(self%stepping, event)
+    call find_step(self, model, event, step, shortest, error)
     if (allocated(error)) return
-    if (follows) self%errs = self%error > self%stepping%controls%shortening_error .and. step <= shortest*(1 + 1.0e-9_wp)
+    if (self%follows_error) &
+      self%errs = self%error > self%stepping%controls%shortening_error .and. step <= shortest*(1 + 1.0e-9_wp)
     if (abs(self%trial%time - event) <= 1.0e-9_wp*step) self%trial%time = event
     call accept_step(self, model, step)
     call self%kind%equilibrate(self, model, error)
   end subroutine advance
 
   !> Tries steps, each shorter than the one before, until one has converged with an error within the tolerance.
-  subroutine find_step(self, model, event, follows, step, shortest, error)
+  subroutine find_step(self, model, event, step, shortest, error)
     !> The time stepper
     class(time_stepper_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Time, or load factor, not to be passed
     real(wp), intent(in) :: event
-    !> True: the length follows the error
-    logical, intent(in) :: follows
     !> Step found
     real(wp), intent(out) :: step
     !> Shortest step that the error may ask for, where the length follows it
@@ -129,7 +118,7 @@ contains
       if (allocated(error)) return
       if (converged) then
         accurate = .true.
-        if (follows) call assess_error(self, model, step, shortest, accurate)
+        if (self%follows_error) call assess_error(self, model, step, shortest, accurate)
         if (accurate) return
       else
         call reject_step(self, model, step, error)

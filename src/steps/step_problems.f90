@@ -170,7 +170,9 @@ contains
         .and. at%norm > equilibrium%controls%element_reduction*at%before
       call correct(problem, at, search, error)
       if (allocated(error)) then
-        call forgive(problem, model, error)
+        ! Divergence, or an operator that is not positive definite: a shorter step may succeed.
+        if ((problem%retries_shorter .or. model%setup%has_impactor) .and. error%code == exit_convergence) &
+          deallocate (error)
         return
       end if
       at%before = at%norm
@@ -181,7 +183,8 @@ contains
     if (converged) call problem%finish(at)
   end subroutine solve_step
 
-  !> Updates the multipliers of contact at equilibrium; the step has converged once they have.
+  !> Updates the multipliers of the augmented Lagrangian at equilibrium, by the pressures found; the step has converged
+  !> once they have.
   subroutine update_contact(problem, at, converged)
     !> The kind of step
     class(step_problem_t), intent(in) :: problem
@@ -194,22 +197,16 @@ contains
     if (converged) converged = problem%may_stop(at)
     at%pressures_new = .false.
     if (.not. converged) return
-    call update_multipliers(at, converged)
+    call at%model%profile%enter('contact and ties')
+    associate (equilibrium => at%equilibrium, new => at%new)
+      call new%interfaces%update_contact(at%model, new%motion%displacement, &
+                                         equilibrium%controls%contact_share*equilibrium%tolerance, &
+                                         new%contact_iterations, converged)
+    end associate
+    call at%model%profile%leave()
     at%pressures_new = .not. converged
     if (at%pressures_new) at%before = 0
   end subroutine update_contact
-
-  !> Drops the error of a solver where a shorter step may succeed: divergence, or an operator that is not positive
-  !> definite.
-  pure subroutine forgive(problem, model, error)
-    !> The kind of step
-    class(step_problem_t), intent(in) :: problem
-    type(model_t), intent(in) :: model
-    !> The error
-    type(error_t), allocatable, intent(inout) :: error
-
-    if ((problem%retries_shorter .or. model%setup%has_impactor) .and. error%code == exit_convergence) deallocate (error)
-  end subroutine forgive
 
   !> Accepts a fraction of the correction, or tries the next one.
   subroutine try_fraction(problem, at, search, ends)
@@ -244,22 +241,6 @@ contains
     call at%model%profile%leave()
     call at%operator%timers%stop('element forces')
   end subroutine find_forces
-
-  !> Updates the multipliers of the augmented Lagrangian by the pressures found.
-  subroutine update_multipliers(at, converged)
-    !> The iteration
-    type(newton_iteration_t), intent(inout) :: at
-    !> True if they have converged
-    logical, intent(out) :: converged
-
-    call at%model%profile%enter('contact and ties')
-    associate (equilibrium => at%equilibrium, new => at%new)
-      call new%interfaces%update_contact(at%model, new%motion%displacement, &
-                                         equilibrium%controls%contact_share*equilibrium%tolerance, &
-                                         new%contact_iterations, converged)
-    end associate
-    call at%model%profile%leave()
-  end subroutine update_multipliers
 
   !> Finds a correction, and starts the line search along it.
   subroutine correct(problem, at, search, error)

@@ -11,7 +11,6 @@ module krylov_corrections
   use errors, only: error_t
   use kinds, only: wp
   use krylov_solvers, only: krylov_solver_t
-  use linear_maps, only: linear_map_t
   use models, only: model_t
   use tangent_operators, only: tangent_operator_t
   use tangent_products, only: tangent_product_t
@@ -23,29 +22,12 @@ module krylov_corrections
   !> its error was 1.5 times what there was to correct, and no step however short converged (input/verify/dcb_ubm.nml).
   real(wp), parameter :: left_over = 1.0e-6_wp
 
-  !> Solution by the factored operator, with the rank-one term of the impactor's force (Sherman and Morrison).
-  type, extends(linear_map_t) :: factored_tangent_t
-    !> The factored operator
-    type(tangent_operator_t), pointer :: operator => null()
-    !> The tangent, which knows the slope of the force
-    type(tangent_product_t), pointer :: tangent => null()
-  contains
-    !> Motion under forces.
-    procedure :: multiply
-  end type factored_tangent_t
-
 contains
 
   !> Correction of the displacement for a residual, ghosts included. Collective.
-  subroutine find_krylov_correction(operator, model, tangent, diagonal, residual, tolerance, correction, error, &
-                                    has_negative_curvature, converged)
-    !> The factored operator
-    type(tangent_operator_t), target, intent(inout) :: operator
-    type(model_t), intent(in) :: model
+  subroutine find_krylov_correction(tangent, residual, tolerance, correction, error, has_negative_curvature, converged)
     !> The tangent
-    type(tangent_product_t), target, intent(inout) :: tangent
-    !> Its diagonal, (5, points); unallocated: the tangent is the factored operator
-    real(wp), allocatable, intent(in) :: diagonal(:, :)
+    type(tangent_product_t), intent(inout) :: tangent
     !> Residual at the owned points, (5, points)
     real(wp), intent(in) :: residual(:, :)
     !> Norm of the residual at the end over that at the start
@@ -55,44 +37,31 @@ contains
     !> Set if a solve fails
     type(error_t), allocatable, intent(inout) :: error
     !> True: the tangent has negative curvature in a direction met, and the correction is what came before
-    logical, intent(out), optional :: has_negative_curvature
-    !> False: the tolerance was not reached
-    logical, intent(out), optional :: converged
-    type(factored_tangent_t) :: factored
-    real(wp) :: rows(operator%numbering%rows), solution(operator%numbering%rows)
-    logical :: reached, indefinite
+    logical, intent(out) :: has_negative_curvature
+    !> False: neither the tolerance was reached nor negative curvature met
+    logical, intent(out) :: converged
+    real(wp), allocatable :: rows(:), solution(:)
 
-    call operator%numbering%gather(residual, rows)
-    factored%operator => operator
-    factored%tangent => tangent
-    reached = .true.
-    indefinite = .false.
-    if (tangent%is_factored() .and. .not. tangent%force_slope > 0) then
-      call factored%multiply(rows, solution, error)
-    else
-      call solve_tangent(operator, model, tangent, factored, diagonal, rows, tolerance, solution, reached, indefinite, &
-                         error)
-    end if
-    if (present(has_negative_curvature)) has_negative_curvature = indefinite
-    if (present(converged)) converged = reached
-    if (allocated(error)) return
-    call operator%numbering%scatter(solution, correction)
-    call model%halo%update(correction)
+    associate (numbering => tangent%operator%numbering)
+      allocate (rows(numbering%rows), solution(numbering%rows))
+      call numbering%gather(residual, rows)
+      has_negative_curvature = .false.
+      converged = .true.
+      if (tangent%is_factored() .and. .not. tangent%force_slope > 0) then
+        call tangent%precondition(rows, solution, error)
+      else
+        call solve_tangent(tangent, rows, tolerance, solution, converged, has_negative_curvature, error)
+      end if
+      if (allocated(error)) return
+      call numbering%scatter(solution, correction)
+      call tangent%model%halo%update(correction)
+    end associate
   end subroutine find_krylov_correction
 
   !> Solves with the tangent, by conjugate gradients where it may be indefinite.
-  subroutine solve_tangent(operator, model, tangent, factored, diagonal, rows, tolerance, solution, reached, &
-                           indefinite, error)
-    !> The factored operator
-    type(tangent_operator_t), target, intent(inout) :: operator
-    type(model_t), intent(in) :: model
+  subroutine solve_tangent(tangent, rows, tolerance, solution, converged, indefinite, error)
     !> The tangent
     type(tangent_product_t), intent(inout) :: tangent
-    !> The preconditioner
-    type(factored_tangent_t), intent(inout) :: factored
-    !> Diagonal of the tangent, (5, points). Its inverse weights the forces, so that forces and moments, plate and stiff
-    !> contacts are comparable
-    real(wp), intent(in) :: diagonal(:, :)
     !> Right-hand side
     real(wp), intent(in) :: rows(:)
     !> Norm of the residual at the end over that at the start
@@ -100,7 +69,7 @@ contains
     !> Solution
     real(wp), intent(out) :: solution(:)
     !> False: neither the tolerance was reached nor negative curvature met
-    logical, intent(out) :: reached
+    logical, intent(out) :: converged
     !> True: negative curvature was met
     logical, intent(out) :: indefinite
     !> Set if a solve fails
@@ -109,21 +78,22 @@ contains
     real(wp) :: row_factors(size(rows))
 
     if (tangent%softens) then
-      krylov => operator%conjugate_gradients
+      krylov => tangent%operator%conjugate_gradients
       row_factors = 1
     else
-      krylov => operator%minimal_residuals
-      row_factors = 1/sqrt(abs(operator%rows_of(diagonal)))
+      krylov => tangent%operator%minimal_residuals
+      ! The inverse diagonal weights the forces, so that forces and moments, plate and stiff contacts are comparable.
+      row_factors = 1/sqrt(abs(tangent%operator%rows_of(tangent%diagonal)))
     end if
-    reached = .false.
+    converged = .false.
     indefinite = .false.
-    if (.not. krylov%defined) &
-      call krylov%define(model%communicator, size(rows), trim(merge('cg    ', 'fgmres', tangent%softens)), error)
+    if (.not. krylov%defined) call krylov%define(tangent%model%communicator, size(rows), &
+                                                 trim(merge('cg    ', 'fgmres', tangent%softens)), error)
     if (.not. allocated(error)) &
-      call krylov%solve(tangent, factored, row_factors, rows, tolerance, solution, reached, indefinite, error)
-    reached = reached .or. indefinite
+      call krylov%solve(tangent, row_factors, rows, tolerance, solution, converged, indefinite, error)
+    converged = converged .or. indefinite
     ! Negative curvature at once: the factored operator's solution descends.
-    if (indefinite .and. krylov%iterations <= 1) call factored%multiply(rows, solution, error)
+    if (indefinite .and. krylov%iterations <= 1) call tangent%precondition(rows, solution, error)
   end subroutine solve_tangent
 
   !> Solution under forces, ghosts included, with the tangent of a load step, whose symmetric part has just been
@@ -140,36 +110,17 @@ contains
     real(wp), intent(in) :: forces(:, :)
     !> Solution, (5, points)
     real(wp), intent(inout) :: solution(:, :)
-    !> Set if a solve fails
+    !> Set if the solve fails
     type(error_t), allocatable, intent(inout) :: error
     type(tangent_product_t) :: tangent
-    real(wp), allocatable :: diagonal(:, :)
+    logical :: has_negative_curvature, converged
 
     tangent%model => model
     tangent%operator => operator
     tangent%displacement => operator%displacement
     if (allocated(cohesive%tangents)) call tangent%set_skew_part(cohesive%tangents)
-    diagonal = operator%diagonal
-    diagonal(:3, :) = diagonal(:3, :) + abs(operator%added)
-    call find_krylov_correction(operator, model, tangent, diagonal, forces, left_over, solution, error)
+    tangent%diagonal = operator%diagonal
+    tangent%diagonal(:3, :) = tangent%diagonal(:3, :) + abs(operator%added)
+    call find_krylov_correction(tangent, forces, left_over, solution, error, has_negative_curvature, converged)
   end subroutine solve_load_tangent
-
-  !> Motion under forces.
-  subroutine multiply(self, vector, product, error)
-    !> The factored operator and the slope of the force
-    class(factored_tangent_t), intent(inout) :: self
-    !> Forces on this rank's rows
-    real(wp), intent(in) :: vector(:)
-    !> Their motion
-    real(wp), intent(out) :: product(:)
-    !> Set if the solve fails
-    type(error_t), allocatable, intent(inout) :: error
-
-    associate (operator => self%operator, slope => self%tangent%force_slope)
-      call operator%solve_rows(vector, product, error)
-      operator%solves = operator%solves + 1
-      if (allocated(error) .or. .not. slope > 0) return
-      product = product - slope*self%tangent%mean(product)/(1 + slope*operator%compliance)*operator%response_rows
-    end associate
-  end subroutine multiply
 end module krylov_corrections

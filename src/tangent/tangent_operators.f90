@@ -119,13 +119,10 @@ contains
 
     self%displacement = displacement
     self%stiffness = stiffness
-    self%deflection = model%deflection(displacement)
     self%stiffness_factor = stiffness_factor
     self%mass_factor = mass_factor
     call self%timers%start('assembly')
-    call self%solver%matrix%clear(size(model%distribution%connectivity, 2))
-    call assemble_elements(model, stiffness, self%numbering, displacement, stiffness_factor, mass_factor, self%solver, &
-                           self%diagonal)
+    call assemble(self, model)
     if (allocated(interfaces%cohesive%tangents)) &
       call assemble_tangents(model, self%numbering, interfaces%cohesive%tangents, self%solver)
     call interfaces%added_stiffness(model, self%diagonal, stiffness_factor, self%added)
@@ -167,31 +164,11 @@ contains
     allocate (force, mold=self%response)
     force = 0
     force(3, :) = model%contact%weights/model%mesh%multiplicity
-    call solve_field(self, model, force, self%response_rows, self%response, error)
-    if (.not. allocated(error)) self%compliance = model%patch_mean(self%response)
-  end subroutine find_response
-
-  !> Motion of all points under forces, and its rows of this rank.
-  subroutine solve_field(self, model, force, rows, motion, error)
-    !> The operator
-    class(tangent_operator_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
-    !> Forces at the owned points, (5, points)
-    real(wp), intent(in) :: force(:, :)
-    !> The motion's rows
-    real(wp), intent(out) :: rows(:)
-    !> The motion, ghosts included, (5, points)
-    real(wp), intent(inout) :: motion(:, :)
-    !> Set if the solution is not finite
-    type(error_t), allocatable, intent(inout) :: error
-    real(wp) :: forces(size(rows))
-
-    call self%numbering%gather(force, forces)
-    call self%solve_rows(forces, rows, error)
+    call self%correct(model, force, self%response, error)
     if (allocated(error)) return
-    call self%numbering%scatter(rows, motion)
-    call model%halo%update(motion)
-  end subroutine solve_field
+    self%response_rows = self%rows_of(self%response)
+    self%compliance = model%patch_mean(self%response)
+  end subroutine find_response
 
   !> Rows of this rank under forces, by the factor as it is.
   subroutine solve_rows(self, forces, motion, error)
@@ -255,11 +232,14 @@ contains
     !> Correction, (5, points)
     real(wp), intent(inout) :: correction(:, :)
     !> Set if the solution is not finite
-    type(error_t), allocatable, intent(out) :: error
-    real(wp) :: rows(self%numbering%rows)
+    type(error_t), allocatable, intent(inout) :: error
+    real(wp) :: forces(self%numbering%rows), rows(self%numbering%rows)
 
-    call solve_field(self, model, residual, rows, correction, error)
-    self%solves = self%solves + 1
+    call self%numbering%gather(residual, forces)
+    call self%solve_rows(forces, rows, error)
+    if (allocated(error)) return
+    call self%numbering%scatter(rows, correction)
+    call model%halo%update(correction)
   end subroutine correct
 
   !> Saves the data that the factor was computed from, or loads them and factorizes: the factor affects the iterations.
@@ -281,26 +261,26 @@ contains
         call archive%field('operator/added', share%points(:share%owned), model%mesh%points(), self%added)
     end associate
     if (model%setup%has_ply_damage) call visit_stiffness(archive, 'operator/stiffness', model, self%stiffness)
-    if (archive%loading .and. self%ready) call refactorize(self, model, error)
+    if (archive%loading .and. self%ready) then
+      call model%halo%update(self%displacement)
+      call assemble(self, model)
+      call self%factorize(model, error)
+    end if
     call archive%item('operator/factorizations', self%factorizations)
     call archive%item('operator/solves', self%solves)
   end subroutine visit
 
-  !> Factorizes from the data loaded.
-  subroutine refactorize(self, model, error)
+  !> Assembles the elements at the displacement at which the tangent is taken.
+  subroutine assemble(self, model)
     !> The operator
     class(tangent_operator_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> Set if the factorization fails
-    type(error_t), allocatable, intent(inout) :: error
 
-    call model%halo%update(self%displacement)
     self%deflection = model%deflection(self%displacement)
     call self%solver%matrix%clear(size(model%distribution%connectivity, 2))
     call assemble_elements(model, self%stiffness, self%numbering, self%displacement, self%stiffness_factor, &
                            self%mass_factor, self%solver, self%diagonal)
-    call self%factorize(model, error)
-  end subroutine refactorize
+  end subroutine assemble
 
   !> Frees the factors.
   subroutine release(self)

@@ -1,9 +1,10 @@
 !> Product of the current tangent with a vector, without its matrix: by the directional derivative of the element
-!> forces, or by adding the change of the tangent to the product with the matrix that was factored.
+!> forces, or by adding the change of the tangent to the product with the matrix that was factored. The factored
+!> operator is the preconditioner.
 module tangent_products
   use kinds, only: wp
   use errors, only: error_t
-  use linear_maps, only: linear_map_t
+  use krylov_solvers, only: linear_system_t
   use models, only: model_t
   use tangent_forces, only: add_tangent_force
   use tangent_operators, only: tangent_operator_t
@@ -12,7 +13,7 @@ module tangent_products
   public :: tangent_product_t
 
   !> The tangent.
-  type, extends(linear_map_t) :: tangent_product_t
+  type, extends(linear_system_t) :: tangent_product_t
     !> Mesh, numbering and interfaces of the plate
     type(model_t), pointer :: model => null()
     !> The factored operator, with its equations
@@ -23,13 +24,16 @@ module tangent_products
     logical :: elements = .false.
     !> Displacement at which element tangents are taken, ghosts up to date, (5, points)
     real(wp), pointer, contiguous :: displacement(:, :) => null()
-    !> Section stiffness of the elements, (lanes, 21, batches), and resultants of stress-free strains
+    !> Section stiffness of the elements, (lanes, 21, batches), and resultants of stress-free strains,
+    !> if there are any
     real(wp), pointer, contiguous :: stiffness(:, :, :) => null(), free(:, :, :) => null()
     !> Stiffness of the jumps of each point: all of it with element tangents, else its increase over that in the
     !> factored operator, (3, 3, points); unallocated: none
     real(wp), allocatable :: jumps(:, :, :)
     !> True: cohesive points soften, so it may be indefinite
     logical :: softens = .false.
+    !> Diagonal, (5, points); unallocated: the tangent is the factored operator
+    real(wp), allocatable :: diagonal(:, :)
     !> Decrease of the impactor's force per mean deflection of the patch
     real(wp) :: force_slope = 0
     !> Right-hand side of a unit force
@@ -37,6 +41,8 @@ module tangent_products
   contains
     !> The tangent times a vector.
     procedure :: multiply
+    !> Solution by the factored operator.
+    procedure :: precondition
     !> True if it equals the factored operator.
     procedure :: is_factored
     !> Mean deflection of the patch.
@@ -73,7 +79,7 @@ contains
     real(wp) :: factor
 
     product = 0
-    if (.not. self%elements) call self%operator%solver%multiply(vector, product, error)
+    if (.not. self%elements) call self%operator%solver%matrix%multiply(vector, product, error)
     if (.not. self%is_factored()) then
       allocate (field, force, inertia, mold=self%displacement)
       field = 0
@@ -93,6 +99,25 @@ contains
     end if
     if (self%force_slope > 0) product = product + self%force_slope*self%mean(vector)*self%pattern
   end subroutine multiply
+
+  !> Solution by the factored operator, with the rank-one term of the impactor's force (Sherman and Morrison). Collective.
+  subroutine precondition(self, vector, product, error)
+    !> The tangent
+    class(tangent_product_t), intent(inout) :: self
+    !> Forces on this rank's rows
+    real(wp), intent(in) :: vector(:)
+    !> Their motion
+    real(wp), intent(out) :: product(:)
+    !> Set if the solve fails
+    type(error_t), allocatable, intent(inout) :: error
+
+    associate (operator => self%operator, slope => self%force_slope)
+      call operator%solve_rows(vector, product, error)
+      operator%solves = operator%solves + 1
+      if (allocated(error) .or. .not. slope > 0) return
+      product = product - slope*self%mean(product)/(1 + slope*operator%compliance)*operator%response_rows
+    end associate
+  end subroutine precondition
 
   !> Mean deflection of the patch in a motion. Collective.
   real(wp) function mean(self, motion)
@@ -188,13 +213,8 @@ contains
 
     associate (model => self%model)
       allocate (columns(5, max(size(force, 2), model%borders%columns)), source=0.0_wp)
-      if (associated(self%free)) then
-        call add_tangent_force(model%elements, self%stiffness, model%setup%kinematics, &
-                               model%motion_of(self%displacement), model%motion_of(motion), columns, self%free)
-      else
-        call add_tangent_force(model%elements, self%stiffness, model%setup%kinematics, &
-                               model%motion_of(self%displacement), model%motion_of(motion), columns)
-      end if
+      call add_tangent_force(model%elements, self%stiffness, model%setup%kinematics, &
+                             model%motion_of(self%displacement), model%motion_of(motion), columns, self%free)
       call model%borders%add(columns)
       force = columns(:, :size(force, 2))
       if (model%map%layered) call model%map%to_unknowns(force)

@@ -1,21 +1,29 @@
-!> The linear solver in the deck: rows of its table, filling and checks. The other keys of the group &solver are in
-!> `equilibrium_deck`.
-module linear_solver_deck
+!> Convergence of equilibrium and linear algebra in the deck: rows of its table, filling and checks.
+module solver_deck
   use deck_choices, only: code_of
   use deck_problems, only: problems_t
   use deck_remarks, only: report
   use deck_settings, only: settings_t
-  use deck_vocabulary, only: key_row_length
+  use deck_vocabulary, only: group_row_length, key_row_length
   use linear_solver_parameters, only: linear_solver_parameters_t, factorization_mumps, factorization_cholmod, &
                                       factorization_automatic
+  use stepping_parameters, only: equilibrium_t
   use text, only: line_t, words_of
   implicit none
   private
-  public :: fill_linear_solver, check_petsc_options
+  public :: fill_equilibrium, fill_linear_solver, check_petsc_options
 
-  character(len=*), parameter :: group = 'solver'
+  !> Name that checks across groups use.
+  character(len=*), parameter, public :: solver_group = 'solver'
+  !> Row of the group.
+  character(len=group_row_length), parameter, public :: solver_group_row = &
+    'solver | settings | Convergence of equilibrium and linear algebra.'
   !> Rows of the keys.
-  character(len=key_row_length), parameter, public :: linear_solver_rows(*) = [character(len=key_row_length) :: &
+  character(len=key_row_length), parameter, public :: solver_rows(*) = [character(len=key_row_length) :: &
+    'solver | tolerance | real | 1 | - | 1e-6 | >= 1e-13, <= 0.01 | &
+      &Residual of equilibrium accepted, relative to the reference force.', &
+    'solver | max_iterations | integer | 1 | - | 30 | >= 1, <= 10000 | &
+      &Iterations before a step is tried again with half its length.', &
     'solver | factorization | choice | 1 | - | ''automatic'' | automatic mumps cholmod | &
       &Direct solver; automatic takes cholmod where no load step buckles or softens and ranks share no large model.', &
     'solver | petsc_options | text | 1 | - | '''' | any text | &
@@ -29,6 +37,17 @@ module linear_solver_deck
 
 contains
 
+  !> Convergence of equilibrium.
+  subroutine fill_equilibrium(settings, equilibrium)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+    !> Receives them
+    type(equilibrium_t), intent(inout) :: equilibrium
+
+    equilibrium%tolerance = settings%real_of(solver_group, 'tolerance')
+    equilibrium%max_iterations = settings%integer_of(solver_group, 'max_iterations')
+  end subroutine fill_equilibrium
+
   !> The linear solver.
   subroutine fill_linear_solver(settings, solver)
     !> Keys in effect
@@ -36,9 +55,9 @@ contains
     !> Receives them
     type(linear_solver_parameters_t), intent(inout) :: solver
 
-    solver%factorization = code_of(settings%text_of(group, 'factorization'), 'automatic mumps cholmod', &
+    solver%factorization = code_of(settings%text_of(solver_group, 'factorization'), 'automatic mumps cholmod', &
                                    [factorization_automatic, factorization_mumps, factorization_cholmod])
-    solver%petsc_options = settings%text_of(group, 'petsc_options')
+    solver%petsc_options = settings%text_of(solver_group, 'petsc_options')
   end subroutine fill_linear_solver
 
   !> Options for PETSc: those of the solver, none that could write files. A deck may come from anywhere.
@@ -55,9 +74,9 @@ contains
     words = words_of(solver%petsc_options, ' ')
     do i = 1, size(words)
       if (is_allowed(words(i)%text)) cycle
-      call report(settings, problems, group, 'petsc_options', words(i)%text//' might write files or more; allowed: '// &
-                '-log_view and options that begin with -ksp_, -pc_ or -mat_, and words without : and /; give '// &
-                'others on the command line.')
+      call report(settings, problems, solver_group, 'petsc_options', words(i)%text// &
+                  ' might write files or more; allowed: -log_view and options that begin with -ksp_, -pc_ or -mat_, '// &
+                  'and words without : and /; give others on the command line.')
       return
     end do
   end subroutine check_petsc_options
@@ -76,4 +95,4 @@ contains
       if (index(word, trim(beginnings(i))) == 1) is_allowed = .true.
     end do
   end function is_allowed
-end module linear_solver_deck
+end module solver_deck
