@@ -1,6 +1,5 @@
 !> One time step of plate and impactor together. Each equilibrium iteration solves for the impact force by the
-!> compliance
-!> of impactor and plate.
+!> compliance of impactor and plate.
 module dynamic_steps
   use kinds, only: wp
   use errors, only: error_t, exit_convergence
@@ -145,8 +144,8 @@ contains
         if (self%keeps_displacement .and. new%iterations == 0) then
           at%energy = 0
           call weight_start_forces(size(residual), [(1 - m)/(self%integrator%beta*self%step), &
-            (1 - m)*0.5_wp/self%integrator%beta - 1], old%motion%momentum, old%motion%inertia, old%motion%internal, &
-                           residual)
+                                                      (1 - m)*0.5_wp/self%integrator%beta - 1], old%motion%momentum, &
+                                   old%motion%inertia, old%motion%internal, residual)
         else if (self%skips_elements .and. new%iterations == 1) then
           call find_internal_from_motion(self, model, old, new, at%energy)
           residual = 0
@@ -160,8 +159,7 @@ contains
             call model%inertia(new%motion%acceleration, new%motion%inertia)
           end if
           call weight_forces(size(residual), [1 - m, m, 1 - f, f], new%motion%inertia, old%motion%inertia, &
-                             new%motion%internal, &
-                     old%motion%internal, residual)
+                             new%motion%internal, old%motion%internal, residual)
         end if
         call model%add_contact_force(self%coupling%load(), residual)
         if (size(model%lines) > 0) then
@@ -197,8 +195,7 @@ contains
       new%motion%internal = 0
       call model%add_contact_force(self%coupling%load(), new%motion%internal)
       call find_internal_forces(size(new%motion%internal), [1 - m, m, 1 - f, f], new%motion%inertia, &
-                                old%motion%inertia, &
-                      old%motion%internal, new%motion%internal)
+                                old%motion%inertia, old%motion%internal, new%motion%internal)
     end associate
     energy = model%product(new%motion%displacement, new%motion%internal)/2
   end subroutine find_internal_from_motion

@@ -19,8 +19,8 @@ contains
 
   !> The tangent without the impactor's force. The operator is factorized again if required, or if ties and contacts
   !> differ too much from it.
-  subroutine find_tangent(model, operator, old, new, factors, required, max_changes, uses_element_tangents, tangent, &
-                          error)
+  subroutine find_tangent(model, operator, old, new, factors, required, max_changes, uses_element_tangents, &
+                          tangent, error)
     !> Mesh, numbering and interfaces of the plate
     type(model_t), target, intent(in) :: model
     !> The factored operator

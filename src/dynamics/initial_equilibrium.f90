@@ -109,6 +109,7 @@ contains
         state%motion%displacement, 1.0_wp, mass_factor(model), error)
       if (.not. allocated(error)) call operator%correct(model, residual, correction, error)
       if (allocated(error)) return
+      operator%solves = operator%solves + 1
       call state%interfaces%faces%hold(model, correction)
       state%motion%displacement = state%motion%displacement + correction
     end do
@@ -146,6 +147,7 @@ contains
                           error)
       if (allocated(error)) return
       call operator%correct(model, loads, motion%acceleration, error)
+      operator%solves = operator%solves + 1
       motion%acceleration = mass_factor*motion%acceleration
       call model%inertia(motion%acceleration, motion%inertia)
       operator%ready = .false.

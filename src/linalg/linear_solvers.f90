@@ -194,9 +194,8 @@ contains
 
     name = self%factors(definite)%title()
     if (self%indefinite_matrices == 0) return
-    name = name//' ('//to_text(self%indefinite_matrices)//' of '//to_text(self%factorizations)// &
-      ' factorizations by '// &
-           self%factors(indefinite)%title()//', as the matrix was not positive definite)'
+    name = name//' ('//to_text(self%indefinite_matrices)//' of '//to_text(self%factorizations)//' factorizations'// &
+           ' by '//self%factors(indefinite)%title()//', as the matrix was not positive definite)'
   end function package_used
 
   !> Frees matrix and factor.

@@ -75,8 +75,8 @@ contains
     do i = 1, size(words)
       if (is_allowed(words(i)%text)) cycle
       call report(settings, problems, solver_group, 'petsc_options', words(i)%text// &
-                  ' might write files or more; allowed: -log_view and options that begin with -ksp_, -pc_ or -mat_, '// &
-                  'and words without : and /; give others on the command line.')
+                  ' might write files or more; allowed: -log_view and options that begin with -ksp_, -pc_ or '// &
+                  '-mat_, and words without : and /; give others on the command line.')
       return
     end do
   end subroutine check_petsc_options

@@ -146,7 +146,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(newton_iteration_t) :: at
     type(line_search_t) :: search
-    logical :: ends
+    logical :: ends, corrected
 
     converged = .false.
     call new%start_from(model, old)
@@ -168,13 +168,8 @@ contains
       if (.not. at%norm <= huge(at%norm) .or. new%iterations >= equilibrium%max_iterations) exit
       problem%uses_element_tangents = problem%uses_element_tangents .or. at%before > 0 &
         .and. at%norm > equilibrium%controls%element_reduction*at%before
-      call correct(problem, at, search, error)
-      if (allocated(error)) then
-        ! Divergence, or an operator that is not positive definite: a shorter step may succeed.
-        if ((problem%retries_shorter .or. model%setup%has_impactor) .and. error%code == exit_convergence) &
-          deallocate (error)
-        return
-      end if
+      call correct(problem, at, search, corrected, error)
+      if (.not. corrected) exit
       at%before = at%norm
       new%motion%displacement = new%motion%displacement + at%correction
       call problem%complete(at)
@@ -243,24 +238,32 @@ contains
   end subroutine find_forces
 
   !> Finds a correction, and starts the line search along it.
-  subroutine correct(problem, at, search, error)
+  subroutine correct(problem, at, search, corrected, error)
     !> The kind of step
     class(step_problem_t), intent(inout) :: problem
     !> The iteration
     type(newton_iteration_t), intent(inout) :: at
     !> The search
     type(line_search_t), intent(inout) :: search
-    !> Set if a solve fails or numbers are not finite
+    !> True: a correction was found
+    logical, intent(out) :: corrected
+    !> Set if the solver fails for good
     type(error_t), allocatable, intent(inout) :: error
     real(wp), allocatable :: stiffness(:, :)
 
     call problem%find_correction(at, forcing_term(at%equilibrium%controls, at%equilibrium%tolerance, at%norm, &
                                                   at%before), error)
-    if (allocated(error) .or. .not. problem%searches_lines) return
-    allocate (stiffness(3, size(at%correction, 2)))
-    call at%new%interfaces%faces%added_stiffness(at%model, at%operator%diagonal, stiffness)
-    call at%new%interfaces%rig%add_stiffness(at%model, 0.0_wp, stiffness)
-    call search%begin(at%model, at%new%motion%displacement, at%correction, at%residual, at%smooth, stiffness, &
-                      at%negative_curvature)
+    corrected = .not. allocated(error)
+    if (corrected .and. problem%searches_lines) then
+      allocate (stiffness(3, size(at%correction, 2)))
+      call at%new%interfaces%faces%added_stiffness(at%model, at%operator%diagonal, stiffness)
+      call at%new%interfaces%rig%add_stiffness(at%model, 0.0_wp, stiffness)
+      call search%begin(at%model, at%new%motion%displacement, at%correction, at%residual, at%smooth, stiffness, &
+                        at%negative_curvature)
+    else if (.not. corrected) then
+      ! Divergence, or an operator that is not positive definite: a shorter step may succeed.
+      if ((problem%retries_shorter .or. at%model%setup%has_impactor) .and. error%code == exit_convergence) &
+        deallocate (error)
+    end if
   end subroutine correct
 end module step_problems

@@ -100,7 +100,7 @@ contains
     if (self%force_slope > 0) product = product + self%force_slope*self%mean(vector)*self%pattern
   end subroutine multiply
 
-  !> Solution by the factored operator, with the rank-one term of the impactor's force (Sherman and Morrison). Collective.
+  !> Solution by the factored operator, with the rank-one term of the impactor's force (Sherman, Morrison). Collective.
   subroutine precondition(self, vector, product, error)
     !> The tangent
     class(tangent_product_t), intent(inout) :: self
