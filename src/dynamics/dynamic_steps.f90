@@ -248,21 +248,18 @@ contains
     logical :: converged
 
     at%negative_curvature = .false.
-    associate (model => at%model, operator => at%operator, old => at%old, new => at%new)
-      call find_tangent(model, operator, old, new, [self%integrator%stiffness_factor(), &
-                        self%integrator%mass_factor(self%step)], self%correction_is_costly, self%renewal, &
-                        self%uses_element_tangents, tangent, error)
+    associate (integrator => self%integrator, has_impactor => at%model%setup%has_impactor)
+      call find_tangent(at, [integrator%stiffness_factor(), integrator%mass_factor(self%step)], &
+                        self%correction_is_costly, self%renewal, self%uses_element_tangents, tangent, error)
       if (allocated(error)) return
-      if (model%setup%has_impactor .and. .not. tangent%is_factored()) &
-        call add_force_slope(model, operator, self%coupling, old, new, tangent)
+      if (has_impactor .and. .not. tangent%is_factored()) call add_force_slope(at, self%coupling, tangent)
       call find_krylov_correction(tangent, at%residual, tolerance, at%correction, error, at%negative_curvature, &
                                   converged)
       if (allocated(error)) return
       self%correction_is_costly = .not. converged
-      if (model%setup%has_impactor) &
-        call self%coupling%solve(model, operator, old, new, tangent%is_factored(), at%correction, error)
+      if (has_impactor) call self%coupling%solve(at, tangent%is_factored(), error)
       if (allocated(error)) error%code = exit_convergence
-      call new%interfaces%faces%hold(model, at%correction)
+      call at%new%interfaces%faces%hold(at%model, at%correction)
     end associate
   end subroutine find_correction
 

@@ -8,8 +8,8 @@ module impact_coupling
   use impactor_integrators, only: predict, takes_mean_force
   use newmark_integrators, only: plate_integrator_t
   use models, only: model_t
+  use newton_iterations, only: newton_iteration_t
   use states, only: state_t
-  use tangent_operators, only: tangent_operator_t
   implicit none
   private
   public :: impact_coupling_t, begin_coupling
@@ -88,31 +88,26 @@ contains
   !> factored operator, the plate's response to the change of the force is known and added. Otherwise the correction
   !> includes the slope of the force, and what the law leaves of it is in the next residual: the response of the
   !> factored operator would open contacts that have closed since.
-  subroutine solve(self, model, operator, old, new, is_factored, correction, error)
+  subroutine solve(self, at, is_factored, error)
     !> The coupling
     class(impact_coupling_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
-    !> Holds the response to a unit force
-    type(tangent_operator_t), intent(in) :: operator
-    !> State at the start
-    type(state_t), intent(in) :: old
-    !> State at the end, before the correction
-    type(state_t), intent(inout) :: new
+    !> The iteration; receives the correction
+    type(newton_iteration_t), intent(inout) :: at
     !> True: the tangent is the factored operator
     logical, intent(in) :: is_factored
-    !> Correction of the displacement, (5, points)
-    real(wp), intent(inout) :: correction(:, :)
     !> Set if numbers are not finite
     type(error_t), allocatable, intent(inout) :: error
     real(wp) :: before
     integer :: iterations
 
-    before = self%unknown
-    new%patch_mean = model%contact_deflection(new%motion%displacement) + model%patch_mean(correction)
-    call self%find_force(model%setup%indentation, old%indentation, new%patch_mean, &
-                         merge(operator%compliance, 0.0_wp, is_factored), iterations, error)
-    if (is_factored) correction = correction + (self%share*(self%unknown - before))*operator%response
-    new%force_iterations = new%force_iterations + iterations
+    associate (model => at%model, operator => at%operator, new => at%new)
+      before = self%unknown
+      new%patch_mean = model%contact_deflection(new%motion%displacement) + model%patch_mean(at%correction)
+      call self%find_force(model%setup%indentation, at%old%indentation, new%patch_mean, &
+                           merge(operator%compliance, 0.0_wp, is_factored), iterations, error)
+      if (is_factored) at%correction = at%correction + (self%share*(self%unknown - before))*operator%response
+      new%force_iterations = new%force_iterations + iterations
+    end associate
   end subroutine solve
 
   !> Decrease of the load with the deflection of the plate, with the motion of the impactor under it.
