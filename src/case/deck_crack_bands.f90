@@ -149,7 +149,7 @@ contains
     !> Remarks are added
     type(problems_t), intent(inout) :: problems
     type(line_t), allocatable :: limits(:), excesses(:)
-    character(len=:), allocatable :: excess
+    character(len=:), allocatable :: excess, sides
     real(wp) :: longest(size(toughness_keys)), present(2), usual
     integer :: mode
 
@@ -160,8 +160,8 @@ contains
     if (deck%mesh%cell > 0) usual = deck%mesh%cell
     allocate (limits(0), excesses(0))
     do mode = 1, size(toughness_keys)
-      if (longest(mode) < present(2)) call append(limits, toughness_keys(mode)//' '// &
-                                                      length_text(deck, longest(mode)))
+      if (longest(mode) < present(2)) &
+        call append(limits, length_text(deck, longest(mode))//' ('//toughness_keys(mode)//')')
       if (usual > noted*longest(mode)) call append(excesses, rounded_text(usual/longest(mode), 2)//' times '// &
                                              toughness_keys(mode))
     end do
@@ -169,9 +169,11 @@ contains
     excess = ''
     if (size(excesses) > 0) excess = ' A side of '//length_text(deck, usual)//' dissipates '// &
                                       joined(excesses, ', ')//'.'
-    call remark(deck%settings, problems, material_group, '', 'elements of '//length_text(deck, present(1))// &
-      ' to '//length_text(deck, present(2))//' dissipate more than the fracture energy; the longest sides that do '// &
-      'not are '//joined(limits, ', ')//'. Use shorter ones where plies fail.'//excess, place)
+    sides = length_text(deck, present(2))
+    if (length_text(deck, present(1)) /= sides) sides = length_text(deck, present(1))//' to '//sides
+    call remark(deck%settings, problems, material_group, '', 'the sides of elements are '//sides// &
+                ' long; failure dissipates more than the fracture energy in those longer than '//joined(limits, ', ')// &
+                '. Use shorter ones where plies fail.'//excess, place)
   end subroutine check_lengths
 
   !> Longest elements that take no more than the fracture energies, in every block of a material. Strengths in place are
