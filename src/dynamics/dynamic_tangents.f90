@@ -12,7 +12,7 @@ module dynamic_tangents
   private
   public :: find_tangent, add_force_slope, is_exact
 
-  !> Relative change of the factor of mass by which an operator counts as exact: the last digits of the step.
+  !> Relative change of the factor of mass up to which the operator counts as exact: round-off of the step length.
   real(wp), parameter :: mass_precision = 1.0e-9_wp
 
 contains
@@ -92,7 +92,7 @@ contains
   !> Adds the slope of the impactor's force to a tangent.
   subroutine add_force_slope(model, operator, coupling, old, new, tangent)
     type(model_t), intent(in) :: model
-    !> Knows the equations
+    !> The operator, with the equation numbers
     type(tangent_operator_t), intent(in) :: operator
     !> The impactor's side of the step
     type(impact_coupling_t), intent(in) :: coupling

@@ -22,16 +22,16 @@ module impact_coupling
     logical :: mean = .false.
     !> The unknown force, and the force at the end of the step
     real(wp) :: unknown = 0, force_end = 0
-    !> Weight of the unknown in the plate's load, and the rest of the load
+    !> Weight of the unknown in the plate's load, and the part of the load that does not depend on it
     real(wp) :: share = 0, inherited = 0
     !> Force at the start of the step, and alpha_f of the equation of motion
     real(wp) :: start_force = 0, alpha_f = 0
   contains
     !> Force on the plate in its equation of motion.
     procedure :: load
-    !> True: one solution finds the load.
+    !> True: the load on the plate is the unknown force, so that one solution is sufficient.
     procedure :: forces_agree
-    !> Solves for the force, and adds the response of the plate.
+    !> Solves for the force, and adds the unit-load solution of the plate times its change.
     procedure :: solve
     !> Finds the force.
     procedure :: find_force
@@ -76,7 +76,8 @@ contains
     load = self%share*self%unknown + self%inherited
   end function load
 
-  !> True: one solution finds the load. The mean force over a step is the plate's load only for alpha_f = 1/2.
+  !> True: the load on the plate is the unknown force, so that one solution is sufficient. The mean force over a step is
+  !> the plate's load only for alpha_f = 1/2.
   pure logical function forces_agree(self)
     !> The coupling
     class(impact_coupling_t), intent(in) :: self
@@ -84,15 +85,15 @@ contains
     forces_agree = .not. self%mean .or. abs(self%alpha_f - 0.5_wp) <= 0
   end function forces_agree
 
-  !> Solves for the impact force, given the correction of the plate for the force assumed. Where the tangent is the
-  !> factored operator, the plate's response to the change of the force is known and added. Otherwise the correction
-  !> includes the slope of the force, and what the law leaves of it is in the next residual: the response of the
-  !> factored operator would open contacts that have closed since.
+  !> Solves for the impact force, given the correction of the plate for the previous force. If the tangent is the
+  !> factored operator, the unit-load solution times the change of the force is added. Otherwise the correction includes
+  !> the slope of the force, and the error of the linearisation is in the next residual: the unit-load solution of an
+  !> older operator would open contacts that have closed since.
   subroutine solve(self, model, operator, old, new, is_factored, correction, error)
     !> The coupling
     class(impact_coupling_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> Holds the response to a unit force
+    !> The operator, with its unit-load solution
     type(tangent_operator_t), intent(in) :: operator
     !> State at the start
     type(state_t), intent(in) :: old
@@ -115,7 +116,7 @@ contains
     new%force_iterations = new%force_iterations + iterations
   end subroutine solve
 
-  !> Decrease of the load with the deflection of the plate, with the motion of the impactor under it.
+  !> Decrease of the load with the deflection of the plate, including the motion of the impactor under that load.
   real(wp) function slope(self, law, indentation, patch_mean)
     !> The coupling
     class(impact_coupling_t), intent(in) :: self
@@ -140,7 +141,7 @@ contains
     if (.not. allocated(error)) slope = max(0.0_wp, (here%load() - beyond%load())/step)
   end function slope
 
-  !> Finds the impact force for a mean deflection of the patch, given what a force adds to it.
+  !> Finds the impact force for a mean deflection of the patch and the compliance of the patch.
   subroutine find_force(self, law, indentation, patch_mean, patch_compliance, iterations, error)
     !> The coupling
     class(impact_coupling_t), intent(inout) :: self
@@ -148,7 +149,7 @@ contains
     type(indentation_law_t), intent(in) :: law
     !> History variables of the indentation at the start of the step
     type(indentation_t), intent(in) :: indentation
-    !> Mean deflection of the patch with the force assumed
+    !> Mean deflection of the patch with the previous force
     real(wp), intent(in) :: patch_mean
     !> Mean deflection of the patch per force on the plate
     real(wp), intent(in) :: patch_compliance

@@ -5,21 +5,21 @@ module dense_systems
   private
   public :: positive_factor_t, solve_dense
 
-  !> A small symmetric matrix, factored if it is positive definite.
+  !> A small symmetric matrix, factorized if it is positive definite.
   type :: positive_factor_t
-    !> True: it is, and there are factors
+    !> True: the matrix is positive definite and factorized
     logical :: positive = .false.
     !> Its lower factor, (n, n)
     real(wp), allocatable, private :: factors(:, :)
   contains
-    !> Factors a matrix.
+    !> Factorizes a matrix.
     procedure :: factorize => factorize_positive
     !> Solves with the factors.
     procedure :: solve => solve_positive
   end type positive_factor_t
 
   interface
-    !> LAPACK: solves with a general matrix by elimination with pivoting.
+    !> LAPACK: solves a general system by elimination with pivoting.
     subroutine dgesv(n, columns, a, lda, pivots, b, ldb, info)
       import :: wp
       !> Order, right-hand sides, leading dimensions
@@ -34,7 +34,7 @@ module dense_systems
       integer, intent(out) :: info
     end subroutine dgesv
 
-    !> LAPACK: factors a symmetric matrix that is positive definite.
+    !> LAPACK: factorizes a symmetric positive definite matrix.
     subroutine dpotrf(uplo, n, a, lda, info)
       import :: wp
       !> 'L': its lower triangle is given
@@ -65,7 +65,7 @@ module dense_systems
 
 contains
 
-  !> Factors a symmetric matrix, or finds that it is not positive definite.
+  !> Factorizes a symmetric matrix, or finds that it is not positive definite.
   subroutine factorize_positive(self, matrix)
     !> Receives the factor
     class(positive_factor_t), intent(inout) :: self
@@ -97,7 +97,7 @@ contains
     real(wp), intent(in) :: matrix(:, :)
     !> Right-hand side on entry, solution on return, (n)
     real(wp), intent(inout) :: x(:)
-    !> True: there is no solution, x is what it was
+    !> True: there is no solution, x is unchanged
     logical, intent(out) :: singular
     real(wp) :: factors(size(x), size(x)), solution(size(x))
     integer :: pivots(size(x)), info

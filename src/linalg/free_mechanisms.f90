@@ -13,14 +13,14 @@ module free_mechanisms
 
   !> Inverse iteration for the smallest eigenvalue of the matrix with unit diagonal.
   type :: mechanism_t
-    !> Solves that the search takes: two for a first factor, one for later ones
+    !> Number of solves of the search: two after the first factorization, one after later ones
     integer :: passes = 0
     !> Approximate eigenvector of the smallest eigenvalue; its largest component is 1
     real(wp), allocatable, private :: mode(:)
     !> Roots of the matrix' diagonal
     real(wp), allocatable, private :: scale(:)
   contains
-    !> Begins a search.
+    !> Starts a search.
     procedure :: begin
     !> Right-hand side of the next solve.
     procedure :: right_hand_side
@@ -32,7 +32,7 @@ module free_mechanisms
 
 contains
 
-  !> Begins a search. The eigenvector found by the last one serves again.
+  !> Starts a search from the eigenvector found by the last one.
   subroutine begin(self, diagonal)
     class(mechanism_t), intent(inout) :: self
     !> Diagonal of the matrix, of the rows that this rank owns
@@ -62,7 +62,7 @@ contains
     type(communicator_t), intent(in) :: communicator
     !> This rank's part of it
     real(wp), intent(in) :: solution(:)
-    !> Whether a part of the structure can move freely
+    !> True: a part of the structure is a mechanism
     logical, intent(out) :: found
     real(wp) :: growth
 

@@ -1,4 +1,4 @@
-!> A linear map of the rows of this rank, known by its products alone: a tangent, or a preconditioner.
+!> A matrix-free linear map of this rank's rows: a tangent or a preconditioner.
 module linear_maps
   use errors, only: error_t
   use kinds, only: wp
@@ -23,7 +23,7 @@ module linear_maps
       real(wp), intent(in) :: vector(:)
       !> The product, (rows)
       real(wp), intent(out) :: product(:)
-      !> Set if it cannot be found
+      !> Set if it cannot be computed
       type(error_t), allocatable, intent(inout) :: error
     end subroutine map_product
   end interface

@@ -1,4 +1,4 @@
-!> Direct solution of large symmetric linear equations by PETSc. Rows are shared out among the ranks in contiguous
+!> Direct solution of large symmetric linear equations by PETSc. Rows are distributed over the ranks in contiguous
 !> blocks; equations are numbered from 0 over all ranks.
 module linear_solvers
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_quiet_nan, ieee_value
@@ -16,14 +16,14 @@ module linear_solvers
   private
   public :: linear_solver_t
 
-  !> What is wrong with a solve that comes too early
+  !> Message for a solve without a factorization
   character(len=*), parameter :: no_factor = 'The linear equations were to be solved before they were factored.'
-  !> The two factors that a solver may have, and what options for each begin with
+  !> The two factorizations of a solver, and the prefixes of their options
   integer, parameter :: definite = 1, indefinite = 2
   character(len=11), parameter :: prefixes(2) = [character(len=11) :: '', 'indefinite_']
 
-  !> A symmetric matrix and its factor. The factor stays what it was until `factorize` is called again,
-  !> whatever values are assembled meanwhile.
+  !> A symmetric matrix and its factorization, which is unchanged until the next call of `factorize`, also while new
+  !> values are assembled.
   type :: linear_solver_t
     !> One of the factorization_* choices; to be set before `define`
     integer :: factorization = factorization_automatic
@@ -31,40 +31,40 @@ module linear_solvers
     integer :: factorizations = 0
     !> Number of right-hand sides solved so far
     integer :: solves = 0
-    !> Factorizations of a matrix that was promised to be positive definite and was not
+    !> Factorizations of a matrix that was declared positive definite but is not
     integer, private :: indefinite_matrices = 0
     !> All ranks
     type(communicator_t), private :: communicator
-    !> Number of rows that this rank owns, and of all
+    !> Number of rows of this rank, and of all ranks
     integer, private :: rows = 0, total_rows = 0
-    !> The matrix, which callers assemble
+    !> The matrix, assembled by the caller
     type(petsc_matrix_t) :: matrix
-    !> Its factor as a rule, and that of a matrix that broke its promise, set up when that happens
+    !> Factorization of a positive definite matrix, and of an indefinite one, created when first needed
     type(petsc_factor_t), private :: factors(2)
-    !> Which of them is in force
+    !> Index of the one in use
     integer, private :: current = definite
-    !> True while there is a factor
+    !> True after a factorization
     logical, private :: factored = .false.
-    !> True: the matrix is promised to be positive definite
+    !> True: the caller declares the matrix positive definite
     logical, private :: promised = .false.
-    !> Finds parts of the structure that can move freely
+    !> Test for mechanisms of the structure
     type(mechanism_t), private :: mechanism
   contains
-    !> Sets the pattern of the matrix, anew if there was one; called by all ranks together.
+    !> Sets the pattern of the matrix, replacing a previous one. Collective.
     procedure :: define
-    !> Factors the matrix as it was assembled last; called by all ranks together. If it fails there is no factor.
+    !> Factorizes the assembled matrix. Collective.
     procedure :: factorize
-    !> Solves for one right-hand side with the factor; called by all ranks together.
+    !> Solves for one right-hand side. Collective.
     procedure :: solve
-    !> Product of the matrix with a vector; called by all ranks together.
+    !> Product of the matrix with a vector. Collective.
     procedure :: multiply
-    !> Size of the factor, the same on every rank.
+    !> Size of the factors, the same on every rank.
     procedure :: statistics
-    !> Whether there is a factor.
+    !> True if the matrix is factorized.
     procedure :: has_factor
-    !> Name of what factors the matrix, and how often something else had to.
+    !> Name of the package, and number of factorizations by the second package.
     procedure :: package_used
-    !> Frees matrix and factor.
+    !> Deallocates matrix and factors.
     procedure :: release
     procedure, private :: set_up_factor
     procedure, private :: make_factor
@@ -74,7 +74,7 @@ module linear_solvers
 
 contains
 
-  !> Sets the pattern of the matrix, anew if there was one; called by all ranks together.
+  !> Sets the pattern of the matrix, replacing a previous one. Collective.
   subroutine define(self, communicator, first_row, total_rows, row_start, columns, positive_definite, error)
     class(linear_solver_t), intent(inout) :: self
     !> All ranks
@@ -83,13 +83,13 @@ contains
     integer, intent(in) :: first_row
     !> Number of rows of all ranks
     integer, intent(in) :: total_rows
-    !> Where the columns of each owned row begin, from 1, shape (owned rows + 1)
+    !> Index of the first column of each owned row, from 1, shape (owned rows + 1)
     integer, intent(in) :: row_start(:)
     !> Columns of the owned rows in both triangles, from 0, ascending within a row, diagonal included
     integer, intent(in) :: columns(:)
-    !> A promise that saves work
+    !> True: the caller declares the matrix positive definite, which needs no pivoting
     logical, intent(in) :: positive_definite
-    !> Raised when the solver cannot be set up
+    !> Set if the solver cannot be created
     type(error_t), allocatable, intent(inout) :: error
 
     call self%release()
@@ -106,14 +106,14 @@ contains
     call communicator%agree(error)
   end subroutine define
 
-  !> Chooses the package of a factor.
+  !> Chooses the package of a factorization.
   subroutine set_up_factor(self, number, positive_definite, error)
     class(linear_solver_t), intent(inout) :: self
-    !> Which of the two factors
+    !> Index of the factorization
     integer, intent(in) :: number
-    !> Whether the matrix is promised to be positive definite
+    !> True: the caller declares the matrix positive definite
     logical, intent(in) :: positive_definite
-    !> Raised when PETSc fails or has no package
+    !> Set if PETSc fails or has no package
     type(error_t), allocatable, intent(inout) :: error
 
     call self%factors(number)%define(self%communicator, self%matrix%object, &
@@ -122,11 +122,11 @@ contains
                                      positive_definite, trim(prefixes(number)), error)
   end subroutine set_up_factor
 
-  !> Factors the matrix as it was assembled last; called by all ranks together. Which package does it follows from the
-  !> matrix alone, so that a run taken up again has the same factor.
+  !> Factorizes the assembled matrix. Collective. The choice of the package depends on the matrix only, so that a
+  !> restarted run has the same factors.
   subroutine factorize(self, error)
     class(linear_solver_t), intent(inout) :: self
-    !> Raised on all ranks when the matrix is singular or memory is short
+    !> Set on all ranks if the matrix is singular or memory is insufficient
     type(error_t), allocatable, intent(inout) :: error
     integer :: outcome
 
@@ -145,22 +145,22 @@ contains
     self%factored = .not. allocated(error)
   end subroutine factorize
 
-  !> Makes the factor in force and looks whether a part of the structure can move freely.
+  !> Factorizes with the package in use, and tests for mechanisms of the structure.
   subroutine make_factor(self, outcome, error)
     class(linear_solver_t), intent(inout) :: self
     !> One of the factor_* outcomes
     integer, intent(out) :: outcome
-    !> Raised when PETSc fails for another reason than the numbers
+    !> Set if PETSc fails for another reason than the values of the matrix
     type(error_t), allocatable, intent(inout) :: error
 
     call self%factors(self%current)%factorize(self%matrix%object, outcome, error)
     if (outcome == factor_made .and. .not. allocated(error)) call self%find_mechanism(outcome)
   end subroutine make_factor
 
-  !> Finds out whether a part of the structure can move freely.
+  !> Tests for mechanisms of the structure.
   subroutine find_mechanism(self, outcome)
     class(linear_solver_t), intent(inout) :: self
-    !> Becomes factor_singular if it can
+    !> factor_singular on return if there is one
     integer, intent(inout) :: outcome
     real(wp), allocatable :: values(:)
     logical :: found
@@ -180,14 +180,14 @@ contains
     end do
   end subroutine find_mechanism
 
-  !> Solves for one right-hand side with the factor; called by all ranks together.
+  !> Solves for one right-hand side. Collective.
   subroutine solve(self, right_hand_side, solution, error)
     class(linear_solver_t), intent(inout) :: self
     !> Owned part of the right-hand side
     real(wp), intent(in) :: right_hand_side(:)
     !> Owned part of the solution
     real(wp), intent(out) :: solution(:)
-    !> Raised on all ranks when there is no finite solution
+    !> Set on all ranks if there is no finite solution
     type(error_t), allocatable, intent(inout) :: error
 
     integer :: ierr(3)
@@ -201,14 +201,14 @@ contains
     call self%finish_solve(all(ieee_is_finite(solution)), ierr, error)
   end subroutine solve
 
-  !> Product of the matrix as it was assembled last with a vector; called by all ranks together.
+  !> Product of the assembled matrix with a vector. Collective.
   subroutine multiply(self, vector, product, error)
     class(linear_solver_t), intent(inout) :: self
     !> Owned part of the vector
     real(wp), intent(in) :: vector(:)
     !> Owned part of the product
     real(wp), intent(out) :: product(:)
-    !> Raised when PETSc fails
+    !> Set if PETSc fails
     type(error_t), allocatable, intent(inout) :: error
     integer :: ierr(3)
 
@@ -218,14 +218,14 @@ contains
     call report_petsc(ierr, error)
   end subroutine multiply
 
-  !> Counts solves and finds out whether they gave a solution, which PETSc does not always say.
+  !> Counts solves, and tests whether the solution is finite, which PETSc does not always report.
   subroutine finish_solve(self, finite, codes, error)
     class(linear_solver_t), intent(inout) :: self
-    !> Whether this rank's part of the solution is finite
+    !> True: this rank's part of the solution is finite
     logical, intent(in) :: finite
     !> Codes that PETSc returned
     integer, intent(in) :: codes(:)
-    !> Raised on all ranks when there is no finite solution
+    !> Set on all ranks if there is no finite solution
     type(error_t), allocatable, intent(inout) :: error
     integer :: reason, ierr
 
@@ -244,10 +244,10 @@ contains
     has_factor = self%factors(self%current)%defined
   end function has_factor
 
-  !> Size of the factor, the same on every rank.
+  !> Size of the factors, the same on every rank.
   subroutine statistics(self, factor_entries, megabytes)
     class(linear_solver_t), intent(in) :: self
-    !> Numbers stored in the factor
+    !> Number of stored entries of the factors
     real(wp), intent(out) :: factor_entries
     !> Memory of the factorization on all ranks, in MB
     real(wp), intent(out) :: megabytes
@@ -255,7 +255,7 @@ contains
     call self%factors(self%current)%statistics(factor_entries, megabytes)
   end subroutine statistics
 
-  !> Name of what factors the matrix, and how often something else had to.
+  !> Name of the package, and number of factorizations by the second package.
   function package_used(self) result(name)
     class(linear_solver_t), intent(in) :: self
     !> The name
@@ -268,7 +268,7 @@ contains
            self%factors(indefinite)%title()//', as the matrix was not positive definite)'
   end function package_used
 
-  !> Frees matrix and factor.
+  !> Deallocates matrix and factors.
   subroutine release(self)
     class(linear_solver_t), intent(inout) :: self
     integer :: i

@@ -1,4 +1,4 @@
-!> Load steps: by the load, or by the energy that each is to dissipate.
+!> Load steps: by load control, or by control of the energy that each dissipates.
 module load_steps
   use dissipation_steps, only: dissipation_step_t, new_dissipation_step
   use errors, only: error_t, fail, exit_convergence
@@ -29,7 +29,7 @@ module load_steps
 
 contains
 
-  !> The first step is one of those that the deck asks for.
+  !> The first step has the length given in the deck.
   subroutine start(self, stepper, model, error)
     !> The kind
     class(load_steps_t), intent(in) :: self
@@ -92,12 +92,12 @@ contains
                                             1.0_wp/stepper%stepping%static_steps)
       call solve_step(by_dissipation, model, stepper%stepping%equilibrium, stepper%operator, now, stepper%trial, &
                       converged, error)
-      ! Farther away there are other branches of equilibrium, which no path leads to.
+      ! Beyond this change of the load other branches of equilibrium may be found, which the path does not lead to.
       if (converged) converged = abs(stepper%trial%load_factor - now%load_factor) <= by_dissipation%max_load_change
     end associate
   end subroutine try_dissipation
 
-  !> Without time there is no error of a step.
+  !> Load steps have no time-integration error.
   pure logical function follows_error(self, stepping)
     !> The kind
     class(load_steps_t), intent(in) :: self
@@ -107,7 +107,7 @@ contains
     follows_error = .false.
   end function follows_error
 
-  !> Finds how near fronts are to growth; under load steps they do not grow.
+  !> Computes the ratio of energy release rate to its critical value; fronts do not grow in load steps.
   subroutine note_state(self, stepper, model)
     !> The kind
     class(load_steps_t), intent(in) :: self
@@ -120,7 +120,7 @@ contains
     end associate
   end subroutine note_state
 
-  !> Each step is tried with the length that the deck asks for.
+  !> Each step is first tried with the length given in the deck.
   subroutine choose_next(self, stepper, model, step, change, extended)
     !> The kind
     class(load_steps_t), intent(in) :: self
@@ -137,14 +137,14 @@ contains
     stepper%controller%target = 1.0_wp/stepper%stepping%static_steps
   end subroutine choose_next
 
-  !> Brings a plate whose plies have failed under a load back into equilibrium with it, until no more of them fail.
+  !> Restores equilibrium at constant load after failures of plies, until no more plies fail.
   subroutine equilibrate(self, stepper, model, error)
     !> The kind
     class(load_steps_t), intent(in) :: self
     !> The stepper, the step accepted
     class(stepper_t), intent(inout) :: stepper
     type(model_t), intent(in) :: model
-    !> Set if what is left of the plate does not bear the load
+    !> Set if the damaged plate cannot carry the load
     type(error_t), allocatable, intent(inout) :: error
     type(static_step_t) :: problem
     logical :: converged

@@ -1,4 +1,4 @@
-!> What a stepper through time or load keeps from step to step, and what kinds of stepping have in common.
+!> Data of a stepper in time or load, and the interface of its kinds of steps.
 module steppers
   use central_differences, only: central_difference_t
   use errors, only: error_t
@@ -14,27 +14,27 @@ module steppers
   private
   public :: stepper_t, step_kind_t
 
-  !> A kind of implicit steps: in time or by load. It has no data of its own; all that evolves is the stepper's.
+  !> A kind of implicit steps: in time or by load. It has no data; all variables are in the stepper.
   type, abstract :: step_kind_t
   contains
     !> Prepares the first step.
     procedure(start_steps), deferred :: start
     !> Tries a step.
     procedure(try_one_step), deferred :: try
-    !> True if the length of steps follows the error of each.
+    !> True if the step length is controlled by the error of each step.
     procedure(follows_the_error), deferred :: follows_error
-    !> Completes the state tried before it is accepted.
+    !> Completes the trial state before it is accepted.
     procedure(note_state_tried), deferred :: note_state
     !> Chooses the length of the next step.
     procedure(choose_length), deferred :: choose_next
-    !> Completes the state accepted.
+    !> Restores equilibrium of the accepted state after failures.
     procedure(equilibrate_state), deferred :: equilibrate
-    !> Smallest step worth trying.
+    !> Smallest step that is tried.
     procedure(smallest), deferred :: smallest_step
   end type step_kind_t
 
-  !> All that evolves during a run, and how steps are taken. It has many components because each part of the control of
-  !> steps stores its own.
+  !> Evolving state of a run, and parameters of steps. It has many components because each part of the step control
+  !> stores its own.
   type :: stepper_t
     !> The state reached
     type(state_t), allocatable :: now
@@ -46,7 +46,7 @@ module steppers
     type(step_error_t) :: step_error
     !> Last error relative to its tolerance, and the lag of damage in the last step relative to its limit
     real(wp) :: error = 0, damage_lag = 0
-    !> True: the error of the last step exceeds the tolerance at the shortest step
+    !> True: the error of the last step exceeded the tolerance at the shortest step
     logical :: errs = .false.
     !> Integrator of the plate
     type(plate_integrator_t) :: integrator
@@ -54,7 +54,7 @@ module steppers
     type(stepping_t) :: stepping
     !> Steps in time or by load; unallocated: central differences
     class(step_kind_t), allocatable :: kind
-    !> Factorizations and solves when the present step was begun
+    !> Factorizations and solves before the present step
     integer :: factorizations_at_start = 0, solves_at_start = 0
     !> Rejected steps
     integer :: rejected = 0
@@ -65,11 +65,11 @@ module steppers
     !> Central differences; unallocated: steps are implicit
     type(central_difference_t), allocatable :: explicit
   contains
-    !> Smallest step worth trying.
+    !> Smallest step that is tried.
     procedure :: smallest_step
     !> Energy to be dissipated per time.
     procedure :: energy_rate
-    !> Time of a step by dissipation over that of one by load.
+    !> Pseudo-time of a step under control of dissipation over that under load control.
     procedure :: step_scale
   end type stepper_t
 
@@ -82,7 +82,7 @@ module steppers
       !> The stepper, its state in equilibrium
       class(stepper_t), intent(inout) :: stepper
       type(model_t), intent(in) :: model
-      !> Set if there is no factor
+      !> Set if the factorization fails
       type(error_t), allocatable, intent(inout) :: error
     end subroutine start_steps
 
@@ -104,7 +104,7 @@ module steppers
       type(error_t), allocatable, intent(out) :: error
     end subroutine try_one_step
 
-    !> True if the length of steps follows the error of each.
+    !> True if the step length is controlled by the error of each step.
     pure logical function follows_the_error(self, stepping)
       import :: step_kind_t, stepping_t
       !> The kind
@@ -113,12 +113,12 @@ module steppers
       type(stepping_t), intent(in) :: stepping
     end function follows_the_error
 
-    !> Completes the state tried before it is accepted. Collective.
+    !> Completes the trial state before it is accepted. Collective.
     subroutine note_state_tried(self, stepper, model)
       import :: step_kind_t, stepper_t, model_t
       !> The kind
       class(step_kind_t), intent(in) :: self
-      !> The stepper, the failures of the step tried noted
+      !> The stepper, with the failures of the trial step
       class(stepper_t), intent(inout) :: stepper
       type(model_t), intent(in) :: model
     end subroutine note_state_tried
@@ -151,7 +151,7 @@ module steppers
       type(error_t), allocatable, intent(inout) :: error
     end subroutine equilibrate_state
 
-    !> Smallest step worth trying.
+    !> Smallest step that is tried.
     pure real(wp) function smallest(self, stepping)
       import :: step_kind_t, stepping_t, wp
       !> The kind
@@ -163,7 +163,7 @@ module steppers
 
 contains
 
-  !> Smallest step worth trying.
+  !> Smallest step that is tried.
   pure real(wp) function smallest_step(self) result(step)
     !> The stepper
     class(stepper_t), intent(in) :: self
@@ -172,7 +172,7 @@ contains
     if (allocated(self%kind)) step = self%kind%smallest_step(self%stepping)
   end function smallest_step
 
-  !> Energy that is to be dissipated per time from now on, so that at the end it is what the deck asks for.
+  !> Energy to be dissipated per unit of pseudo-time in the remaining steps, so that the total is that of the deck.
   pure real(wp) function energy_rate(self)
     !> The stepper
     class(stepper_t), intent(in) :: self
@@ -180,7 +180,7 @@ contains
     energy_rate = max(0.0_wp, self%stepping%dissipation - self%now%ledger%delamination)/(1 - self%now%time)
   end function energy_rate
 
-  !> Time of a step that dissipates its part of the energy asked for, over that of a step taken by load; 1 for these.
+  !> Pseudo-time of a step under control of dissipation over that of a step under load control; 1 for the latter.
   pure real(wp) function step_scale(self)
     !> The stepper
     class(stepper_t), intent(in) :: self

@@ -1,4 +1,4 @@
-!> Equilibrium of a step: one nonlinear iteration for every kind of step, be it a step in time or a load step.
+!> Equilibrium of a step: one nonlinear iteration for all kinds of steps, in time and by load.
 !>
 !> A kind of step defines predictor, residual, operator and energy balance. The iteration around them is the paper's
 !> Fig. 7: residual, ties and contact, correction with a lagged operator; at equilibrium the contact pressures become
@@ -199,7 +199,7 @@ contains
     if (at%pressures_new) at%before = 0
   end subroutine update_contact
 
-  !> Drops the error of a solver where a shorter step may succeed: divergence, or an operator that is not positive
+  !> Removes the error of a solver where a shorter step may succeed: divergence, or an operator that is not positive
   !> definite.
   pure subroutine forgive(problem, model, error)
     !> The kind of step

@@ -2,10 +2,10 @@
 !> preconditioner. A factorization older than the present contacts, ties, damage or deflection costs iterations, not
 !> accuracy.
 !>
-!> Flexible GMRES takes fewer solves than conjugate gradients (input/li2002.nml: 7864 against 10182). These are used
-!> where cohesive points soften: they stop before a direction of negative curvature, and what they have found by then
-!> descends (Newton's method with conjugate gradients, J. Nocedal, S. J. Wright, Numerical Optimization, 2006,
-!> algorithm 7.1).
+!> Flexible GMRES takes fewer solves than conjugate gradients (input/li2002.nml: 7864 against 10182). Conjugate
+!> gradients are used where cohesive points soften: they stop before a direction of negative curvature, and their last
+!> iterate is a direction of descent (Newton's method with conjugate gradients, J. Nocedal, S. J. Wright, Numerical
+!> Optimization, 2006, algorithm 7.1).
 module krylov_corrections
   use cohesive_interfaces, only: cohesive_interfaces_t
   use errors, only: error_t
@@ -19,18 +19,19 @@ module krylov_corrections
   private
   public :: find_krylov_correction, solve_load_tangent
 
-  !> Part of a solution that may be left wrong. Beside a limit two large solutions make a small correction: with 1e-3
-  !> its error was 1.5 times what there was to correct, and no step however short converged (input/verify/dcb_ubm.nml).
+  !> Relative tolerance of solutions of a load step. Near a limit point a small correction is the difference of two
+  !> large solutions: with 1e-3 its error is 1.5 times the correction, and no step converges however short
+  !> (input/verify/dcb_ubm.nml).
   real(wp), parameter :: left_over = 1.0e-6_wp
 
   !> Solution by the factored operator, with the rank-one term of the impactor's force (Sherman and Morrison).
   type, extends(linear_map_t) :: factored_tangent_t
     !> The factored operator
     type(tangent_operator_t), pointer :: operator => null()
-    !> The tangent, which knows the slope of the force
+    !> The tangent, with the slope of the impactor's force
     type(tangent_product_t), pointer :: tangent => null()
   contains
-    !> Motion under forces.
+    !> Displacement under forces.
     procedure :: multiply
   end type factored_tangent_t
 
@@ -54,7 +55,7 @@ contains
     real(wp), intent(inout) :: correction(:, :)
     !> Set if a solve fails
     type(error_t), allocatable, intent(inout) :: error
-    !> True: the tangent has negative curvature in a direction met, and the correction is what came before
+    !> True: negative curvature of the tangent was met, and the correction is the iterate before it
     logical, intent(out), optional :: has_negative_curvature
     !> False: the tolerance was not reached
     logical, intent(out), optional :: converged
@@ -122,7 +123,7 @@ contains
     if (.not. allocated(error)) &
       call krylov%solve(tangent, factored, row_factors, rows, tolerance, solution, reached, indefinite, error)
     reached = reached .or. indefinite
-    ! Negative curvature at once: the factored operator's solution descends.
+    ! Negative curvature in the first direction: the solution with the factored operator is a direction of descent.
     if (indefinite .and. krylov%iterations <= 1) call factored%multiply(rows, solution, error)
   end subroutine solve_tangent
 
@@ -154,13 +155,13 @@ contains
     call find_krylov_correction(operator, model, tangent, diagonal, forces, left_over, solution, error)
   end subroutine solve_load_tangent
 
-  !> Motion under forces.
+  !> Displacement under forces.
   subroutine multiply(self, vector, product, error)
     !> The factored operator and the slope of the force
     class(factored_tangent_t), intent(inout) :: self
     !> Forces on this rank's rows
     real(wp), intent(in) :: vector(:)
-    !> Their motion
+    !> Displacement under them
     real(wp), intent(out) :: product(:)
     !> Set if the solve fails
     type(error_t), allocatable, intent(inout) :: error

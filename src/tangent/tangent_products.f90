@@ -1,5 +1,5 @@
-!> Product of the current tangent with a vector, without its matrix: by the directional derivative of the element
-!> forces, or by adding the change of the tangent to the product with the matrix that was factored.
+!> Matrix-free product of the current tangent with a vector: by the directional derivative of the element forces, or by
+!> adding the change of the tangent to the product with the factored matrix.
 module tangent_products
   use kinds, only: wp
   use errors, only: error_t
@@ -94,7 +94,7 @@ contains
     if (self%force_slope > 0) product = product + self%force_slope*self%mean(vector)*self%pattern
   end subroutine multiply
 
-  !> Mean deflection of the patch in a motion. Collective.
+  !> Mean deflection of the patch in a displacement field. Collective.
   real(wp) function mean(self, motion)
     !> The tangent
     class(tangent_product_t), intent(in) :: self
@@ -113,7 +113,7 @@ contains
     real(wp), intent(in) :: factored(:, :), now(:, :)
     !> True at points with a cohesive law; unallocated: none
     logical, allocatable, intent(in) :: cohesive(:)
-    !> Their tangents times the factor of stiffness, (3, 3, points); read with `cohesive` only
+    !> Their tangents times the factor of stiffness, (3, 3, points); used with `cohesive` only
     real(wp), intent(in) :: tangents(:, :, :)
     real(wp) :: some
     integer :: i, k

@@ -53,7 +53,7 @@ def inner_breaches(site):
 
 
 def classified(found):
-    """Served, broken and unreachable links of linkcheck's records; with a network an unreachable one is broken."""
+    """Served, invalid and unreachable links of linkcheck's records; with a network an unreachable one is invalid."""
     outer = {record["uri"]: record for record in found if record["status"] not in ("unchecked", "local", "ignored")}
     served = [uri for uri, record in outer.items() if record["status"] in SERVED]
     reported = [uri for uri, record in outer.items() if record["status"] not in SERVED and record["code"]]
@@ -62,7 +62,7 @@ def classified(found):
 
 
 def outer_links(doc, folder):
-    """Served, broken and unreachable external links of the pages."""
+    """Served, invalid and unreachable external links of the pages."""
     subprocess.run([sys.executable, "-B", "-m", "sphinx", "-Q", "-E", "-b", "linkcheck", doc, folder], check=False)
     lines = Path(folder, "output.json").read_text(encoding="utf-8").splitlines()
     return classified([json.loads(line) for line in lines])
@@ -75,13 +75,13 @@ def main(doc, folder, *options):
     if code:
         return code
     checked, wrong = inner_breaches(site)
-    served, broken, skipped = ([], [], []) if "--inner" in options else outer_links(doc, str(Path(folder, "outer")))
-    for line in [*wrong, *(f"broken: {uri}" for uri in broken), *(f"skipped, no network: {uri}" for uri in skipped)]:
+    served, invalid, skipped = ([], [], []) if "--inner" in options else outer_links(doc, str(Path(folder, "outer")))
+    for line in [*wrong, *(f"invalid: {uri}" for uri in invalid), *(f"skipped, no network: {uri}" for uri in skipped)]:
         print(line)
     print(f"{checked} links within the site, {len(wrong)} wrong")
     if "--inner" not in options:
-        print(f"{len(served)} external links work, {len(broken)} are broken, {len(skipped)} were skipped")
-    return 1 if wrong or broken else 0
+        print(f"{len(served)} external links work, {len(invalid)} are invalid, {len(skipped)} were skipped")
+    return 1 if wrong or invalid else 0
 
 
 if __name__ == "__main__":

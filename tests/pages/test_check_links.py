@@ -41,12 +41,12 @@ class OuterLinks(unittest.TestCase):
 
     def test_without_a_network_links_are_skipped(self):
         """No server has reported anything."""
-        found = [record("https://a.org", "broken"), record("#inner", "unchecked"), record("b.md", "local")]
+        found = [record("https://a.org", "invalid"), record("#inner", "unchecked"), record("b.md", "local")]
         self.assertEqual(classified(found), ([], [], ["https://a.org"]))
 
     def test_with_a_network_missing_pages_and_servers_are_broken(self):
         """One server serves its page, one reports a missing page, one does not exist."""
-        found = [record("https://a.org", "working", 200), record("https://b.org", "broken", 404),
+        found = [record("https://a.org", "working", 200), record("https://b.org", "invalid", 404),
                  record("https://c.org", "timeout")]  # fmt: skip
         self.assertEqual(classified(found), (["https://a.org"], ["https://b.org", "https://c.org"], []))
 
