@@ -1,4 +1,4 @@
-!> Nodes with several layers, and the interfaces between these: coupling of the jumps of one node in a step.
+!> Nodes with several layers and the interfaces between them: coupling of the jumps of a node in a step.
 module interface_stacks
   use cohesive_interfaces, only: cohesive_interfaces_t
   use cohesive_laws, only: cohesive_law_t
@@ -12,19 +12,19 @@ module interface_stacks
 
   !> Stacks of layers. Points of a stack follow each other downwards; each but the first carries the interface above it.
   type :: interface_stacks_t
-    !> First point and number of layers of each stack that moves by itself, (stacks)
+    !> First point and number of layers of each independent stack, (stacks)
     integer, allocatable :: first(:), layers(:)
-    !> Points of nodes with one layer that move by themselves
+    !> Independent points of nodes with one layer
     integer, allocatable :: single(:)
     !> Height z of the interface above a point, (points)
     real(wp), allocatable :: height(:)
-    !> Area of that interface at the node, with that of points that follow, (points)
+    !> Area of that interface at the node, with that of dependent points, (points)
     real(wp), allocatable :: area(:)
     !> Stiffness of the undamaged interface against shear and opening, force per jump, (2, points)
     real(wp), allocatable :: stiffness(:, :)
-    !> Twice the energy of the undamaged interface at a node below which no damage begins or grows, (points)
+    !> Twice the energy of the undamaged interface at a node below which damage neither starts nor grows, (points)
     real(wp), allocatable :: min_onset(:)
-    !> True where some interface of a stack is damaged, (stacks)
+    !> True for stacks with a damaged interface, (stacks)
     logical, allocatable :: damaged(:)
     !> Square of the step times the compliance of the layers, its diagonal and the off-diagonal entries, along x, y and
     !> z,
@@ -34,12 +34,12 @@ module interface_stacks
     real(wp), allocatable :: factors(:, :, :)
     !> Forces on the jumps in the last step, and change of the jumps in it, (3, points)
     real(wp), allocatable :: forces(:, :), change(:, :)
-    !> Energy dissipated by contact of faces, and by the implicit treatment otherwise, (2, points)
+    !> Energy dissipated by contact of faces, and numerically by the implicit tractions, (2, points)
     real(wp), allocatable :: lost(:, :)
   contains
     !> Finds the compliances for a step.
     procedure :: prepare
-    !> Finds which stacks are damaged.
+    !> Marks damaged stacks.
     procedure :: find_damaged
     !> Onset energies, reduced by flaws.
     procedure :: find_onsets
@@ -54,7 +54,7 @@ contains
     type(model_t), intent(in) :: model
     !> The interfaces
     type(cohesive_interfaces_t), intent(in) :: cohesive
-    !> Lumped inertia, with the points that follow
+    !> Lumped inertia, with the dependent points
     type(nodal_inertia_t), intent(in) :: inertia
     !> The stacks
     type(interface_stacks_t) :: self
@@ -126,7 +126,7 @@ contains
     end do
   end subroutine find_onsets
 
-  !> Finds which stacks are damaged.
+  !> Marks damaged stacks.
   pure subroutine find_damaged(self, cohesive)
     !> The stacks
     class(interface_stacks_t), intent(inout) :: self
@@ -145,7 +145,7 @@ contains
   pure subroutine copy_to_followers(self, inertia, cohesive)
     !> The stacks
     class(interface_stacks_t), intent(in) :: self
-    !> Lumped inertia, with the points that follow
+    !> Lumped inertia, with the dependent points
     type(nodal_inertia_t), intent(in) :: inertia
     !> The interfaces
     type(cohesive_interfaces_t), intent(inout) :: cohesive

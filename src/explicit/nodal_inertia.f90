@@ -1,10 +1,10 @@
-!> Lumped inertia of the layers at each node, and the inverse that turns forces on a layer into its accelerations.
+!> Lumped inertia of the layers at each node, and its inverse.
 !>
 !> In each direction in the plane a layer has a displacement u of the mid-plane z = 0 and a rotation theta, coupled
 !> where the layer lies off the mid-plane: M = [I0 I1; I1 I2]. In-plane and rotary inertia may be scaled, which
 !> lengthens the stable step (L. Olovsson, K. Simonsson, M. Unosson, International Journal for Numerical Methods in
-!> Engineering 63 (2005) 1436-1445); the mass of w is never scaled. Points that take their motion from others add
-!> their inertia to these.
+!> Engineering 63 (2005) 1436-1445); the mass of w is never scaled. The inertia of dependent points is added to that of
+!> the points that determine their motion.
 module nodal_inertia
   use kinds, only: wp
   use leading_points, only: find_leading_points
@@ -18,20 +18,20 @@ module nodal_inertia
 
   !> Inertia of this rank's points.
   type :: nodal_inertia_t
-    !> I0, I1, I2 of motion in the plane and of rotation, scaled, and I0 of w, (4, points); zero where a point follows
+    !> Scaled I0, I1, I2 of in-plane motion and rotation, and I0 of w, (4, points); zero at dependent points
     real(wp), allocatable :: mass(:, :)
-    !> Unknowns held at zero, (5, points)
+    !> True for unknowns constrained to zero, (5, points)
     logical, allocatable :: held(:, :)
-    !> Springs that hold the unknowns of the first layer, treated implicitly, (5, points); unallocated: none
+    !> Stiffness of springs on the unknowns of the first layer, treated implicitly, (5, points); unallocated: none
     real(wp), allocatable :: springs(:, :)
-    !> Inverse of inertia and implicit springs, zero for what is held, (7, points)
+    !> Inverse of inertia and implicit springs, zero for constrained unknowns, (7, points)
     real(wp), allocatable :: inverse(:, :)
     !> Points that follow others, and their leaders, (followers)
     integer, allocatable :: followers(:), leaders(:)
     !> Signs of their motion, (5, followers)
     real(wp), allocatable :: signs(:, :)
   contains
-    !> Finds the inverse for a step.
+    !> Computes the inverse for a step.
     procedure :: invert
     !> Adds forces on points that follow to those on their leaders; gives them their leaders' motion.
     procedure :: fold
@@ -58,7 +58,7 @@ contains
     call find_springs(model, self)
   end function create_nodal_inertia
 
-  !> Points of this rank that follow others, and what supports and symmetry hold.
+  !> Dependent points of this rank, and unknowns constrained by supports and symmetry.
   subroutine find_followers(model, self)
     type(model_t), intent(in) :: model
     !> Receives them
@@ -81,7 +81,7 @@ contains
   pure subroutine fold_mass(self, mass)
     !> The inertia
     type(nodal_inertia_t), intent(in) :: self
-    !> A nodal quantity that has no sign, (:, points)
+    !> A nodal quantity without sign, (:, points)
     real(wp), intent(inout) :: mass(:, :)
     integer :: i
 
@@ -91,7 +91,7 @@ contains
     end do
   end subroutine fold_mass
 
-  !> Springs of clamps and of elastic edges at the points of the first layer. Those of edges are lumped as the mass is.
+  !> Stiffness of clamps and elastic edges at the points of the first layer, edges lumped like the mass.
   subroutine find_springs(model, self)
     type(model_t), intent(in) :: model
     !> Receives them
@@ -119,7 +119,7 @@ contains
     call fold_mass(self, self%springs)
   end subroutine find_springs
 
-  !> Finds the inverse for steps of a length: what springs add to the inertia goes with its square.
+  !> Computes the inverse for a step length, with the stiffness of springs times its square.
   pure subroutine invert(self, step_square)
     !> The inertia
     class(nodal_inertia_t), intent(inout) :: self
@@ -140,13 +140,13 @@ contains
     end do
   end subroutine invert
 
-  !> Inverse of the inertia of displacement and rotation, with what is held out of it.
+  !> Inverse of the inertia of displacement and rotation, without constrained unknowns.
   pure function inverse_block(mass, held) result(inverse)
     !> I0, I1, I2
     real(wp), intent(in) :: mass(3)
-    !> True for what is held: displacement, rotation
+    !> True for constrained unknowns: displacement, rotation
     logical, intent(in) :: held(2)
-    !> Of displacement, of both, of rotation
+    !> Entries of displacement, coupling, rotation
     real(wp) :: inverse(3)
     real(wp) :: determinant
 

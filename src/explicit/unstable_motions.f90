@@ -10,13 +10,13 @@ module unstable_motions
   private
   public :: refuse_instability
 
-  !> Energy that nothing accounts for, over all energy that was there or brought in, from which a run ends. An unstable
-  !> mode grows by a factor each step and passes it at once; the watch of the ledger warns from a tenth of it.
+  !> Error of the energy ledger, relative to initial energy plus external work, above which a run ends. An unstable mode
+  !> grows exponentially and passes it within a few steps; the check of the ledger warns from a tenth of it.
   real(wp), parameter :: max_created = 0.1_wp
 
 contains
 
-  !> Ends a run whose energy grows without a cause. Collective.
+  !> Sets an error if the energy error shows unstable growth. Collective.
   subroutine refuse_instability(model, now, error)
     type(model_t), intent(in) :: model
     !> The state, with its ledger
@@ -37,7 +37,7 @@ contains
               '. Take a smaller &time step_factor.')
   end subroutine refuse_instability
 
-  !> Where the plate moves fastest across itself. Collective.
+  !> Point of the largest transverse velocity. Collective.
   function fastest_point(model, velocity) result(place)
     type(model_t), intent(in) :: model
     !> Rates of the unknowns, (5, points)
