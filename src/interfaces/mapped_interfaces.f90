@@ -1,5 +1,5 @@
-!> Cohesive interfaces on the way to another mesh, where a point has a share of each old point beside it: shares of the
-!> toughness dissipated have a mean with a meaning, the area that they stand for, and damage has none.
+!> Cohesive interfaces in the transfer to another mesh, by weighted means of old points: the dissipated fraction of the
+!> toughness is transferred instead of the damage variable, since its mean conserves dissipated area and energy.
 module mapped_interfaces
   use cohesive_interfaces, only: cohesive_interfaces_t
   use cohesive_laws, only: stiffness_of
@@ -13,7 +13,7 @@ module mapped_interfaces
 
 contains
 
-  !> Puts the share of the toughness dissipated in the place of the damage.
+  !> Replaces the damage by the dissipated fraction of the toughness.
   pure subroutine put_shares(interfaces, model)
     !> The interfaces
     type(cohesive_interfaces_t), intent(inout) :: interfaces
@@ -22,7 +22,7 @@ contains
     if (allocated(interfaces%cohesive)) interfaces%points%damage = interfaces%shares(model)
   end subroutine put_shares
 
-  !> Takes the damage that has dissipated these shares.
+  !> Replaces the dissipated fraction of the toughness by the damage.
   pure subroutine take_shares(interfaces, model)
     !> The interfaces
     type(cohesive_interfaces_t), intent(inout) :: interfaces
@@ -40,8 +40,8 @@ contains
     end do
   end subroutine take_shares
 
-  !> Moves slips to jumps that friction bears: means of slips do not go with jumps between nodes, and what friction
-  !> would have stored beyond its limit was never work.
+  !> Corrects slips so that friction is within its limit: means of slips are not consistent with the interpolated jumps,
+  !> and elastic energy beyond the limit would be spurious.
   pure subroutine take_slips(interfaces, model, displacement)
     !> The interfaces
     type(cohesive_interfaces_t), intent(inout) :: interfaces

@@ -20,14 +20,14 @@ module tie_release
     real(wp), allocatable :: share(:)
     !> Duration of the ramp, (zones)
     real(wp), allocatable :: duration(:)
-    !> Energy that released faces released, full plate, (zones)
+    !> Energy released by released ties, full plate, (zones)
     real(wp), allocatable :: set_free(:)
     !> Time until the last of them is zero, the same on every rank
     real(wp) :: left = 0
   contains
     !> Releases ties.
     procedure :: release
-    !> Energy that ties just released released as they first open.
+    !> Energy released by the first opening of newly released ties.
     procedure :: first_opening
     !> Reduces the forces over a step.
     procedure :: ramp_down
@@ -46,8 +46,8 @@ contains
     type(model_t), intent(in) :: model
     !> The ties
     type(tie_release_t) :: self
-    !> Elements that waves of shear cross while a tie fades. With 10 the energy released is the same to some percent
-    !> for all shorter steps.
+    !> Number of elements crossed by shear waves during the ramp. With 10 the energy released is the same within some
+    !> per cent for all shorter steps.
     real(wp), parameter :: elements_crossed = 10
     real(wp) :: slowness
     integer :: points, zones, zone
@@ -84,8 +84,8 @@ contains
     self%left = maxval(self%duration)
   end subroutine release
 
-  !> Energy that ties just released released as they first open, once the step has been computed again without them.
-  !> What cells released later in the same step make of the opening is theirs.
+  !> Energy released by the first opening of newly released ties, after the step was repeated without them. Opening by
+  !> cells released later in the same step is attributed to these.
   function first_opening(self, model, free_before, free, opening) result(energy)
     !> The ties at the end of the step
     class(tie_release_t), intent(in) :: self
@@ -148,9 +148,9 @@ contains
     end do
   end subroutine act
 
-  !> Books the work against the forces in a step: as the step had it, the force at its end acting throughout, and as
-  !> the energy released has it, with the mean of the forces at its start and end. Of ties released in this step the
-  !> difference is that of `first_opening`.
+  !> Books the work against the forces in a step: that of the step with the force at its end, and the energy released
+  !> with the mean of the forces at its start and end. For ties released in this step the difference is that of
+  !> `first_opening`.
   subroutine book(self, model, old, change, taken)
     !> The ties at the end of the step
     class(tie_release_t), intent(inout) :: self
@@ -159,7 +159,7 @@ contains
     type(tie_release_t), intent(in) :: old
     !> Change of the unknowns, (5, points)
     real(wp), intent(in) :: change(:, :)
-    !> Energy that the forces took from the full plate
+    !> Energy extracted from the full plate by the forces
     real(wp), intent(out) :: taken
     real(wp) :: sums(size(self%set_free) + 1), work, mean
     integer :: i
