@@ -1,4 +1,4 @@
-!> What the field file holds of the plies: their failures, and their stresses in their own axes.
+!> Fields of the plies: failures, and stresses in their own axes.
 module ply_fields
   use element_stresses, only: element_strains, stresses_of_ply
   use errors, only: error_t
@@ -38,14 +38,14 @@ module ply_fields
 
 contains
 
-  !> Writes the fields that are wanted.
+  !> Writes the requested fields.
   subroutine write_ply_fields(model, plies, displacement, output, fields, error)
     type(model_t), intent(in) :: model
     !> Failures of its plies
     type(ply_failure_t), intent(in) :: plies
     !> Displacement, ghosts up to date, (5, points)
     real(wp), intent(in) :: displacement(:, :)
-    !> Which fields
+    !> Requested fields
     type(output_t), intent(in) :: output
     !> The file
     type(fields_file_t), intent(inout) :: fields
@@ -78,7 +78,7 @@ contains
     end do
   end subroutine write_ply_fields
 
-  !> Parts of E1 and E2 that one ply has lost.
+  !> Lost fractions of E1 and E2 of a ply.
   pure function stiffness_lost(model, plies, ply) result(lost)
     type(model_t), intent(in) :: model
     !> Failures of its plies
@@ -96,9 +96,9 @@ contains
     end do
   end function stiffness_lost
 
-  !> 1 for fibre failure, 2 for matrix cracking, 4 for crushing, added up.
+  !> Sum of 1 for fibre failure, 2 for matrix cracking, 4 for crushing.
   pure function failure_code(failed) result(code)
-    !> What failed in one ply, (3, elements)
+    !> Failed modes of a ply, (3, elements)
     logical, intent(in) :: failed(:, :)
     !> The sum, (1, elements)
     real(wp) :: code(1, size(failed, 2))
