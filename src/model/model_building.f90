@@ -1,4 +1,4 @@
-!> Makes a setup ready for computing: mesh, elements, loads and interfaces of this rank's share.
+!> Builds the model of a setup: mesh, elements, loads and interfaces on this rank.
 module model_building
   use kinds, only: wp
   use errors, only: error_t
@@ -36,14 +36,14 @@ module model_building
 
 contains
 
-  !> Makes a setup ready.
+  !> Builds the model of a setup.
   subroutine create_model(setup, communicator, self, error)
     !> The setup; it has passed the deck's checks
     type(setup_t), intent(in) :: setup
     !> The ranks
     type(communicator_t), intent(in) :: communicator
     type(model_t), intent(out) :: self
-    !> Set if the mesh can't be distributed or an element is ill-shaped; the same on every rank
+    !> Set if the mesh cannot be distributed or an element is ill-shaped; the same on every rank
     type(error_t), allocatable, intent(out) :: error
     type(zone_t), allocatable :: zones(:)
     integer :: ply
@@ -83,7 +83,7 @@ contains
     call find_struck_point(self)
   end subroutine create_model
 
-  !> True if membrane and bending do not act on each other.
+  !> True if membrane and bending are uncoupled.
   pure logical function uncoupled(section)
     !> The laminate's section
     type(section_t), intent(in) :: section
@@ -120,7 +120,7 @@ contains
     end associate
   end function unrestrained
 
-  !> Lines that fix or move the plate in its plane.
+  !> Lines that constrain or displace the plate in its plane.
   pure function lines_in_plane(setup) result(in_plane)
     !> The setup
     type(setup_t), intent(in) :: setup

@@ -14,7 +14,7 @@ module model_loads
 
 contains
 
-  !> How the elements' contributions are summed at points on the borders between ranks.
+  !> Prepares the sums of elements' contributions at points on the borders between ranks.
   subroutine build_borders(self)
     !> The model, with its elements and halo
     type(model_t), intent(inout) :: self
@@ -27,7 +27,7 @@ contains
     end associate
   end subroutine build_borders
 
-  !> Areas that belong to the points of some of this rank's elements. Collective.
+  !> Nodal areas of some of this rank's elements. Collective.
   function nodal_areas(self, elements) result(areas)
     !> The model, with its elements and borders
     type(model_t), intent(in) :: self
@@ -80,7 +80,7 @@ contains
     end associate
   end function patch_elements
 
-  !> The nose whose contact the patch follows.
+  !> Creates the nose that determines the patch.
   subroutine build_nose(self, area)
     !> The model, with its patch
     type(model_t), intent(inout) :: self
