@@ -23,9 +23,9 @@ module deck_symmetries
   private
   public :: check_symmetry, note_symmetry, symmetry_sentence
 
-  !> Coupling stiffness that counts as none, relative to the stiffness it couples.
+  !> Relative tolerance of zero coupling stiffness.
   real(wp), parameter :: no_coupling = 1.0e-9_wp
-  !> Distance of a clamp from the image of another one that counts as none, relative to the plate.
+  !> Tolerance of the position of a clamp and the image of another one, relative to the plate.
   real(wp), parameter :: same_place = 1.0e-6_wp
 
 contains
@@ -125,7 +125,7 @@ contains
     end do
   end function smallest_part
 
-  !> Notes the symmetry that a full plate keeps during failure. Without failure it keeps it by itself.
+  !> Sets the symmetry that is enforced on a full plate during failure; without failure it is preserved anyway.
   subroutine note_symmetry(deck)
     !> The deck, checked
     type(deck_t), intent(inout) :: deck
@@ -144,7 +144,7 @@ contains
     integer :: i
 
     alike = deck%plate%edges([1, 3]) == deck%plate%edges([2, 4])
-    ! Lines and strips are where the deck puts them, whether or not an image faces them.
+    ! Lines and strips need not have images.
     suits = size(deck%lines) == 0 .and. .not. any_strip(deck) .and. &
             .not. any([(starter_aside(deck%delaminations(i), symmetry), i=1, size(deck%delaminations))]) .and. &
             all(alike .or. .not. is_halved(symmetry)) .and. (symmetry /= symmetry_point .or. all(alike)) .and. &
@@ -176,7 +176,7 @@ contains
                       i=1, size(deck%delaminations))])
   end function any_strip
 
-  !> True if the impactor strikes off the centre in a direction that matters.
+  !> True if the struck point is not on a line of symmetry.
   pure logical function struck_aside(deck, symmetry)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -208,9 +208,9 @@ contains
 
   contains
 
-    !> True if the image of each clamp is one too.
+    !> True if the image of each clamp is a clamp.
     pure logical function have_images(signs)
-      !> Factors of x and y that make the image
+      !> Signs of x and y of the image
       integer, intent(in) :: signs(2)
       integer :: j, k
 
