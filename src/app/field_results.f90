@@ -18,7 +18,7 @@ module field_results
   private
   public :: part_of, write_fields, write_mesh
 
-  !> Fields that stay with the mesh.
+  !> Constant fields of the mesh.
   character(len=*), parameter :: mesh_field_rows(*) = [character(len=result_row_length) :: &
     'first_ply | cells | - | - | - | First ply of the element''s layer, from the struck face.', &
     'last_ply | cells | - | - | - | Last ply of the element''s layer.', &
@@ -88,12 +88,12 @@ contains
     end associate
   end function heights
 
-  !> Writes the fields of the state reached that are wanted and whose physics is modelled.
+  !> Writes the requested fields of the state reached, if their physics is modelled.
   subroutine write_fields(model, stepper, output, fields, error)
     type(model_t), intent(in) :: model
     !> The time stepper
     type(time_stepper_t), intent(in) :: stepper
-    !> Which fields
+    !> Requested fields
     type(output_t), intent(in) :: output
     !> The file
     type(fields_file_t), intent(inout) :: fields

@@ -1,5 +1,5 @@
-!> Signals by which a queue announces the time limit: TERM, INT, USR1, USR2 and XCPU. They are blocked from the start of
-!> the program (held_signals.c) and remain pending until they are queried.
+!> Signals by which a queue announces the time limit: TERM, INT, USR1, USR2 and XCPU. The numbers are blocked from the
+!> start of the program (held_signals.c) and remain pending until they are queried.
 module queue_signals
   use, intrinsic :: iso_c_binding, only: c_int
   implicit none
@@ -15,7 +15,7 @@ module queue_signals
     subroutine announce_stop_signals() bind(c, name='implam_announce_stop_signals')
     end subroutine announce_stop_signals
 
-    !> Number of such a signal that has come; 0: none.
+    !> Number of a received signal; 0: none.
     integer(c_int) function stop_signal() bind(c, name='implam_stop_signal')
       import :: c_int
     end function stop_signal

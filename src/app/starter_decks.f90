@@ -9,7 +9,7 @@ module starter_decks
   private
   public :: write_starter
 
-  !> Name that it has without another.
+  !> Its default name.
   character(len=*), parameter, public :: starter_name = 'impact.nml'
   !> Its lines. Material and interface are those of input/peanut.nml.
   character(len=105), parameter :: lines(*) = [character(len=105) :: &
@@ -53,7 +53,7 @@ contains
     character(len=*), intent(in) :: path
     !> Name of a rig; empty: none
     character(len=*), intent(in) :: rig
-    !> Raised if there is such a file already, or it can't be written
+    !> Set if the file exists or cannot be written
     type(error_t), allocatable, intent(inout) :: error
     type(line_t), allocatable :: deck(:)
     integer :: i
