@@ -1,5 +1,5 @@
-!> Signals by which a queue announces the time limit: TERM, INT, USR1, USR2 and XCPU. The numbers are blocked from the
-!> start of the program (held_signals.c) and remain pending until they are queried.
+!> Signals by which a queue announces the time limit: TERM, INT, USR1, USR2 and XCPU. They are blocked from the start of
+!> the program (held_signals.c) and remain pending until they are queried.
 module queue_signals
   use, intrinsic :: iso_c_binding, only: c_int
   implicit none

@@ -145,7 +145,7 @@ contains
 
     !> Adds an error, or null.
     subroutine put_known(name, error)
-      !> Its name of
+      !> Its name
       character(len=*), intent(in) :: name
       !> The error; negative: not known
       real(wp), intent(in) :: error
@@ -328,7 +328,7 @@ contains
     call json%close()
   end subroutine put_warnings
 
-  !> Its name the run took.
+  !> Cost of the run.
   subroutine put_costs(json, stepper, seconds)
     !> The summary
     type(json_t), intent(inout) :: json

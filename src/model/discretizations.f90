@@ -1,5 +1,5 @@
-!> Elements, points and unknowns of the plate, and their distribution over ranks. The unknowns are constant in a run;
-!> new layers require new ones.
+!> Elements, points and unknowns of the plate, and their distribution over ranks. All are constant in a run; new layers
+!> require new ones.
 module discretizations
   use border_sums, only: border_sum_t
   use communicators, only: communicator_t

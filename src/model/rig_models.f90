@@ -15,7 +15,7 @@ module rig_models
   private
   public :: rig_model_t, new_rig_model, hold_by_rigs
 
-  !> The rigs at this rank's points. The unknowns act on the first point of a node only.
+  !> The rigs at this rank's points. They act on the first point of a node only.
   type :: rig_model_t
     !> True with a unilateral frame, or with clamps with a force
     logical :: unilateral = .false.

@@ -1,8 +1,8 @@
-!> Elements on both sides of a line through the struck point, or of one at which the model is cut. The plies are
-!> strained alike, so that plies would break in both at once where only one crack is meant. As far as damage goes they
-!> are one element, as wide as both, with one state a ply that the strains of both drive. With its mirror image an
-!> element shares its state anyway. In a half that a turn makes whole, the element beyond the cut is the image of one on
-!> the other side of the middle.
+!> Elements on both sides of a line through the struck point or of a symmetry line. Their strains are equal, so that
+!> plies would fail in both at once, with two crack bands instead of one. For damage they are one element with the width
+!> of both and one state per ply, computed from the strains of both. With mirror symmetry an element and its image have
+!> one state in any case. With point symmetry the element beyond the cut is the image of one on the other side of the
+!> centre.
 module joined_elements
   use column_exchanges, only: column_exchange_t, new_column_exchange
   use element_batches, only: batch_of
