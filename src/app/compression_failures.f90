@@ -36,8 +36,8 @@ contains
     !> The failure
     type(compression_failure_t) :: failure
 
-    failure%interfaces = went_across(before%interfaces, after%interfaces)
-    failure%plies = went_across(before%plies, after%plies)
+    failure%interfaces = failed_across(before%interfaces, after%interfaces)
+    failure%plies = failed_across(before%plies, after%plies)
     failure%code = ''
     associate (grown => any(failure%interfaces), torn => any(failure%plies))
       if (grown .and. torn) then
@@ -55,14 +55,14 @@ contains
   end function failure_of
 
   !> True for interfaces or plies that failed across the full width since the start.
-  pure function went_across(before, after) result(across)
+  pure function failed_across(before, after) result(across)
     !> Quantities at the start and at the end
     real(wp), intent(in) :: before(:, :), after(:, :)
     !> One per interface or ply
     logical :: across(size(after, 2))
 
     across = before(figure_width, :) < 1 .and. .not. after(figure_width, :) < 1
-  end function went_across
+  end function failed_across
 
   !> Mean distance from the middle of failure since the start in some interfaces or plies.
   pure real(wp) function mean_place(before, after, chosen) result(place)

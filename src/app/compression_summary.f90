@@ -54,7 +54,7 @@ contains
            rounded_text(record%at)
     if (record%modulus() > 0) text = text//', effective modulus '//rounded_text(record%modulus())
     if (record%buckling > 0) text = text//', buckled at a strain of '//rounded_text(record%buckling)
-    if (.not. record%failed) text = text//'; the plate has not failed, so it is borne at least'
+    if (.not. record%failed) text = text//'; a lower bound, as the plate has not failed'
   end function compression_text
   !> Place of failure, for the file.
   subroutine put_collapse(json, record, figures, below_plies)
@@ -109,7 +109,7 @@ contains
       call json%put('mean_distance', after(figure_mean))
       call json%put('width_before', before(figure_width))
       call json%put('width', after(figure_width))
-      call json%put('went_across', across)
+      call json%put('failed_across', across)
       call json%close()
     end subroutine put_place
   end subroutine put_collapse

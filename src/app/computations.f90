@@ -257,7 +257,7 @@ contains
     call deck%settings%derive(case_group, key_name, deck%name, .true.)
     if (problems%errors() == 0 .and. adopted_values(deck%settings) /= archive%provenance%library) &
       call fail(error, exit_files, path//' was written by version '//archive%provenance%version// &
-                ', whose library of materials has other values; go on with that version, or begin anew.')
+                ', whose library of materials has other values; continue with that version, or start a new run.')
     if (problems%errors() == 0) call visit_zones(deck%delaminations, archive)
     call archive%close(error)
     deck%output%directory = '.'

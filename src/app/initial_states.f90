@@ -20,7 +20,7 @@ module initial_states
   use layer_extents, only: widened_extent
   use layer_transfers, only: layer_transfer_t
   use mapped_figures, only: after_mapping, before_mapping, mapped_figures_t
-  use mapped_interfaces, only: put_shares, take_shares, take_slips
+  use mapped_interfaces, only: put_fractions, take_fractions, take_slips
   use mesh_transfers, only: mesh_transfer_t
   use logger, only: log_t
   use model_building, only: create_model
@@ -156,8 +156,8 @@ contains
     if (is_mapped(deck, old)) then
       call mapping%note(model, stepper%now, after_mapping)
       call log%note(mapping%line(deck%delaminations%below_ply))
-      if (mapping%loser() > 0) then
-        call refuse(deck, 'the interface below ply '//to_text(deck%delaminations(mapping%loser())%below_ply)// &
+      if (mapping%first_loss() > 0) then
+        call refuse(deck, 'the interface below ply '//to_text(deck%delaminations(mapping%first_loss())%below_ply)// &
                     ' has delaminated beyond the '//key_zone//' that it has here', error)
         return
       end if
@@ -198,7 +198,7 @@ contains
     if (is_mapped(deck, old)) then
       allocate (mesh_transfer_t :: transfer)
       call mapping%note(old_model, state, before_mapping)
-      call put_shares(state%interfaces%cohesive, old_model)
+      call put_fractions(state%interfaces%cohesive, old_model)
     else
       allocate (layer_transfer_t :: transfer)
     end if
@@ -208,7 +208,7 @@ contains
     call visit_inheritance(stepper%now, transfer, model)
     if (.not. is_mapped(deck, old)) return
     associate (now => stepper%now)
-      call take_shares(now%interfaces%cohesive, model)
+      call take_fractions(now%interfaces%cohesive, model)
       call take_slips(now%interfaces%cohesive, model, now%motion%displacement)
     end associate
   end subroutine load_transfer

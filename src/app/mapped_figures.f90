@@ -28,7 +28,7 @@ module mapped_figures
     !> Stores the quantities of a state.
     procedure :: note
     !> First interface with a loss of area or energy; 0: none.
-    procedure :: loser
+    procedure :: first_loss
     !> One line for the log.
     procedure :: line
     !> Adds them to the summary.
@@ -87,13 +87,13 @@ contains
   end function damage_of_plies
 
   !> First interface with a loss of area or energy, as its zone is too small; 0: none.
-  pure integer function loser(self)
+  pure integer function first_loss(self)
     !> The quantities
     class(mapped_figures_t), intent(in) :: self
 
-    loser = findloc(self%area(:, 2) < (1 - tolerance)*self%area(:, 1) .or. &
+    first_loss = findloc(self%area(:, 2) < (1 - tolerance)*self%area(:, 1) .or. &
                     self%energy(:, 2) < (1 - tolerance)*self%energy(:, 1), .true., dim=1)
-  end function loser
+  end function first_loss
 
   !> One line for the log.
   pure function line(self, below_plies)

@@ -226,7 +226,7 @@ contains
     call fit_initial_state(deck, communicator, error, lacks)
     if (allocated(error)) return
     if (lacks) call print_lines(communicator, [line_t('The initial state '//deck%initial%from// &
-                                                      ' is not there, so the deck is not held against it.')])
+                                                      ' does not exist, so the deck is not compared with it.')])
     call print_lines(communicator, [line_t(command%target//': no errors.')])
     if (symmetry_sentence(deck) /= '') call print_lines(communicator, [line_t(symmetry_sentence(deck))])
     call print_lines(communicator, [scale_lines(deck), strength_lines(deck)])

@@ -68,7 +68,7 @@ contains
       call size_deck(job, error)
     end if
     if (job%chain .and. job%tasks > 0 .and. job%queue == 'pbs') call fail(error, exit_usage, &
-      'An array of PBS can''t be a chain; list what is left with implam-sweep --array and submit that.')
+      'An array of PBS can''t be a chain; list the remaining runs with implam-sweep --array and submit that list.')
     if (allocated(error)) return
     allocate (script(0))
     if (job%queue == 'slurm') then
@@ -202,7 +202,7 @@ contains
     type(line_t), allocatable, intent(inout) :: script(:)
     character(len=:), allocatable :: launcher
 
-    call append(script, '# Written by implam queue '//job%queue//' for '//job%target//'; what stands above may be '// &
+    call append(script, '# Written by implam queue '//job%queue//' for '//job%target//'; the lines above may be '// &
                 'changed.')
     call append(script, 'export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1')
     if (job%tasks > 0) then
@@ -211,7 +211,7 @@ contains
       launcher = ''
       if (job%ranks > 1) launcher = 'mpirun -n '//to_text(job%ranks)//' '
       call append(script, 'command=('//launcher//'"${IMPLAM:-'//job%program//'}")')
-      call append(script, '# A job that comes again, or is submitted with the word restart, goes on from a checkpoint.')
+      call append(script, '# A requeued job, or one submitted with the word restart, continues from a checkpoint.')
       call append(script, 'checkpoint='//quoted(job%checkpoint))
       call append(script, 'if [[ ${1:-} == restart ]]; then parts=1; fi')
       call append(script, 'if [[ -e $checkpoint && $parts -gt 0 ]]; then')

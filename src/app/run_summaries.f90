@@ -53,18 +53,18 @@ contains
     type(error_t), allocatable :: fault
     type(line_t), allocatable :: lines(:)
     character(len=:), allocatable :: unknown_because
-    logical :: ended, wanted
+    logical :: ended, needed
     integer :: i
 
     call find_figures(model, stepper%now, figures)
     if (.not. allocated(error)) errors = errors_by_elastic_impact(deck, record)
     ended = .not. (allocated(error) .or. deck%is_static() .or. deck%inherits)
-    wanted = ended .and. needs_coarse_run(deck%settings, errors%source /= 'none')
-    if (wanted) call run_coarse_model(deck, model%communicator, coarse_run)
+    needed = ended .and. needs_coarse_run(deck%settings, errors%source /= 'none')
+    if (needed) call run_coarse_model(deck, model%communicator, coarse_run)
     if (coarse_run%done) errors = errors_by_coarse_run(deck, record, stepper%now%impactor%velocity, &
                                                      sum(figures%interfaces%area), coarse_run)
     unknown_because = ''
-    if (wanted .and. .not. coarse_run%done) then
+    if (needed .and. .not. coarse_run%done) then
       unknown_because = cut
       if (errors%source == 'elastic') unknown_because = elastic_only
     else if (ended .and. errors%source == 'none') then

@@ -234,7 +234,7 @@ contains
       text = 'The plate''s kinetic energy is more than '//short_text(100*max_kinetic)//' % of the work since '// &
              at//': the motion is too fast for a quasi-static test; take a longer end or rise.'
     case (warning_scaled)
-      text = 'Motions with scaled inertia have held more than '//short_text(100*max_scaled)// &
+      text = 'Kinetic energy of motions with scaled inertia exceeds '//short_text(100*max_scaled)// &
              ' % of the energy since '//at//': take a smaller mass_scaling, or compare with 1.'
     case (warning_indentation)
       text = 'The indentation exceeds the thickness of the laminate since '//at// &

@@ -209,7 +209,7 @@ contains
                              rows, last_row, error)
     if (allocated(error)) return
     if (self%history%rows /= rows) &
-      call self%log%warning('The history before the checkpoint is not there; it goes on from here.')
+      call self%log%warning('The history before the checkpoint is missing; it continues from here.')
     call self%fields%resume(communicator, self%base, self%provenance, part_of(self%deck), &
                             shown_time(self%stepper%now%time), error)
     if (allocated(error)) return

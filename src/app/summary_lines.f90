@@ -57,7 +57,7 @@ contains
     if (struck) call add_impact_energy(lines, deck, now)
     if (struck .and. .not. now%force > 0) call add_dent(lines, figures)
     call add_energies(lines, now%ledger)
-    if (record%scaled_energy > 0) call add_figure(lines, 'scaled inertia', 'motions with it held at most '// &
+    if (record%scaled_energy > 0) call add_figure(lines, 'scaled inertia', 'its motions have at most '// &
                                             rounded_text(100*record%scaled_share(), 2)//' % of the energy')
     if (size(figures%interfaces) > 0) call add_interfaces(lines, deck, record, figures, errors)
     if (deck%has_ply_damage) call add_figure(lines, 'failed plies', 'fibres '//to_text(figures%failures(1))// &

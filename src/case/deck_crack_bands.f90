@@ -23,7 +23,7 @@ module deck_crack_bands
   public :: check_crack_bands
 
   !> Ratio of dissipated energy to fracture energy from which it is reported: smaller ratios are 1 in two digits.
-  real(wp), parameter :: noted = 1.1_wp
+  real(wp), parameter :: reported_ratio = 1.1_wp
 
 contains
 
@@ -162,7 +162,8 @@ contains
     do mode = 1, size(toughness_keys)
       if (longest(mode) < present(2)) call append(limits, toughness_keys(mode)//' '// &
                                                       length_text(deck, longest(mode)))
-      if (usual > noted*longest(mode)) call append(excesses, rounded_text(usual/longest(mode), 2)//' times '// &
+      if (usual > reported_ratio*longest(mode)) &
+        call append(excesses, rounded_text(usual/longest(mode), 2)//' times '// &
                                              toughness_keys(mode))
     end do
     if (size(limits) == 0) return

@@ -75,7 +75,7 @@ contains
         half = deck%plate%length(direction)/2
         if (abs(line%at) > half*(1 + rounded_off)) then
           call report(deck%settings, problems, line_group, line_key_at, &
-                      'the line passes beside the plate; allowed: '// &
+                      'the line is not on the plate; allowed: '// &
                     to_text(-half)//' to '//to_text(half)//'.', place)
         else if (mirrored(direction) .and. line%at < 0) then
           call report(deck%settings, problems, line_group, line_key_at, 'one side stands for the plate, and a line '// &

@@ -33,24 +33,24 @@ contains
       end if
       if (deck%settings%is_given(delamination_group, key_zone, place)) cycle
       if (deck%delaminations(i)%law == law_front) then
-        call want('a front needs it, and layers follow the damage of law = ''cohesive'' only')
+        call require('a front needs it, and layers follow the damage of law = ''cohesive'' only')
       else if (deck%settings%is_given(delamination_group, key_strip, place)) then
-        call want(key_strip//' runs across its whole width')
+        call require(key_strip//' runs across its whole width')
       else if (.not. all(beside_layers(deck))) then
-        call want('a &line acts on layers that are there from the start')
+        call require('a &line acts on layers that are there from the start')
       end if
     end do
 
   contains
 
     !> Reports a zone that is missing.
-    subroutine want(reason)
+    subroutine require(reason)
       !> Reason why it is required
       character(len=*), intent(in) :: reason
 
       if (are_clear(deck%settings, problems, delamination_group, key_zone, place)) &
         call report(deck%settings, problems, delamination_group, key_zone, 'is missing; '//reason//'.', place)
-    end subroutine want
+    end subroutine require
   end subroutine check_left_out_zones
 
   !> Lines outside of layers: those that displace an edge of the plate in its plane.

@@ -32,7 +32,7 @@ contains
     system = system_of(settings)
     if (system == 0) then
       if (are_clear(settings, problems, case_group, key_units)) call report(settings, problems, material_group, &
-        key_library, 'the values are known in SI; say what units the deck is in by '//key_units//' of &'// &
+        key_library, 'the values are known in SI; give the units of the deck by '//key_units//' of &'// &
         case_group//'.', first_with_library(settings))
       ! Reported once; values are filled in with an arbitrary system, so that no check reports them as missing.
       system = 1

@@ -23,24 +23,24 @@ contains
     type(deck_t), intent(in) :: deck
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
-    type(line_load_t), allocatable :: held(:)
+    type(line_load_t), allocatable :: supporting(:)
     logical, allocatable :: across(:)
     logical :: tilts(2), edges(4)
     integer :: along, n
 
     if (any(deck%plate%edges == edge_clamped)) return
-    held = pack(deck%lines, deck%lines%prescribed)
+    supporting = pack(deck%lines, deck%lines%prescribed)
     edges = deck%plate%edges /= edge_free
     do along = 1, 2
       ! The rotation is constrained by two lines or edges across this direction, or one along it.
-      across = held%component == 3 .and. held%direction == merge(along_y, along_x, along == 1)
+      across = supporting%component == 3 .and. supporting%direction == merge(along_y, along_x, along == 1)
       n = count(edges(2*along - 1:2*along))
-      if (any(across)) n = n + merge(2, 1, minval(held%at, mask=across) < maxval(held%at, mask=across))
-      tilts(along) = n > 1 .or. any(edges(5 - 2*along:6 - 2*along)) .or. any(held%component == 3 + along) .or. &
-                     any(held%component == 3 .and. .not. across)
+      if (any(across)) n = n + merge(2, 1, minval(supporting%at, mask=across) < maxval(supporting%at, mask=across))
+      tilts(along) = n > 1 .or. any(edges(5 - 2*along:6 - 2*along)) .or. any(supporting%component == 3 + along) .or. &
+                     any(supporting%component == 3 .and. .not. across)
     end do
     tilts = tilts .or. is_mirrored(deck%plate%symmetry)
-    if (all(tilts) .and. (any(held%component == 3) .or. any(edges))) return
+    if (all(tilts) .and. (any(supporting%component == 3) .or. any(edges))) return
     call report(deck%settings, problems, line_group, '', 'lines and edges leave the plate free to move or to tilt '// &
               'in a static analysis; support another line.', 1)
   end subroutine check_line_supports

@@ -72,7 +72,7 @@ contains
         'impact the largest force would be '//short_text(100*o%mesh_error(1))//' % off, its history '// &
         short_text(100*o%mesh_error(2))//' %; give more, or leave them out with &case accuracy.')
       if (any(o%patch_error > patch_error_limits)) call remark(deck%settings, problems, mesh_group, key_patch, &
-        'is larger than the contact that it stands for, whose force spreads over '//short_text(o%contact_side)// &
+        'is larger than the contact, with a force distributed over '//short_text(o%contact_side)// &
         ' in the middle of the thickness: the largest force changes by '//short_text(100*o%patch_error(1))// &
         ' %, its history by '//short_text(100*o%patch_error(2))//' %.')
     end associate

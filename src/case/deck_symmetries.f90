@@ -43,10 +43,10 @@ contains
     part = trim(merge('quarter', 'half   ', deck%plate%symmetry == symmetry_quarter))
     associate (s => deck%settings, symmetry => deck%plate%symmetry)
       if (any(is_mirrored(symmetry)) .and. is_coupled(deck)) call report(s, problems, plate_group, key_symmetry, &
-        culprit(deck)//' couples bending or extension with shear or twist (A16, A26, B16, B26, D16, D26 or A45 '// &
-        'isn''t 0), so a '//part//' can''t stand for the plate; use ''none'' or ''point''.')
+        coupled_part(deck)//' couples bending or extension with shear or twist (A16, A26, B16, B26, D16, D26 or '// &
+        'A45 isn''t 0), so a '//part//' can''t stand for the plate; use ''none'' or ''point''.')
       if (struck_aside(deck, symmetry) .and. are_clear(s, problems, impactor_group, key_at)) &
-        call report(s, problems, impactor_group, key_at, 'the impactor strikes beside the lines of symmetry = '// &
+        call report(s, problems, impactor_group, key_at, 'the struck point is not on the lines of symmetry = '// &
                     name// &
                   '; use ''none''.')
       call check_starters(deck, name, problems)
@@ -80,7 +80,7 @@ contains
       if (starter_aside(deck%delaminations(i), deck%plate%symmetry) .and. &
           are_clear(deck%settings, problems, delamination_group, key_starter_at, deck%delaminations(i)%group)) &
         call report(deck%settings, problems, delamination_group, key_starter_at, &
-                    'the starter lies beside the lines '// &
+                    'the starter is not on the lines '// &
                   'of symmetry = '//name//'; use ''none''.', deck%delaminations(i)%group)
     end do
   end subroutine check_starters
@@ -223,7 +223,7 @@ contains
   end function rigs_alike
 
   !> Subject of a message on coupling: the laminate, or parts of it.
-  pure function culprit(deck) result(words)
+  pure function coupled_part(deck) result(words)
     !> The deck
     type(deck_t), intent(in) :: deck
     !> Such as `the laminate`
@@ -233,7 +233,7 @@ contains
     if (couples(stacked_plies(deck%laminate, deck%materials))) return
     words = 'a layer between interfaces'
     if (deck%has_ply_damage) words = 'a ply that may fail'
-  end function culprit
+  end function coupled_part
 
   !> True: the laminate is valid and not symmetric about the axes of the plate, or a part of it is not: a layer between
   !> interfaces, or with damage each ply.

@@ -94,7 +94,7 @@ contains
 
     call remark(deck%settings, problems, trim(item%group), trim(item%key), short_text(item%value)//' '// &
                 unit_name(item%quantity, system)//' '//finding//' beside the other values, which fit '// &
-                trim(systems(system))//'; it looks as if it were in '//fits//'.', item%place)
+                trim(systems(system))//'; it is probably in '//fits//'.', item%place)
   end subroutine report_unit
 
   !> Values with a size that can be recognised as odd.
@@ -217,7 +217,7 @@ contains
       associate (unit => merge(of_ms(i), of_si(i), unit_name(of_time, system) == 'ms'))
         if (unit /= '') call report_unit(deck, problems, &
                                        quantity_t(of_time, deck%stepping%time%end, time_group, key_end), &
-                                       system, 'is '//short_text(ratio)//' times what happens', trim(unit))
+                                       system, 'is '//short_text(ratio)//' times the expected duration', trim(unit))
       end associate
       return
     end do
@@ -249,9 +249,9 @@ contains
       ratio = law%k/sun_stiffness(impactor%radius, 1/deck%materials(deck%laminate%material(1))%e2)
       if (ratio > odd_stiffness(1) .and. ratio < odd_stiffness(2)) return
       if (usual(ratio*per_millimetre)) call remark(deck%settings, problems, indentation_group, key_k, 'is '// &
-        short_text(ratio)//' times that of Sun''s formula; it looks as if it were in N/mm^1.5.')
+        short_text(ratio)//' times that of Sun''s formula; it is probably in N/mm^1.5.')
       if (usual(ratio/per_millimetre)) call remark(deck%settings, problems, indentation_group, key_k, 'is '// &
-        short_text(ratio)//' times that of Sun''s formula; it looks as if it were in N/m^1.5.')
+        short_text(ratio)//' times that of Sun''s formula; it is probably in N/m^1.5.')
     end associate
   end subroutine check_ball
 

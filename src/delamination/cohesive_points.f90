@@ -10,7 +10,7 @@ module cohesive_points
   implicit none
   private
   public :: cohesive_point_t, separation_t, cohesive_traction, separation_of, grown_damage, point_class, opened, &
-            undamaged_energy, stored_energy, mode_mixity, dissipated_share, share_growth, damage_at_share
+            undamaged_energy, stored_energy, mode_mixity, dissipated_fraction, fraction_growth, damage_at_fraction
 
   !> Classes of points: undamaged, damaged without growth, with growing damage in this state, failed.
   integer, parameter, public :: point_intact = 0, point_damaged = 1, point_growing = 2, point_failed = 3
@@ -59,7 +59,7 @@ contains
 
     separation = separation_of(law, jumps, pressure)
     new%damage = grown_damage(law, separation, old)
-    new%dissipated = old%dissipated + separation%toughness*share_growth(law, old%damage, new%damage)
+    new%dissipated = old%dissipated + separation%toughness*fraction_growth(law, old%damage, new%damage)
     traction = ((1 - new%damage)*stiffness_of(law))*opened(jumps)
   end subroutine cohesive_traction
 
@@ -182,27 +182,27 @@ contains
   end function mode_mixity
 
   !> Dissipated fraction of the toughness at a damage: phi(d) = d/(N (1 - d) + d), from 0 to 1.
-  pure real(wp) function dissipated_share(law, damage) result(share)
+  pure real(wp) function dissipated_fraction(law, damage) result(share)
     !> The law
     type(cohesive_law_t), intent(in) :: law
     !> d, from 0 to 1
     real(wp), intent(in) :: damage
 
     share = damage/(law%failure_ratio*(1 - damage) + damage)
-  end function dissipated_share
+  end function dissipated_fraction
 
   !> Damage for a dissipated fraction of the toughness: d = 1 - (1 - phi)/(1 + (N - 1) phi).
-  pure real(wp) function damage_at_share(law, share) result(damage)
+  pure real(wp) function damage_at_fraction(law, share) result(damage)
     !> The law
     type(cohesive_law_t), intent(in) :: law
     !> phi, from 0 to 1
     real(wp), intent(in) :: share
 
     damage = 1 - (1 - share)/(1 + (law%failure_ratio - 1)*share)
-  end function damage_at_share
+  end function damage_at_fraction
 
   !> phi(d) - phi(d_old), without cancellation for small increments of damage.
-  pure real(wp) function share_growth(law, damage_from, damage_to) result(growth)
+  pure real(wp) function fraction_growth(law, damage_from, damage_to) result(growth)
     !> The law
     type(cohesive_law_t), intent(in) :: law
     !> Damage before and after, from 0 to 1
@@ -212,5 +212,5 @@ contains
     from = law%failure_ratio*(1 - damage_from) + damage_from
     to = law%failure_ratio*(1 - damage_to) + damage_to
     growth = law%failure_ratio*(damage_to - damage_from)/(from*to)
-  end function share_growth
+  end function fraction_growth
 end module cohesive_points

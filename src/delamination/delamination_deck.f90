@@ -322,19 +322,19 @@ contains
     call check_law(settings, delamination, place, problems)
     ! Without a position there are no adjacent plies with strengths.
     if (delamination%below_ply < 1) return
-    if (.not. delamination%strength_opening > 0) call want('strength_opening', 'or YT of the materials.')
-    if (.not. delamination%strength_shear > 0) call want('strength_shear', 'or S12 of the materials.')
+    if (.not. delamination%strength_opening > 0) call require('strength_opening', 'or YT of the materials.')
+    if (.not. delamination%strength_shear > 0) call require('strength_shear', 'or S12 of the materials.')
 
   contains
 
     !> Reports a missing strength, unless its key already has an error.
-    subroutine want(key, other)
+    subroutine require(key, other)
       !> The key, and its alternative
       character(len=*), intent(in) :: key, other
 
       if (are_clear(settings, problems, group, key, place)) call report(settings, problems, group, key, &
         'is missing; a cohesive law needs it, '//other, place)
-    end subroutine want
+    end subroutine require
   end subroutine check_strengths
 
   !> Checks the stiffness of the law.

@@ -99,7 +99,7 @@ contains
     !> Receive point and normal
     real(wp), intent(out) :: place(2), normal(2)
     !> Regularisation of slope and curvature, for a front of one or two edges.
-    real(wp), parameter :: held = 1.0e-6_wp
+    real(wp), parameter :: regularisation = 1.0e-6_wp
     real(wp) :: matrix(3, 3), fit(3), powers(3), from(2), mean(2), near
     integer :: t, image, pass
     logical :: singular
@@ -125,10 +125,11 @@ contains
         end do
       end do
       ! A front that faces another part of itself across one cell keeps its own normal.
-      if (pass == 1) normal = merge(mean/max(norm2(mean), tiny(near)), normals(:, s), norm2(mean) > held*widths(s))
+      if (pass == 1) normal = merge(mean/max(norm2(mean), tiny(near)), normals(:, s), &
+                                    norm2(mean) > regularisation*widths(s))
     end do
-    matrix(2, 2) = matrix(2, 2) + held*matrix(1, 1)
-    matrix(3, 3) = matrix(3, 3) + held*matrix(1, 1)
+    matrix(2, 2) = matrix(2, 2) + regularisation*matrix(1, 1)
+    matrix(3, 3) = matrix(3, 3) + regularisation*matrix(1, 1)
     call solve_dense(matrix, fit, singular)
     if (singular) fit = 0
     place = middles(:, s) + fit(1)*normal

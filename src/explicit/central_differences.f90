@@ -201,7 +201,7 @@ contains
       call self%circles%hold(model, self%steps, u(3, :), v(3, :))
       call self%inertia%spread(u)
       call self%inertia%spread(v)
-      call self%stacks%copy_to_followers(self%inertia, now%interfaces%cohesive)
+      call self%stacks%copy_to_dependents(self%inertia, now%interfaces%cohesive)
       call self%change_length(model, v, 1)
       call model%profile%leave()
       call model%halo%update(u)

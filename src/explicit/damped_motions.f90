@@ -11,7 +11,7 @@ module damped_motions
   public :: damp_motion
 
   !> Ratio of amplitudes at the end and at the start of damping: 1e-7 of the energy.
-  real(wp), parameter :: left_over = 3.0e-4_wp
+  real(wp), parameter :: final_ratio = 3.0e-4_wp
 
 contains
 
@@ -28,7 +28,7 @@ contains
     real(wp) :: share, before
 
     if (.not. method%steps%now > 0) return
-    share = exp(2*log(left_over)*method%steps%now/duration)
+    share = exp(2*log(final_ratio)*method%steps%now/duration)
     before = kinetic_energy(method, model, now)
     now%motion%velocity = share*now%motion%velocity
     method%stacks%change = share*method%stacks%change

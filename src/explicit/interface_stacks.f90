@@ -43,8 +43,8 @@ module interface_stacks
     procedure :: find_damaged
     !> Onset energies, reduced by flaws.
     procedure :: find_onsets
-    !> Copies the state of leaders to their followers.
-    procedure :: copy_to_followers
+    !> Copies the state of masters to their dependents.
+    procedure :: copy_to_dependents
   end type interface_stacks_t
 
 contains
@@ -58,16 +58,16 @@ contains
     type(nodal_inertia_t), intent(in) :: inertia
     !> The stacks
     type(interface_stacks_t) :: self
-    logical :: follows(model%distribution%owned)
+    logical :: is_dependent(model%distribution%owned)
     integer :: i, points
 
     associate (above => model%map%above, owned => model%distribution%owned)
       points = size(model%distribution%points)
-      follows = .false.
-      follows(inertia%followers) = .true.
-      self%single = pack([(i, i=1, owned)], .not. follows .and. above(:owned) == 0 .and. &
+      is_dependent = .false.
+      is_dependent(inertia%dependents) = .true.
+      self%single = pack([(i, i=1, owned)], .not. is_dependent .and. above(:owned) == 0 .and. &
                          [(.not. has_layer_below(above, i), i=1, owned)])
-      self%first = pack([(i, i=1, owned)], .not. follows .and. above(:owned) == 0 .and. &
+      self%first = pack([(i, i=1, owned)], .not. is_dependent .and. above(:owned) == 0 .and. &
                         [(has_layer_below(above, i), i=1, owned)])
       allocate (self%layers(size(self%first)), self%damaged(size(self%first)))
       do i = 1, size(self%first)
@@ -79,9 +79,9 @@ contains
     end associate
     self%height = model%map%height
     self%area = model%contact_area
-    do i = 1, size(inertia%followers)
-      self%area(inertia%leaders(i)) = self%area(inertia%leaders(i)) + self%area(inertia%followers(i))
-      self%area(inertia%followers(i)) = 0
+    do i = 1, size(inertia%dependents)
+      self%area(inertia%masters(i)) = self%area(inertia%masters(i)) + self%area(inertia%dependents(i))
+      self%area(inertia%dependents(i)) = 0
     end do
     allocate (self%stiffness(2, points), self%min_onset(points), self%diagonal(3, points), self%off_diagonal(3, &
       points), &
@@ -141,8 +141,8 @@ contains
     end do
   end subroutine find_damaged
 
-  !> Copies the state of the interfaces of leaders to their followers.
-  pure subroutine copy_to_followers(self, inertia, cohesive)
+  !> Copies the state of the interfaces of masters to their dependents.
+  pure subroutine copy_to_dependents(self, inertia, cohesive)
     !> The stacks
     class(interface_stacks_t), intent(in) :: self
     !> Lumped inertia, with the dependent points
@@ -152,14 +152,14 @@ contains
     integer :: i
 
     if (.not. any(self%damaged)) return
-    do i = 1, size(inertia%followers)
-      associate (follower => inertia%followers(i))
-        if (.not. cohesive%cohesive(follower)) cycle
-        cohesive%points(follower) = cohesive%points(inertia%leaders(i))
-        cohesive%points(follower)%sliding%slip = inertia%signs(1:2, i)*cohesive%points(follower)%sliding%slip
+    do i = 1, size(inertia%dependents)
+      associate (dependent => inertia%dependents(i))
+        if (.not. cohesive%cohesive(dependent)) cycle
+        cohesive%points(dependent) = cohesive%points(inertia%masters(i))
+        cohesive%points(dependent)%sliding%slip = inertia%signs(1:2, i)*cohesive%points(dependent)%sliding%slip
       end associate
     end do
-  end subroutine copy_to_followers
+  end subroutine copy_to_dependents
 
   !> Compliances of the layers between interfaces for steps of a length, and factors of stacks without damage.
   pure subroutine prepare(self, inertia, step_square)

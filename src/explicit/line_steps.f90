@@ -74,19 +74,19 @@ contains
     !> The lines
     type(line_steps_t) :: self
     type(pin_t), allocatable :: pins(:)
-    logical :: follows(size(model%distribution%points))
+    logical :: is_dependent(size(model%distribution%points))
     integer :: line, node, p
 
-    follows = .false.
-    follows(inertia%followers) = .true.
-    allocate (pins(0), self%work(size(follows)), self%first(size(follows) + 1))
+    is_dependent = .false.
+    is_dependent(inertia%dependents) = .true.
+    allocate (pins(0), self%work(size(is_dependent)), self%first(size(is_dependent) + 1))
     self%work = 0
     do line = 1, size(model%lines)
       associate (its => model%lines(line))
         if (.not. its%load%prescribed) cycle
         do node = 1, size(its%weight)
           p = its%point(its%first(node))
-          if (follows(p) .or. inertia%held(its%load%component, p)) cycle
+          if (is_dependent(p) .or. inertia%held(its%load%component, p)) cycle
           pins = [pins, pin_t(point=p, line=line, component=its%load%component, &
                               height=merge(its%height(node), 0.0_wp, its%load%component <= 2))]
         end do
@@ -148,15 +148,15 @@ contains
     !> Motion of the layers, (5, points)
     real(wp), intent(in) :: motion(:, :)
     type(pin_t), allocatable :: pins(:)
-    logical :: follows(size(motion, 2))
+    logical :: is_dependent(size(motion, 2))
     integer :: i, p, component
 
-    follows = .false.
-    follows(inertia%followers) = .true.
+    is_dependent = .false.
+    is_dependent(inertia%dependents) = .true.
     pins = self%pins
     do p = 1, model%distribution%owned
       do component = 1, 5
-        if (inertia%held(component, p) .and. .not. follows(p) .and. abs(motion(component, p)) > 0) &
+        if (inertia%held(component, p) .and. .not. is_dependent(p) .and. abs(motion(component, p)) > 0) &
           pins = [pins, pin_t(point=p, component=component)]
       end do
     end do

@@ -26,14 +26,14 @@ module nodal_inertia
     real(wp), allocatable :: springs(:, :)
     !> Inverse of inertia and implicit springs, zero for constrained unknowns, (7, points)
     real(wp), allocatable :: inverse(:, :)
-    !> Points that follow others, and their leaders, (followers)
-    integer, allocatable :: followers(:), leaders(:)
-    !> Signs of their motion, (5, followers)
+    !> Points that follow others, and their masters, (dependents)
+    integer, allocatable :: dependents(:), masters(:)
+    !> Signs of their motion, (5, dependents)
     real(wp), allocatable :: signs(:, :)
   contains
     !> Computes the inverse for a step.
     procedure :: invert
-    !> Adds forces on points that follow to those on their leaders; gives them their leaders' motion.
+    !> Adds forces on points that follow to those on their masters; gives them their masters' motion.
     procedure :: fold
     procedure :: spread
   end type nodal_inertia_t
@@ -53,13 +53,13 @@ contains
     allocate (self%mass(4, points), self%inverse(7, points))
     self%mass(1:3, :) = scaling*model%lumped
     self%mass(4, :) = model%lumped(1, :)
-    call find_followers(model, self)
+    call find_dependents(model, self)
     call fold_mass(self, self%mass)
     call find_springs(model, self)
   end function create_nodal_inertia
 
   !> Dependent points of this rank, and unknowns constrained by supports and symmetry.
-  subroutine find_followers(model, self)
+  subroutine find_dependents(model, self)
     type(model_t), intent(in) :: model
     !> Receives them
     type(nodal_inertia_t), intent(inout) :: self
@@ -71,13 +71,13 @@ contains
     call find_leading_points(model%mesh, leader, signs, held, model%images)
     associate (share => model%distribution)
       self%held = held(:, share%points)
-      self%followers = pack([(i, i=1, share%owned)], leader(share%points(:share%owned)) > 0)
-      self%leaders = share%local(leader(share%points(self%followers)))
-      self%signs = signs(:, share%points(self%followers))
+      self%dependents = pack([(i, i=1, share%owned)], leader(share%points(:share%owned)) > 0)
+      self%masters = share%local(leader(share%points(self%dependents)))
+      self%signs = signs(:, share%points(self%dependents))
     end associate
-  end subroutine find_followers
+  end subroutine find_dependents
 
-  !> Adds the inertia of followers to that of their leaders, whose motion has the same energy.
+  !> Adds the inertia of dependents to that of their masters, whose motion has the same energy.
   pure subroutine fold_mass(self, mass)
     !> The inertia
     type(nodal_inertia_t), intent(in) :: self
@@ -85,9 +85,9 @@ contains
     real(wp), intent(inout) :: mass(:, :)
     integer :: i
 
-    do i = 1, size(self%followers)
-      mass(:, self%leaders(i)) = mass(:, self%leaders(i)) + mass(:, self%followers(i))
-      mass(:, self%followers(i)) = 0
+    do i = 1, size(self%dependents)
+      mass(:, self%masters(i)) = mass(:, self%masters(i)) + mass(:, self%dependents(i))
+      mass(:, self%dependents(i)) = 0
     end do
   end subroutine fold_mass
 
@@ -162,23 +162,23 @@ contains
     end if
   end function inverse_block
 
-  !> Adds forces on points that follow to those on their leaders.
+  !> Adds forces on points that follow to those on their masters.
   pure subroutine fold(self, forces)
     !> The inertia
     class(nodal_inertia_t), intent(in) :: self
-    !> Forces, (5, points); those on followers become zero
+    !> Forces, (5, points); those on dependents become zero
     real(wp), intent(inout) :: forces(:, :)
     integer :: i
 
-    do i = 1, size(self%followers)
-      associate (follower => self%followers(i), leader => self%leaders(i))
-        forces(:, leader) = forces(:, leader) + self%signs(:, i)*forces(:, follower)
-        forces(:, follower) = 0
+    do i = 1, size(self%dependents)
+      associate (dependent => self%dependents(i), leader => self%masters(i))
+        forces(:, leader) = forces(:, leader) + self%signs(:, i)*forces(:, dependent)
+        forces(:, dependent) = 0
       end associate
     end do
   end subroutine fold
 
-  !> Gives points that follow their leaders' motion.
+  !> Gives points that follow their masters' motion.
   pure subroutine spread(self, motion)
     !> The inertia
     class(nodal_inertia_t), intent(in) :: self
@@ -186,8 +186,8 @@ contains
     real(wp), intent(inout) :: motion(:, :)
     integer :: i
 
-    do i = 1, size(self%followers)
-      motion(:, self%followers(i)) = self%signs(:, i)*motion(:, self%leaders(i))
+    do i = 1, size(self%dependents)
+      motion(:, self%dependents(i)) = self%signs(:, i)*motion(:, self%masters(i))
     end do
   end subroutine spread
 end module nodal_inertia

@@ -30,8 +30,8 @@ contains
     energy = max(now%ledger%initial, now%ledger%external_work, now%ledger%initial + now%ledger%external_work)
     if (created <= max_created*energy .or. .not. (energy > 0 .or. abs(created) > 0)) return
     amount = 'the energy has become infinite'
-    if (abs(created) <= huge(created)) amount = rounded_text(created)//' of energy have appeared beside '// &
-                                                rounded_text(energy)
+    if (abs(created) <= huge(created)) &
+      amount = rounded_text(created)//' of energy have been created, of a total of '//rounded_text(energy)
     call fail(error, exit_convergence, 'Central differences have become unstable by time '//rounded_text(now%time)// &
               ': '//amount//'; the fastest point is '//fastest_point(model, now%motion%velocity)// &
               '. Take a smaller &time step_factor.')

@@ -9,7 +9,7 @@ module cohesive_interfaces
   use delamination_parameters, only: law_cohesive, contact_none
   use cohesive_laws, only: cohesive_law_t, stiffness_of, weakened
   use cohesive_faces, only: cohesive_faces_t
-  use cohesive_points, only: cohesive_point_t, dissipated_share, mode_mixity
+  use cohesive_points, only: cohesive_point_t, dissipated_fraction, mode_mixity
   use cohesive_tangents, only: dissipation_slopes
   use exact_sums, only: exact_sum_t
   use models, only: model_t
@@ -44,7 +44,7 @@ module cohesive_interfaces
     procedure :: energy => dissipated_energy
     !> Damage, dissipated fraction of the toughness, fraction of shear, and pressure at the points.
     procedure :: damage
-    procedure :: shares
+    procedure :: dissipated_fractions
     procedure :: shear_share
     procedure :: pressure
     !> True for zones in which damage has reached the border.
@@ -203,7 +203,7 @@ contains
     !> The area, (zones); zero for zones without a cohesive law
     real(wp) :: area(size(model%mesh%zones))
 
-    area = total_in_zones(self, model, self%shares(model))
+    area = total_in_zones(self, model, self%dissipated_fractions(model))
   end function area
 
   !> Energy dissipated in each zone of the full plate, the same on every rank.
@@ -251,20 +251,20 @@ contains
   end function damage
 
   !> Dissipated fraction of the toughness at this rank's points.
-  pure function shares(self, model)
+  pure function dissipated_fractions(self, model)
     !> The interfaces
     class(cohesive_interfaces_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> 0 to 1; 0 where there is no cohesive law, (local points)
-    real(wp) :: shares(size(model%zone))
+    real(wp) :: dissipated_fractions(size(model%zone))
     integer :: i
 
-    shares = 0
+    dissipated_fractions = 0
     if (.not. allocated(self%cohesive)) return
     do i = 1, model%distribution%owned
-      if (self%cohesive(i)) shares(i) = dissipated_share(self%law_at(model, i), self%points(i)%damage)
+      if (self%cohesive(i)) dissipated_fractions(i) = dissipated_fraction(self%law_at(model, i), self%points(i)%damage)
     end do
-  end function shares
+  end function dissipated_fractions
 
   !> Fraction of shear in the energy of the jumps at this rank's points.
   pure function shear_share(self, model, displacement)

@@ -70,7 +70,7 @@ contains
         call fields%write_cell_field('delaminated_above', delaminated_above(model, interfaces), error)
         call fields%write_point_field('damage_above', reshape(interfaces%cohesive%damage(model), &
                                                               [1, size(model%zone)]), error)
-        call fields%write_point_field('dissipated_above', reshape(interfaces%cohesive%shares(model), &
+        call fields%write_point_field('dissipated_above', reshape(interfaces%cohesive%dissipated_fractions(model), &
                                                                   [1, size(model%zone)]), error)
         call fields%write_point_field('shear_share_above', reshape(interfaces%cohesive%shear_share( &
           model, motion%displacement), [1, size(model%zone)]), error)
@@ -150,19 +150,19 @@ contains
     !> Fractions of an element's area at its nodes
     real(wp), parameter :: simpson(3) = [1, 4, 1]/6.0_wp, weights(9) = [simpson*simpson(1), simpson*simpson(2), &
                                                                         simpson*simpson(3)]
-    real(wp), allocatable :: shares(:, :)
+    real(wp), allocatable :: dissipated_fractions(:, :)
     integer :: zone, i, place(2)
 
     allocate (delaminated(1, model%elements%elements), source=0.0_wp)
-    shares = reshape(interfaces%cohesive%shares(model), [1, size(model%zone)])
-    call model%halo%update(shares)
+    dissipated_fractions = reshape(interfaces%cohesive%dissipated_fractions(model), [1, size(model%zone)])
+    call model%halo%update(dissipated_fractions)
     do i = 1, model%elements%elements
       associate (mesh => model%mesh, element => model%distribution%elements(i))
         place = mesh%place_of(mesh%element_cell(element))
         do zone = 1, size(mesh%zones)
           if (mesh%zones(zone)%below_ply /= mesh%element_plies(1, element) - 1) cycle
           if (model%setup%delaminations(zone)%law == law_cohesive) then
-            delaminated(1, i) = dot_product(weights, shares(1, model%distribution%connectivity(:, i)))
+            delaminated(1, i) = dot_product(weights, dissipated_fractions(1, model%distribution%connectivity(:, i)))
           else if (interfaces%faces%regions(zone)%is_delaminated(place(1), place(2))) then
             delaminated(1, i) = 1
           end if

@@ -191,7 +191,7 @@ contains
     type(model_t), intent(in) :: model
     !> (zones, local points); at the border of a zone a point of the joined layers has its part
     real(wp), allocatable :: areas(:, :)
-    real(wp) :: shares(size(model%zone)), field(1, model%borders%columns)
+    real(wp) :: dissipated_fractions(size(model%zone)), field(1, model%borders%columns)
     integer :: zone, i
 
     allocate (areas(size(model%mesh%zones), size(model%zone)), source=0.0_wp)
@@ -204,10 +204,10 @@ contains
       call model%borders%add(field)
       areas(zone, :) = field(1, :size(areas, 2))
     end do
-    shares = self%cohesive%shares(model)
+    dissipated_fractions = self%cohesive%dissipated_fractions(model)
     do i = 1, model%distribution%owned
       zone = model%zone(i)
-      if (zone > 0) areas(zone, i) = areas(zone, i) + shares(i)*model%contact_area(i)
+      if (zone > 0) areas(zone, i) = areas(zone, i) + dissipated_fractions(i)*model%contact_area(i)
     end do
 
   contains

@@ -96,11 +96,11 @@ contains
     real(wp), intent(in) :: damage_from, damage_to
 
     energy = 0
-    if (damage_to > damage_from) energy = part*softening%energy*share_growth(softening%ratio, damage_from, damage_to)
+    if (damage_to > damage_from) energy = part*softening%energy*fraction_growth(softening%ratio, damage_from, damage_to)
   end function taken_by
 
   !> Growth of the dissipated part d/(N (1 - d) + d) with the damage, free of cancellation.
-  pure real(wp) function share_growth(ratio, damage_from, damage_to) result(growth)
+  pure real(wp) function fraction_growth(ratio, damage_from, damage_to) result(growth)
     !> N
     real(wp), intent(in) :: ratio
     !> Damage before and after
@@ -110,5 +110,5 @@ contains
     from = ratio*(1 - damage_from) + damage_from
     to = ratio*(1 - damage_to) + damage_to
     growth = ratio*(damage_to - damage_from)/(from*to)
-  end function share_growth
+  end function fraction_growth
 end module linear_softening

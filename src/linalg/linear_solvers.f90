@@ -98,7 +98,7 @@ contains
     self%total_rows = total_rows
     self%promised = positive_definite
     if (self%factorization == factorization_cholmod .and. .not. positive_definite) &
-      call fail(error, exit_usage, 'CHOLMOD factors what stays positive definite only: choose '// &
+      call fail(error, exit_usage, 'CHOLMOD factorizes positive definite matrices only: choose '// &
                 "'automatic' or 'mumps' for factorization of &solver.")
     if (allocated(error)) return
     call self%matrix%define(communicator, first_row, total_rows, row_start, columns, error)

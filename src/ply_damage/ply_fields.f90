@@ -53,12 +53,12 @@ contains
     type(error_t), allocatable, intent(inout) :: error
     character(len=*), parameter :: components(5) = [character(len=7) :: 'sigma11', 'sigma22', 'tau12', 'tau13', 'tau23']
     character(len=*), parameter :: places(3) = [character(len=7) :: '', '_top', '_bottom']
-    logical :: wanted(3)
+    logical :: requested(3)
     real(wp), allocatable :: strains(:, :), stresses(:, :, :), lost(:, :)
     integer :: ply, place, i
 
-    wanted = [output%requests(field_stress), output%requests(field_face_stress), output%requests(field_face_stress)]
-    if (any(wanted)) strains = element_strains(model, plies, displacement)
+    requested = [output%requests(field_stress), output%requests(field_face_stress), output%requests(field_face_stress)]
+    if (any(requested)) strains = element_strains(model, plies, displacement)
     do ply = 1, size(model%plies)
       associate (name => 'ply_'//to_text(ply)//'_')
         if (output%requests(field_ply_damage) .and. model%setup%has_ply_damage) then
@@ -67,9 +67,9 @@ contains
           call fields%write_cell_field(name//'damage_fibre', lost(1:1, :), error)
           call fields%write_cell_field(name//'damage_matrix', lost(2:2, :), error)
         end if
-        if (any(wanted)) stresses = stresses_of_ply(model, plies, strains, ply)
+        if (any(requested)) stresses = stresses_of_ply(model, plies, strains, ply)
         do place = 1, 3
-          if (.not. wanted(place)) cycle
+          if (.not. requested(place)) cycle
           do i = 1, merge(5, 3, place == 1)
             call fields%write_cell_field(name//trim(components(i))//trim(places(place)), stresses(i:i, place, :), error)
           end do

@@ -40,8 +40,8 @@ module hdf5_file
   contains
     procedure :: create
     procedure :: open
-    procedure, private :: hold_reserve
-    procedure, private :: give_up_reserve
+    procedure, private :: write_reserve
+    procedure, private :: remove_reserve
     procedure :: close
     procedure :: check_status
     procedure :: succeeded
@@ -68,7 +68,7 @@ contains
     integer :: status, closed
 
     call start_over(self, communicator)
-    call self%hold_reserve(path)
+    call self%write_reserve(path)
     if (allocated(self%failure)) return
     call prepare(self, access_list)
     call h5pcreate_f(h5p_file_create_f, creation_list, status)
@@ -94,7 +94,7 @@ contains
     integer :: status, closed
 
     call start_over(self, communicator)
-    if (writable) call self%hold_reserve(path)
+    if (writable) call self%write_reserve(path)
     if (allocated(self%failure)) return
     call prepare(self, access_list)
     call h5fopen_f(path, merge(h5f_acc_rdwr_f, h5f_acc_rdonly_f, writable), self%id, status, access_list)
@@ -115,7 +115,7 @@ contains
   end subroutine start_over
 
   !> Writes the reserve file; without space for it the error is set before HDF5 opens the file.
-  subroutine hold_reserve(self, path)
+  subroutine write_reserve(self, path)
     !> The file
     class(hdf5_file_t), intent(inout) :: self
     !> Path of the file
@@ -129,11 +129,11 @@ contains
       call stream%close()
     end if
     call self%check_status(merge(-1, 0, stream%failed), 'the folder cannot be written to or the disk is full')
-    if (allocated(self%failure)) call self%give_up_reserve()
-  end subroutine hold_reserve
+    if (allocated(self%failure)) call self%remove_reserve()
+  end subroutine write_reserve
 
   !> Removes the reserve.
-  subroutine give_up_reserve(self)
+  subroutine remove_reserve(self)
     !> The file
     class(hdf5_file_t), intent(inout) :: self
     integer :: unit, status
@@ -144,7 +144,7 @@ contains
       deallocate (self%reserve)
     end if
     call self%communicator%barrier()
-  end subroutine give_up_reserve
+  end subroutine remove_reserve
 
   !> Starts the library if need be, silences its own messages and makes the property lists.
   subroutine prepare(self, access_list)
@@ -201,7 +201,7 @@ contains
     integer :: status, closed
 
     if (self%together < 0) return
-    call self%give_up_reserve()
+    call self%remove_reserve()
     status = 0
     if (self%is_open) call h5fclose_f(self%id, status)
     self%is_open = .false.
@@ -303,7 +303,7 @@ contains
     character(len=*), intent(in) :: path
     integer :: status
 
-    call self%give_up_reserve()
+    call self%remove_reserve()
     if (self%is_open) call h5ldelete_f(self%id, path, status)
   end subroutine discard
 

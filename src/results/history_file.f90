@@ -183,7 +183,7 @@ contains
   end subroutine check
 
   !> Copies the header and the first rows of a history.
-  subroutine keep_rows(from, to, expected, wanted, last, kept, error)
+  subroutine keep_rows(from, to, expected, rows_to_keep, last, kept, error)
     !> Path of the history
     character(len=*), intent(in) :: from
     !> Path of the copy
@@ -191,7 +191,7 @@ contains
     !> Header the history must have
     character(len=*), intent(in) :: expected
     !> Rows to keep
-    integer, intent(in) :: wanted
+    integer, intent(in) :: rows_to_keep
     !> The last of them; empty: none
     character(len=*), intent(in) :: last
     !> Rows kept: fewer if there are not that many
@@ -214,12 +214,12 @@ contains
     if (status /= 0 .or. found /= expected//new_line('a')) then
       call fail(error, exit_files, 'The history '//from//' has other columns than this run writes; move it away.')
     else
-      call measure_rows(unit, len(found, long), wanted, bytes, kept)
-      same = kept < wanted
+      call measure_rows(unit, len(found, long), rows_to_keep, bytes, kept)
+      same = kept < rows_to_keep
       if (.not. same) same = ends_with(unit, bytes, last)
       if (.not. same) then
         call fail(error, exit_files, 'The history '//from//' is that of another run than the checkpoint: row '// &
-                  to_text(wanted)//' differs; move it away, or take the checkpoint of that run.')
+                  to_text(rows_to_keep)//' differs; move it away, or take the checkpoint of that run.')
       else
         call copy%open(to, 'w')
         call copy_bytes(unit, bytes, copy)
@@ -248,13 +248,13 @@ contains
   end function ends_with
 
   !> Finds the end of the last row to keep. A row without line end was truncated by a kill and is ignored.
-  subroutine measure_rows(unit, header_bytes, wanted, bytes, kept)
+  subroutine measure_rows(unit, header_bytes, rows_to_keep, bytes, kept)
     !> Unit of the history
     integer, intent(in) :: unit
     !> Length of the header
     integer(long), intent(in) :: header_bytes
     !> Rows to keep
-    integer, intent(in) :: wanted
+    integer, intent(in) :: rows_to_keep
     !> Length of the header and the rows to keep
     integer(long), intent(out) :: bytes
     !> Number of these rows
@@ -267,14 +267,14 @@ contains
     bytes = header_bytes
     place = header_bytes
     inquire (unit, size=length)
-    do while (place < length .and. kept < wanted)
+    do while (place < length .and. kept < rows_to_keep)
       block = ''
       read (unit, pos=place + 1, iostat=status) block(:min(length - place, len(block, long)))
       do i = 1, block_length
         if (block(i:i) /= new_line('a')) cycle
         kept = kept + 1
         bytes = place + i
-        if (kept == wanted) exit
+        if (kept == rows_to_keep) exit
       end do
       place = place + block_length
     end do

@@ -155,7 +155,7 @@ contains
                       converged, error)
       if (.not. (allocated(error) .or. converged)) &
         call fail(error, exit_convergence, 'No equilibrium at '//rounded_text(stepper%now%time)// &
-                  ' of the load: what is left of the plate after failures of plies does not bear it.')
+                  'of the load: the plate with its failed plies cannot carry it.')
       if (allocated(error)) return
       stepper%trial%step = stepper%now%step
       call accept_step(stepper, model, 0.0_wp)
