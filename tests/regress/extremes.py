@@ -302,7 +302,7 @@ def check_units(implam, folder, deck, system, row):
     """The run in another system of units against the one in SI."""
     other = Row(implam, folder / system, converted(implam, deck, system))
     require(other.code == 0, f"exit code {other.code} in {system}: {other.said[-300:]}")
-    require("looks as if" not in other.said, f"a value in {system} looks odd: {other.said[-300:]}")
+    require("it is probably in" not in other.said, f"a value in {system} looks odd: {other.said[-300:]}")
     for name, dimension in COLUMNS.items():
         if name in row.history:
             mine = max(map(abs, row.history[name])) * factor(dimension, system)
