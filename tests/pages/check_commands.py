@@ -7,6 +7,7 @@ of the programs below, and commands of the program within sentences and tables. 
 docs_commands and docs_tutorial.
 """
 
+import os
 import re
 import shlex
 import subprocess
@@ -113,7 +114,9 @@ class Checker:
         options = [word for word in words if word.startswith("--")]
         if program.startswith("tests/"):
             script = self.root / program
-            return self.fault_of_options(options, script.read_text()) if script.exists() else f"there is no {program}"
+            if not os.access(script, os.X_OK):
+                return f"there is no {program} that can be executed"
+            return self.fault_of_options(options, script.read_text())
         if name == "mpirun":
             place = next((n for n, word in enumerate(words) if Path(word).name == "implam"), None)
             return "" if place is None else self.fault_of_program(words[place + 1:])

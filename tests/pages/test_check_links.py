@@ -44,7 +44,7 @@ class OuterLinks(unittest.TestCase):
         found = [record("https://a.org", "invalid"), record("#inner", "unchecked"), record("b.md", "local")]
         self.assertEqual(classified(found), ([], [], ["https://a.org"]))
 
-    def test_with_a_network_missing_pages_and_servers_are_broken(self):
+    def test_with_a_network_missing_pages_and_servers_are_invalid(self):
         """One server serves its page, one reports a missing page, one does not exist."""
         found = [record("https://a.org", "working", 200), record("https://b.org", "invalid", 404),
                  record("https://c.org", "timeout")]  # fmt: skip

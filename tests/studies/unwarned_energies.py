@@ -1,3 +1,4 @@
+#!/usr/bin/env python3
 """Runs whose ledger leaves more than 1 % of the energy open although nothing was warned of.
 Usage: unwarned_energies.py FOLDER...
 
