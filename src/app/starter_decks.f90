@@ -35,7 +35,7 @@ module starter_decks
     '', &
     '&impactor     mass=1.0  energy=3.5     ! or velocity instead of energy', &
     '              radius=8e-3 /            ! of the nose', &
-    '&indentation  law=''tan_sun''  alpha_cr=80.3e-6 /        ! how the struck face gives way', &
+    '&indentation  law=''tan_sun''  alpha_cr=80.3e-6 /        ! indentation of the struck face', &
     '', &
     '! The interface below ply 12, where the lower 0-degree plies begin, delaminates: leave this group out', &
     '! for a plate that stays whole, add &ply_damage for plies that crack.', &

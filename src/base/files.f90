@@ -145,7 +145,7 @@ contains
       if (path(i:i) == '/') status = c_mkdir(path(:i - 1)//c_null_char, all_permissions)
     end do
     status = c_mkdir(path//c_null_char, all_permissions)
-    ! A folder made meanwhile by another process is as good as ours, so only the result counts.
+    ! Another process may have made the folder, so only the result matters.
     if (.not. is_directory(path)) call fail(error, exit_files, "Can't make the folder "//path//'.')
   end subroutine make_directory
 

@@ -136,7 +136,7 @@ contains
     real(wp), intent(in) :: reach
     !> True for the closest ones
     logical :: first(size(open))
-    !> Distance, relative to a cell, that counts as none.
+    !> Tolerance of equal distances, relative to a cell
     real(wp), parameter :: distance_tolerance = 1.0e-6_wp
     integer :: s, t, image
 

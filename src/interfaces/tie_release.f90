@@ -1,4 +1,4 @@
-!> Released ties: their forces are ramped down, and the energy released meanwhile is summed.
+!> Released ties: their forces are ramped down, and the energy released is summed.
 !>
 !> Sudden removal of a tie would excite the plate: the energy would remain as kinetic energy, and the shorter the steps,
 !> the less of it would appear as work against the tie. The force is therefore ramped down linearly in time, while shear

@@ -16,7 +16,7 @@ module interlaminar_stresses
   contains
     !> Normal stress.
     procedure :: opening
-    !> How near interfaces are to failing.
+    !> Onset index of interfaces.
     procedure :: onset_indices
   end type unit_stresses_t
 

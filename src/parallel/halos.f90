@@ -71,7 +71,7 @@ contains
     call exchange_lists(self, owner, ghost_numbers)
   end subroutine define
 
-  !> Informs the owners which of their points are seen here, and learns which are ghosts elsewhere.
+  !> Exchanges with other ranks which points are ghosts where.
   subroutine exchange_lists(self, owner, ghost_numbers)
     class(halo_t), intent(inout) :: self
     !> Owning rank of each ghost

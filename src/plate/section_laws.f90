@@ -6,7 +6,7 @@ module section_laws
   private
   public :: section_law_t
 
-  !> What the sections of the elements remember, and how they respond to trial strains.
+  !> History variables of the element sections, and their response to trial strains.
   type, abstract :: section_law_t
   contains
     !> True where the strains of a batch must be known before any section softens; takes them; sends them to all ranks.
@@ -50,7 +50,7 @@ module section_laws
     !> Stiffness of the sections of a batch under trial strains.
     subroutine soften_batch(self, b, weight, strains, stiffness, free)
       import :: section_law_t, wp, lanes
-      !> The law; remembers the trial
+      !> The law; stores the trial state
       class(section_law_t), intent(inout) :: self
       !> Number of the batch
       integer, intent(in) :: b

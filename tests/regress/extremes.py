@@ -212,7 +212,7 @@ def check_hertz(row, tolerance):
 
 
 def check_first(row, tolerance):
-    """Force before the plate gives way: k (v t)**1.5."""
+    """Force before the plate deflects: k (v t)**1.5."""
     last = row.history["time"][-1]
     expected = row.key("indentation", "k") * (row.key("impactor", "velocity") * last)**1.5
     return compare("force", row.history["force"][-1], expected, tolerance)
