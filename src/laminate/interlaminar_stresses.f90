@@ -1,5 +1,5 @@
-!> Stresses between the plies of a stack that carries shear forces, by equilibrium through its thickness, and how near
-!> they bring its interfaces to failing.
+!> Stresses between the plies of a stack that carries shear forces, by equilibrium through its thickness, and the onset
+!> index of its interfaces.
 module interlaminar_stresses
   use kinds, only: wp
   use plies, only: ply_t, in_plane_stiffness
