@@ -1,3 +1,4 @@
+#!/usr/bin/env python3
 """Runs the commands of the manual as a reader would: those of blocks marked `sh`, in the order of a page. Each page has
 a folder of its own that is laid out like a clone, with the program and the Python commands on the path. Each command
 ends with code 0. Usage: run_commands.py IMPLAM ROOT FOLDER [PAGE...]
