@@ -1,5 +1,5 @@
-!> Sums of reals that are exact until they are rounded once at the end, so that neither the order of the terms nor the
-!> way they are dealt out to ranks has any influence.
+!> Exact sums of reals, rounded once at the end, independent of the order of the terms and of their distribution over
+!> ranks.
 !>
 !> Small superaccumulator of R. M. Neal, Fast exact summation using small and large superaccumulators (2015,
 !> arXiv:1505.05571): a fixed-point number as wide as the range of double precision, in chunks of 64 bits whose places

@@ -33,7 +33,7 @@ module nodal_inertia
   contains
     !> Computes the inverse for a step.
     procedure :: invert
-    !> Adds forces on points that follow to those on their masters; gives them their masters' motion.
+    !> Adds forces on dependent points to those on their masters; sets the motion of dependent points.
     procedure :: fold
     procedure :: spread
   end type nodal_inertia_t
@@ -77,7 +77,7 @@ contains
     end associate
   end subroutine find_dependents
 
-  !> Adds the inertia of dependents to that of their masters, whose motion has the same energy.
+  !> Adds the inertia of dependent points to that of their masters, which have the same kinetic energy.
   pure subroutine fold_mass(self, mass)
     !> The inertia
     type(nodal_inertia_t), intent(in) :: self
@@ -162,7 +162,7 @@ contains
     end if
   end function inverse_block
 
-  !> Adds forces on points that follow to those on their masters.
+  !> Adds forces on dependent points to those on their masters.
   pure subroutine fold(self, forces)
     !> The inertia
     class(nodal_inertia_t), intent(in) :: self
@@ -178,7 +178,7 @@ contains
     end do
   end subroutine fold
 
-  !> Gives points that follow their masters' motion.
+  !> Sets the motion of dependent points to that of their masters.
   pure subroutine spread(self, motion)
     !> The inertia
     class(nodal_inertia_t), intent(in) :: self

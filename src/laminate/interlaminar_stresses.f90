@@ -8,8 +8,7 @@ module interlaminar_stresses
   private
   public :: unit_stresses_t, unit_stresses_of
 
-  !> Stresses below each ply of a stack but the last. Plies as they were made: what cracks have taken from them is not
-  !> looked at.
+  !> Stresses below each ply of a stack but the last, of undamaged plies.
   type :: unit_stresses_t
     !> tau_xz and tau_yz for Qx = 1 and Qy = 1, and the parts of these forces that plies above carry, (2, 2, plies - 1)
     real(wp), allocatable :: shear(:, :, :), carried(:, :, :)

@@ -86,7 +86,7 @@ contains
     end if
   end function damage_at
 
-  !> Energy per volume that damage takes as it grows on a fall; 0: it does not grow.
+  !> Energy per volume dissipated by growing damage on a linear softening branch; 0: no growth.
   pure real(wp) function taken_by(softening, part, damage_from, damage_to) result(energy)
     !> The fall
     type(softening_t), intent(in) :: softening

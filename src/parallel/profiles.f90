@@ -47,7 +47,7 @@ module profiles
     procedure :: leave
     !> The parts so far.
     procedure :: rows
-    !> Frees what copies share.
+    !> Deallocates the shared data.
     procedure :: release
   end type profile_t
 
@@ -148,7 +148,7 @@ contains
     rows = self%record%rows
   end function rows
 
-  !> Frees what copies share; none of them may be used again.
+  !> Deallocates the shared data; no copy may be used afterwards.
   subroutine release(self)
     class(profile_t), intent(inout) :: self
 

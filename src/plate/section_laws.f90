@@ -1,4 +1,4 @@
-!> Sections whose stiffness follows from their strains within the iteration of equilibrium, as that of softening plies.
+!> Sections with a stiffness that depends on their strains within the equilibrium iteration, such as softening plies.
 module section_laws
   use kinds, only: wp
   use element_batches, only: lanes
@@ -40,7 +40,7 @@ module section_laws
       real(wp), intent(in) :: strains(lanes, 9, 6)
     end subroutine take_batch
 
-    !> Sends what was set to all ranks. Collective.
+    !> Sends the strains set to all ranks. Collective.
     subroutine share_with_ranks(self)
       import :: section_law_t
       !> The law
