@@ -26,7 +26,7 @@ module nodal_inertia
     real(wp), allocatable :: springs(:, :)
     !> Inverse of inertia and implicit springs, zero for constrained unknowns, (7, points)
     real(wp), allocatable :: inverse(:, :)
-    !> Points that follow others, and their masters, (dependents)
+    !> Dependent points and their masters, (dependents)
     integer, allocatable :: dependents(:), masters(:)
     !> Signs of their motion, (5, dependents)
     real(wp), allocatable :: signs(:, :)

@@ -39,7 +39,7 @@ contains
   pure subroutine link_images(images, leader, signs, held)
     !> The images
     type(symmetry_images_t), intent(in) :: images
-    !> Receives the leaders, (points)
+    !> Receives the masters, (points)
     integer, intent(inout) :: leader(:)
     !> Receives the signs of the points' motion, (5, points)
     real(wp), intent(inout) :: signs(:, :)
