@@ -51,13 +51,13 @@ contains
     real(wp) :: coordinates(3, model%distribution%owned)
     integer :: values(3, model%elements%elements)
 
-    associate (mesh => model%mesh, share => model%distribution)
-      coordinates(1:2, :) = mesh%node_coordinates(:, mesh%point_node(share%points(:share%owned)))
+    associate (mesh => model%mesh, partition => model%distribution)
+      coordinates(1:2, :) = mesh%node_coordinates(:, mesh%point_node(partition%points(:partition%owned)))
       coordinates(3, :) = heights(model)
-      values(:2, :) = mesh%element_plies(:, share%elements)
+      values(:2, :) = mesh%element_plies(:, partition%elements)
       values(3, :) = starters_above(model)
-      call fields%write_mesh(share%points(:share%owned), mesh%points(), coordinates, share%elements, mesh%elements(), &
-                             mesh%connectivity(:, share%elements), &
+      call fields%write_mesh(partition%points(:partition%owned), mesh%points(), coordinates, partition%elements, &
+                             mesh%elements(), mesh%connectivity(:, partition%elements), &
                              [character(len=13) :: 'first_ply', 'last_ply', 'starter_above'], values, error)
     end associate
   end subroutine write_mesh

@@ -51,9 +51,9 @@ contains
     integer :: unknowns, most, least
 
     if (allocated(stepper%explicit)) then
-      associate (share => model%distribution)
-        unknowns = count(.not. model%held(:, :share%owned))
-        most = size(share%elements)
+      associate (partition => model%distribution)
+        unknowns = count(.not. model%held(:, :partition%owned))
+        most = size(partition%elements)
       end associate
       least = most
       call model%communicator%sum(unknowns)

@@ -69,11 +69,11 @@ contains
 
     held = model%held
     call find_leading_points(model%mesh, leader, signs, held, model%images)
-    associate (share => model%distribution)
-      self%held = held(:, share%points)
-      self%dependents = pack([(i, i=1, share%owned)], leader(share%points(:share%owned)) > 0)
-      self%masters = share%local(leader(share%points(self%dependents)))
-      self%signs = signs(:, share%points(self%dependents))
+    associate (partition => model%distribution)
+      self%held = held(:, partition%points)
+      self%dependents = pack([(i, i=1, partition%owned)], leader(partition%points(:partition%owned)) > 0)
+      self%masters = partition%local(leader(partition%points(self%dependents)))
+      self%signs = signs(:, partition%points(self%dependents))
     end associate
   end subroutine find_dependents
 

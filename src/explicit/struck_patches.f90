@@ -55,16 +55,16 @@ contains
     integer :: i
 
     fields = 0
-    associate (share => model%distribution)
-      do i = 1, share%owned
+    associate (partition => model%distribution)
+      do i = 1, partition%owned
         if (allocated(model%contact%nose)) then
           associate (nose => model%contact%nose)
-            fields(1:3, share%points(i)) = [nose%under(i), nose%beside(i), nose%rise(i)]
+            fields(1:3, partition%points(i)) = [nose%under(i), nose%beside(i), nose%rise(i)]
           end associate
         else
-          fields(1, share%points(i)) = model%contact%weights(i)
+          fields(1, partition%points(i)) = model%contact%weights(i)
         end if
-        fields(4, share%points(i)) = i
+        fields(4, partition%points(i)) = i
       end do
       list = reshape(fields, [size(list)])
       where (.not. abs(list) > 0) list = 0
@@ -74,8 +74,8 @@ contains
       end if
       fields = reshape(list, shape(fields))
       reached = pack([(i, i=1, size(fields, 2))], abs(fields(1, :)) + abs(fields(2, :)) > 0)
-      self%local = share%local(reached)
-      where (self%local > share%owned) self%local = 0
+      self%local = partition%local(reached)
+      where (self%local > partition%owned) self%local = 0
     end associate
     self%under = fields(1, reached)
     self%beside = fields(2, reached)

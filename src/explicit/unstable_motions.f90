@@ -48,14 +48,14 @@ contains
     real(wp) :: largest
     integer :: i, point
 
-    associate (share => model%distribution)
-      rates = abs(velocity(3, :share%owned))
+    associate (partition => model%distribution)
+      rates = abs(velocity(3, :partition%owned))
       where (.not. rates <= huge(rates)) rates = huge(rates)
       largest = maxval(rates)
       call model%communicator%maximum(largest)
       point = huge(point)
-      do i = 1, share%owned
-        if (rates(i) >= largest) point = min(point, share%points(i))
+      do i = 1, partition%owned
+        if (rates(i) >= largest) point = min(point, partition%points(i))
       end do
     end associate
     call model%communicator%minimum(point)

@@ -374,8 +374,8 @@ contains
     fields(1, :) = self%points%damage
     fields(2, :) = self%points%dissipated
     fields(3:, :) = self%stiffness
-    associate (share => model%distribution)
-      call archive%field('cohesive/points', share%points(:share%owned), model%mesh%points(), fields)
+    associate (partition => model%distribution)
+      call archive%field('cohesive/points', partition%points(:partition%owned), model%mesh%points(), fields)
     end associate
     if (.not. archive%loading) return
     self%points%damage = fields(1, :)

@@ -90,8 +90,8 @@ contains
         fields(:, i) = [sliding%slip, sliding%limit, sliding%heat]
       end associate
     end do
-    associate (share => model%distribution)
-      call archive%field('cohesive/sliding', share%points(:share%owned), model%mesh%points(), fields)
+    associate (partition => model%distribution)
+      call archive%field('cohesive/sliding', partition%points(:partition%owned), model%mesh%points(), fields)
     end associate
     if (.not. archive%loading) return
     interfaces%points%sliding%limit = fields(3, :)

@@ -146,8 +146,8 @@ contains
     if (.not. allocated(interfaces%strength)) return
     if (.not. any(model%setup%delaminations%cracks_as_flaws .or. model%setup%delaminations%shear_cracks)) return
     fields = reshape(interfaces%strength, [1, size(interfaces%strength)])
-    associate (share => model%distribution)
-      call archive%field('cohesive/strength', share%points(:share%owned), model%mesh%points(), fields)
+    associate (partition => model%distribution)
+      call archive%field('cohesive/strength', partition%points(:partition%owned), model%mesh%points(), fields)
     end associate
     if (archive%loading) interfaces%strength = fields(1, :)
   end subroutine visit_flaws

@@ -248,8 +248,8 @@ contains
     fields(1, :) = self%multiplier
     fields(2, :) = self%pressure
     fields(3, :) = self%slope
-    associate (share => model%distribution)
-      call archive%field('rig/pressures', share%points(:share%owned), model%mesh%points(), fields)
+    associate (partition => model%distribution)
+      call archive%field('rig/pressures', partition%points(:partition%owned), model%mesh%points(), fields)
     end associate
     if (.not. archive%loading) return
     self%multiplier = fields(1, :)

@@ -17,7 +17,7 @@ module tie_release
     !> Forces on the jumps when the ties were released, (3, local points)
     real(wp), allocatable :: force(:, :)
     !> Remaining fraction of these forces, (local points)
-    real(wp), allocatable :: share(:)
+    real(wp), allocatable :: remaining(:)
     !> Duration of the ramp, (zones)
     real(wp), allocatable :: duration(:)
     !> Energy released by released ties, full plate, (zones)
@@ -56,7 +56,7 @@ contains
     allocate (self%set_free(zones), self%duration(zones), source=0.0_wp)
     if (.not. model%map%layered) return
     points = size(model%zone)
-    allocate (self%force(3, points), self%share(points), source=0.0_wp)
+    allocate (self%force(3, points), self%remaining(points), source=0.0_wp)
     slowness = sqrt(minval(model%plies%density/max(model%plies%elasticity%g13, model%plies%elasticity%g23)))
     do zone = 1, zones
       self%duration(zone) = elements_crossed*model%mesh%mean_cell(zone)*slowness
@@ -79,7 +79,7 @@ contains
       if (free_before(i) .or. .not. free(i)) cycle
       self%force(:, i) = forces(:, i)
       if (model%setup%delaminations(model%zone(i))%contact /= contact_none) self%force(3, i) = min(0.0_wp, forces(3, i))
-      self%share(i) = 1
+      self%remaining(i) = 1
     end do
     self%left = maxval(self%duration)
   end subroutine release
@@ -102,7 +102,7 @@ contains
     do i = 1, model%distribution%owned
       if (free_before(i) .or. .not. free(i)) cycle
       associate (zone => model%zone(i))
-        energy(zone) = energy(zone) - (1 - self%share(i))/2*dot_product(self%force(:, i), opening(1:3, i))
+        energy(zone) = energy(zone) - (1 - self%remaining(i))/2*dot_product(self%force(:, i), opening(1:3, i))
       end associate
     end do
     call model%communicator%sum(energy)
@@ -120,17 +120,17 @@ contains
 
     if (.not. self%left > 0) return
     do i = 1, model%distribution%owned
-      if (.not. self%share(i) > 0) cycle
+      if (.not. self%remaining(i) > 0) cycle
       associate (duration => self%duration(model%zone(i)))
-        if (step < self%share(i)*duration) then
-          self%share(i) = self%share(i) - step/duration
+        if (step < self%remaining(i)*duration) then
+          self%remaining(i) = self%remaining(i) - step/duration
         else
-          self%share(i) = 0
+          self%remaining(i) = 0
         end if
       end associate
     end do
     self%left = max(0.0_wp, self%left - step)
-    if (.not. self%left > 0) self%share = 0
+    if (.not. self%left > 0) self%remaining = 0
   end subroutine ramp_down
 
   !> Adds the forces to a residual.
@@ -144,7 +144,7 @@ contains
 
     if (.not. self%left > 0) return
     do i = 1, model%distribution%owned
-      if (self%share(i) > 0) residual(1:3, i) = residual(1:3, i) + self%share(i)*self%force(:, i)
+      if (self%remaining(i) > 0) residual(1:3, i) = residual(1:3, i) + self%remaining(i)*self%force(:, i)
     end do
   end subroutine act
 
@@ -168,11 +168,11 @@ contains
     if (.not. old%left > 0) return
     sums = 0
     do i = 1, model%distribution%owned
-      if (.not. old%share(i) > 0) cycle
+      if (.not. old%remaining(i) > 0) cycle
       work = -dot_product(self%force(:, i), change(1:3, i))
-      sums(1) = sums(1) + self%share(i)*work
-      mean = (old%share(i) + self%share(i))/2
-      if (old%share(i) >= 1) mean = self%share(i)
+      sums(1) = sums(1) + self%remaining(i)*work
+      mean = (old%remaining(i) + self%remaining(i))/2
+      if (old%remaining(i) >= 1) mean = self%remaining(i)
       sums(1 + model%zone(i)) = sums(1 + model%zone(i)) + mean*work
     end do
     call model%communicator%sum(sums)
@@ -193,14 +193,14 @@ contains
     if (.not. model%map%layered) return
     call archive%item('ties/set_free', self%set_free)
     call archive%item('ties/left', self%left)
-    allocate (fields(4, size(self%share)))
+    allocate (fields(4, size(self%remaining)))
     fields(:3, :) = self%force
-    fields(4, :) = self%share
-    associate (share => model%distribution)
-      call archive%field('ties/forces', share%points(:share%owned), model%mesh%points(), fields)
+    fields(4, :) = self%remaining
+    associate (partition => model%distribution)
+      call archive%field('ties/forces', partition%points(:partition%owned), model%mesh%points(), fields)
     end associate
     if (.not. archive%loading) return
     self%force = fields(:3, :)
-    self%share = fields(4, :)
+    self%remaining = fields(4, :)
   end subroutine visit
 end module tie_release

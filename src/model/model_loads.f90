@@ -20,10 +20,10 @@ contains
     type(model_t), intent(inout) :: self
     integer :: targets(size(self%distribution%connectivity))
 
-    associate (share => self%distribution)
-      call self%borders%define(self%communicator, self%halo, reshape(share%connectivity, shape(targets)), &
-                               reshape(spread(share%elements, 1, 9), shape(targets)), targets)
-      call self%elements%set_targets(reshape(targets, shape(share%connectivity)))
+    associate (partition => self%distribution)
+      call self%borders%define(self%communicator, self%halo, reshape(partition%connectivity, shape(targets)), &
+                               reshape(spread(partition%elements, 1, 9), shape(targets)), targets)
+      call self%elements%set_targets(reshape(targets, shape(partition%connectivity)))
     end associate
   end subroutine build_borders
 
@@ -104,13 +104,13 @@ contains
 
     allocate (forces(5, self%borders%columns), source=0.0_wp)
     allocate (x(2, 9, self%elements%elements), pressure(9, self%elements%elements))
-    associate (mesh => self%mesh, share => self%distribution, value => self%setup%pressure%value)
-      call gauss_coordinates(self%elements, mesh%node_coordinates(:, mesh%point_node(share%points)), x)
+    associate (mesh => self%mesh, partition => self%distribution, value => self%setup%pressure%value)
+      call gauss_coordinates(self%elements, mesh%node_coordinates(:, mesh%point_node(partition%points)), x)
       pressure = value
       if (self%setup%pressure%distribution == distribution_sine) &
         pressure = value*cos(pi*x(1, :, :)/self%setup%plate%length(1))*cos(pi*x(2, :, :)/self%setup%plate%length(2))
-      do element = 1, size(share%elements)
-        if (mesh%element_plies(1, share%elements(element)) /= 1) pressure(:, element) = 0
+      do element = 1, size(partition%elements)
+        if (mesh%element_plies(1, partition%elements(element)) /= 1) pressure(:, element) = 0
       end do
     end associate
     call add_pressure(self%elements, pressure, forces)

@@ -38,8 +38,8 @@ contains
     call archive%item('path/dissipated', self%dissipated)
     call archive%item('path/force_change', self%force_change)
     if (.not. allocated(self%change)) return
-    associate (share => model%distribution)
-      call archive%field('path/change', share%points(:share%owned), model%mesh%points(), self%change)
+    associate (partition => model%distribution)
+      call archive%field('path/change', partition%points(:partition%owned), model%mesh%points(), self%change)
     end associate
     if (archive%loading) call model%halo%update(self%change)
   end subroutine visit

@@ -220,8 +220,8 @@ contains
     if (.not. allocated(self%patch)) return
     call archive%item('contact/offset', self%patch_offset)
     weights = reshape(self%patch, [1, size(self%patch)])
-    associate (share => model%distribution)
-      call archive%field('contact/weights', share%points(:share%owned), model%mesh%points(), weights)
+    associate (partition => model%distribution)
+      call archive%field('contact/weights', partition%points(:partition%owned), model%mesh%points(), weights)
     end associate
     self%patch = weights(1, :)
   end subroutine visit_patch
