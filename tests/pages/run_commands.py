@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Runs the commands of the manual as a reader would: those of blocks marked `sh`, in the order of a page. Each page has
 a folder of its own that is laid out like a clone, with the program and the Python commands on the path. Each command
-ends with code 0, unless it reports a Python package that is not installed. Usage: run_commands.py IMPLAM ROOT FOLDER [PAGE...]
+ends with code 0, unless it reports a Python package that is not installed.
+Usage: run_commands.py IMPLAM ROOT FOLDER [PAGE...]
 
 Blocks marked `sh long` and `sh elsewhere` are left to check_commands.py, the tutorial to tutorial.py. Ends with code 77
 where the Python commands are not installed."""
