@@ -30,7 +30,7 @@ module modal_plates
                          lengthened_cantilever = 1.68_wp, shortened_hinged = 0.8_wp
   !> Largest number of modes along one direction; the deflection by higher ones is negligible for an estimate.
   integer, parameter :: max_modes = 300
-  !> Fraction of the patch to which the half wave of the modes in the sum extends.
+  !> Shortest half wave of the modes in the sum along one direction, as a fraction of the patch.
   real(wp), parameter :: part_of_patch = 0.25_wp
 
 contains

@@ -119,7 +119,7 @@ contains
     follows_error = is_error_controlled(stepping%adapt)
   end function follows_error
 
-  !> Marks failed faces as glued once the impactor moves back and its force decreases.
+  !> Marks separated faces as glued once the impactor moves back and its force decreases.
   subroutine note_state(self, stepper, model)
     !> The kind
     class(motion_steps_t), intent(in) :: self
